@@ -1,0 +1,119 @@
+"""What can go wrong through no fault of the program: said once, the same words everywhere.
+
+The window, the terminal and the log print the same three parts: what, where, what to do.
+"""
+
+from __future__ import annotations
+
+import errno
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from processing.text import Language, Text
+
+
+class UserError(Exception):
+    """A fact that stops the work and that the user can do something about.
+
+    Parameters
+    ----------
+    what, where, remedy : Text
+        One sentence each without line breaks: what is wrong; the file and the place in it;
+        what to do, and what became of the project.
+    """
+
+    def __init__(self, what: Text, where: Text, remedy: Text) -> None:
+        self.what = what
+        self.where = where
+        self.remedy = remedy
+        super().__init__(self.line("en"))
+
+    def line(self, language: Language) -> str:
+        """The whole message on one line, its three parts divided by bars."""
+        parts = (self.what, self.where, self.remedy)
+        return " | ".join(" ".join(part.spoken(language).split()) for part in parts)
+
+
+class BadFile(UserError):
+    """A file's content is not what its format says."""
+
+
+class MissingInput(UserError):
+    """Something needed is not there: a file, a trajectory, a reference system."""
+
+
+class OutOfRange(UserError):
+    """A value lies outside what is allowed or outside what the data cover."""
+
+
+class NoSpace(UserError):
+    """The disk is full, read-only or refuses the write."""
+
+
+class InUse(UserError):
+    """Another window or program holds what is asked for."""
+
+
+class Unsuitable(UserError):
+    """The data lack what a tool, an image or a view needs."""
+
+
+class Cancelled(Exception):  # noqa: N818 - not an error: the user asked for it
+    """The user stopped the work; nothing of it is kept."""
+
+
+UNCHANGED = Text("The project is unchanged.", "プロジェクトは変更されていません。")
+
+
+@contextmanager
+def told_as_user_error(path: Path) -> Iterator[None]:
+    """Turn what the operating system says about a file into the sentence a user can act on.
+
+    Raises
+    ------
+    MissingInput, NoSpace, BadFile
+        In place of the ``OSError`` of the body.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise _from_os_error(error, Path(error.filename or path)) from error
+
+
+def _from_os_error(error: OSError, path: Path) -> UserError:
+    where = Text.same(str(path))
+    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return NoSpace(
+            Text("The disk is full.", "ディスクの空き容量がありません。"),
+            where,
+            Text(
+                "Free some space or choose another disk, then try again; nothing is half written.",
+                "空き容量を増やすか別のディスクを選んで、もう一度実行してください。"
+                "書きかけのファイルは残りません。",
+            ),
+        )
+    if error.errno in (errno.EROFS, errno.EACCES, errno.EPERM):
+        return NoSpace(
+            Text("Access is not allowed here.", "この場所へのアクセスが許可されていません。"),
+            where,
+            Text(
+                "Choose a place that you may use, or ask for the rights.",
+                "利用できる場所を選ぶか、アクセス権を設定してください。",
+            ),
+        )
+    if isinstance(error, FileNotFoundError):
+        return MissingInput(
+            Text("There is no such file.", "ファイルが見つかりません。"),
+            where,
+            Text("Check the name and the folder.", "ファイル名とフォルダを確認してください。"),
+        )
+    reason = error.strerror or str(error)
+    return BadFile(
+        Text(
+            f"The operating system refuses: {reason}.",
+            f"オペレーティングシステムが処理を拒否しました（{reason}）。",
+        ),
+        where,
+        Text("Check the file and the disk.", "ファイルとディスクを確認してください。"),
+    )

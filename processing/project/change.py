@@ -1,0 +1,52 @@
+"""Change: what becomes of the map's features, as a value with an inverse.
+
+Every edit is one, undo is the inverse sent the same way, and history is a list of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from processing.project.feature import Feature
+
+
+@dataclass(frozen=True)
+class Replacement:
+    """A feature before and after; both have the same id."""
+
+    before: Feature
+    after: Feature
+
+
+@dataclass(frozen=True)
+class Change:
+    """Features added, replaced and removed in one step.
+
+    A feature is named at most once in a change.
+    """
+
+    added: tuple[Feature, ...] = ()
+    replaced: tuple[Replacement, ...] = ()
+    removed: tuple[Feature, ...] = ()
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing changes."""
+        return not (self.added or self.replaced or self.removed)
+
+    @property
+    def feature_ids(self) -> tuple[str, ...]:
+        """The ids of all features it touches."""
+        return (
+            *(feature.id for feature in self.added),
+            *(pair.after.id for pair in self.replaced),
+            *(feature.id for feature in self.removed),
+        )
+
+    def inverse(self) -> Change:
+        """The change that takes this one back."""
+        return Change(
+            added=self.removed,
+            replaced=tuple(Replacement(pair.after, pair.before) for pair in self.replaced),
+            removed=self.added,
+        )

@@ -1,0 +1,103 @@
+"""Feature: one thing on the map, a plain value that can be stored, sent and compared."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import Enum
+from uuid import uuid4
+
+from processing.project.catalogue import Geometry
+
+AttributeValue = str | float | int | bool | None
+Position = tuple[float, float, float]
+
+
+class Status(Enum):
+    """Whether a person has agreed to a feature."""
+
+    CANDIDATE = "candidate"
+    ACCEPTED = "accepted"
+    REJECTED = "rejected"
+
+
+@dataclass(frozen=True)
+class PointReference:
+    """The measured point a vertex rests on: a drive's id and the point's index in it."""
+
+    drive: str
+    point: int
+
+
+@dataclass(frozen=True)
+class Vertex:
+    """A place on a feature.
+
+    Attributes
+    ----------
+    xyz : tuple of float
+        Easting, northing, height in metres, project CRS; the measured point's own coordinate where
+        ``measured`` names one.
+    measured : PointReference or None
+    """
+
+    xyz: Position
+    measured: PointReference | None = None
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Where a feature comes from.
+
+    Attributes
+    ----------
+    tool : str
+        ``"hand"``, or the tool's id.
+    version : int
+        The tool's version; 0 for the hand.
+    parameters : mapping
+        The tool's parameters as given.
+    confidence : float
+        0 to 1; 1 for the hand.
+    run : str
+        The run's id, or empty.
+    """
+
+    tool: str = "hand"
+    version: int = 0
+    parameters: Mapping[str, AttributeValue] = field(default_factory=dict)
+    confidence: float = 1.0
+    run: str = ""
+
+
+@dataclass(frozen=True)
+class Feature:
+    """One thing on the map.
+
+    Attributes
+    ----------
+    id : str
+        Unique for ever.
+    kind : str
+        Key of a :class:`processing.project.catalogue.FeatureKind`.
+    geometry : Geometry
+        How ``vertices`` are read: one vertex, an open line, a ring (its first vertex not repeated).
+    """
+
+    id: str
+    kind: str
+    geometry: Geometry
+    vertices: tuple[Vertex, ...]
+    attributes: Mapping[str, AttributeValue] = field(default_factory=dict)
+    status: Status = Status.ACCEPTED
+    provenance: Provenance = field(default_factory=Provenance)
+
+    def with_vertices(self, vertices: tuple[Vertex, ...]) -> Feature:
+        """The same feature in another place."""
+        return dataclasses.replace(self, vertices=vertices)
+
+
+def new_feature_id() -> str:
+    """An id that no other feature has."""
+    return uuid4().hex

@@ -1,0 +1,81 @@
+"""MouseTool: one gesture of the hand, the same in every view, because it works on hits.
+
+A view turns pixels into hits and passes them to the current tool; the tool shows a sketch while it
+is at work and emits a change when the gesture ends. It never knows which view was clicked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from PySide6.QtCore import QObject, Qt, Signal
+
+from processing.project.feature import Vertex
+from widgets.shared.cursor import Place
+
+
+@dataclass(frozen=True)
+class Hit:
+    """What lies under the mouse in a view.
+
+    Attributes
+    ----------
+    place : Place or None
+        The measured point there; None over nothing.
+    feature : str
+        Id of the feature under the mouse, or empty.
+    vertex : int
+        Index of that feature's vertex under the mouse, or −1.
+    segment : int
+        Index of that feature's segment under the mouse (from vertex i to i + 1), or −1.
+    modifiers : Qt.KeyboardModifier
+    """
+
+    place: Place | None
+    feature: str = ""
+    vertex: int = -1
+    segment: int = -1
+    modifiers: Qt.KeyboardModifier = field(default=Qt.KeyboardModifier.NoModifier)
+
+    def as_vertex(self) -> Vertex | None:
+        """The vertex that a click here makes; None over nothing."""
+        return None if self.place is None else Vertex(self.place.xyz, self.place.measured)
+
+
+class MouseTool(QObject):
+    """Base of all mouse tools; a subclass fills the hooks it needs.
+
+    Signals
+    -------
+    change_requested(label: Text, change: Change)
+        The gesture is complete.
+    finished()
+        The tool wants the pointer back (Escape with nothing being drawn).
+    told(text: Text)
+        A line for the status bar.
+    """
+
+    change_requested = Signal(object, object)
+    finished = Signal()
+    told = Signal(object)
+
+    def press(self, hit: Hit) -> None:
+        """The left button went down."""
+
+    def move(self, hit: Hit) -> None:
+        """The mouse moved, button up or down."""
+
+    def release(self, hit: Hit) -> None:
+        """The left button went up."""
+
+    def complete(self) -> None:
+        """Right button, Enter or double click: end the gesture and keep it."""
+
+    def step_back(self) -> None:
+        """Backspace: take back the last vertex."""
+
+    def leave(self) -> None:
+        """Escape: drop the gesture."""
+
+    def delete(self) -> None:
+        """Delete: remove what is chosen."""

@@ -1,0 +1,13 @@
+"""MapChanges: tells views which features, drives and settings of the document changed."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, Signal
+
+
+class MapChanges(QObject):
+    """Facts about the open project, told by the document after they happened."""
+
+    features_changed = Signal(object)  # tuple[str, ...]: ids added, replaced or removed
+    drives_changed = Signal()  # drives added, or a project opened or closed
+    drive_columns_changed = Signal(str)  # drive id: a tool's result columns were added

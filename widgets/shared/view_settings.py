@@ -1,0 +1,83 @@
+"""ViewSettings: how points and features are shown, shared by all views."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from PySide6.QtCore import QObject, Signal
+
+from processing.image.kinds import ImageKind
+
+
+@dataclass(frozen=True)
+class PointLook:
+    """How points are coloured.
+
+    Attributes
+    ----------
+    attribute : str
+        A key of :data:`processing.image.attributes.ATTRIBUTES`.
+    low_percent, high_percent : float
+        Percentiles of the drive that become the dark and the bright end.
+    point_size_px : float
+        Size of a point in 3D.
+    """
+
+    attribute: str = "intensity"
+    low_percent: float = 2.0
+    high_percent: float = 98.0
+    point_size_px: float = 2.0
+
+
+class ViewSettings(QObject):
+    """What is shown and how; setting what is already set emits nothing."""
+
+    look_changed = Signal(object)  # PointLook
+    image_changed = Signal()  # another drive or another kind of image
+    hidden_kinds_changed = Signal()
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._look = PointLook()
+        self._drive_id = ""
+        self._image_kind = ImageKind.TRAJECTORY_CENTER
+        self._hidden_kinds: frozenset[str] = frozenset()
+
+    @property
+    def look(self) -> PointLook:
+        """How points are coloured."""
+        return self._look
+
+    @property
+    def drive_id(self) -> str:
+        """The drive that the image view shows; empty when none."""
+        return self._drive_id
+
+    @property
+    def image_kind(self) -> ImageKind:
+        """The kind of point-cloud image shown."""
+        return self._image_kind
+
+    @property
+    def hidden_kinds(self) -> frozenset[str]:
+        """Feature kinds that are not drawn."""
+        return self._hidden_kinds
+
+    def change_look(self, **values: object) -> None:
+        """Set some fields of the look."""
+        look = replace(self._look, **values)  # type: ignore[arg-type] - fields checked by callers
+        if look != self._look:
+            self._look = look
+            self.look_changed.emit(look)
+
+    def show_image(self, drive_id: str, kind: ImageKind) -> None:
+        """Show one drive's image of one kind."""
+        if (drive_id, kind) != (self._drive_id, self._image_kind):
+            self._drive_id, self._image_kind = drive_id, kind
+            self.image_changed.emit()
+
+    def hide_kinds(self, kinds: frozenset[str]) -> None:
+        """Hide exactly these feature kinds."""
+        if kinds != self._hidden_kinds:
+            self._hidden_kinds = kinds
+            self.hidden_kinds_changed.emit()
