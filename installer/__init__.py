@@ -1,0 +1,1 @@
+"""How a checkout becomes a running program: environment, system packages, kernels, packages."""
