@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 
-class Stop(Exception):  # noqa: N818 - a stop with a reason, printed as one line
+class Stop(Exception):
     """The set-up cannot go on.
 
     Parameters

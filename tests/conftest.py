@@ -1,0 +1,77 @@
+"""What all tests share: their order, the sample street, and that no window stays behind.
+
+Windows need a display; ``installer/bootstrap.py test`` gives one. Nothing here stands in for a
+part of the program.
+"""
+
+from __future__ import annotations
+
+import gc
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from resources import path_of
+
+if TYPE_CHECKING:
+    from PySide6.QtWidgets import QWidget
+
+ORDER = ("house_rules", "processing", "properties", "broken_files", "widgets", "app", "journeys")
+TESTS = Path(__file__).parent
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Run the quick tests first, then those with windows, then the journeys."""
+    items.sort(key=lambda item: place_in_order(item.path))
+
+
+def place_in_order(path: Path) -> int:
+    """Give the place of a test file; folders that are not named come last."""
+    folder = path.relative_to(TESTS).parts[0]
+    return ORDER.index(folder) if folder in ORDER else len(ORDER)
+
+
+@pytest.fixture
+def sample_street() -> Path:
+    """Give the folder of the bundled street; tests read it and write elsewhere."""
+    return path_of("sample_street")
+
+
+@pytest.fixture(autouse=True)
+def no_window_left() -> Iterator[None]:
+    """Fail a test after which a top-level widget is alive that was not there before."""
+    before = set(map(id, top_level_widgets()))
+    yield
+    left = [widget for widget in top_level_widgets() if id(widget) not in before]
+    if left:  # what only a reference cycle holds is gone after this
+        left.clear()
+        gc.collect()
+        left = [widget for widget in top_level_widgets() if id(widget) not in before]
+    names = ", ".join(sorted(described(widget) for widget in left))
+    for widget in left:
+        widget.close()
+        widget.deleteLater()
+    top_level_widgets()
+    assert not names, f"these windows were left behind: {names}"
+
+
+def top_level_widgets() -> list[QWidget]:
+    """List the windows without a parent, once those that are to be deleted are gone."""
+    if "PySide6.QtWidgets" not in sys.modules:
+        return []
+    from PySide6.QtCore import QCoreApplication, QEvent
+    from PySide6.QtWidgets import QApplication
+
+    if QApplication.instance() is None:
+        return []
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    return [widget for widget in QApplication.topLevelWidgets() if widget.parent() is None]
+
+
+def described(widget: QWidget) -> str:
+    """Name a window by its class, its object name and its title."""
+    parts = (type(widget).__name__, widget.objectName(), widget.windowTitle())
+    return " ".join(part for part in parts if part)

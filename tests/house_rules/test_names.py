@@ -1,0 +1,65 @@
+"""Things are found by their names: no drawers for leftovers, no name that another project has."""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterable, Mapping
+from importlib.metadata import packages_distributions
+from pathlib import PurePosixPath
+
+from tests.house_rules.sources import PARTS, python_files, text_of, tracked
+
+DRAWERS = {"utils", "util", "helpers", "helper", "misc", "common", "manager", "managers"}
+
+
+def drawers(names: Iterable[str]) -> list[str]:
+    """Give the paths of which a folder or file name holds a forbidden word."""
+    return [name for name in names if DRAWERS & set(re.split(r"[^a-z]+", name.lower()))]
+
+
+def is_front_matter_only(source: str) -> bool:
+    """Tell whether a module holds nothing but its docstring."""
+    body = ast.parse(source).body
+    return len(body) == 1 and ast.get_docstring(ast.parse(source)) is not None
+
+
+def shared_names(distributions: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:
+    """Give our top-level names that some other installed distribution has too."""
+    others = {part: sorted(set(distributions.get(part, ())) - {"zuka"}) for part in PARTS}
+    return {part: names for part, names in others.items() if names}
+
+
+def test_no_file_or_folder_is_a_drawer_for_leftovers() -> None:
+    assert drawers(tracked()) == []
+
+
+def test_a_drawer_is_caught_wherever_the_word_stands() -> None:
+    caught = ["app/utils.py", "widgets/misc/x.py", "app/jobs_manager.py", "tests/common_data.py"]
+    assert drawers(caught) == caught
+    assert drawers(["processing/commons.py", "app/commands.py"]) == []
+
+
+def test_package_files_hold_a_docstring_only() -> None:
+    fronts = {"resources/__init__.py"}
+    files = [name for name in python_files() if PurePosixPath(name).name == "__init__.py"]
+    assert files
+    full = {name for name in files if not is_front_matter_only(text_of(name))}
+    assert full <= fronts, "only a part's front page may hold code"
+
+
+def test_code_in_a_package_file_is_caught() -> None:
+    assert not is_front_matter_only('"""Words."""\nfrom app import jobs\n')
+    assert not is_front_matter_only("")
+    assert is_front_matter_only('"""Words."""\n')
+
+
+def test_our_top_level_names_belong_to_no_other_installed_distribution() -> None:
+    installed = packages_distributions()
+    assert "numpy" in installed
+    assert shared_names(installed) == {}
+
+
+def test_a_top_level_name_that_another_distribution_has_is_caught() -> None:
+    assert shared_names({"app": ["zuka", "appdirs"], "numpy": ["numpy"]}) == {"app": ["appdirs"]}
+    assert shared_names({"app": ["zuka"], "tests": ["zuka"]}) == {}
