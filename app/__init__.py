@@ -1,1 +1,1 @@
-"""app"""
+"""The program: the window, the document, commands, jobs and the command line."""

@@ -1,1 +1,1 @@
-"""processing"""
+"""Points, images, features, tools and files; no Qt."""

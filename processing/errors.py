@@ -59,7 +59,7 @@ class Unsuitable(UserError):
     """The data lack what a tool, an image or a view needs."""
 
 
-class Cancelled(Exception):  # noqa: N818 - not an error: the user asked for it
+class Cancelled(Exception):
     """The user stopped the work; nothing of it is kept."""
 
 

@@ -1,1 +1,1 @@
-"""widgets"""
+"""Views and panels: they show a document and send intentions back."""

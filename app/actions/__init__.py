@@ -1,1 +1,1 @@
-"""actions"""
+"""What users can do, as data, by menu."""

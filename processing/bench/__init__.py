@@ -1,1 +1,1 @@
-"""bench"""
+"""The project's own benchmarks."""

@@ -1,1 +1,1 @@
-"""cameras"""
+"""Camera images: where they look and what they see."""

@@ -1,1 +1,1 @@
-"""formats"""
+"""One file per format: reading and writing, nothing about projects."""

@@ -1,1 +1,1 @@
-"""image"""
+"""The point-cloud image: rows, pixels, tiles and what they show."""

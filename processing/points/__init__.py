@@ -1,1 +1,1 @@
-"""points"""
+"""Recordings: columns, trajectories, turns and pulses."""

@@ -1,1 +1,1 @@
-"""project"""
+"""The project folder and the map in it."""

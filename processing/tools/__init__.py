@@ -1,1 +1,1 @@
-"""tools"""
+"""Processing tools and their declarations."""

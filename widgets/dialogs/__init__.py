@@ -1,1 +1,1 @@
-"""dialogs"""
+"""Forms beside the window."""

@@ -1,1 +1,1 @@
-"""image_view"""
+"""The 2D view in which every laser point is a pixel."""

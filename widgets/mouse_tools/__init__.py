@@ -1,1 +1,1 @@
-"""mouse_tools"""
+"""Gestures of the hand, the same in every view."""

@@ -1,1 +1,1 @@
-"""panels"""
+"""What stands in docks."""

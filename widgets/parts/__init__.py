@@ -1,1 +1,1 @@
-"""parts"""
+"""Small parts of the window."""

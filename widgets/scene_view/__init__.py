@@ -1,1 +1,1 @@
-"""scene_view"""
+"""The 3D view."""

@@ -1,1 +1,1 @@
-"""shared"""
+"""What all views of a window share."""

@@ -1,0 +1,24 @@
+"""Terminal or window: decided here, so that Qt is imported only for the window."""
+
+from __future__ import annotations
+
+import sys
+
+from app.cli.terminal import run_in_terminal
+from app.error_log import start_log
+
+
+def main() -> int:
+    """Run the program with the process's arguments; gives its exit status."""
+    start_log()
+    arguments = sys.argv[1:]
+    wish = run_in_terminal(arguments)
+    if isinstance(wish, int):
+        return wish
+    from app.application import run_window
+
+    return run_window(wish)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

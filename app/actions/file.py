@@ -1,0 +1,164 @@
+"""File actions: projects, imports, exports."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from processing.project.export import FORMATS, ExportRequest
+from processing.project.project import is_project
+from PySide6.QtCore import QCoreApplication
+from PySide6.QtWidgets import QFileDialog
+
+from app.actions.action import Action
+from app.window_parts import WindowParts
+from processing.errors import UserError
+from processing.project.dropped_files import request_of_files
+from processing.text import Text
+from resources import path_of
+from widgets.dialogs.export_map import ExportForm, ExportWish
+from widgets.dialogs.import_drive import ImportForm, ImportWish
+
+
+class FileActions:
+    """What the file menu does; also what a drop and the start page ask for."""
+
+    def __init__(self, parts: WindowParts, projects_folder: Path) -> None:
+        self._parts = parts
+        self._projects_folder = projects_folder
+
+    def actions(self) -> tuple[Action, ...]:
+        """The file menu, from top to bottom."""
+        return (
+            Action(
+                "open",
+                Text("Open project…", "プロジェクトを開く…"),
+                self.choose_project,
+                "file",
+                ("Ctrl+O",),
+                "mdi6.folder-open-outline",
+                1,
+            ),
+            Action(
+                "import",
+                Text("Import a drive…", "走行データをインポート…"),
+                self.choose_import,
+                "file",
+                ("Ctrl+I",),
+                "mdi6.tray-arrow-down",
+                1,
+            ),
+            Action(
+                "export",
+                Text("Export…", "書き出し…"),
+                self.choose_export,
+                "file",
+                ("Ctrl+E",),
+                "mdi6.tray-arrow-up",
+                1,
+            ),
+            Action(
+                "demo", Text("Open the sample street", "サンプル街路を開く"), self.open_demo, "file"
+            ),
+            Action(
+                "close",
+                Text("Close project", "プロジェクトを閉じる"),
+                self._parts.document.close,
+                "file",
+                ("Ctrl+W",),
+            ),
+            Action("quit", Text("Quit", "終了"), self._parts.window.close, "file", ("Ctrl+Q",)),
+        )
+
+    def choose_project(self) -> None:
+        """Ask for a project folder and open it."""
+        title = QCoreApplication.translate("FileActions", "Open project")
+        name = QFileDialog.getExistingDirectory(
+            self._parts.window, title, str(self._projects_folder)
+        )
+        if name:
+            self._parts.document.open(Path(name))
+
+    def choose_import(self, files: tuple[Path, ...] = ()) -> None:
+        """Show the import form, with some files in it."""
+        project = self._parts.document.project
+        folder = project.folder if project else self._new_project_for(files)
+        form = ImportForm(folder, files, self._parts.window)
+        form.import_requested.connect(self._on_form_import_requested)
+        form.show()
+
+    def choose_export(self) -> None:
+        """Show the export form."""
+        project = self._parts.document.project
+        if project is None:
+            return
+        formats = tuple((id_, f.title.spoken(self._parts.language)) for id_, f in FORMATS.items())
+        form = ExportForm(
+            project.folder.parent / f"{project.name}-export", formats, self._parts.window
+        )
+        form.export_requested.connect(self._on_form_export_requested)
+        form.show()
+
+    def open_files(self, paths: tuple[Path, ...]) -> None:
+        """Open a project, or import delivered files into the open or a new project."""
+        if len(paths) == 1 and is_project(paths[0]):
+            self._parts.document.open(paths[0])
+            return
+        try:
+            request = request_of_files(paths, "")
+        except UserError as error:
+            self._parts.message_bar.show_error(error)
+            return
+        document = self._parts.document
+        if document.project is None and not document.create(
+            self._new_project_for(request.inputs), ""
+        ):
+            return
+        document.import_files(request)
+
+    def open_demo(self) -> None:
+        """Open the sample street; the first time it is imported."""
+        folder = self._projects_folder / "sample_street.zuka"
+        if is_project(folder):
+            self._parts.document.open(folder)
+            return
+        street = path_of("sample_street")
+        if self._parts.document.create(folder, ""):
+            self._parts.document.import_files(request_of_files((street,), ""))
+
+    def _new_project_for(self, files: tuple[Path, ...]) -> Path:
+        """A project folder that does not exist yet, named after the first file's folder."""
+        stem = files[0].resolve().parent.name if files else ""
+        stem = stem or "street"
+        folder = self._projects_folder / f"{stem}.zuka"
+        number = 2
+        while folder.exists():
+            folder = self._projects_folder / f"{stem}-{number}.zuka"
+            number += 1
+        return folder
+
+    def _on_form_import_requested(self, wish: ImportWish) -> None:
+        document = self._parts.document
+        is_open = document.project is not None and document.project.folder == wish.project.resolve()
+        if not is_open:
+            exists = is_project(wish.project)
+            opened = (
+                document.open(wish.project) if exists else document.create(wish.project, wish.crs)
+            )
+            if not opened:
+                return
+        try:
+            document.import_files(request_of_files(wish.files, wish.crs))
+        except UserError as error:
+            self._parts.message_bar.show_error(error)
+
+    def _on_form_export_requested(self, wish: ExportWish) -> None:
+        self._parts.document.export(
+            ExportRequest(
+                formats=wish.formats,
+                folder=wish.folder,
+                language=self._parts.language,
+                dxf_version=wish.dxf_version,
+                encoding=wish.encoding,
+                candidates=wish.candidates,
+            )
+        )

@@ -1,0 +1,12 @@
+"""``zuka demo``: the main job on the sample street, by a person or by itself."""
+
+from __future__ import annotations
+
+import argparse
+
+from app.cli.window_wish import WindowWish
+
+
+def command(arguments: argparse.Namespace) -> WindowWish:
+    """Ask for the window with the sample street, or for the whole job done by itself."""
+    return WindowWish(demo=True, headless_out=arguments.out if arguments.headless else None)

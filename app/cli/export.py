@@ -1,0 +1,43 @@
+"""``zuka export``: a project's map as the files that are handed in."""
+
+from __future__ import annotations
+
+import argparse
+
+from processing.project.export import FORMATS, ExportRequest, export
+from processing.project.project import Project
+
+from app.cli.opened import terminal_monitor
+from app.cli.output import print_lines
+from app.language import system_language
+from processing.errors import OutOfRange
+from processing.text import Text
+
+
+def command(arguments: argparse.Namespace) -> int:
+    """Write the map in each format that was asked for."""
+    for name in arguments.format:
+        if name not in FORMATS:
+            raise OutOfRange(
+                Text("There is no such format.", "そのような形式はありません。"),
+                Text.same(name),
+                Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
+                    names=", ".join(FORMATS)
+                ),
+            )
+    request = ExportRequest(
+        formats=tuple(dict.fromkeys(arguments.format)),
+        folder=arguments.out,
+        language=system_language(),
+        dxf_version=arguments.dxf_version,
+        encoding=arguments.encoding,
+        candidates=arguments.candidates,
+    )
+    project = Project.open(arguments.project, writing=False)
+    try:
+        features = tuple(project.features.all())
+        paths = export(features, project.catalogue, project.crs, request, terminal_monitor())
+    finally:
+        project.close()
+    print_lines(*(str(path) for path in paths))
+    return 0

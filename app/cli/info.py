@@ -1,0 +1,113 @@
+"""``zuka info``: what a cloud or a project holds."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+from processing.formats.point_files import read_info, read_sample
+from processing.project.project import Project, is_project
+
+from app.cli.import_drives import describe_drive
+from app.cli.output import print_json, print_lines
+from app.language import system_language
+from processing.points.drive import Drive
+
+_SAMPLE_POINTS = 2_000
+
+
+def command(arguments: argparse.Namespace) -> int:
+    """Tell about a project or a point file."""
+    told = (
+        _of_project(arguments.input) if is_project(arguments.input) else _of_file(arguments.input)
+    )
+    if arguments.json:
+        print_json(told)
+    else:
+        print_lines(*_lines(told, ""))
+    return 0
+
+
+def _of_project(folder: Path) -> dict[str, object]:
+    project = Project.open(folder, writing=False)
+    try:
+        return {
+            "project": project.name,
+            "crs": project.crs,
+            "points": sum(drive.count for drive in project.drives),
+            "features": len(project.features),
+            "drives": [_of_drive(drive) for drive in project.drives],
+        }
+    finally:
+        project.close()
+
+
+def _of_drive(drive: Drive) -> dict[str, object]:
+    info, turns = drive.info, drive.turns
+    return {
+        "id": info.id,
+        "name": info.name,
+        "scanner": info.scanner,
+        "points": info.count,
+        "crs": info.crs,
+        "extent": _extent(info.lowest, info.highest),
+        "rows_by": info.rows_by,
+        "rows_reason": info.rows_reason.spoken(system_language()),
+        "revolutions": None if turns is None else int(turns.segments.size),
+        "turns_per_s": None if turns is None else turns.turn_rate_hz,
+        "pulses_per_s": None if turns is None else turns.pulse_rate_hz,
+        "pulses_per_turn": None if turns is None else turns.pulses_per_turn,
+        "has_trajectory": drive.trajectory is not None,
+        "sources": [source.path for source in info.sources if source.points],
+        "summary": describe_drive(drive),
+    }
+
+
+def _of_file(path: Path) -> dict[str, object]:
+    info = read_info(path)
+    sample = read_sample(path, _SAMPLE_POINTS)
+    times = sample.get("time", np.empty(0))
+    times = times[np.isfinite(times)]
+    scanners = sorted(int(number) for number in np.unique(sample.get("scanner", np.empty(0, int))))
+    return {
+        "file": str(path),
+        "format": info.format,
+        "version": info.version,
+        "point_format": info.point_format,
+        "points": info.count,
+        "crs": info.crs,
+        "extent": _extent(info.lowest, info.highest),
+        "scale": list(info.scale),
+        "attributes": list(info.attributes),
+        "scanners": scanners,
+        "times": [float(times.min()), float(times.max())] if times.size else None,
+        "waveforms": info.has_waveforms,
+    }
+
+
+def _extent(
+    lowest: tuple[float, float, float], highest: tuple[float, float, float]
+) -> dict[str, list[float]]:
+    return {"lowest": list(lowest), "highest": list(highest)}
+
+
+def _lines(told: dict[str, object], indent: str) -> list[str]:
+    lines: list[str] = []
+    for name, value in told.items():
+        if isinstance(value, dict):
+            lines += [f"{indent}{name}:", *_lines(value, indent + "  ")]
+        elif isinstance(value, list) and value and isinstance(value[0], dict):
+            for item in value:
+                lines += [f"{indent}{name}:", *_lines(item, indent + "  ")]
+        else:
+            lines.append(f"{indent}{name}: {_plain(value)}")
+    return lines
+
+
+def _plain(value: object) -> str:
+    if isinstance(value, list):
+        return ", ".join(_plain(item) for item in value)
+    if isinstance(value, float):
+        return f"{value:.3f}"
+    return "-" if value is None or value == "" else str(value)

@@ -1,0 +1,23 @@
+"""``zuka`` and ``zuka open``: the window."""
+
+from __future__ import annotations
+
+import argparse
+
+from app.cli.window_wish import WindowWish
+from processing.errors import MissingInput
+from processing.text import Text
+
+
+def command(arguments: argparse.Namespace) -> WindowWish:
+    """Ask for the window with the named project or files."""
+    for path in arguments.paths:
+        if not path.exists():
+            raise MissingInput(
+                Text(
+                    "There is no such file or folder.", "ファイルまたはフォルダが見つかりません。"
+                ),
+                Text.same(str(path)),
+                Text("Check the name.", "名前を確認してください。"),
+            )
+    return WindowWish(paths=tuple(arguments.paths))

@@ -1,0 +1,111 @@
+"""The command line's words; one file beside this per command, imported when it is wanted."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from importlib.metadata import version
+from pathlib import Path
+from typing import NoReturn, cast
+
+from app.cli.window_wish import WindowWish
+from processing.errors import OutOfRange
+from processing.text import Text
+
+Command = Callable[[argparse.Namespace], int | WindowWish]
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong with the arguments in one sentence, like everything else."""
+
+    def error(self, message: str) -> NoReturn:
+        raise OutOfRange(
+            Text(
+                f"The command can't be read: {message}.", f"コマンドを解釈できません（{message}）。"
+            ),
+            Text.same(self.prog),
+            Text(f"See “{self.prog} --help”.", f"「{self.prog} --help」を参照してください。"),
+        )
+
+
+def read_arguments(arguments: Sequence[str]) -> tuple[Command, argparse.Namespace]:
+    """The command that is wanted, and its arguments.
+
+    Raises
+    ------
+    OutOfRange
+        The arguments are not of the contract.
+    """
+    parser = _Parser(prog="zuka", description="Road maps and ledgers from laser recordings.")
+    parser.add_argument("--version", action="version", version=f"zuka {version('zuka')}")
+    parser.set_defaults(module="open_window", paths=[])
+    commands = parser.add_subparsers(metavar="COMMAND", parser_class=_Parser)
+    for add in (_add_window_commands, _add_reading_commands, _add_working_commands):
+        add(commands)
+    namespace = parser.parse_args(arguments)
+    module = import_module(f"app.cli.{namespace.module}")
+    return cast("Command", module.command), namespace
+
+
+# argparse keeps the type of its sub-parsers' action private.
+_Commands = argparse._SubParsersAction  # noqa: SLF001 - it has no public name
+
+
+def _add_window_commands(commands: _Commands[_Parser]) -> None:
+    opening = commands.add_parser("open", help="the window, with a project or files open")
+    opening.add_argument("paths", nargs="+", type=Path, metavar="PROJECT|FILE")
+    opening.set_defaults(module="open_window")
+    showing = commands.add_parser("demo", help="the main job on the sample street")
+    showing.add_argument("--headless", action="store_true", help="do it without a person")
+    showing.add_argument("--out", type=Path, default=Path("demo-output"), metavar="DIR")
+    showing.set_defaults(module="demo")
+
+
+def _add_reading_commands(commands: _Commands[_Parser]) -> None:
+    telling = commands.add_parser("info", help="what a cloud or a project holds")
+    telling.add_argument("input", type=Path, metavar="INPUT")
+    telling.add_argument("--json", action="store_true")
+    telling.set_defaults(module="info")
+    listing = commands.add_parser("tools", help="every processing tool and its parameters")
+    listing.add_argument("name", nargs="?", metavar="NAME")
+    listing.add_argument("--json", action="store_true")
+    listing.set_defaults(module="tools")
+    measuring = commands.add_parser("bench", help="the project's own benchmarks")
+    measuring.add_argument("names", nargs="*", metavar="NAME")
+    measuring.add_argument("--json", action="store_true")
+    measuring.set_defaults(module="bench")
+
+
+def _add_working_commands(commands: _Commands[_Parser]) -> None:
+    importing = commands.add_parser("import", help="make delivered files a project's drives")
+    importing.add_argument("project", type=Path, metavar="PROJECT")
+    _add_inputs(importing)
+    importing.set_defaults(module="import_drives")
+    running = commands.add_parser("run", help="run a processing tool on files")
+    running.add_argument("tool", metavar="TOOL")
+    _add_inputs(running)
+    running.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
+    running.add_argument("--output", type=Path, required=True, metavar="OUT")
+    running.set_defaults(module="run")
+    picturing = commands.add_parser("image", help="a point-cloud image as PNG")
+    _add_inputs(picturing)
+    picturing.add_argument("--kind", required=True, metavar="KIND")
+    picturing.add_argument("--attribute", required=True, metavar="NAME")
+    picturing.add_argument("--output", type=Path, required=True, metavar="OUT.png")
+    picturing.set_defaults(module="image")
+    exporting = commands.add_parser("export", help="write a project's map to files")
+    exporting.add_argument("project", type=Path, metavar="PROJECT")
+    exporting.add_argument("--format", action="append", required=True, metavar="F")
+    exporting.add_argument("--out", type=Path, required=True, metavar="DIR")
+    exporting.add_argument("--dxf-version", choices=["R2000", "R2018"], default="R2018")
+    exporting.add_argument("--encoding", choices=["utf-8", "cp932"], default="utf-8")
+    exporting.add_argument("--candidates", action="store_true", help="unchecked ones as well")
+    exporting.set_defaults(module="export")
+
+
+def _add_inputs(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("inputs", nargs="+", type=Path, metavar="INPUT")
+    parser.add_argument("--trajectory", action="append", default=[], type=Path, metavar="T")
+    parser.add_argument("--images", action="append", default=[], type=Path, metavar="I")
+    parser.add_argument("--crs", default="", metavar="EPSG:n")

@@ -1,0 +1,52 @@
+"""A command from its arguments to its exit status; the one place where its errors end."""
+
+from __future__ import annotations
+
+import signal
+import sys
+from collections.abc import Sequence
+from types import FrameType
+
+from app.cli.parser import read_arguments
+from app.cli.window_wish import WindowWish
+from app.error_log import defect_of, log_user_error
+from app.language import system_language
+from processing.errors import Cancelled, UserError
+
+DONE, DEFECT, BAD_INPUT, CANCELLED = 0, 1, 2, 3
+
+
+def run_in_terminal(arguments: Sequence[str]) -> int | WindowWish:
+    """Run a command.
+
+    Returns
+    -------
+    int or WindowWish
+        The exit status: 0 done, 1 a defect, 2 bad input, 3 cancelled; or what the window is to
+        show.
+    """
+    signal.signal(signal.SIGTERM, _stop)
+    try:
+        command, namespace = read_arguments(arguments)
+        return command(namespace)
+    except UserError as error:
+        log_user_error(error)
+        _say(error.line(system_language()))
+        return BAD_INPUT
+    except (Cancelled, KeyboardInterrupt):
+        return CANCELLED
+    except BrokenPipeError:
+        # The reader of our output has gone, as “head” does; there is nobody to tell.
+        sys.stderr.close()
+        return DONE
+    except Exception as error:  # noqa: BLE001 - the last stop: told in one sentence and logged
+        _say(defect_of(error).line(system_language()))
+        return DEFECT
+
+
+def _say(line: str) -> None:
+    print(line, file=sys.stderr)  # noqa: T201 - the terminal is where this belongs
+
+
+def _stop(_signal: int, _frame: FrameType | None) -> None:
+    raise Cancelled

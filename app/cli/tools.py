@@ -1,0 +1,92 @@
+"""``zuka tools``: every processing tool, its inputs, outputs and parameters."""
+
+from __future__ import annotations
+
+import argparse
+
+from processing.tools.registry import TOOLS
+
+from app.cli.output import print_json, print_lines
+from app.language import system_language
+from processing.errors import OutOfRange
+from processing.text import Text
+from processing.tools.parameters import Parameter, parameters_of
+from processing.tools.tool import Tool
+
+
+def command(arguments: argparse.Namespace) -> int:
+    """List all tools, or one."""
+    chosen = [tool_named(arguments.name)] if arguments.name else list(TOOLS.values())
+    if arguments.json:
+        described = [_described(tool) for tool in chosen]
+        print_json(described[0] if arguments.name else described)
+    else:
+        for tool in chosen:
+            print_lines(*_lines(tool))
+    return 0
+
+
+def tool_named(name: str) -> Tool:
+    """The tool of that id.
+
+    Raises
+    ------
+    OutOfRange
+        There is none.
+    """
+    if name not in TOOLS:
+        raise OutOfRange(
+            Text("There is no such tool.", "そのようなツールはありません。"),
+            Text.same(name),
+            Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
+                names=", ".join(TOOLS)
+            ),
+        )
+    return TOOLS[name]
+
+
+def _described(tool: Tool) -> dict[str, object]:
+    return {
+        "id": tool.id,
+        "version": tool.version,
+        "name": {"en": tool.name.en, "ja": tool.name.ja},
+        "explanation": {"en": tool.explanation.en, "ja": tool.explanation.ja},
+        "needs": tool.needs.value,
+        "outputs": [
+            {"name": column.name, "type": column.dtype, "values": column.width}
+            for column in tool.outputs
+        ],
+        "parameters": [_parameter(parameter) for parameter in parameters_of(tool.parameters)],
+    }
+
+
+def _parameter(parameter: Parameter) -> dict[str, object]:
+    has_limits = parameter.kind in ("number", "count")
+    return {
+        "id": parameter.id,
+        "kind": parameter.kind,
+        "unit": parameter.unit,
+        "default": parameter.default,
+        "low": parameter.low if has_limits else None,
+        "high": parameter.high if has_limits else None,
+        "choices": [option.value for option in parameter.choices],
+        "name": {"en": parameter.name.en, "ja": parameter.name.ja},
+        "explanation": {"en": parameter.explanation.en, "ja": parameter.explanation.ja},
+    }
+
+
+def _lines(tool: Tool) -> list[str]:
+    language = system_language()
+    outputs = ", ".join(column.name for column in tool.outputs)
+    lines = [
+        f"{tool.id}  {tool.name.spoken(language)}",
+        f"  {tool.explanation.spoken(language)}",
+        f"  {tool.needs.value} -> {outputs}",
+    ]
+    for parameter in parameters_of(tool.parameters):
+        limits = f" ({parameter.low:g} … {parameter.high:g})" if parameter.high else ""
+        words = " | ".join(option.value for option in parameter.choices)
+        unit = f" {parameter.unit}" if parameter.unit else ""
+        name = parameter.name.spoken(language)
+        lines.append(f"  --set {parameter.id}={parameter.default}{unit}{limits} {words} {name}")
+    return lines

@@ -1,0 +1,300 @@
+"""Document: what is open, and the only place from which the project is changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from processing.image.tile_cache import TileCache
+from processing.project.export import ExportRequest, export
+from processing.project.project import Project
+from processing.runner import RunRequest, run
+from processing.tools.registry import TOOLS
+from PySide6.QtCore import QObject, Signal
+
+from app.jobs import JobQueue
+from app.undo import UndoStack
+from processing.errors import UserError
+from processing.image.kinds import ImageKind
+from processing.monitor import Monitor
+from processing.points.drive import Drive
+from processing.project.catalogue import Catalogue, read_catalogue
+from processing.project.change import Change
+from processing.project.feature import Feature
+from processing.project.importing import ImportRequest, import_drives
+from processing.text import Text
+from processing.tools.tool import PointResult
+from resources import path_of
+from widgets.shared.cursor import Cursor
+from widgets.shared.map_changes import MapChanges
+from widgets.shared.selection import Selection
+from widgets.shared.shared_state import SharedState
+from widgets.shared.sketch import Sketch
+from widgets.shared.view_settings import ViewSettings
+
+
+@dataclass(frozen=True)
+class _Adoption:
+    """What to do on the window's thread with what a job gave."""
+
+    project: Project
+    take: Callable[[Any], None]  # each job's own result type
+
+
+class Document(QObject):
+    """The open project and what all views share of it.
+
+    Signals
+    -------
+    opened, closed
+        A project was opened or closed.
+    refused(error: UserError)
+        Something the user wanted can't be done; everything is as it was.
+    told(text: Text)
+        Something was done that is worth a line.
+    """
+
+    opened = Signal()
+    closed = Signal()
+    refused = Signal(object)
+    told = Signal(object)
+
+    def __init__(self, jobs: JobQueue, tiles: TileCache, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.shared = SharedState(
+            Cursor(self), Selection(self), MapChanges(self), ViewSettings(self), Sketch(self)
+        )
+        self.undo_stack = UndoStack(self)
+        self._jobs = jobs
+        self._tiles = tiles
+        self._project: Project | None = None
+        self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
+        self._adoptions: dict[str, _Adoption] = {}
+        jobs.finished.connect(self._on_jobs_finished)
+        jobs.failed.connect(self._on_jobs_failed)
+        jobs.cancelled.connect(self._on_jobs_cancelled)
+
+    # Reading: what views ask (MapSource).
+
+    @property
+    def project(self) -> Project | None:
+        """The open project, or None."""
+        return self._project
+
+    def drives(self) -> tuple[Drive, ...]:
+        """All drives; none when nothing is open."""
+        return () if self._project is None else self._project.drives
+
+    def drive(self, id: str) -> Drive:  # noqa: A002 - the word of the trade
+        """One drive; KeyError when there is none of that id."""
+        if self._project is None:
+            raise KeyError(id)
+        return self._project.drive(id)
+
+    def origin(self) -> NDArray[np.float64]:
+        """The (3,) local origin of drawing, m, project CRS."""
+        return np.zeros(3) if self._project is None else self._project.origin
+
+    def features(self) -> Iterable[Feature]:
+        """All features."""
+        return () if self._project is None else self._project.features.all()
+
+    def feature(self, id: str) -> Feature | None:  # noqa: A002 - the word of the trade
+        """One feature, or None."""
+        return None if self._project is None else self._project.features.get(id)
+
+    def catalogue(self) -> Catalogue:
+        """The project's feature kinds, or the bundled ones when nothing is open."""
+        return self._bundled_catalogue if self._project is None else self._project.catalogue
+
+    def crs(self) -> str:
+        """``EPSG:n``, or empty when unknown."""
+        return "" if self._project is None else self._project.crs
+
+    # Opening and closing.
+
+    def open(self, folder: Path) -> bool:
+        """Open a project in place of the one that is open; says whether it could."""
+        return self._replace_by(lambda: Project.open(folder))
+
+    def create(self, folder: Path, crs: str) -> bool:
+        """Make a new, empty project and open it; says whether it could."""
+        return self._replace_by(lambda: Project.create(folder, crs))
+
+    def close(self) -> None:
+        """Close the project; jobs on it go on without effect."""
+        if self._project is None:
+            return
+        for job in list(self._adoptions):
+            self._jobs.cancel(job)
+        self._adoptions.clear()
+        self.shared.sketch.show(None)
+        self.shared.selection.clear()
+        self.shared.cursor.clear()
+        for drive in self._project.drives:
+            self._tiles.drop(drive.id)
+        project, self._project = self._project, None
+        self.undo_stack.use(None)
+        project.close()
+        self.shared.view_settings.show_image("", self.shared.view_settings.image_kind)
+        self.shared.map_changes.drives_changed.emit()
+        self.closed.emit()
+
+    # Changing the map.
+
+    def apply(self, label: Text, change: Change) -> bool:
+        """Do a change as one undoable step; says whether it could."""
+
+        def push() -> Change:
+            self.undo_stack.push(label, change)
+            return change
+
+        return self._changed(push)
+
+    def undo(self) -> bool:
+        """Take the last step back; says whether there was one."""
+        return self._changed(self.undo_stack.undo)
+
+    def redo(self) -> bool:
+        """Do the step again that was undone; says whether there was one."""
+        return self._changed(self.undo_stack.redo)
+
+    # Long work.
+
+    def import_files(self, request: ImportRequest) -> str:
+        """Import delivered files in the background; gives the job's id."""
+        project = self._needed()
+        into = project.temporary_folder()
+
+        def work(monitor: Monitor) -> tuple[Path, ...]:
+            return import_drives(request, into, monitor)
+
+        names = ", ".join(path.name for path in request.inputs[:3])
+        title = Text("Import {names}", "{names} のインポート").filled(names=names)
+        return self._start(title, work, self._adopt_drives)
+
+    def start_run(self, tool: str, drive_id: str, parameters: object) -> str:
+        """Run a tool on a drive in the background; gives the job's id."""
+        drive = self.drive(drive_id)
+        request = RunRequest(tool, drive, parameters)
+
+        def work(monitor: Monitor) -> PointResult:
+            return run(request, monitor)
+
+        def take(result: PointResult) -> None:
+            self._store_columns(drive, result)
+
+        title = Text("{tool}: {name}", "{tool}: {name}").filled(
+            tool=TOOLS[tool].name, name=drive.info.name
+        )
+        return self._start(title, work, take)
+
+    def export(self, request: ExportRequest) -> str:
+        """Write the map to files in the background; gives the job's id."""
+        project = self._needed()
+        features = tuple(project.features.all())
+        catalogue, crs = project.catalogue, project.crs
+
+        def work(monitor: Monitor) -> tuple[Path, ...]:
+            return export(features, catalogue, crs, request, monitor)
+
+        def take(paths: tuple[Path, ...]) -> None:
+            self.told.emit(
+                Text(
+                    "Exported {count} files to {folder}",
+                    "{folder} に{count}個のファイルを書き出しました",
+                ).filled(count=len(paths), folder=request.folder)
+            )
+
+        return self._start(Text("Export", "書き出し"), work, take)
+
+    def _needed(self) -> Project:
+        if self._project is None:
+            message = "no project is open"
+            raise ValueError(message)
+        return self._project
+
+    def _start(
+        self, title: Text, work: Callable[[Monitor], object], take: Callable[[Any], None]
+    ) -> str:
+        job = self._jobs.start(title, work)
+        self._adoptions[job] = _Adoption(self._needed(), take)
+        return job
+
+    def _on_jobs_finished(self, job: str, result: object) -> None:
+        adoption = self._adoptions.pop(job, None)
+        if adoption is None or adoption.project is not self._project:
+            return
+        try:
+            adoption.take(result)
+        except UserError as error:
+            self.refused.emit(error)
+
+    def _on_jobs_failed(self, job: str, error: UserError) -> None:
+        if self._adoptions.pop(job, None) is not None:
+            self.refused.emit(error)
+
+    def _on_jobs_cancelled(self, job: str) -> None:
+        self._adoptions.pop(job, None)
+
+    def _adopt_drives(self, folders: tuple[Path, ...]) -> None:
+        project = self._needed()
+        drives = [project.adopt_drive(folder) for folder in folders]
+        self._show_first_image()
+        self.shared.map_changes.drives_changed.emit()
+        points = sum(drive.count for drive in drives)
+        self.told.emit(
+            Text("Imported {points:,} points", "{points:,}点をインポートしました").filled(
+                points=points
+            )
+        )
+
+    def _store_columns(self, drive: Drive, result: PointResult) -> None:
+        for name, values in result.columns.items():
+            drive.columns.add(name, values)
+        self._tiles.drop(drive.id)
+        self.shared.map_changes.drive_columns_changed.emit(drive.id)
+
+    def _changed(self, act: Callable[[], Change | None]) -> bool:
+        try:
+            change = act()
+        except UserError as error:
+            self.refused.emit(error)
+            return False
+        if change is None or change.is_empty:
+            return False
+        removed = {feature.id for feature in change.removed}
+        selection = self.shared.selection
+        selection.choose_features(selection.features - removed)
+        self.shared.map_changes.features_changed.emit(change.feature_ids)
+        return True
+
+    def _replace_by(self, make: Callable[[], Project]) -> bool:
+        try:
+            project = make()
+        except UserError as error:
+            self.refused.emit(error)
+            return False
+        self.close()
+        self._project = project
+        self.undo_stack.use(project)
+        self._show_first_image()
+        self.opened.emit()
+        self.shared.map_changes.drives_changed.emit()
+        self.shared.map_changes.features_changed.emit(tuple(f.id for f in self.features()))
+        return True
+
+    def _show_first_image(self) -> None:
+        settings = self.shared.view_settings
+        drives = self.drives()
+        if not drives or settings.drive_id in {drive.id for drive in drives}:
+            return
+        settings.show_image(drives[0].id, _best_kind(drives[0], settings.image_kind))
+
+
+def _best_kind(drive: Drive, wanted: ImageKind) -> ImageKind:
+    return wanted if wanted in drive.image_kinds else drive.image_kinds[0]

@@ -1,0 +1,189 @@
+"""Jobs: long work in the background, one at a time, with progress, time left and a way out."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import Enum
+from queue import SimpleQueue
+from uuid import uuid4
+
+from PySide6.QtCore import QObject, Qt, Signal
+
+from app.error_log import defect_of, log_user_error
+from processing.errors import Cancelled, UserError
+from processing.monitor import Monitor
+from processing.text import Text
+
+Work = Callable[[Monitor], object]
+
+
+class JobState(Enum):
+    """What became of a job."""
+
+    WAITING = "waiting"
+    RUNNING = "running"
+    FINISHED = "finished"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+
+
+@dataclass(frozen=True)
+class JobStatus:
+    """A job as people see it.
+
+    Attributes
+    ----------
+    fraction : float
+        0 to 1.
+    seconds_left : float or None
+        None while it can't be told.
+    error : UserError or None
+        Why it failed.
+    """
+
+    id: str
+    title: Text
+    state: JobState = JobState.WAITING
+    fraction: float = 0.0
+    text: Text = Text("", "")
+    seconds_left: float | None = None
+    error: UserError | None = None
+
+
+@dataclass(frozen=True)
+class _Task:
+    id: str
+    work: Work
+    stop: threading.Event
+
+
+class JobQueue(QObject):
+    """Runs jobs one after the other in a thread of its own.
+
+    One at a time, since kernels that use all cores may be entered by one thread only. Every job
+    ends with exactly one of ``finished``, ``failed``, ``cancelled``, on the queue's own thread,
+    which is the window's.
+    """
+
+    changed = Signal(object)  # JobStatus
+    finished = Signal(str, object)  # id, what the work gave
+    failed = Signal(str, object)  # id, UserError
+    cancelled = Signal(str)  # id
+
+    _progressed = Signal(str, float, object)
+    _started = Signal(str)
+    _ended = Signal(str, object, object)
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._statuses: dict[str, JobStatus] = {}
+        self._stops: dict[str, threading.Event] = {}
+        self._started_at: dict[str, float] = {}
+        self._tasks: SimpleQueue[_Task | None] = SimpleQueue()
+        queued = Qt.ConnectionType.QueuedConnection
+        self._progressed.connect(self._on_worker_progressed, queued)
+        self._started.connect(self._on_worker_started, queued)
+        self._ended.connect(self._on_worker_ended, queued)
+        self._thread = threading.Thread(target=self._run_tasks, name="jobs", daemon=True)
+        self._thread.start()
+
+    @property
+    def statuses(self) -> tuple[JobStatus, ...]:
+        """All jobs of this session, oldest first."""
+        return tuple(self._statuses.values())
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a job is running or waiting."""
+        return bool(self._stops)
+
+    def start(self, title: Text, work: Work) -> str:
+        """Queue a job; gives its id.
+
+        Parameters
+        ----------
+        work : callable
+            Called in the worker thread with a monitor; touches no widget and no project.
+        """
+        task = _Task(uuid4().hex, work, threading.Event())
+        self._stops[task.id] = task.stop
+        self._tell(JobStatus(task.id, title))
+        self._tasks.put(task)
+        return task.id
+
+    def cancel(self, job: str) -> None:
+        """Ask a job to stop; a job that has ended is left alone."""
+        if job in self._stops:
+            self._stops[job].set()
+
+    def close(self) -> None:
+        """Stop everything and wait for the worker."""
+        for stop in self._stops.values():
+            stop.set()
+        self._tasks.put(None)
+        self._thread.join()
+
+    def _run_tasks(self) -> None:
+        while (task := self._tasks.get()) is not None:
+            self._started.emit(task.id)
+            monitor = _JobMonitor(self._progressed, task)
+            result: object = None
+            error: BaseException | None = None
+            try:
+                monitor.check()
+                result = task.work(monitor)
+            except (Cancelled, UserError) as refusal:
+                error = refusal
+            except Exception as defect:  # noqa: BLE001 - a job's last stop: told and logged
+                error = defect_of(defect)
+            self._ended.emit(task.id, result, error)
+
+    def _on_worker_started(self, job: str) -> None:
+        self._started_at[job] = time.monotonic()
+        self._tell(replace(self._statuses[job], state=JobState.RUNNING))
+
+    def _on_worker_progressed(self, job: str, fraction: float, text: Text | None) -> None:
+        status = self._statuses[job]
+        passed = time.monotonic() - self._started_at.get(job, time.monotonic())
+        # The first second says little about the rest.
+        left = passed * (1 - fraction) / fraction if fraction > 0.02 and passed > 1.0 else None
+        self._tell(replace(status, fraction=fraction, text=text or status.text, seconds_left=left))
+
+    def _on_worker_ended(self, job: str, result: object, error: BaseException | None) -> None:
+        del self._stops[job]
+        status = replace(self._statuses[job], seconds_left=None)
+        if error is None:
+            self._tell(replace(status, state=JobState.FINISHED, fraction=1.0))
+            self.finished.emit(job, result)
+        elif isinstance(error, UserError):
+            log_user_error(error)
+            self._tell(replace(status, state=JobState.FAILED, error=error))
+            self.failed.emit(job, error)
+        else:
+            self._tell(replace(status, state=JobState.CANCELLED))
+            self.cancelled.emit(job)
+
+    def _tell(self, status: JobStatus) -> None:
+        self._statuses[status.id] = status
+        self.changed.emit(status)
+
+
+class _JobMonitor:
+    """What a job's work talks to: progress is passed on when it moved by a tenth of a percent."""
+
+    def __init__(self, progressed: Signal, task: _Task) -> None:
+        self._progressed = progressed
+        self._task = task
+        self._told = -1.0
+
+    def report(self, fraction: float, text: Text | None = None) -> None:
+        if text is not None or fraction >= self._told + 0.001 or fraction < self._told:
+            self._told = fraction
+            self._progressed.emit(self._task.id, fraction, text)  # type: ignore[attr-defined] - bound
+
+    def check(self) -> None:
+        if self._task.stop.is_set():
+            raise Cancelled

@@ -1,0 +1,49 @@
+"""WindowParts: everything that one window consists of, handed over together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from processing.image.tile_cache import TileCache
+from widgets.image_view.view import ImageView
+from widgets.mouse_tools.toolbox import MouseToolbox
+from widgets.panels.attribute_panel import AttributePanel
+from widgets.panels.jobs_panel import JobsPanel
+from widgets.panels.layers_panel import LayersPanel
+from widgets.panels.processing_panel import ProcessingPanel
+from widgets.panels.project_tree import ProjectTree
+from widgets.parts.start_page import StartPage
+from widgets.parts.status_line import StatusLine
+from widgets.scene_view.view import SceneView
+
+from app.document import Document
+from app.jobs import JobQueue
+from app.main_window import MainWindow
+from app.settings import Settings
+from processing.text import Language
+from widgets.parts.image_bar import ImageBar
+from widgets.parts.message_bar import MessageBar
+
+
+@dataclass(frozen=True)
+class WindowParts:
+    """The parts of a window; :mod:`app.wiring` connects them."""
+
+    language: Language
+    settings: Settings
+    jobs: JobQueue
+    tiles: TileCache
+    document: Document
+    toolbox: MouseToolbox
+    image_view: ImageView
+    scene_view: SceneView
+    image_bar: ImageBar
+    message_bar: MessageBar
+    start_page: StartPage
+    status_line: StatusLine
+    project_tree: ProjectTree
+    layers_panel: LayersPanel
+    processing_panel: ProcessingPanel
+    attribute_panel: AttributePanel
+    jobs_panel: JobsPanel
+    window: MainWindow

@@ -1,0 +1,59 @@
+"""The camera images of a drive, as they are noted in its folder; the image files stay in place."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from pathlib import Path
+
+from processing.cameras.image_list import CameraImage, ImageList
+from processing.errors import BadFile, told_as_user_error
+from processing.text import Text
+
+_FILE_NAME = "images.json"
+
+
+def write_images(folder: Path, images: ImageList) -> None:
+    """Note a drive's images in its folder."""
+    noted = [{**dataclasses.asdict(image), "path": str(image.path)} for image in images]
+    path = folder / _FILE_NAME
+    with told_as_user_error(path):
+        path.write_text(json.dumps(noted, ensure_ascii=False), encoding="utf-8")
+
+
+def read_images(folder: Path) -> ImageList | None:
+    """The images noted in a drive's folder; None when it has none.
+
+    Raises
+    ------
+    BadFile
+        The note is damaged.
+    """
+    path = folder / _FILE_NAME
+    if not path.is_file():
+        return None
+    with told_as_user_error(path):
+        text = path.read_text(encoding="utf-8")
+    try:
+        noted = json.loads(text)
+        images = tuple(
+            CameraImage(
+                **{
+                    **image,
+                    "path": Path(image["path"]),
+                    "xyz": tuple(image["xyz"]),
+                    "distortion": tuple(image["distortion"]),
+                }
+            )
+            for image in noted
+        )
+    except (ValueError, TypeError, KeyError) as error:
+        raise BadFile(
+            Text(
+                "The list of a drive's camera images is damaged.",
+                "ドライブのカメラ画像一覧が壊れています。",
+            ),
+            Text.same(f"{path}: {error}"),
+            Text("Import the drive again.", "ドライブを再インポートしてください。"),
+        ) from error
+    return ImageList(images)

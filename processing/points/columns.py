@@ -1,0 +1,194 @@
+"""Columns: the points of one recording as memory-mapped arrays in acquisition order.
+
+A column is a raw little-endian file, one value or vector per point; LAS integers stay integers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from types import TracebackType
+from typing import Any, BinaryIO, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.errors import UNCHANGED, BadFile, told_as_user_error
+from processing.text import Text
+
+COLUMN_TYPES: Mapping[str, tuple[str, int]] = {
+    "xyz": ("<i4", 3),
+    "time": ("<f8", 1),
+    "intensity": ("<u2", 1),
+    "return_number": ("u1", 1),
+    "number_of_returns": ("u1", 1),
+    "classification": ("u1", 1),
+    "source_index": ("<i8", 1),
+    "source_file": ("<u2", 1),
+    "pulse": ("<i8", 1),
+    "color": ("<u2", 3),
+    "scan_angle_deg": ("<f4", 1),
+    "origin": ("<f8", 3),
+    "normal": ("i1", 3),
+    "shape": ("u1", 3),
+    "segment": ("<i4", 1),
+    "label": ("u1", 1),
+}
+"""Column name to dtype and values per point."""
+
+
+def column_path(folder: Path, name: str) -> Path:
+    """Where a column of a drive folder lies."""
+    return folder / f"{name}.bin"
+
+
+class ColumnWriter:
+    """Appends points to the columns of a drive folder that is being made.
+
+    Parameters
+    ----------
+    folder : Path
+        Exists, belongs to this writer alone.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._files: dict[str, BinaryIO] = {}
+        self._count = 0
+
+    @property
+    def count(self) -> int:
+        """Points appended so far."""
+        return self._count
+
+    def append(self, columns: Mapping[str, NDArray[Any]]) -> None:
+        """Append the same number of points to each column.
+
+        Parameters
+        ----------
+        columns : mapping of str to array
+            Name to (n,) or (n, k); every call names the same columns.
+
+        Raises
+        ------
+        NoSpace
+            The disk is full or refuses the write.
+        """
+        with told_as_user_error(self._folder):
+            for name, values in columns.items():
+                if name not in self._files:
+                    self._files[name] = column_path(self._folder, name).open("wb")
+                dtype, _ = COLUMN_TYPES[name]
+                self._files[name].write(np.ascontiguousarray(values, dtype=dtype).data)
+        self._count += next(iter(columns.values())).shape[0]
+
+    def close(self) -> None:
+        """Close the files; may be called again."""
+        with told_as_user_error(self._folder):
+            for file in self._files.values():
+                file.close()
+        self._files.clear()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+class Columns:
+    """The columns of a drive folder, read only, mapped when first asked for.
+
+    Parameters
+    ----------
+    folder : Path
+    count : int
+        Number of points.
+    """
+
+    def __init__(self, folder: Path, count: int) -> None:
+        self._folder = folder
+        self._count = count
+        self._maps: dict[str, NDArray[Any]] = {}
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+        return self._count
+
+    @property
+    def folder(self) -> Path:
+        """Where the columns lie."""
+        return self._folder
+
+    def has(self, name: str) -> bool:
+        """Whether the recording has this column."""
+        return name in self._maps or column_path(self._folder, name).is_file()
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """A whole column: (n,) or (n, k), mapped, not to be written.
+
+        Raises
+        ------
+        BadFile
+            The file is not as long as the drive has points.
+        MissingInput
+            There is no such column.
+        """
+        if name not in self._maps:
+            self._maps[name] = self._mapped(name)
+        return self._maps[name]
+
+    def add(self, name: str, values: NDArray[Any]) -> None:
+        """Store a column that a tool or a hand made; replaces an older one, whole or not at all.
+
+        Raises
+        ------
+        NoSpace
+            The disk is full or refuses the write; the older column stays.
+        """
+        dtype, width = COLUMN_TYPES[name]
+        shape = (self._count,) if width == 1 else (self._count, width)
+        if values.shape != shape:
+            message = f"column {name}: {values.shape} where {shape} belongs"
+            raise ValueError(message)
+        path = column_path(self._folder, name)
+        temporary = path.with_suffix(".part")
+        with told_as_user_error(path):
+            try:
+                temporary.write_bytes(np.ascontiguousarray(values, dtype=dtype).data)
+                self.release(name)
+                temporary.replace(path)
+            finally:
+                temporary.unlink(missing_ok=True)
+
+    def release(self, name: str) -> None:
+        """Forget the map of a column; arrays already handed out stay valid."""
+        self._maps.pop(name, None)
+
+    def _mapped(self, name: str) -> NDArray[Any]:
+        dtype, width = COLUMN_TYPES[name]
+        shape = (self._count,) if width == 1 else (self._count, width)
+        path = column_path(self._folder, name)
+        with told_as_user_error(path):
+            size = path.stat().st_size
+            if size != self._count * width * np.dtype(dtype).itemsize:
+                raise BadFile(
+                    Text(
+                        "A column of the drive is not as long as the drive has points.",
+                        "ドライブの列データの長さが点数と一致しません。",
+                    ),
+                    Text.same(f"{path}, byte {size}"),
+                    Text(
+                        "Import the drive again from the delivered files. {unchanged}",
+                        "納品ファイルからドライブを再インポートしてください。{unchanged}",
+                    ).filled(unchanged=UNCHANGED),
+                )
+            if self._count == 0:
+                return np.empty(shape, dtype=dtype)
+            return np.memmap(path, dtype=dtype, mode="r", shape=shape)

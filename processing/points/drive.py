@@ -1,0 +1,177 @@
+"""Drive: one scanner's recording, the unit in which points are kept, shown and processed."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.cameras.image_list import ImageList
+from processing.cameras.image_store import read_images
+from processing.errors import BadFile, Unsuitable, told_as_user_error
+from processing.image.kinds import ImageKind
+from processing.image.point_image import PointCloudImage
+from processing.points.columns import Columns
+from processing.points.drive_info import DriveInfo, read_drive_info
+from processing.points.trajectory import Trajectory
+from processing.points.turns import Turns, read_turns
+from processing.text import Text
+
+Points = NDArray[np.int64] | slice
+
+_WITH_TURNS = (
+    ImageKind.TRAJECTORY_CENTER,
+    ImageKind.FEATURE_CENTER,
+    ImageKind.REVERSIBLE,
+    ImageKind.TRAJECTORY_REVERSIBLE,
+)
+
+
+class Drive:
+    """One scanner's recording, opened from its folder; nothing is loaded before it is asked for.
+
+    Parameters
+    ----------
+    folder : Path
+        As written by :mod:`processing.project.importing`.
+
+    Attributes
+    ----------
+    images : ImageList or None
+        Camera images taken on this drive.
+
+    Raises
+    ------
+    MissingInput, BadFile
+        The folder is missing, incomplete or damaged.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self.info: DriveInfo = read_drive_info(folder)
+        self.columns = Columns(folder, self.info.count)
+        self.images: ImageList | None = read_images(folder)
+        self._check_columns()
+        self.turns: Turns | None = (
+            read_turns(folder / "turns.npz") if (folder / "turns.npz").is_file() else None
+        )
+        self._trajectory: Trajectory | None = None
+        self._point_images: dict[ImageKind, PointCloudImage] = {}
+
+    @property
+    def id(self) -> str:
+        """The drive's id, unique in its project."""
+        return self.info.id
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+        return self.info.count
+
+    @property
+    def folder(self) -> Path:
+        """Where the drive is kept."""
+        return self._folder
+
+    @property
+    def trajectory(self) -> Trajectory | None:
+        """Where the vehicle was; None when the drive has no trajectory."""
+        path = self._folder / "trajectory.npy"
+        if self._trajectory is None and path.is_file():
+            self._trajectory = _read_trajectory(path)
+        return self._trajectory
+
+    @property
+    def image_kinds(self) -> tuple[ImageKind, ...]:
+        """The kinds of image that this drive can be shown as."""
+        return _WITH_TURNS if self.turns is not None else (ImageKind.TOP_VIEW,)
+
+    def xyz(self, points: Points) -> NDArray[np.float64]:
+        """Coordinates of points.
+
+        Returns
+        -------
+        (n, 3) float64
+            m, project CRS, a copy.
+        """
+        integers = self.columns["xyz"][points]
+        return np.asarray(integers * np.array(self.info.scale) + np.array(self.info.offset))
+
+    def local_xyz(self, points: Points, origin: NDArray[np.float64]) -> NDArray[np.float32]:
+        """Coordinates about a local origin, exact enough for drawing.
+
+        Parameters
+        ----------
+        origin : (3,) float64
+            m, project CRS; subtracted before rounding to float32.
+
+        Returns
+        -------
+        (n, 3) float32
+        """
+        integers = self.columns["xyz"][points]
+        shift = np.array(self.info.offset) - origin
+        return (integers * np.array(self.info.scale) + shift).astype(np.float32)
+
+    def image(self, kind: ImageKind) -> PointCloudImage:
+        """The recording as an image of one kind; made once, then kept.
+
+        Raises
+        ------
+        Unsuitable
+            The drive has no turns and the kind needs them, or the reverse.
+        """
+        if kind not in self.image_kinds:
+            raise Unsuitable(
+                Text(
+                    "This drive has no image of the kind “{kind}”.",
+                    "このドライブでは「{kind}」の画像を作成できません。",
+                ).filled(kind=kind.title),
+                Text.same(self.info.name),
+                self.info.rows_reason
+                if self.turns is None
+                else Text("Choose one of the other kinds.", "ほかの種類を選んでください。"),
+            )
+        if kind not in self._point_images:
+            self._point_images[kind] = PointCloudImage.of_drive(self, kind)
+        return self._point_images[kind]
+
+    def _check_columns(self) -> None:
+        for name in ("xyz", "time", "intensity", "pulse"):
+            if not self.columns.has(name):
+                raise BadFile(
+                    Text(
+                        "A drive lacks one of its columns.",
+                        "ドライブに必要な列データがありません。",
+                    ),
+                    Text.same(f"{self._folder}: {name}"),
+                    Text(
+                        "Import the drive again from the delivered files.",
+                        "納品ファイルからドライブを再インポートしてください。",
+                    ),
+                )
+
+
+TRAJECTORY_FILE = "trajectory.npy"
+
+
+def write_trajectory(folder: Path, trajectory: Trajectory) -> None:
+    """Write a drive's trajectory into its folder: (m, 7) float64."""
+    table = np.column_stack(
+        [trajectory.time, trajectory.xyz, trajectory.roll_pitch_heading_deg]
+    ).astype(np.float64)
+    path = folder / TRAJECTORY_FILE
+    with told_as_user_error(path):
+        np.save(path, table)
+
+
+def _read_trajectory(path: Path) -> Trajectory:
+    with told_as_user_error(path):
+        table = np.load(path)
+    return Trajectory(
+        time=table[:, 0],
+        xyz=table[:, 1:4],
+        roll_pitch_heading_deg=table[:, 4:7],
+        has_attitude=True,
+    )

@@ -1,0 +1,124 @@
+"""DriveInfo: what is written down about one scanner's recording."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from processing.errors import BadFile, told_as_user_error
+from processing.text import Text
+
+Triple = tuple[float, float, float]
+
+FILE_NAME = "drive.json"
+
+
+@dataclass(frozen=True)
+class SourceFile:
+    """A delivered file, as it was when it was imported.
+
+    Attributes
+    ----------
+    sha256 : str
+        Checksum of the whole file; empty when it wasn't taken.
+    points : int
+        Points that the drive has of it.
+    """
+
+    path: str
+    size: int
+    modified_ns: int
+    sha256: str
+    points: int
+
+
+@dataclass(frozen=True)
+class DriveInfo:
+    """Facts about one scanner's recording.
+
+    Attributes
+    ----------
+    scale, offset : tuple of float
+        Metres = integers × scale + offset.
+    lowest, highest : tuple of float
+        Extent in metres, project CRS.
+    crs : str
+        ``EPSG:n``, or empty when unknown.
+    clock_offset_s : float
+        What was added to the delivered times to bring them to the trajectory's clock.
+    rows_by : str
+        How rows were found: ``trajectory``, ``origins``, ``scan-angle``, ``periodicity``; or
+        ``top-view`` where there are none.
+    rows_reason : Text
+        Why there are no turns; empty when there are.
+    cell_m, cells_per_row
+        Top view only: size of a cell, and cells in a row; else 0.
+    """
+
+    id: str
+    name: str
+    scanner: int
+    count: int
+    scale: Triple
+    offset: Triple
+    lowest: Triple
+    highest: Triple
+    crs: str
+    sources: tuple[SourceFile, ...]
+    clock_offset_s: float
+    rows_by: str
+    rows_reason: Text = Text("", "")
+    cell_m: float = 0.0
+    cells_per_row: int = 0
+
+
+def write_drive_info(folder: Path, info: DriveInfo) -> None:
+    """Write a drive's facts into its folder, whole or not at all."""
+    path = folder / FILE_NAME
+    temporary = path.with_suffix(".part")
+    with told_as_user_error(path):
+        temporary.write_text(
+            json.dumps(dataclasses.asdict(info), ensure_ascii=False, indent=1), encoding="utf-8"
+        )
+        temporary.replace(path)
+
+
+def read_drive_info(folder: Path) -> DriveInfo:
+    """Read a drive's facts.
+
+    Raises
+    ------
+    MissingInput, BadFile
+        There is no such file, or it isn't what was written.
+    """
+    path = folder / FILE_NAME
+    with told_as_user_error(path):
+        text = path.read_text(encoding="utf-8")
+    try:
+        return _from_json(json.loads(text))
+    except (ValueError, TypeError, KeyError) as error:
+        raise BadFile(
+            Text(
+                "The description of a drive is damaged.", "ドライブの記述ファイルが壊れています。"
+            ),
+            Text.same(f"{path}: {error}"),
+            Text(
+                "Import the drive again from the delivered files.",
+                "納品ファイルからドライブを再インポートしてください。",
+            ),
+        ) from error
+
+
+# The values come from JSON, whose types only the field names tell.
+def _from_json(values: dict[str, Any]) -> DriveInfo:
+    triples = {
+        name: (float(values[name][0]), float(values[name][1]), float(values[name][2]))
+        for name in ("scale", "offset", "lowest", "highest")
+    }
+    sources = tuple(SourceFile(**source) for source in values["sources"])
+    reason = Text(**values["rows_reason"])
+    rest = {**values, **triples, "sources": sources, "rows_reason": reason}
+    return DriveInfo(**rest)

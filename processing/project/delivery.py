@@ -1,0 +1,161 @@
+"""Delivery: which of the delivered files belong to which scanner, and in what order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.errors import UNCHANGED, MissingInput, OutOfRange
+from processing.formats.point_files import PointFileInfo, read_info, read_sample
+from processing.monitor import Monitor
+from processing.text import Text
+
+_SAMPLE_POINTS = 2_000
+
+
+@dataclass(frozen=True)
+class DeliveredFile:
+    """One point file, as far as its header and two samples tell.
+
+    Attributes
+    ----------
+    first_time, last_time : float
+        Of the sampled points, delivered clock; NaN without times.
+    scanner_column : str
+        The column that tells scanners apart: ``scanner`` or ``user_data``.
+    scanners : frozenset of int
+        Scanner numbers in the samples.
+    has_origins : bool
+        Whether every point says where the scanner was.
+    """
+
+    info: PointFileInfo
+    first_time: float
+    last_time: float
+    scanner_column: str
+    scanners: frozenset[int]
+    has_origins: bool
+
+
+@dataclass(frozen=True)
+class Delivery:
+    """All point files of one import.
+
+    Attributes
+    ----------
+    recordings : tuple of tuple of DeliveredFile
+        Files that follow one another; a scanner number within one group is one scanner.
+    crs : str
+        ``EPSG:n``, or empty when neither the files nor the user know it.
+    """
+
+    recordings: tuple[tuple[DeliveredFile, ...], ...]
+    crs: str
+
+
+def read_delivery(inputs: tuple[Path, ...], crs: str, monitor: Monitor) -> Delivery:
+    """Look at the headers and at the ends of all files, and sort them out.
+
+    Parameters
+    ----------
+    crs : str
+        What the user says; empty to take the files'.
+
+    Raises
+    ------
+    UserError
+        For a file that can't be read, no files at all, or files of different reference systems.
+    """
+    if not inputs:
+        raise MissingInput(
+            Text("No point files were given.", "点群ファイルが指定されていません。"),
+            Text.same("zuka import"),
+            Text(
+                "Name one or more LAS, LAZ or PLY files.",
+                "LAS・LAZ・PLYファイルを指定してください。",
+            ),
+        )
+    files = []
+    for path in inputs:
+        monitor.check()
+        files.append(_looked_at(path))
+    return Delivery(_grouped(files), crs or _common_crs(files))
+
+
+def _looked_at(path: Path) -> DeliveredFile:
+    info = read_info(path)
+    sample = read_sample(path, _SAMPLE_POINTS)
+    times = sample.get("time", np.empty(0))
+    times = times[np.isfinite(times)]
+    column = _scanner_column(sample)
+    return DeliveredFile(
+        info=info,
+        first_time=float(times.min()) if times.size else float("nan"),
+        last_time=float(times.max()) if times.size else float("nan"),
+        scanner_column=column,
+        scanners=frozenset(int(number) for number in np.unique(sample.get(column, np.zeros(1)))),
+        has_origins="origin" in sample,
+    )
+
+
+def _scanner_column(sample: dict[str, NDArray[np.generic]]) -> str:
+    """``user_data`` only where the source id says nothing and it holds a few small numbers."""
+    scanners = sample.get("scanner")
+    marks = sample.get("user_data")
+    if scanners is None or marks is None or np.unique(scanners).size > 1:
+        return "scanner"
+    found = np.unique(marks)
+    is_scanner_number = 2 <= found.size <= 4 and found.min() >= 1 and found.max() <= 8
+    return "user_data" if is_scanner_number else "scanner"
+
+
+def _common_crs(files: list[DeliveredFile]) -> str:
+    named = {file.info.crs: file for file in files if file.info.crs}
+    if len(named) > 1:
+        first, second = list(named.items())[:2]
+        raise OutOfRange(
+            Text(
+                "The files have different reference systems, {first} and {second}.",
+                "ファイルの座標参照系が異なります（{first} と {second}）。",
+            ).filled(first=first[0], second=second[0]),
+            Text.same(f"{first[1].info.path.name}, {second[1].info.path.name}"),
+            Text(
+                "Import them one by one, or say which one is right with --crs. {unchanged}",
+                "1つずつインポートするか、正しい座標系を --crs で指定してください。{unchanged}",
+            ).filled(unchanged=UNCHANGED),
+        )
+    return next(iter(named), "")
+
+
+def _grouped(files: list[DeliveredFile]) -> tuple[tuple[DeliveredFile, ...], ...]:
+    """Files of the same scanners that overlap in time are different scanners' files."""
+    groups: list[list[DeliveredFile]] = []
+    for file in sorted(files, key=_by_time):
+        group = next((group for group in groups if _continues(group, file)), None)
+        if group is None:
+            groups.append([file])
+        else:
+            group.append(file)
+    return tuple(tuple(group) for group in groups)
+
+
+def _by_time(file: DeliveredFile) -> tuple[float, str]:
+    return (file.first_time if np.isfinite(file.first_time) else 0.0, str(file.info.path))
+
+
+def _continues(group: list[DeliveredFile], file: DeliveredFile) -> bool:
+    if not np.isfinite(file.first_time) or file.scanner_column != group[0].scanner_column:
+        return False
+    if file.has_origins != group[0].has_origins:
+        return False
+    for other in group:
+        if not (other.scanners & file.scanners):
+            continue
+        together = min(other.last_time, file.last_time) - max(other.first_time, file.first_time)
+        shorter = min(other.last_time - other.first_time, file.last_time - file.first_time)
+        if not np.isfinite(together) or together > 0.5 * max(shorter, 1e-9):
+            return False
+    return True

@@ -1,0 +1,69 @@
+"""What files that were dropped on the window are: told by their content, not by their names."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from processing.errors import MissingInput, told_as_user_error
+from processing.project.importing import ImportRequest
+from processing.text import Text
+
+_TRAJECTORY_WORDS = (b"time_s,easting_m", b"gpstime", b"heading")
+_IMAGE_WORD = b"omega_deg"
+_SBET_RECORD = 136
+
+
+def request_of_files(files: tuple[Path, ...], crs: str) -> ImportRequest:
+    """Sort files into points, trajectories and image lists; folders are looked into once.
+
+    Raises
+    ------
+    MissingInput
+        There are no point files among them, or a file can't be read.
+    """
+    points, trajectories, images = [], [], []
+    for path in _unfolded(files):
+        {"points": points, "trajectory": trajectories, "images": images}[_content(path)].append(
+            path
+        )
+    if not points:
+        raise MissingInput(
+            Text("There are no point files among them.", "点群ファイルが含まれていません。"),
+            Text.same(", ".join(path.name for path in files)),
+            Text(
+                "Choose LAS, LAZ or PLY files, with the trajectory beside them.",
+                "LAS・LAZ・PLYファイルを、軌跡ファイルとともに選んでください。",
+            ),
+        )
+    return ImportRequest(tuple(points), tuple(trajectories), tuple(images), crs)
+
+
+_POINT_ENDINGS = {".las", ".laz", ".ply", ".pcd", ".pts", ".xyz", ".e57"}
+_OTHER_ENDINGS = {".csv", ".out", ".sbet", ".txt"}
+
+
+def _unfolded(files: tuple[Path, ...]) -> list[Path]:
+    found: list[Path] = []
+    for path in files:
+        with told_as_user_error(path):
+            if path.is_dir():
+                known = _POINT_ENDINGS | _OTHER_ENDINGS
+                found += sorted(p for p in path.iterdir() if p.suffix.lower() in known)
+            else:
+                found.append(path)
+    return found
+
+
+def _content(path: Path) -> str:
+    if path.suffix.lower() in _POINT_ENDINGS:
+        return "points"
+    with told_as_user_error(path):
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            start = file.read(2048)
+    first_line = start.splitlines()[0].lower() if start else b""
+    if _IMAGE_WORD in first_line:
+        return "images"
+    is_table = any(word in first_line for word in _TRAJECTORY_WORDS)
+    is_sbet = b"\0" in start and size % _SBET_RECORD == 0
+    return "trajectory" if is_table or is_sbet else "points"

@@ -1,0 +1,216 @@
+"""Importing: delivered files become drive folders; nothing in a delivered file is changed.
+
+Files are streamed once: a chunk is decoded while the one before it is written. What is found in
+the points afterwards (order, clock, rows, pulses) is :mod:`processing.project.drive_building`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import shutil
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.cameras.image_list import ImageList
+from processing.errors import UNCHANGED, BadFile, told_as_user_error
+from processing.formats.image_list import read_image_list
+from processing.formats.point_files import PointChunk, PointFileInfo, read_chunks
+from processing.monitor import Monitor, PartMonitor
+from processing.points.drive_info import SourceFile
+from processing.project.delivery import DeliveredFile, Delivery, read_delivery
+from processing.project.drive_building import BuildPlan, build_drive
+from processing.project.lattice import Lattice
+from processing.project.recording_writer import RecordingWriter
+from processing.project.trajectory_choice import read_trajectories
+from processing.text import Text
+
+_CHUNK_POINTS = 500_000
+_READING = 0.7
+
+
+@dataclass(frozen=True)
+class ImportRequest:
+    """What to import.
+
+    Attributes
+    ----------
+    inputs : tuple of Path
+        Point files.
+    trajectories, images : tuple of Path
+        Trajectory files; camera image lists.
+    crs : str
+        ``EPSG:n``; empty to take the files' own.
+    """
+
+    inputs: tuple[Path, ...]
+    trajectories: tuple[Path, ...] = ()
+    images: tuple[Path, ...] = ()
+    crs: str = ""
+
+
+def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple[Path, ...]:
+    """Turn delivered files into drive folders.
+
+    Parameters
+    ----------
+    into : Path
+        A folder for temporary drive folders, of this import alone;
+        :meth:`processing.project.project.Project.adopt_drive` takes them from there.
+
+    Returns
+    -------
+    tuple of Path
+        One folder per scanner; whole, or none at all.
+
+    Raises
+    ------
+    UserError
+        For a file that can't be read or doesn't fit; nothing is left behind.
+    Cancelled
+        Nothing is left behind.
+    """
+    delivery = read_delivery(request.inputs, request.crs, monitor)
+    files = tuple(file.info for group in delivery.recordings for file in group)
+    trajectories = read_trajectories(request.trajectories, delivery.crs)
+    images = _images_of(request.images)
+    with told_as_user_error(into):
+        into.mkdir(parents=True, exist_ok=True)
+    try:
+        with ThreadPoolExecutor(max_workers=1) as pool:
+            checksums = [pool.submit(_checksum, info.path) for info in files]
+            writers = _read_all(delivery, files, into, PartMonitor(monitor, 0.0, _READING))
+            sources = tuple(
+                _source_file(info, checksum)
+                for info, checksum in zip(files, checksums, strict=True)
+            )
+        plan = BuildPlan(sources, delivery.crs, trajectories, images, _is_adjusted_standard(files))
+        folders = []
+        for number, writer in enumerate(writers):
+            share = (1 - _READING) / len(writers)
+            start = _READING + number * share
+            folders.append(build_drive(writer, plan, PartMonitor(monitor, start, start + share)))
+    except BaseException:
+        shutil.rmtree(into, ignore_errors=True)
+        raise
+    return tuple(folders)
+
+
+def _read_all(
+    delivery: Delivery, files: tuple[PointFileInfo, ...], into: Path, monitor: Monitor
+) -> list[RecordingWriter]:
+    total = sum(info.count for info in files)
+    if total == 0:
+        raise BadFile(
+            Text("There are no points in it.", "点が含まれていません。"),
+            Text.same(", ".join(str(info.path) for info in files)),
+            Text(
+                "Choose a file with points. {unchanged}",
+                "点のあるファイルを選んでください。{unchanged}",
+            ).filled(unchanged=UNCHANGED),
+        )
+    writers: list[RecordingWriter] = []
+    done = 0
+    try:
+        for group in delivery.recordings:
+            own: list[RecordingWriter] = []
+            for file in group:
+                part = PartMonitor(monitor, done / total, (done + file.info.count) / total)
+                _read_file(file, files.index(file.info), own, into / f"{len(writers)}", part)
+                done += file.info.count
+            writers += own
+    finally:
+        for writer in writers:
+            writer.close()
+    return writers
+
+
+def _read_file(
+    file: DeliveredFile,
+    source: int,
+    writers: list[RecordingWriter],
+    folder_stem: Path,
+    monitor: Monitor,
+) -> None:
+    """Deal the points of one file to the writers of its group; new ones are made as needed."""
+    info = file.info
+    lattice = Lattice(info.scale, info.offset)
+    text = Text("Reading {name}", "{name} を読み込み中").filled(name=info.path.name)
+    start = 0
+    for chunk in _read_ahead(read_chunks(info.path, _CHUNK_POINTS)):
+        monitor.check()
+        count = chunk.columns["xyz"].shape[0]
+        indices = np.arange(start, start + count, dtype=np.int64)
+        for scanner, chosen in _by_scanner(chunk.columns, file.scanner_column):
+            columns = chunk.columns
+            own_indices = indices
+            if chosen is not None:
+                columns = {name: values[chosen] for name, values in columns.items()}
+                own_indices = indices[chosen]
+            writer = next(
+                (w for w in writers if w.scanner == scanner and w.takes(lattice, columns)), None
+            )
+            if writer is None:
+                folder = folder_stem.with_name(f"{folder_stem.name}-{len(writers)}")
+                writer = RecordingWriter(folder, lattice, scanner)
+                writers.append(writer)
+            writer.add(columns, lattice, source, own_indices)
+        start += count
+        monitor.report(start / max(info.count, 1), text)
+
+
+def _by_scanner(
+    columns: dict[str, NDArray[Any]], name: str
+) -> Iterator[tuple[int, NDArray[np.bool_] | None]]:
+    """Each scanner number of a chunk and its points; None for all of them."""
+    if name not in columns or columns["xyz"].shape[0] == 0:
+        yield 0, None
+        return
+    numbers = columns[name]
+    if numbers.min() == numbers.max():
+        yield int(numbers[0]), None
+        return
+    for number in np.unique(numbers):
+        yield int(number), numbers == number
+
+
+def _read_ahead(chunks: Iterator[PointChunk]) -> Iterator[PointChunk]:
+    """The same chunks, the next one being decoded while one is worked on."""
+    with ThreadPoolExecutor(max_workers=1) as pool:
+        coming: Future[PointChunk | None] = pool.submit(next, chunks, None)
+        while (chunk := coming.result()) is not None:
+            coming = pool.submit(next, chunks, None)
+            yield chunk
+
+
+def _images_of(lists: tuple[Path, ...]) -> ImageList | None:
+    images = [image for path in lists for image in read_image_list(path)]
+    return ImageList(tuple(images)) if images else None
+
+
+def _is_adjusted_standard(files: tuple[PointFileInfo, ...]) -> bool | None:
+    """What the files say of their clock, where they agree."""
+    said = {info.is_adjusted_standard for info in files}
+    return said.pop() if len(said) == 1 else None
+
+
+def _checksum(path: Path) -> str:
+    with told_as_user_error(path), path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def _source_file(info: PointFileInfo, checksum: Future[str]) -> SourceFile:
+    with told_as_user_error(info.path):
+        status = info.path.stat()
+    return SourceFile(
+        path=str(info.path.resolve()),
+        size=status.st_size,
+        modified_ns=status.st_mtime_ns,
+        sha256=checksum.result(),
+        points=info.count,
+    )

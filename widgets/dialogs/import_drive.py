@@ -1,0 +1,144 @@
+"""ImportForm: what is to be imported, from which files, into which project."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import (
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QFormLayout,
+    QHBoxLayout,
+    QLabel,
+    QLineEdit,
+    QListWidget,
+    QPushButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from widgets.dialogs.reference_systems import ReferenceSystemBox
+
+
+@dataclass(frozen=True)
+class ImportWish:
+    """What the form asks for.
+
+    Attributes
+    ----------
+    files : tuple of Path
+        Points, trajectories and image lists; their content tells which is which.
+    project : Path
+        The project's folder; made if there is none.
+    crs : str
+        ``EPSG:n``, or empty for the files' own.
+    """
+
+    files: tuple[Path, ...]
+    project: Path
+    crs: str
+
+
+class ImportForm(QDialog):
+    """A form beside the window; the window stays usable while it is open."""
+
+    import_requested = Signal(object)  # ImportWish
+
+    def __init__(
+        self, project: Path, files: tuple[Path, ...] = (), parent: QWidget | None = None
+    ) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(self.tr("Import a drive"))
+        self.resize(620, 380)
+        self._files = QListWidget(self)
+        self._files.setSelectionMode(QListWidget.SelectionMode.ExtendedSelection)
+        self._project = QLineEdit(str(project), self)
+        self._crs = ReferenceSystemBox(self)
+        self._trouble = QLabel(self)
+        self._trouble.setWordWrap(True)
+        self._buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
+        self._import = self._buttons.addButton(
+            self.tr("Import"), QDialogButtonBox.ButtonRole.AcceptRole
+        )
+        self._lay_out()
+        self._buttons.accepted.connect(self._on_buttons_accepted)
+        self._buttons.rejected.connect(self.close)
+        self.add_files(files)
+
+    def add_files(self, files: tuple[Path, ...]) -> None:
+        """Add files to the list; those that are there already stay once."""
+        listed = {self._files.item(row).text() for row in range(self._files.count())}
+        for file in files:
+            if str(file) not in listed:
+                self._files.addItem(str(file))
+        self._import.setEnabled(self._files.count() > 0)
+
+    def _lay_out(self) -> None:
+        add = QPushButton(self.tr("Add files…"), self)
+        remove = QPushButton(self.tr("Remove"), self)
+        place = QPushButton(self.tr("Choose…"), self)
+        add.clicked.connect(self._on_add_clicked)
+        remove.clicked.connect(self._on_remove_clicked)
+        place.clicked.connect(self._on_place_clicked)
+        beside = QVBoxLayout()
+        beside.addWidget(add)
+        beside.addWidget(remove)
+        beside.addStretch(1)
+        files = QHBoxLayout()
+        files.addWidget(self._files, 1)
+        files.addLayout(beside)
+        folder = QHBoxLayout()
+        folder.addWidget(self._project, 1)
+        folder.addWidget(place)
+        hint = QLabel(
+            self.tr(
+                "Point files of all scanners, the trajectory, and image lists if there are any."
+            ),
+            self,
+        )
+        hint.setWordWrap(True)
+        form = QFormLayout()
+        form.addRow(self.tr("Project"), folder)
+        form.addRow(self.tr("Reference system"), self._crs)
+        layout = QVBoxLayout(self)
+        layout.addWidget(hint)
+        layout.addLayout(files, 1)
+        layout.addLayout(form)
+        layout.addWidget(self._trouble)
+        layout.addWidget(self._buttons)
+
+    def _on_add_clicked(self) -> None:
+        kinds = self.tr(
+            "Deliveries (*.las *.laz *.ply *.pcd *.e57 *.pts *.xyz *.txt *.csv *.out *.sbet)"
+        )
+        names, _ = QFileDialog.getOpenFileNames(self, self.tr("Add files"), "", kinds)
+        self.add_files(tuple(Path(name) for name in names))
+
+    def _on_remove_clicked(self) -> None:
+        for item in self._files.selectedItems():
+            self._files.takeItem(self._files.row(item))
+        self._import.setEnabled(self._files.count() > 0)
+
+    def _on_place_clicked(self) -> None:
+        name, _ = QFileDialog.getSaveFileName(
+            self, self.tr("Project"), self._project.text(), self.tr("Zuka projects (*.zuka)")
+        )
+        if name:
+            self._project.setText(name)
+
+    def _on_buttons_accepted(self) -> None:
+        code = self._crs.code
+        if code is None:
+            self._trouble.setText(
+                self.tr("The reference system must be a code such as EPSG:6677, or be left empty.")
+            )
+            return
+        files = tuple(Path(self._files.item(row).text()) for row in range(self._files.count()))
+        project = Path(self._project.text().strip())
+        if project.suffix != ".zuka":
+            project = project.with_name(project.name + ".zuka")
+        self.import_requested.emit(ImportWish(files, project, code))
+        self.close()

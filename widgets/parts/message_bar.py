@@ -1,0 +1,55 @@
+"""MessageBar: trouble said once, in the window, without stopping anybody."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
+
+from processing.errors import UserError
+from processing.text import Language
+
+
+class MessageBar(QFrame):
+    """A line above the views with what is wrong, where, and what to do; hidden when all is well."""
+
+    def __init__(self, language: Language, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._language = language
+        self.setObjectName("messageBar")
+        self.setStyleSheet(
+            "#messageBar { background: #7a2e16; } #messageBar QLabel { color: #ffffff; }"
+        )
+        self._what = QLabel(self)
+        self._rest = QLabel(self)
+        for label in (self._what, self._rest):
+            label.setWordWrap(True)
+            label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        font = self._what.font()
+        font.setBold(True)
+        self._what.setFont(font)
+        words = QVBoxLayout()
+        words.setSpacing(2)
+        words.addWidget(self._what)
+        words.addWidget(self._rest)
+        self._close = QToolButton(self)
+        self._close.setText("✕")
+        self._close.setToolTip(self.tr("Close this message"))
+        self._close.setAutoRaise(True)
+        self._close.clicked.connect(self.hide)
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(12, 8, 8, 8)
+        layout.addLayout(words, 1)
+        layout.addWidget(self._close, 0, Qt.AlignmentFlag.AlignTop)
+        self.hide()
+
+    @property
+    def text(self) -> str:
+        """What it says; empty while hidden."""
+        return "" if self.isHidden() else f"{self._what.text()} {self._rest.text()}"
+
+    def show_error(self, error: UserError) -> None:
+        """Say what is wrong until it is closed or something else is wrong."""
+        self._what.setText(error.what.spoken(self._language))
+        where, remedy = (part.spoken(self._language) for part in (error.where, error.remedy))
+        self._rest.setText(f"{where}\n{remedy}")
+        self.show()
