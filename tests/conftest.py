@@ -19,7 +19,16 @@ from resources import path_of
 if TYPE_CHECKING:
     from PySide6.QtWidgets import QWidget
 
-ORDER = ("house_rules", "processing", "properties", "broken_files", "widgets", "app", "journeys")
+ORDER = (
+    "house_rules",
+    "installer",
+    "processing",
+    "properties",
+    "broken_files",
+    "widgets",
+    "app",
+    "journeys",
+)
 TESTS = Path(__file__).parent
 
 
