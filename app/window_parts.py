@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 from processing.image.tile_cache import TileCache
 from widgets.image_view.view import ImageView
-from widgets.mouse_tools.toolbox import MouseToolbox
 from widgets.panels.attribute_panel import AttributePanel
 from widgets.panels.jobs_panel import JobsPanel
 from widgets.panels.layers_panel import LayersPanel
@@ -21,6 +20,7 @@ from app.jobs import JobQueue
 from app.main_window import MainWindow
 from app.settings import Settings
 from processing.text import Language
+from widgets.mouse_tools.toolbox import MouseToolbox
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
 
@@ -47,3 +47,11 @@ class WindowParts:
     attribute_panel: AttributePanel
     jobs_panel: JobsPanel
     window: MainWindow
+
+
+def take_down(parts: WindowParts) -> None:
+    """Stop jobs and loaders, close the project and the 3D view; may be called again."""
+    parts.jobs.close()
+    parts.document.close()
+    parts.scene_view.close()
+    parts.tiles.close()

@@ -1,0 +1,185 @@
+"""Application: builds everything in the order it depends on, runs the window, takes it down."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from platformdirs import user_documents_path
+from processing.image.tile_cache import TileCache
+from PySide6.QtCore import Qt, QTimer, QTranslator
+from PySide6.QtWidgets import QApplication
+from widgets.image_view.view import ImageView
+from widgets.mouse_tools.draw_area import DrawArea
+from widgets.mouse_tools.draw_line import DrawLine
+from widgets.mouse_tools.draw_point import DrawPoint
+from widgets.mouse_tools.edit_vertices import EditVertices
+from widgets.mouse_tools.select import Select
+from widgets.panels.attribute_panel import AttributePanel
+from widgets.panels.jobs_panel import JobsPanel
+from widgets.panels.layers_panel import LayersPanel
+from widgets.panels.processing_panel import ProcessingPanel
+from widgets.panels.project_tree import ProjectTree
+from widgets.parts.start_page import StartPage
+from widgets.parts.status_line import StatusLine
+from widgets.scene_view.view import SceneView
+
+from app.actions.draw import draw_actions
+from app.actions.edit import edit_actions
+from app.actions.file import FileActions
+from app.actions.help import HelpActions
+from app.actions.process import process_actions
+from app.actions.view import view_actions
+from app.cli.window_wish import WindowWish
+from app.document import Document
+from app.jobs import JobQueue
+from app.main_window import MainWindow, Panel
+from app.settings import Settings
+from app.theme import apply_theme
+from app.window_parts import WindowParts
+from app.wiring import connect_parts
+from processing.text import Text
+from resources import path_of
+from widgets.mouse_tools.toolbox import MouseToolbox
+from widgets.parts.image_bar import ImageBar
+from widgets.parts.message_bar import MessageBar
+
+_LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
+_RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
+
+
+def run_window(wish: WindowWish) -> int:
+    """Show the window with what is wished; gives the exit status when it is closed."""
+    application = make_application()
+    parts = build_window(Settings(), user_documents_path() / "Zuka")
+    parts.window.show()
+    if wish.headless_out is not None:
+        from app.demo_job import do_demo_job
+
+        return do_demo_job(parts, wish.headless_out)
+    QTimer.singleShot(0, lambda: _fulfil(wish, parts))
+    return application.exec()
+
+
+def make_application() -> QApplication:
+    """The one Qt application, with its look and its language."""
+    running = QApplication.instance()
+    application = running if isinstance(running, QApplication) else QApplication(sys.argv[:1])
+    application.setApplicationName("Zuka")
+    apply_theme(application)
+    return application
+
+
+def build_window(settings: Settings, projects_folder: Path) -> WindowParts:
+    """All parts of a window, connected; not shown yet.
+
+    Parameters
+    ----------
+    projects_folder : Path
+        Where new projects are made unless the user says otherwise.
+    """
+    _install_translation(settings.language)
+    parts = _make_parts(settings)
+    _add_actions(parts, FileActions(parts, projects_folder))
+    parts.window.add_panels(_panels(parts))
+    connect_parts(parts)
+    parts.window.show_work(is_open=False)
+    return parts
+
+
+def _install_translation(language: str) -> None:
+    """Translations of the window's words; English is what the sources say."""
+    application = QApplication.instance()
+    translator = QTranslator(application)
+    if (
+        translator.load(f"zuka_{language}", str(path_of("translations")))
+        and application is not None
+    ):
+        application.installTranslator(translator)
+
+
+def _make_parts(settings: Settings) -> WindowParts:
+    language = settings.language
+    jobs = JobQueue()
+    tiles = TileCache()
+    document = Document(jobs, tiles)
+    shared = document.shared
+    image_view = ImageView(document, shared, tiles)
+    scene_view = SceneView(document, shared, tiles)
+    image_bar = ImageBar(document, shared, language)
+    message_bar = MessageBar(language)
+    start_page = StartPage()
+    toolbox = MouseToolbox(
+        {
+            "select": Select(document, shared),
+            "point": DrawPoint(shared),
+            "line": DrawLine(shared),
+            "area": DrawArea(shared),
+            "edit": EditVertices(document, shared),
+        },
+        (image_view, scene_view),
+    )
+    window = MainWindow(
+        language,
+        start_page=start_page,
+        views=(image_view, scene_view),
+        header=image_bar,
+        message=message_bar,
+    )
+    return WindowParts(
+        language=language,
+        settings=settings,
+        jobs=jobs,
+        tiles=tiles,
+        document=document,
+        toolbox=toolbox,
+        image_view=image_view,
+        scene_view=scene_view,
+        image_bar=image_bar,
+        message_bar=message_bar,
+        start_page=start_page,
+        status_line=StatusLine(document, shared, language),
+        project_tree=ProjectTree(document, shared, language),
+        layers_panel=LayersPanel(document, shared, language),
+        processing_panel=ProcessingPanel(language),
+        attribute_panel=AttributePanel(document, shared, language),
+        jobs_panel=JobsPanel(language),
+        window=window,
+    )
+
+
+def _add_actions(parts: WindowParts, files: FileActions) -> None:
+    help_ = HelpActions(parts)
+    actions = (
+        *files.actions(),
+        *edit_actions(parts),
+        *view_actions(parts),
+        *draw_actions(parts),
+        *process_actions(parts),
+        *help_.actions(),
+    )
+    parts.window.add_actions(actions)
+    help_.list_in_palette(actions)
+    parts.window.files_dropped.connect(files.open_files)
+    parts.start_page.open_requested.connect(files.choose_project)
+    parts.start_page.import_requested.connect(files.choose_import)
+    parts.start_page.demo_requested.connect(files.open_demo)
+    parts.start_page.recent_chosen.connect(parts.document.open)
+
+
+def _panels(parts: WindowParts) -> tuple[Panel, ...]:
+    return (
+        Panel("project", Text("Project", "プロジェクト"), parts.project_tree, _LEFT),
+        Panel("layers", Text("Layers", "レイヤ"), parts.layers_panel, _LEFT),
+        Panel("processing", Text("Processing", "処理"), parts.processing_panel, _RIGHT),
+        Panel("attributes", Text("Attributes", "属性"), parts.attribute_panel, _RIGHT),
+        Panel("jobs", Text("Jobs", "ジョブ"), parts.jobs_panel, _RIGHT),
+    )
+
+
+def _fulfil(wish: WindowWish, parts: WindowParts) -> None:
+    actions = parts.window.actions_by_id
+    if wish.demo:
+        actions["demo"].trigger()
+    elif wish.paths:
+        parts.window.files_dropped.emit(wish.paths)

@@ -1,0 +1,130 @@
+"""Wiring: every connection between document, views, panels and jobs, on one page."""
+
+from __future__ import annotations
+
+from processing.runner import reason_against
+from PySide6.QtCore import QObject
+from widgets.panels.jobs_panel import JobView
+
+from app.jobs import JobState, JobStatus
+from app.window_parts import WindowParts, take_down
+from processing.text import Text
+
+
+def connect_parts(parts: WindowParts) -> None:
+    """Connect the parts of a window, once."""
+    wiring = _Wiring(parts)
+    _connect_document(parts, wiring)
+    _connect_intentions(parts, wiring)
+    parts.window.closed.connect(wiring.on_window_closed)
+    wiring.on_undo_stack_changed()
+    wiring.on_toolbox_tool_chosen(parts.toolbox.name)
+    parts.start_page.show_recent(parts.settings.recent_projects)
+    layout = parts.settings.layout
+    if layout is not None:
+        parts.window.restore_layout(layout)
+
+
+def _connect_document(parts: WindowParts, wiring: _Wiring) -> None:
+    document = parts.document
+    document.opened.connect(wiring.on_document_opened)
+    document.closed.connect(wiring.on_document_closed)
+    document.refused.connect(parts.message_bar.show_error)
+    document.told.connect(parts.status_line.show_message)
+    document.undo_stack.changed.connect(wiring.on_undo_stack_changed)
+    parts.jobs.changed.connect(wiring.on_jobs_changed)
+    document.shared.view_settings.image_changed.connect(parts.processing_panel.refresh)
+    document.shared.map_changes.drives_changed.connect(parts.processing_panel.refresh)
+    parts.processing_panel.ask_reasons_from(wiring.reason_against_tool)
+
+
+def _connect_intentions(parts: WindowParts, wiring: _Wiring) -> None:
+    document, toolbox = parts.document, parts.toolbox
+    toolbox.change_requested.connect(document.apply)
+    toolbox.told.connect(parts.status_line.show_message)
+    toolbox.tool_chosen.connect(wiring.on_toolbox_tool_chosen)
+    toolbox.kind_chosen.connect(parts.layers_panel.mark_kind)
+    parts.layers_panel.kind_chosen.connect(wiring.on_layers_kind_chosen)
+    parts.attribute_panel.change_requested.connect(document.apply)
+    parts.project_tree.drive_chosen.connect(wiring.on_tree_drive_chosen)
+    parts.processing_panel.run_requested.connect(wiring.on_processing_run_requested)
+    parts.jobs_panel.cancel_requested.connect(parts.jobs.cancel)
+    parts.image_bar.everything_requested.connect(parts.image_view.show_everything)
+    parts.image_bar.one_to_one_requested.connect(parts.image_view.show_one_to_one)
+
+
+class _Wiring(QObject):
+    """The few connections that have to translate between what is sent and what is asked."""
+
+    def __init__(self, parts: WindowParts) -> None:
+        super().__init__(parts.window)
+        self._parts = parts
+
+    def reason_against_tool(self, tool: str) -> Text | None:
+        """Why a tool can't run on the drive shown; None when it can."""
+        drive_id = self._parts.document.shared.view_settings.drive_id
+        if not drive_id:
+            return Text("Open a drive first.", "先にドライブを開いてください。")
+        return reason_against(tool, self._parts.document.drive(drive_id))
+
+    def on_document_opened(self) -> None:
+        project = self._parts.document.project
+        if project is not None:
+            self._parts.settings.remember_project(project.folder)
+            self._parts.window.show_title(project.name)
+        self._parts.window.show_work(is_open=True)
+
+    def on_document_closed(self) -> None:
+        self._parts.window.show_work(is_open=False)
+        self._parts.window.show_title("")
+        self._parts.start_page.show_recent(self._parts.settings.recent_projects)
+
+    def on_undo_stack_changed(self) -> None:
+        stack, language = self._parts.document.undo_stack, self._parts.language
+        actions = self._parts.window.actions_by_id
+        labels = {"undo": stack.undo_label, "redo": stack.redo_label}
+        verbs = {
+            "undo": Text("Undo: {label}", "元に戻す: {label}"),
+            "redo": Text("Redo: {label}", "やり直す: {label}"),
+        }
+        plain = {"undo": Text("Undo", "元に戻す"), "redo": Text("Redo", "やり直す")}
+        for name, label in labels.items():
+            text = plain[name] if label is None else verbs[name].filled(label=label)
+            actions[name].setText(text.spoken(language))
+            actions[name].setEnabled(label is not None)
+
+    def on_toolbox_tool_chosen(self, name: str) -> None:
+        self._parts.window.actions_by_id[f"tool-{name}"].setChecked(True)
+
+    def on_layers_kind_chosen(self, kind_id: str) -> None:
+        self._parts.toolbox.choose_kind(self._parts.document.catalogue()[kind_id])
+
+    def on_tree_drive_chosen(self, drive_id: str) -> None:
+        settings = self._parts.document.shared.view_settings
+        kinds = self._parts.document.drive(drive_id).image_kinds
+        kind = settings.image_kind if settings.image_kind in kinds else kinds[0]
+        settings.show_image(drive_id, kind)
+
+    def on_processing_run_requested(self, tool: str, parameters: object) -> None:
+        drive_id = self._parts.document.shared.view_settings.drive_id
+        if drive_id:
+            self._parts.document.start_run(tool, drive_id, parameters)
+
+    def on_jobs_changed(self, status: JobStatus) -> None:
+        language = self._parts.language
+        view = JobView(
+            id=status.id,
+            title=status.title.spoken(language),
+            fraction=status.fraction,
+            text=status.text.spoken(language),
+            seconds_left=status.seconds_left,
+            state=status.state.value,
+            error="" if status.error is None else status.error.line(language),
+        )
+        self._parts.jobs_panel.show_job(view)
+        running = status.state in (JobState.WAITING, JobState.RUNNING)
+        self._parts.status_line.show_job(view if running else None)
+
+    def on_window_closed(self) -> None:
+        self._parts.settings.remember_layout(*self._parts.window.layout_to_keep())
+        take_down(self._parts)
