@@ -1,0 +1,94 @@
+"""Jobs end exactly once, on the window's thread, and can be stopped in the middle."""
+
+import threading
+
+import pytest
+
+from app.jobs import JobQueue, JobState
+from processing.errors import BadFile
+from processing.text import Text
+
+TITLE = Text("Work", "作業")
+ENDINGS = {JobState.FINISHED, JobState.FAILED, JobState.CANCELLED}
+
+
+@pytest.fixture
+def jobs(qapp, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    queue = JobQueue()
+    yield queue
+    queue.close()
+
+
+def _endings(queue):
+    seen = []
+    queue.changed.connect(lambda status: seen.append(status) if status.state in ENDINGS else None)
+    return seen
+
+
+def test_a_finished_job_gives_its_result_on_the_thread_of_the_window(qtbot, jobs):
+    endings = _endings(jobs)
+    threads = []
+    jobs.finished.connect(lambda *_: threads.append(threading.current_thread()))
+    with qtbot.waitSignal(jobs.finished) as told:
+        job = jobs.start(TITLE, lambda monitor: 42)
+    assert told.args == [job, 42]
+    assert threads == [threading.main_thread()]
+    assert [status.state for status in endings] == [JobState.FINISHED]
+    assert not jobs.is_busy
+
+
+def test_progress_is_told_with_its_words(qtbot, jobs):
+    words = Text("half", "半分")
+    told = []
+    jobs.changed.connect(lambda status: told.append((status.fraction, status.text)))
+    with qtbot.waitSignal(jobs.finished):
+        jobs.start(TITLE, lambda monitor: monitor.report(0.5, words))
+    assert (0.5, words) in told
+
+
+def test_a_job_cancelled_in_the_middle_is_told_as_cancelled_and_gives_nothing(qtbot, jobs):
+    running = threading.Event()
+
+    def work(monitor):
+        running.set()
+        while True:
+            monitor.check()
+
+    finished = []
+    jobs.finished.connect(lambda *args: finished.append(args))
+    job = jobs.start(TITLE, work)
+    assert running.wait(10)
+    with qtbot.waitSignal(jobs.cancelled) as told:
+        jobs.cancel(job)
+    assert told.args == [job]
+    assert not finished
+
+
+def test_a_waiting_job_can_be_cancelled_before_it_starts(qtbot, jobs):
+    gate = threading.Event()
+    started = []
+    jobs.start(TITLE, lambda monitor: gate.wait(10))
+    waiting = jobs.start(TITLE, lambda monitor: started.append(True))
+    jobs.cancel(waiting)
+    with qtbot.waitSignal(jobs.cancelled):
+        gate.set()
+    assert not started
+
+
+def test_what_the_user_can_mend_is_told_in_its_three_parts(qtbot, jobs):
+    error = BadFile(Text.same("what"), Text.same("where"), Text.same("remedy"))
+
+    def work(monitor):
+        raise error
+
+    with qtbot.waitSignal(jobs.failed) as told:
+        job = jobs.start(TITLE, work)
+    assert told.args == [job, error]
+
+
+def test_a_defect_is_told_in_one_sentence_and_logged(qtbot, jobs):
+    with qtbot.waitSignal(jobs.failed) as told:
+        jobs.start(TITLE, lambda monitor: 1 / 0)
+    assert "ZeroDivisionError" in told.args[1].line("en")
+    assert "\n" not in told.args[1].line("ja")
