@@ -41,8 +41,8 @@ def run(command: Sequence[str | Path], *, folder: Path, environment: Mapping[str
     """
     status = status_of(command, folder=folder, environment=environment)
     if status != 0:
-        name = Path(command[0]).name
-        raise Stop(f"{name} {command[1] if len(command) > 1 else ''} failed (see above)", status)
+        words = " ".join(Path(word).name for word in command[:4])
+        raise Stop(f"{words} … failed with status {status}; what it said stands above", status)
 
 
 def status_of(

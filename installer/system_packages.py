@@ -30,6 +30,8 @@ PACKAGES = (
     "libxcb-xinerama0",
     "libxcb-xkb1",
     "libxkbcommon-x11-0",
+    "libglib2.0-0",
+    "libfontconfig1",
     "libdbus-1-3",
     "libgomp1",
     "libusb-1.0-0",
@@ -68,17 +70,24 @@ def missing_packages() -> tuple[str, ...]:
     """Name the listed Debian packages that are not installed, in the list's order."""
     asked = PACKAGES if _has_ensurepip() else ("python3-venv", *PACKAGES)
     answer = subprocess.run(
-        ["dpkg-query", "--show", "--showformat", "${Package} ${db:Status-Status}\n", *asked],
+        ["dpkg-query", "--show", "--showformat", "${db:Status-Status}|${Package}, ${Provides}\n"],
         capture_output=True,
         text=True,
-        check=False,  # status 1 names unknown packages, which are simply missing
+        check=True,
     )
     return not_installed(asked, answer.stdout)
 
 
 def not_installed(asked: Sequence[str], listing: str) -> tuple[str, ...]:
-    """Name what is not marked as installed in lines of ``PACKAGE STATUS``."""
-    there = {line.split()[0] for line in listing.splitlines() if line.endswith(" installed")}
+    """Name what lines of ``STATUS|PACKAGE, PROVIDED, PROVIDED (= VERSION)`` don't have.
+
+    Newer releases rename libraries (``libglib2.0-0t64``) and provide the old name.
+    """
+    there: set[str] = set()
+    for line in listing.splitlines():
+        status, _, names = line.partition("|")
+        if status == "installed":
+            there.update(name.split()[0] for name in names.split(",") if name.strip())
     return tuple(name for name in asked if name not in there)
 
 
@@ -110,7 +119,8 @@ def _check_without_apt() -> None:
     raise Stop(
         "this Linux has no apt-get: install Python's venv module, Xvfb, EGL, OpenGL and DRI from "
         "Mesa, the xcb libraries (cursor, icccm, image, keysyms, render-util, shape, xinerama, "
-        "xkb), xkbcommon-x11, D-Bus, libgomp, libusb and Noto Sans CJK, then run again"
+        "xkb), xkbcommon-x11, GLib, fontconfig, D-Bus, libgomp, libusb and Noto Sans CJK, then "
+        "run again"
     )
 
 
