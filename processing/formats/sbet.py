@@ -133,7 +133,10 @@ def _projected(
                 f"{crs} は投影座標系ではありません。",
             ),
             Text.same(str(path)),
-            Text("Choose a plane system such as EPSG:6677.", "EPSG:6677などの平面直角座標系を指定してください。"),
+            Text(
+                "Choose a plane system such as EPSG:6677.",
+                "EPSG:6677などの平面直角座標系を指定してください。",
+            ),
         )
     transformer = Transformer.from_crs(system.geodetic_crs, system, always_xy=True)
     longitude, latitude = np.degrees(records["longitude"]), np.degrees(records["latitude"])
@@ -152,7 +155,9 @@ def _projected(
                 f"{bad + 1:,}番目の記録は {crs} の適用範囲外です。",
             ),
             Text.same(str(path)),
-            Text("Choose the zone of the survey.", "測量区域の座標系（系番号）を指定してください。"),
+            Text(
+                "Choose the zone of the survey.", "測量区域の座標系（系番号）を指定してください。"
+            ),
         )
     return easting, northing, bearing
 

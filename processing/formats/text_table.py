@@ -1,4 +1,4 @@
-"""Tables with a header line as CSV: columns found by name, numbers checked, damage named by line."""
+"""CSV with a header line: columns found by name, numbers checked, damage named by line."""
 
 from __future__ import annotations
 
@@ -52,7 +52,9 @@ class TextTable:
         place = self.columns.index(column.lower())
         return [row[place].strip() for row in self.rows]
 
-    def numbers(self, column: str, low: float = -np.inf, high: float = np.inf) -> NDArray[np.float64]:
+    def numbers(
+        self, column: str, low: float = -np.inf, high: float = np.inf
+    ) -> NDArray[np.float64]:
         """The numbers of one column.
 
         Parameters

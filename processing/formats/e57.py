@@ -1,0 +1,166 @@
+"""E57 (ASTM E2807): the scans of a terrestrial scanner, each moved to where it stood."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.errors import UNCHANGED, BadFile, told_as_user_error
+from processing.formats.delivered_floats import Block, FloatFile
+from processing.formats.las_header import damaged
+from processing.text import Text
+
+if TYPE_CHECKING:
+    from pye57 import E57, ScanHeader
+
+MAGIC = b"ASTM-E57"
+_BLOCK_POINTS = 500_000
+_MOST_POINTS_A_BYTE = 8
+_CARTESIAN = ("cartesianX", "cartesianY", "cartesianZ")
+_SPHERICAL = ("sphericalRange", "sphericalAzimuth", "sphericalElevation")
+_INVALID = ("cartesianInvalidState", "sphericalInvalidState")
+_COLOR = ("colorRed", "colorGreen", "colorBlue")
+_INTENSITY = "intensity"
+_EIGHT_BITS = 255.0
+_FULL = 65535.0
+
+
+def open_e57(path: Path) -> FloatFile:
+    """The points of all scans of an E57 file, poses applied.
+
+    Points that the scanner marked invalid are left out. Where only some scans have intensities
+    or colours, the others' are 0.
+
+    Raises
+    ------
+    MissingInput, NoSpace, BadFile
+        It can't be read; a checksum or a section of it is damaged.
+    """
+    with told_as_user_error(path), path.open("rb"):
+        return FloatFile(path, "E57", lambda: _blocks(path))
+
+
+def _blocks(path: Path) -> Iterator[Block]:
+    import pye57
+
+    with _damage_told(path):
+        file = pye57.E57(str(path))
+    try:
+        with _damage_told(path):
+            scans = [file.get_header(i) for i in range(file.scan_count)]
+        known = {field for scan in scans for field in scan.point_fields}
+        for number, scan in enumerate(scans):
+            yield from _scan_blocks(path, file, scan, number, known)
+    finally:
+        file.close()
+
+
+def _scan_blocks(
+    path: Path, file: E57, scan: ScanHeader, number: int, known: set[str]
+) -> Iterator[Block]:
+    with _damage_told(path):
+        position = next(
+            (p for p in (_CARTESIAN, _SPHERICAL) if set(p) <= set(scan.point_fields)), ()
+        )
+        if not position or scan.point_count > _MOST_POINTS_A_BYTE * path.stat().st_size:
+            raise _bad_scan(path, number)
+        wanted = (*position, *_INVALID, _INTENSITY, *_COLOR)
+        fields = [field for field in wanted if field in scan.point_fields]
+        data, buffers = _buffers(file, fields, min(_BLOCK_POINTS, max(scan.point_count, 1)))
+        turn, shift = scan.rotation_matrix, scan.translation
+        brightest = _brightest(scan)
+        reader = scan.points.reader(buffers)
+    while True:
+        with _damage_told(path):
+            count = reader.read()
+        if not count:
+            return
+        values = {name: column[:count] for name, column in data.items()}
+        valid = np.ones(count, dtype=np.bool_)
+        for name in _INVALID:
+            if name in values:
+                valid &= values[name] == 0
+        block = _block({name: v[valid] for name, v in values.items()}, known, brightest)
+        # Not @: on some builds of the linear algebra library it warns about unused lanes.
+        block["xyz"] = np.einsum("ij,nj->ni", turn, block["xyz"].astype(np.float64)) + shift
+        yield block
+
+
+def _buffers(
+    file: E57, fields: list[str], capacity: int
+) -> tuple[dict[str, NDArray[np.float64]], Any]:
+    """Arrays that the reader fills, and what it wants to know of them (a C++ vector: Any)."""
+    from pye57 import libe57
+
+    buffers = libe57.VectorSourceDestBuffer()
+    data = {field: np.zeros(capacity) for field in fields}
+    for field, values in data.items():
+        buffers.append(
+            libe57.SourceDestBuffer(file.image_file, field, values, capacity, True, True)  # noqa: FBT003 - C++ takes no names
+        )
+    return data, buffers
+
+
+def _block(values: dict[str, NDArray[np.float64]], known: set[str], brightest: float) -> Block:
+    if _CARTESIAN[0] in values:
+        xyz = np.column_stack([values[name] for name in _CARTESIAN])
+    else:
+        distance, azimuth, elevation = (values[name] for name in _SPHERICAL)
+        level = distance * np.cos(elevation)
+        xyz = np.column_stack(
+            [level * np.cos(azimuth), level * np.sin(azimuth), distance * np.sin(elevation)]
+        )
+    block: Block = {"xyz": xyz}
+    nothing = np.zeros(xyz.shape[0])
+    if _INTENSITY in known:
+        block["intensity"] = values.get(_INTENSITY, nothing)
+    if set(_COLOR) <= known:
+        channels = np.column_stack([values.get(name, nothing) for name in _COLOR])
+        color = np.nan_to_num(channels * (_FULL / brightest))
+        block["color"] = np.clip(np.rint(color), 0, _FULL).astype(np.uint16)
+    return block
+
+
+def _brightest(scan: ScanHeader) -> float:
+    """The highest value of a colour, 255 where the file doesn't say."""
+    node = scan.node
+    if not node.isDefined("colorLimits/colorRedMaximum"):
+        return _EIGHT_BITS
+    limit = node["colorLimits"]["colorRedMaximum"]
+    value = float(limit.value()) if hasattr(limit, "value") else _EIGHT_BITS
+    return value if value > 0 else _EIGHT_BITS
+
+
+@contextmanager
+def _damage_told(path: Path) -> Iterator[None]:
+    from pye57 import libe57
+
+    try:
+        with told_as_user_error(path):
+            yield
+    except libe57.E57Exception as error:
+        # "checksum mismatch, file is corrupted (ErrorBadChecksum)", then pages of debugging.
+        reason = str(error).split("\n", 1)[0].strip()
+        raise damaged(
+            path,
+            Text(f"The E57 file is damaged: {reason}.", f"E57ファイルが壊れています（{reason}）。"),
+        ) from error
+
+
+def _bad_scan(path: Path, number: int) -> BadFile:
+    return BadFile(
+        Text(
+            "A scan has no coordinates, or more points than the file can hold.",
+            "スキャンに座標がないか、点数がファイルの大きさに合いません。",
+        ),
+        Text(f"{path}, scan {number + 1}", f"{path}、スキャン{number + 1}"),
+        Text(
+            "Export the file again from the scanner's program. {unchanged}",
+            "スキャナのソフトからもう一度書き出してください。{unchanged}",
+        ).filled(unchanged=UNCHANGED),
+    )

@@ -1,0 +1,84 @@
+"""What every reader of point files gives: the file's facts, and its points a chunk at a time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
+
+Vector3 = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class PointFileInfo:
+    """What a point file says of itself.
+
+    Attributes
+    ----------
+    format : str
+        ``LAS``, ``LAZ``, ``COPC``, ``PLY``, ``PCD``, ``E57``, ``PTX`` or ``text``.
+    count : int
+        Points.
+    scale, offset : tuple of float
+        Metres = integers x scale + offset.
+    lowest, highest : tuple of float
+        Extent, m; NaN where the file doesn't know it.
+    crs : str
+        ``EPSG:n`` of the horizontal system; empty when the file names none.
+    has_time, has_color : bool
+        Whether its points come with a time, with a colour.
+    is_adjusted_standard : bool or None
+        True: times are GPS seconds less 1e9; None: week seconds, or it is not said.
+    scanner_ids : tuple of int
+        Empty: only the points tell.
+    first_time : float
+        Time of the first point, NaN without.
+    version, point_format : str, int
+        Of LAS; empty and -1 elsewhere.
+    has_waveforms : bool
+        Whether points refer to waveform packets.
+    attributes : tuple of str
+        Names of the columns of a chunk but ``xyz``, then names of extra dimensions.
+    """
+
+    path: Path
+    format: str
+    count: int
+    scale: Vector3
+    offset: Vector3
+    lowest: Vector3
+    highest: Vector3
+    crs: str
+    has_time: bool
+    has_color: bool
+    is_adjusted_standard: bool | None = None
+    scanner_ids: tuple[int, ...] = ()
+    first_time: float = float("nan")
+    version: str = ""
+    point_format: int = -1
+    has_waveforms: bool = False
+    attributes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class PointChunk:
+    """Consecutive points of a file, in its order.
+
+    Attributes
+    ----------
+    columns : dict of str to array
+        ``xyz`` (n, 3) int32; ``intensity``, ``scanner`` uint16; ``return_number``,
+        ``number_of_returns``, ``classification``, ``user_data`` uint8; and where the file has
+        them ``time`` float64 (s, NaN where it is no time), ``scan_angle_deg`` float32, ``color``
+        (n, 3) uint16, ``origin`` (n, 3) float64 (where the scanner was, m).
+    """
+
+    # Any: the columns differ in type.
+    columns: dict[str, NDArray[Any]]
+
+    @property
+    def count(self) -> int:
+        """Points in the chunk."""
+        return int(self.columns["xyz"].shape[0])

@@ -1,0 +1,124 @@
+"""The one door to point files: picks the reader by what a file holds, not by its name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.errors import UNCHANGED, BadFile, told_as_user_error
+from processing.formats import las
+from processing.formats.delivered_floats import FloatFile, chunks_of, info_of
+from processing.formats.e57 import MAGIC as E57_MAGIC
+from processing.formats.e57 import open_e57
+from processing.formats.pcd import is_pcd, open_pcd
+from processing.formats.ply import MAGIC as PLY_MAGIC
+from processing.formats.ply import open_ply
+from processing.formats.point_chunk import PointChunk, PointFileInfo
+from processing.formats.text_points import open_text_points
+from processing.text import Text
+
+__all__ = ["PointChunk", "PointFileInfo", "read_chunks", "read_info", "read_sample"]
+
+_LOOKED_AT = 4096
+_LAS_MAGIC = b"LASF"
+
+
+def read_info(path: Path) -> PointFileInfo:
+    """What a point file holds.
+
+    Parameters
+    ----------
+    path : Path
+        LAS, LAZ, COPC (only the header is read); PLY, PCD, E57, or text of points (read whole,
+        as their headers don't say where the points lie).
+
+    Raises
+    ------
+    MissingInput, NoSpace, BadFile
+        It can't be read, is none of these, or is damaged.
+    """
+    opener = _opener(path)
+    return las.read_info(path) if opener is None else info_of(opener(path))
+
+
+def read_chunks(path: Path, chunk_points: int = 1_000_000) -> Iterator[PointChunk]:
+    """The points of a file in its order, a chunk at a time; memory does not grow with the file.
+
+    Parameters
+    ----------
+    chunk_points : int
+        Points in a chunk, about.
+
+    Raises
+    ------
+    MissingInput, NoSpace, BadFile
+        As :func:`read_info`, and where the points themselves are damaged.
+    """
+    opener = _opener(path)
+    if opener is None:
+        yield from las.read_chunks(path, chunk_points)
+    else:
+        yield from chunks_of(opener(path), chunk_points)
+
+
+def read_sample(path: Path, points: int) -> dict[str, NDArray[Any]]:
+    """The columns of a file's first and last points, without reading what lies between.
+
+    Parameters
+    ----------
+    points : int
+        About how many of either end; all points of a file that has fewer than twice as many.
+
+    Returns
+    -------
+    dict of str to array
+        Columns as :class:`PointChunk` says, in the file's order.
+
+    Raises
+    ------
+    MissingInput, NoSpace, BadFile
+        As :func:`read_chunks`.
+    """
+    opener = _opener(path)
+    if opener is None:
+        ends = las.read_ends(path, points)
+    else:
+        ends = _ends_of(chunks_of(opener(path), points), points)
+    names = ends[0].columns if ends else ()
+    return {name: np.concatenate([end.columns[name] for end in ends]) for name in names}
+
+
+def _ends_of(chunks: Iterator[PointChunk], points: int) -> list[PointChunk]:
+    first = next(chunks, None)
+    last: list[PointChunk] = []
+    for chunk in chunks:
+        last = [*last, chunk]
+        while sum(c.count for c in last[1:]) >= points:
+            last = last[1:]
+    return [] if first is None else [first, *last]
+
+
+def _opener(path: Path) -> Callable[[Path], FloatFile] | None:
+    """What opens the file; None for LAS, which needs no turning into integers."""
+    with told_as_user_error(path), path.open("rb") as file:
+        start = file.read(_LOOKED_AT)
+    if not start:
+        raise BadFile(
+            Text("The file is empty.", "ファイルが空です。"),
+            Text.same(str(path)),
+            Text(
+                "Copy the file again from the delivery. {unchanged}",
+                "納品データからファイルをコピーし直してください。{unchanged}",
+            ).filled(unchanged=UNCHANGED),
+        )
+    if start.startswith(_LAS_MAGIC):
+        return None
+    if start.startswith(PLY_MAGIC):
+        return open_ply
+    if start.startswith(E57_MAGIC):
+        return open_e57
+    return open_pcd if is_pcd(start) else open_text_points
