@@ -10,7 +10,7 @@ from enum import Enum
 from queue import SimpleQueue
 from uuid import uuid4
 
-from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtCore import QObject, Qt, Signal, SignalInstance
 
 from app.error_log import defect_of, log_user_error
 from processing.errors import Cancelled, UserError
@@ -174,7 +174,7 @@ class JobQueue(QObject):
 class _JobMonitor:
     """What a job's work talks to: progress is passed on when it moved by a tenth of a percent."""
 
-    def __init__(self, progressed: Signal, task: _Task) -> None:
+    def __init__(self, progressed: SignalInstance, task: _Task) -> None:
         self._progressed = progressed
         self._task = task
         self._told = -1.0
@@ -182,7 +182,7 @@ class _JobMonitor:
     def report(self, fraction: float, text: Text | None = None) -> None:
         if text is not None or fraction >= self._told + 0.001 or fraction < self._told:
             self._told = fraction
-            self._progressed.emit(self._task.id, fraction, text)  # type: ignore[attr-defined] - bound
+            self._progressed.emit(self._task.id, fraction, text)
 
     def check(self) -> None:
         if self._task.stop.is_set():

@@ -40,7 +40,7 @@ class Settings:
     def recent_projects(self) -> tuple[Path, ...]:
         """Projects opened last that still exist, newest first."""
         stored = self._store.value("recent", [])
-        names = [stored] if isinstance(stored, str) else list(stored or [])
+        names = stored if isinstance(stored, list) else [stored] if stored else []
         return tuple(Path(str(name)) for name in names if Path(str(name)).is_dir())
 
     def remember_project(self, folder: Path) -> None:
