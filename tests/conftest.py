@@ -7,12 +7,14 @@ part of the program.
 from __future__ import annotations
 
 import gc
+import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from hypothesis import settings
 
 from resources import path_of
 
@@ -31,6 +33,10 @@ ORDER = (
 )
 TESTS = Path(__file__).parent
 
+# The same cases on every machine, however slow it is.
+settings.register_profile("zuka", deadline=None, derandomize=True)
+settings.load_profile("zuka")
+
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Run the quick tests first, then those with windows, then the journeys."""
@@ -41,6 +47,24 @@ def place_in_order(path: Path) -> int:
     """Give the place of a test file; folders that are not named come last."""
     folder = path.relative_to(TESTS).parts[0]
     return ORDER.index(folder) if folder in ORDER else len(ORDER)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def home_of_tests(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Give tests a home of their own, so that no one's settings and log are read or written.
+
+    The cache of the fonts stays where it is: to make it anew takes seconds. The program speaks
+    English unless a test asks for Japanese.
+    """
+    home = tmp_path_factory.mktemp("home")
+    cache = os.environ.get("XDG_CACHE_HOME") or str(Path.home() / ".cache")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("HOME", str(home))
+        patch.setenv("XDG_CACHE_HOME", cache)
+        for name in ("CONFIG", "DATA", "STATE"):
+            patch.setenv(f"XDG_{name}_HOME", str(home / name.lower()))
+        patch.setenv("ZUKA_LANGUAGE", "en")
+        yield home
 
 
 @pytest.fixture

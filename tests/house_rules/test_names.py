@@ -63,3 +63,10 @@ def test_our_top_level_names_belong_to_no_other_installed_distribution() -> None
 def test_a_top_level_name_that_another_distribution_has_is_caught() -> None:
     assert shared_names({"app": ["zuka", "appdirs"], "numpy": ["numpy"]}) == {"app": ["appdirs"]}
     assert shared_names({"app": ["zuka"], "tests": ["zuka"]}) == {}
+
+
+def test_the_version_is_the_same_wherever_it_is_written() -> None:
+    version = re.search(r'^version = "(.+)"$', text_of("pyproject.toml"), re.MULTILINE)
+    assert version is not None
+    assert f'#define Version "{version[1]}"' in text_of("installer/windows.iss")
+    assert text_of("installer/macos.plist").count(f"<string>{version[1]}</string>") == 2
