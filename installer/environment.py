@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import venv
@@ -49,8 +50,8 @@ class Environment:
         self._install_project()
 
     def _works(self) -> bool:
-        python = self.program("python")
-        if not python.is_file() or not (self.folder / "pyvenv.cfg").is_file():
+        python, note = self.program("python"), self.folder / "pyvenv.cfg"
+        if not python.is_file() or not note.is_file() or was_moved(self.folder, note.read_text()):
             return False
         question = "import sys, pip; print(*sys.version_info[:2])"
         try:
@@ -83,3 +84,13 @@ class Environment:
     def _pip(self, *arguments: str | Path) -> None:
         quiet = ("--quiet", "--disable-pip-version-check", "--no-input")
         self.run("python", "-m", "pip", "install", *quiet, *arguments)
+
+
+def was_moved(folder: Path, note: str) -> bool:
+    """Tell from an environment's note (``pyvenv.cfg``) whether it was made in another folder.
+
+    Its programs hold the path of their interpreter, so a moved one must be made anew.
+    """
+    made = [line for line in note.splitlines() if line.startswith("command = ")]
+    place = os.path.normcase(str(folder))
+    return any(not os.path.normcase(line.rstrip()).endswith(f" {place}") for line in made)

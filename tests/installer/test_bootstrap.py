@@ -10,6 +10,7 @@ import pytest
 
 from installer.bootstrap import version_complaint
 from installer.display import has_display, virtual_display
+from installer.environment import was_moved
 from installer.steps import Stamp, Stop, fingerprint, run, status_of
 from installer.system_packages import PACKAGES, not_installed
 from tests.house_rules.sources import ROOT, text_of
@@ -78,6 +79,14 @@ def test_a_stamp_fits_only_the_inputs_it_was_set_for(tmp_path: Path) -> None:
     stamp.lift()
     stamp.lift()
     assert not stamp.fits(fingerprint([lock]))
+
+
+def test_an_environment_that_was_moved_is_noticed() -> None:
+    note = f"home = /usr/bin\ncommand = /usr/bin/python3 -m venv --clear {Path('/here/.venv')}\n"
+    assert not was_moved(Path("/here/.venv"), note)
+    assert was_moved(Path("/there/.venv"), note)
+    assert was_moved(Path("/e/.venv"), note)
+    assert not was_moved(Path("/there/.venv"), "home = /usr/bin\n")
 
 
 def test_a_virtual_display_is_there_for_the_body_and_gone_after_it() -> None:
