@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator
+from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO
 
 import lazrs
 import numpy as np
@@ -170,7 +170,9 @@ def read_records(
             yield _plain_records(header, file, start, min(start + chunk_points, header.count))
 
 
-def _plain_records(header: LasHeader, file: BinaryIO, start: int, end: int) -> NDArray[np.uint8]:
+def _plain_records(
+    header: LasHeader, file: BufferedReader, start: int, end: int
+) -> NDArray[np.uint8]:
     records = np.empty((end - start, header.point_size), dtype=np.uint8)
     file.seek(header.points_at + start * header.point_size)
     # A file on a network may become shorter after its size was asked for.

@@ -17,7 +17,9 @@ from processing.errors import UNCHANGED, BadFile, told_as_user_error
 from processing.formats.point_chunk import Vector3
 from processing.text import Text
 
-_HEADER_SIZES = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}
+HEADER_SIZES = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}
+"""Bytes of the header by minor version, without what a writer may put behind it."""
+
 RECORD_SIZES = (20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67)
 """Bytes of a point of formats 0 to 10, without extra bytes."""
 
@@ -113,7 +115,7 @@ def read_header(path: Path) -> LasHeader:
         header_size, points_at, vlr_count = struct.unpack_from("<HII", start, 94)
         minor = start[25]
         point_format, point_size, count = _point_facts(path, start, minor)
-        if not _HEADER_SIZES[minor] <= header_size <= points_at <= file_size:
+        if not HEADER_SIZES[minor] <= header_size <= points_at <= file_size:
             raise damaged(path, _CONTRADICTS.filled(field="offset to point data"), 94)
         evlrs_at, evlr_count = struct.unpack_from("<QI", start, 235) if minor == 4 else (0, 0)
         vlrs = _read_vlrs(file, path, vlr_count, (header_size, points_at))
@@ -157,13 +159,13 @@ def _check_start(path: Path, start: bytes, file_size: int) -> None:
         raise damaged(
             path, Text("It is not a LAS or LAZ file.", "LAS/LAZファイルではありません。"), 0
         )
-    if len(start) < 26 or len(start) < _HEADER_SIZES.get(start[25], 227):
+    if len(start) < 26 or len(start) < HEADER_SIZES.get(start[25], 227):
         raise damaged(
             path,
             Text("The file ends inside its header.", "ヘッダーの途中でファイルが終わっています。"),
             file_size,
         )
-    if start[24] != 1 or start[25] not in _HEADER_SIZES:
+    if start[24] != 1 or start[25] not in HEADER_SIZES:
         raise damaged(
             path,
             Text(

@@ -18,10 +18,11 @@ from processing.formats.pcd import is_pcd, open_pcd
 from processing.formats.ply import MAGIC as PLY_MAGIC
 from processing.formats.ply import open_ply
 from processing.formats.point_chunk import PointChunk, PointFileInfo
+from processing.formats.ptx import is_ptx, open_ptx
 from processing.formats.text_points import open_text_points
 from processing.text import Text
 
-__all__ = ["PointChunk", "PointFileInfo", "read_chunks", "read_info", "read_sample"]
+__all__ = ["PointChunk", "PointFileInfo", "is_las", "read_chunks", "read_info", "read_sample"]
 
 _LOOKED_AT = 4096
 _LAS_MAGIC = b"LASF"
@@ -33,7 +34,7 @@ def read_info(path: Path) -> PointFileInfo:
     Parameters
     ----------
     path : Path
-        LAS, LAZ, COPC (only the header is read); PLY, PCD, E57, or text of points (read whole,
+        LAS, LAZ, COPC (only the header is read); PLY, PCD, E57, PTX, or text of points (read whole,
         as their headers don't say where the points lie).
 
     Raises
@@ -92,6 +93,17 @@ def read_sample(path: Path, points: int) -> dict[str, NDArray[Any]]:
     return {name: np.concatenate([end.columns[name] for end in ends]) for name in names}
 
 
+def is_las(path: Path) -> bool:
+    """Whether the file begins as LAS, LAZ and COPC do.
+
+    Raises
+    ------
+    MissingInput, NoSpace, BadFile
+        It can't be read, or is empty.
+    """
+    return _opener(path) is None
+
+
 def _ends_of(chunks: Iterator[PointChunk], points: int) -> list[PointChunk]:
     first = next(chunks, None)
     last: list[PointChunk] = []
@@ -121,4 +133,6 @@ def _opener(path: Path) -> Callable[[Path], FloatFile] | None:
         return open_ply
     if start.startswith(E57_MAGIC):
         return open_e57
+    if is_ptx(start):
+        return open_ptx
     return open_pcd if is_pcd(start) else open_text_points
