@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from app.actions.action import Action
-from app.commands import removal_of
 from app.window_parts import WindowParts
 from processing.text import Text
+from widgets.mouse_tools.removal import removal_of
 
 
 def edit_actions(parts: WindowParts) -> tuple[Action, ...]:
@@ -15,8 +15,9 @@ def edit_actions(parts: WindowParts) -> tuple[Action, ...]:
 
     def delete_selected() -> None:
         chosen = [document.feature(id_) for id_ in selection.features]
-        command = removal_of(tuple(feature for feature in chosen if feature is not None))
-        document.apply(command.label, command.change)
+        features = tuple(feature for feature in chosen if feature is not None)
+        if features:
+            document.apply(*removal_of(features))
 
     def select_all() -> None:
         hidden = document.shared.view_settings.hidden_kinds

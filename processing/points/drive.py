@@ -11,11 +11,13 @@ from processing.cameras.image_list import ImageList
 from processing.cameras.image_store import read_images
 from processing.errors import BadFile, Unsuitable, told_as_user_error
 from processing.image.kinds import ImageKind
+from processing.image.nearest import nearest_point
 from processing.image.point_image import PointCloudImage
 from processing.points.columns import Columns
 from processing.points.drive_info import DriveInfo, read_drive_info
 from processing.points.trajectory import Trajectory
-from processing.points.turns import Turns, read_turns
+from processing.points.turns import Turns
+from processing.points.turns_file import read_turns
 from processing.text import Text
 
 Points = NDArray[np.int64] | slice
@@ -53,9 +55,7 @@ class Drive:
         self.columns = Columns(folder, self.info.count)
         self.images: ImageList | None = read_images(folder)
         self._check_columns()
-        self.turns: Turns | None = (
-            read_turns(folder / "turns.npz") if (folder / "turns.npz").is_file() else None
-        )
+        self.turns: Turns | None = read_turns(folder)
         self._trajectory: Trajectory | None = None
         self._point_images: dict[ImageKind, PointCloudImage] = {}
 
@@ -136,6 +136,24 @@ class Drive:
         if kind not in self._point_images:
             self._point_images[kind] = PointCloudImage.of_drive(self, kind)
         return self._point_images[kind]
+
+    def nearest_point(self, xyz: NDArray[np.float64], within_m: float) -> int:
+        """The measured point nearest to a place.
+
+        Parameters
+        ----------
+        xyz : (3,) float64
+            m, project CRS.
+
+        Returns
+        -------
+        int
+            Index of the point; −1 where none is within the distance.
+        """
+        if self.count == 0:
+            return -1
+        image = self.image(self.image_kinds[-1])
+        return nearest_point(image, self.xyz, np.asarray(xyz, dtype=np.float64), within_m)
 
     def _check_columns(self) -> None:
         for name in ("xyz", "time", "intensity", "pulse"):

@@ -61,7 +61,9 @@ def _declared(parameter: Parameter) -> Any:
     return dataclasses.field(default=parameter.default, metadata={_KEY: parameter})
 
 
-def length(default: float, *, low: float, high: float, name: Text, explanation: Text = _NONE) -> Any:
+def length(
+    default: float, *, low: float, high: float, name: Text, explanation: Text = _NONE
+) -> Any:
     """A length in metres."""
     return _declared(Parameter("", "number", default, name, explanation, "m", low, high))
 
@@ -81,7 +83,9 @@ def count(default: int, *, low: int, high: int, name: Text, explanation: Text = 
     return _declared(Parameter("", "count", default, name, explanation, "", low, high))
 
 
-def choice(default: str, *, choices: tuple[Choice, ...], name: Text, explanation: Text = _NONE) -> Any:
+def choice(
+    default: str, *, choices: tuple[Choice, ...], name: Text, explanation: Text = _NONE
+) -> Any:
     """One word of a list."""
     return _declared(Parameter("", "choice", default, name, explanation, choices=choices))
 
@@ -172,9 +176,11 @@ def _read(parameter: Parameter, value: Value) -> Value | None:
 def _allowed(parameter: Parameter) -> Text:
     if parameter.kind == "choice":
         words = ", ".join(option.value for option in parameter.choices)
-        return Text("Use one of: {words}.", "次のいずれかを指定してください: {words}").filled(words=words)
+        return Text("Use one of: {words}.", "次のいずれかを指定してください: {words}").filled(
+            words=words
+        )
     if parameter.kind == "switch":
         return Text("Use yes or no.", "yes または no を指定してください。")
-    return Text("Use {low:g} to {high:g} {unit}.", "{low:g} ～ {high:g} {unit} の値を指定してください。").filled(
-        low=parameter.low, high=parameter.high, unit=parameter.unit
-    )
+    return Text(
+        "Use {low:g} to {high:g} {unit}.", "{low:g} ～ {high:g} {unit} の値を指定してください。"
+    ).filled(low=parameter.low, high=parameter.high, unit=parameter.unit)

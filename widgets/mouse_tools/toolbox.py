@@ -70,7 +70,7 @@ class MouseToolbox(QObject):
         """Take a tool; what the one before was drawing is dropped."""
         if name == self._name:
             return
-        self._tools[self._name].leave()
+        self._tools[self._name].put_down()
         self._name = name
         self._hand_out()
         self.tool_chosen.emit(name)

@@ -1,0 +1,113 @@
+"""Per-point results from acquisition order back to the delivered files' own order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.errors import MissingInput
+from processing.formats.las_results import write_results
+from processing.monitor import Monitor
+from processing.points.drive import Drive
+from processing.text import Text
+from processing.tools.tool import PointResult
+
+_STRETCH = 4_000_000
+_PARTS = {
+    "normal": (("normal_x", "normal_y", "normal_z"), 127.0),
+    "shape": (("linearity", "planarity", "scattering"), 255.0),
+}
+"""Columns of three small integers: the names of their parts in files, and what makes them 1."""
+
+
+def write_point_results(
+    results: Sequence[tuple[Drive, PointResult]], output: Path, monitor: Monitor
+) -> tuple[Path, ...]:
+    """Write results beside the points of the files that the drives came from.
+
+    Parameters
+    ----------
+    results : sequence of (Drive, PointResult)
+        All drives of the input.
+    output : Path
+        LAS or LAZ; where there are several files, their names are added to its own.
+
+    Returns
+    -------
+    tuple of Path
+        One for each delivered file, its points in its order.
+
+    Raises
+    ------
+    MissingInput
+        A delivered file is no longer where it was.
+    NoSpace, Cancelled
+    """
+    sources = _sources(results)
+    paths = []
+    for number, source in enumerate(sources):
+        path = output
+        if len(sources) > 1:
+            path = output.with_name(f"{output.stem}-{source.stem}{output.suffix}")
+        monitor.report(number / len(sources), _WRITING.filled(name=path.name))
+        write_results(source, path, _in_file_order(results, source), monitor)
+        paths.append(path)
+    return tuple(paths)
+
+
+_WRITING = Text("Writing {name}", "{name} を書き込み中")
+
+
+def _sources(results: Sequence[tuple[Drive, PointResult]]) -> list[Path]:
+    sources = {s.path for drive, _ in results for s in drive.info.sources if s.points}
+    for source in sources:
+        if not Path(source).is_file():
+            raise MissingInput(
+                Text(
+                    "The delivered file is no longer there.", "納品ファイルが元の場所にありません。"
+                ),
+                Text.same(source),
+                Text(
+                    "Put it back; its points are needed for the output.",
+                    "出力に必要なため、元の場所に戻してください。",
+                ),
+            )
+    return [Path(source) for source in sorted(sources)]
+
+
+def _in_file_order(
+    results: Sequence[tuple[Drive, PointResult]], source: Path
+) -> dict[str, NDArray[Any]]:
+    found: dict[str, NDArray[Any]] = {}
+    count = _points_of_file(results, source)
+    for drive, result in results:
+        paths = [Path(s.path) for s in drive.info.sources]
+        if source not in paths:
+            continue
+        number = paths.index(source)
+        for start in range(0, drive.count, _STRETCH):
+            stretch = slice(start, min(start + _STRETCH, drive.count))
+            own = drive.columns["source_file"][stretch] == number
+            places = drive.columns["source_index"][stretch][own]
+            for name, values in result.columns.items():
+                for part, part_values in _spread(name, values[stretch][own]):
+                    whole = found.setdefault(part, np.zeros(count, part_values.dtype))
+                    whole[places] = part_values
+    return found
+
+
+def _points_of_file(results: Sequence[tuple[Drive, PointResult]], source: Path) -> int:
+    return sum(
+        s.points for drive, _ in results for s in drive.info.sources if Path(s.path) == source
+    )
+
+
+def _spread(name: str, values: NDArray[Any]) -> list[tuple[str, NDArray[Any]]]:
+    if name not in _PARTS:
+        return [(name, values)]
+    parts, one = _PARTS[name]
+    return [(part, (values[:, axis] / one).astype(np.float32)) for axis, part in enumerate(parts)]
