@@ -6,7 +6,6 @@ import sys
 from pathlib import Path
 
 from platformdirs import user_documents_path
-from processing.image.tile_cache import TileCache
 from PySide6.QtCore import Qt, QTimer, QTranslator
 from PySide6.QtWidgets import QApplication
 from widgets.image_view.view import ImageView
@@ -58,7 +57,7 @@ def run_window(wish: WindowWish) -> int:
 
         return do_demo_job(parts, wish.headless_out)
     QTimer.singleShot(0, lambda: _fulfil(wish, parts))
-    return application.exec()
+    return int(application.exec())
 
 
 def make_application() -> QApplication:
@@ -101,9 +100,8 @@ def _install_translation(language: str) -> None:
 def _make_parts(settings: Settings) -> WindowParts:
     language = settings.language
     jobs = JobQueue()
-    tiles = TileCache()
-    document = Document(jobs, tiles)
-    shared = document.shared
+    document = Document(jobs)
+    shared, tiles = document.shared, document.tiles
     image_view = ImageView(document, shared, tiles)
     scene_view = SceneView(document, shared, tiles)
     image_bar = ImageBar(document, shared, language)
@@ -130,7 +128,6 @@ def _make_parts(settings: Settings) -> WindowParts:
         language=language,
         settings=settings,
         jobs=jobs,
-        tiles=tiles,
         document=document,
         toolbox=toolbox,
         image_view=image_view,

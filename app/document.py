@@ -63,14 +63,14 @@ class Document(QObject):
     refused = Signal(object)
     told = Signal(object)
 
-    def __init__(self, jobs: JobQueue, tiles: TileCache, parent: QObject | None = None) -> None:
+    def __init__(self, jobs: JobQueue, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.shared = SharedState(
             Cursor(self), Selection(self), MapChanges(self), ViewSettings(self), Sketch(self)
         )
         self.undo_stack = UndoStack(self)
         self._jobs = jobs
-        self._tiles = tiles
+        self.tiles = TileCache(self.drive)
         self._project: Project | None = None
         self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
         self._adoptions: dict[str, _Adoption] = {}
@@ -136,7 +136,7 @@ class Document(QObject):
         self.shared.selection.clear()
         self.shared.cursor.clear()
         for drive in self._project.drives:
-            self._tiles.drop(drive.id)
+            self.tiles.drop(drive.id)
         project, self._project = self._project, None
         self.undo_stack.use(None)
         project.close()
@@ -256,7 +256,7 @@ class Document(QObject):
     def _store_columns(self, drive: Drive, result: PointResult) -> None:
         for name, values in result.columns.items():
             drive.columns.add(name, values)
-        self._tiles.drop(drive.id)
+        self.tiles.drop(drive.id)
         self.shared.map_changes.drive_columns_changed.emit(drive.id)
 
     def _changed(self, act: Callable[[], Change | None]) -> bool:

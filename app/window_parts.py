@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from processing.image.tile_cache import TileCache
 from widgets.image_view.view import ImageView
 from widgets.panels.attribute_panel import AttributePanel
 from widgets.panels.jobs_panel import JobsPanel
@@ -32,7 +31,6 @@ class WindowParts:
     language: Language
     settings: Settings
     jobs: JobQueue
-    tiles: TileCache
     document: Document
     toolbox: MouseToolbox
     image_view: ImageView
@@ -54,4 +52,4 @@ def take_down(parts: WindowParts) -> None:
     parts.jobs.close()
     parts.document.close()
     parts.scene_view.close()
-    parts.tiles.close()
+    parts.document.tiles.close()
