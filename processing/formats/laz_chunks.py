@@ -154,9 +154,9 @@ def read_chunk_table(header: LasHeader, file: BinaryIO) -> LazChunks:
     file.seek(table_at)
     version, chunk_count = struct.unpack("<II", file.read(8))
     most = min(header.count, (table_at - start) // _SMALLEST_CHUNK_BYTES)
-    if chunk_points != _VARIABLE:
-        most = min(most, -(-header.count // chunk_points))
-    if version != 0 or not 0 < chunk_count <= most:
+    needed = 1 if chunk_points == _VARIABLE else -(-header.count // chunk_points)
+    fits = chunk_count == needed or chunk_points == _VARIABLE
+    if version != 0 or not fits or not 0 < chunk_count <= most:
         raise _bad_table(header, table_at)
     counts, sizes = _read_table(header, file, record, (table_at, chunk_count))
     if chunk_points != _VARIABLE:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from processing.errors import BadFile, told_as_user_error
 from processing.formats.delivered_floats import Block, FloatFile
-from processing.formats.field_names import block_of
+from processing.formats.field_names import block_of, has_position
 from processing.formats.las_header import damaged
 from processing.formats.text_numbers import TextPart, number_blocks
 from processing.text import Text
@@ -175,7 +175,7 @@ def _with_property(path: Path, elements: list[_Element], words: list[str]) -> _E
 def _check_size(header: _Header, file_size: int) -> None:
     """Held against the file, a count can't make anything be allocated."""
     element = header.vertices
-    if element.has_list or not element.fields:
+    if element.has_list or not has_position(tuple(name for name, _ in element.fields)):
         raise _bad_header(header.path, "the properties of vertex", "vertexのproperty")
     left = file_size - header.size
     if header.order == "":

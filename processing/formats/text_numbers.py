@@ -78,16 +78,17 @@ def _line_blocks(part: TextPart) -> Iterator[tuple[int, list[bytes]]]:
     """Whole lines with separators made blanks, and the number of the first one in the file."""
     with told_as_user_error(part.path), part.path.open("rb") as file:
         line = file.read(part.start).count(b"\n") + 1
-        rest = b""
-        while data := file.read(_BLOCK_BYTES):
-            head, end, tail = (rest + data).rpartition(b"\n")
-            if not end and len(tail) >= _BLOCK_BYTES:
+        rest, data = b"", file.read(_BLOCK_BYTES)
+        while data:
+            following = file.read(_BLOCK_BYTES)
+            # The last line may lack its end.
+            head, end, tail = (rest + data + (b"" if following else b"\n")).rpartition(b"\n")
+            if not end:
                 raise _bad_line(part.path, line, b"")
-            rest = tail
-            lines = head.translate(_SEPARATORS).split(b"\n") if end else []
+            lines = head.translate(_SEPARATORS).split(b"\n")
             yield line, lines
             line += len(lines)
-        yield line, [rest.translate(_SEPARATORS)]
+            rest, data = tail, following
 
 
 def _parsed(path: Path, lines: list[tuple[int, bytes]], columns: int) -> NDArray[np.float64]:
