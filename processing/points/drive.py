@@ -15,6 +15,7 @@ from processing.image.nearest import nearest_point
 from processing.image.point_image import PointCloudImage
 from processing.points.columns import Columns
 from processing.points.drive_info import DriveInfo, read_drive_info
+from processing.points.source_order import sources_of
 from processing.points.trajectory import Trajectory
 from processing.points.turns import Turns
 from processing.points.turns_file import read_turns
@@ -113,6 +114,18 @@ class Drive:
         integers = self.columns["xyz"][points]
         shift = np.array(self.info.offset) - origin
         return (integers * np.array(self.info.scale) + shift).astype(np.float32)
+
+    def sources(self, start: int, stop: int) -> tuple[NDArray[np.uint16], NDArray[np.int64]]:
+        """Where the points ``start … stop − 1`` were delivered.
+
+        Returns
+        -------
+        files : (n,) uint16
+            Index into ``info.sources``.
+        indices : (n,) int64
+            Index of the point in that file.
+        """
+        return sources_of(self.columns, self.info.source_runs, start, stop)
 
     def image(self, kind: ImageKind) -> PointCloudImage:
         """The recording as an image of one kind; made once, then kept.

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from processing.errors import BadFile, told_as_user_error
+from processing.points.source_order import SourceRun
 from processing.text import Text
 
 Triple = tuple[float, float, float]
@@ -56,6 +57,9 @@ class DriveInfo:
         Why there are no turns; empty when there are.
     cell_m, cells_per_row
         Top view only: size of a cell, and cells in a row; else 0.
+    source_runs : tuple of SourceRun
+        Where in the files the points were; empty where the columns ``source_file`` and
+        ``source_index`` say it.
     """
 
     id: str
@@ -73,6 +77,7 @@ class DriveInfo:
     rows_reason: Text = Text("", "")
     cell_m: float = 0.0
     cells_per_row: int = 0
+    source_runs: tuple[SourceRun, ...] = ()
 
 
 def write_drive_info(folder: Path, info: DriveInfo) -> None:
@@ -119,6 +124,8 @@ def _from_json(values: dict[str, Any]) -> DriveInfo:
         for name in ("scale", "offset", "lowest", "highest")
     }
     sources = tuple(SourceFile(**source) for source in values["sources"])
+    runs = tuple(SourceRun(**run) for run in values["source_runs"])
     reason = Text(**values["rows_reason"])
-    rest = {**values, **triples, "sources": sources, "rows_reason": reason}
+    read = {"sources": sources, "rows_reason": reason, "source_runs": runs}
+    rest = {**values, **triples, **read}
     return DriveInfo(**rest)

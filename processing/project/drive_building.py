@@ -76,6 +76,7 @@ def build_drive(writer: RecordingWriter, plan: BuildPlan, monitor: Monitor) -> P
     folder = writer.folder
     if writer.has_times and not writer.is_in_time_order:
         monitor.report(0.0, _SORTING.filled(name=name))
+        writer.write_source_columns()
         sort_points(folder, writer.names, writer.count, _by_time, PartMonitor(monitor, 0.0, 0.4))
     trajectory, offset = _trajectory_of(writer, plan, name)
     monitor.report(0.4, _FINDING.filled(name=name))
@@ -105,6 +106,7 @@ def build_drive(writer: RecordingWriter, plan: BuildPlan, monitor: Monitor) -> P
         rows_reason=reason,
         cell_m=view.cell_m if view else 0.0,
         cells_per_row=view.cells_per_row if view else 0,
+        source_runs=writer.sources.runs,
     )
     write_drive_info(folder, info)
     final = folder.with_name(info.id)
@@ -202,6 +204,7 @@ def _order_for_top_view(writer: RecordingWriter, monitor: Monitor) -> TopView:
         integers = columns["xyz"]
         return view.cells_of(integers * scale + offset), -integers[:, 2].astype(np.int64)
 
+    writer.write_source_columns()
     sort_points(folder, writer.names, count, by_cell, PartMonitor(monitor, 0.5, 0.9))
     with ColumnWriter(folder) as cells:
         for start, stop in stretches(count, POINTS_AT_ONCE // 4):

@@ -84,7 +84,8 @@ def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple
     try:
         with ThreadPoolExecutor(max_workers=1) as pool:
             checksums = [pool.submit(_checksum, info.path) for info in files]
-            writers = _read_all(delivery, files, into, PartMonitor(monitor, 0.0, _READING))
+            reading = PartMonitor(monitor, 0.0, _READING)
+            writers = _read_all(delivery, files, into, reading, angles=not trajectories)
             sources = tuple(
                 _source_file(info, checksum)
                 for info, checksum in zip(files, checksums, strict=True)
@@ -101,8 +102,23 @@ def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple
     return tuple(folders)
 
 
+@dataclass(frozen=True)
+class _ReadPlan:
+    """How one file is read: its number, where its drives go, whether scan angles are wanted."""
+
+    file: DeliveredFile
+    source: int
+    folder_stem: Path
+    keeps_angles: bool
+
+
 def _read_all(
-    delivery: Delivery, files: tuple[PointFileInfo, ...], into: Path, monitor: Monitor
+    delivery: Delivery,
+    files: tuple[PointFileInfo, ...],
+    into: Path,
+    monitor: Monitor,
+    *,
+    angles: bool,
 ) -> list[RecordingWriter]:
     total = sum(info.count for info in files)
     if total == 0:
@@ -121,7 +137,8 @@ def _read_all(
             own: list[RecordingWriter] = []
             for file in group:
                 part = PartMonitor(monitor, done / total, (done + file.info.count) / total)
-                _read_file(file, files.index(file.info), own, into / f"{len(writers)}", part)
+                plan = _ReadPlan(file, files.index(file.info), into / f"{len(writers)}", angles)
+                _read_file(plan, own, part)
                 done += file.info.count
             writers += own
     finally:
@@ -130,37 +147,28 @@ def _read_all(
     return writers
 
 
-def _read_file(
-    file: DeliveredFile,
-    source: int,
-    writers: list[RecordingWriter],
-    folder_stem: Path,
-    monitor: Monitor,
-) -> None:
+def _read_file(plan: _ReadPlan, writers: list[RecordingWriter], monitor: Monitor) -> None:
     """Deal the points of one file to the writers of its group; new ones are made as needed."""
-    info = file.info
+    info = plan.file.info
     lattice = Lattice(info.scale, info.offset)
     text = Text("Reading {name}", "{name} を読み込み中").filled(name=info.path.name)
     start = 0
     for chunk in _read_ahead(read_chunks(info.path, _CHUNK_POINTS)):
         monitor.check()
-        count = chunk.columns["xyz"].shape[0]
-        indices = np.arange(start, start + count, dtype=np.int64)
-        for scanner, chosen in _by_scanner(chunk.columns, file.scanner_column):
-            columns = chunk.columns
-            own_indices = indices
+        indices = np.arange(start, start + chunk.count, dtype=np.int64)
+        for scanner, chosen in _by_scanner(chunk.columns, plan.file.scanner_column):
+            columns, own = chunk.columns, indices
             if chosen is not None:
                 columns = {name: values[chosen] for name, values in columns.items()}
-                own_indices = indices[chosen]
-            writer = next(
-                (w for w in writers if w.scanner == scanner and w.takes(lattice, columns)), None
-            )
+                own = indices[chosen]
+            taking = (w for w in writers if w.scanner == scanner and w.takes(lattice, columns))
+            writer = next(taking, None)
             if writer is None:
-                folder = folder_stem.with_name(f"{folder_stem.name}-{len(writers)}")
-                writer = RecordingWriter(folder, lattice, scanner)
+                folder = plan.folder_stem.with_name(f"{plan.folder_stem.name}-{len(writers)}")
+                writer = RecordingWriter(folder, lattice, scanner, keeps_angles=plan.keeps_angles)
                 writers.append(writer)
-            writer.add(columns, lattice, source, own_indices)
-        start += count
+            writer.add(columns, lattice, plan.source, own)
+        start += chunk.count
         monitor.report(start / max(info.count, 1), text)
 
 

@@ -91,8 +91,9 @@ def _in_file_order(
         number = paths.index(source)
         for start in range(0, drive.count, _STRETCH):
             stretch = slice(start, min(start + _STRETCH, drive.count))
-            own = drive.columns["source_file"][stretch] == number
-            places = drive.columns["source_index"][stretch][own]
+            files, indices = drive.sources(stretch.start, stretch.stop)
+            own = files == number
+            places = indices[own]
             for name, values in result.columns.items():
                 for part, part_values in _spread(name, values[stretch][own]):
                     whole = found.setdefault(part, np.zeros(count, part_values.dtype))

@@ -10,11 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import told_as_user_error
+from processing.kernels import kernel
 from processing.points.columns import ColumnWriter
+from processing.points.source_order import SourceOrder
 from processing.project.lattice import Lattice, move_between
 
 _ALWAYS = ("xyz", "time", "intensity", "return_number", "number_of_returns", "classification")
-_WHERE_DELIVERED = ("color", "scan_angle_deg", "origin")
+_WHERE_DELIVERED = ("color", "origin")
+_ANGLE = "scan_angle_deg"
 
 
 class RecordingWriter:
@@ -26,6 +29,8 @@ class RecordingWriter:
         Made here; becomes the drive's folder.
     lattice : Lattice
         Of the first file; others are moved to it.
+    keeps_angles : bool
+        Whether scan angles are wanted: they tell the turns where there is no trajectory.
 
     Attributes
     ----------
@@ -35,9 +40,13 @@ class RecordingWriter:
         Extent in integers.
     points_of_source : dict of int to int
         Points by source file number.
+    sources : SourceOrder
+        Where in the delivered files each point was.
     """
 
-    def __init__(self, folder: Path, lattice: Lattice, scanner: int) -> None:
+    def __init__(
+        self, folder: Path, lattice: Lattice, scanner: int, *, keeps_angles: bool = True
+    ) -> None:
         with told_as_user_error(folder):
             folder.mkdir(parents=True)
         self.folder = folder
@@ -48,6 +57,8 @@ class RecordingWriter:
         self.lowest = np.full(3, np.iinfo(np.int64).max)
         self.highest = np.full(3, np.iinfo(np.int64).min)
         self.points_of_source: dict[int, int] = {}
+        self.sources = SourceOrder(folder)
+        self._optional = (*_WHERE_DELIVERED, *((_ANGLE,) if keeps_angles else ()))
         self._last_time = -np.inf
         self._names: tuple[str, ...] = ()
         self._writer = ColumnWriter(folder)
@@ -60,14 +71,15 @@ class RecordingWriter:
     @property
     def names(self) -> tuple[str, ...]:
         """The columns written."""
-        return self._names
+        return (*self._names, *self.sources.column_names)
 
     def takes(self, lattice: Lattice, chunk: Mapping[str, NDArray[Any]]) -> bool:
         """Whether points of this lattice and these columns can be added exactly."""
-        move = move_between(lattice, self.lattice)
-        if move is None or move.applied(_corners(chunk["xyz"])) is None:
-            return False
-        return not self._names or set(self._names) == {*_column_names(chunk), *_SOURCE}
+        if lattice != self.lattice:
+            move = move_between(lattice, self.lattice)
+            if move is None or move.applied(_corners(chunk["xyz"])) is None:
+                return False
+        return not self._names or set(self._names) == set(self._column_names(chunk))
 
     def add(
         self,
@@ -91,28 +103,38 @@ class RecordingWriter:
         ------
         NoSpace
         """
-        move = move_between(lattice, self.lattice)
-        moved = None if move is None else move.applied(chunk["xyz"])
+        moved: NDArray[np.int32] | None = chunk["xyz"]
+        if lattice != self.lattice:
+            move = move_between(lattice, self.lattice)
+            moved = None if move is None else move.applied(chunk["xyz"])
         if moved is None:
             message = "points were added that this recording does not take"
             raise ValueError(message)
         count = moved.shape[0]
         if count == 0:
             return
-        columns: dict[str, NDArray[Any]] = {name: chunk[name] for name in _column_names(chunk)}
+        names = self._column_names(chunk)
+        columns: dict[str, NDArray[Any]] = {name: chunk[name] for name in names if name in chunk}
         columns["xyz"] = moved
         columns["time"] = self._times(chunk, count)
-        columns["source_index"] = source_index
-        columns["source_file"] = np.full(count, source, dtype=np.uint16)
         self._names = tuple(columns)
         self._writer.append(columns)
-        self.lowest = np.minimum(self.lowest, moved.min(axis=0))
-        self.highest = np.maximum(self.highest, moved.max(axis=0))
+        self.sources.append(source, source_index)
+        _widen_kernel(moved, self.lowest, self.highest)
         self.points_of_source[source] = self.points_of_source.get(source, 0) + count
 
     def close(self) -> None:
         """Close the files; may be called again."""
         self._writer.close()
+        self.sources.close()
+
+    def write_source_columns(self) -> None:
+        """Write the points' origin as columns, before their order is changed."""
+        self.sources.write_columns()
+        self.sources.close()
+
+    def _column_names(self, chunk: Mapping[str, NDArray[Any]]) -> tuple[str, ...]:
+        return (*_ALWAYS, *(name for name in self._optional if name in chunk))
 
     def _times(self, chunk: Mapping[str, NDArray[Any]], count: int) -> NDArray[np.float64]:
         """Times, with a lost one taken from the point before it; their order is watched."""
@@ -127,17 +149,9 @@ class RecordingWriter:
                 self.has_times = False
                 return times
         if self.is_in_time_order:
-            in_order = times[0] >= self._last_time and bool((times[1:] >= times[:-1]).all())
-            self.is_in_time_order = in_order
+            self.is_in_time_order = bool(_rises_kernel(times, self._last_time))
         self._last_time = float(times[-1])
         return times
-
-
-_SOURCE = ("source_index", "source_file")
-
-
-def _column_names(chunk: Mapping[str, NDArray[Any]]) -> tuple[str, ...]:
-    return (*_ALWAYS, *(name for name in _WHERE_DELIVERED if name in chunk))
 
 
 def _corners(integers: NDArray[np.int32]) -> NDArray[np.int32]:
@@ -154,3 +168,31 @@ def _filled(times: NDArray[np.float64], before: float) -> NDArray[np.float64]:
     first_good = float(times[np.argmax(good)])
     start = before if np.isfinite(before) else first_good
     return np.where(last_good >= 0, times[np.maximum(last_good, 0)], start)
+
+
+def warm_up() -> None:
+    """Compile the kernels."""
+    _widen_kernel(np.zeros((1, 3), np.int32), np.zeros(3, np.int64), np.zeros(3, np.int64))
+    _rises_kernel(np.zeros(1), 0.0)
+
+
+@kernel
+def _widen_kernel(
+    integers: NDArray[np.int32], lowest: NDArray[np.int64], highest: NDArray[np.int64]
+) -> None:
+    for axis in range(3):
+        low, high = lowest[axis], highest[axis]
+        for point in range(integers.shape[0]):
+            value = integers[point, axis]
+            low = min(low, value)
+            high = max(high, value)
+        lowest[axis], highest[axis] = low, high
+
+
+@kernel
+def _rises_kernel(times: NDArray[np.float64], before: float) -> bool:
+    for time in times:
+        if time < before:
+            return False
+        before = time
+    return True
