@@ -1,0 +1,237 @@
+"""What a pixel can show: the eight attributes of the thesis (Takahashi 2022, figure 3-8)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.cameras.colouring import colours_from_images
+from processing.errors import Unsuitable
+from processing.image.colour_maps import (
+    EMPTY_COLOUR,
+    UNKNOWN_COLOUR,
+    class_colours,
+    grey_ramp,
+    height_ramp,
+    normal_ramp,
+    segment_colours,
+    stretched,
+)
+from processing.image.drive_sample import value_at_percent
+from processing.image.kinds import ImageKind
+from processing.image.normals import RowLayout, SurfaceShapes, surface_shapes
+from processing.text import Text
+
+if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a circle
+    from processing.points.drive import Drive
+
+SHOWN_RADIUS_M = 0.2
+"""Neighbourhood of normals and shapes that are made for the screen."""
+
+_Colours = NDArray[np.uint8]
+_Points = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Attribute:
+    """One way to colour points.
+
+    Attributes
+    ----------
+    needs : tuple of str
+        Columns that a drive must have to be shown so.
+    missing : Text
+        What to do where they are missing.
+    """
+
+    id: str
+    title: Text
+    needs: tuple[str, ...] = ()
+    missing: Text = Text("", "")
+
+
+ATTRIBUTES: Mapping[str, Attribute] = {
+    attribute.id: attribute
+    for attribute in (
+        Attribute("intensity", Text("Intensity", "反射強度"), ("intensity",)),
+        Attribute("height", Text("Height", "高さ"), ("xyz",)),
+        Attribute("normal", Text("Normal direction", "法線方向"), ("xyz",)),
+        Attribute("shape", Text("Shape", "形状"), ("xyz",)),
+        Attribute(
+            "segment",
+            Text("Segment", "セグメント"),
+            ("segment",),
+            Text(
+                "Run the tool “Segments” on this drive first.",
+                "先にこのドライブで「セグメント分割」を実行してください。",
+            ),
+        ),
+        Attribute("color", Text("Colour", "色")),
+        Attribute(
+            "label",
+            Text("Label by hand", "手動ラベル"),
+            ("label",),
+            Text("Label some points first.", "先に点にラベルを付けてください。"),
+        ),
+        Attribute("class", Text("Class", "クラス"), ("classification",)),
+    )
+}
+"""By id, in the order of the thesis."""
+
+
+def colours(
+    drive: Drive, points: _Points, attribute: str, low_percent: float, high_percent: float
+) -> _Colours:
+    """Colours of points.
+
+    Parameters
+    ----------
+    points : (…) int64
+        Of any shape; −1 is an empty pixel.
+    attribute : str
+        A key of `ATTRIBUTES`.
+    low_percent, high_percent : float
+        Percentiles of the drive at the dark and the bright end; intensity and height only.
+
+    Returns
+    -------
+    (…, 3) uint8
+
+    Raises
+    ------
+    Unsuitable
+        The drive lacks what the attribute needs.
+    KeyError
+        There is no such attribute.
+    """
+    _check(drive, ATTRIBUTES[attribute])
+    flat = points.ravel()
+    is_filled = flat >= 0
+    shown = np.empty((flat.size, 3), np.uint8)
+    shown[~is_filled] = EMPTY_COLOUR
+    filled = flat[is_filled]
+    if attribute in _STRETCHED:
+        shown[is_filled] = _STRETCHED[attribute](drive, filled, low_percent, high_percent)
+    else:
+        shown[is_filled] = _PLAIN[attribute](drive, filled)
+    return shown.reshape(*points.shape, 3)
+
+
+def available(drive: Drive) -> tuple[str, ...]:
+    """Ids of the attributes that a drive can be shown by."""
+    return tuple(name for name, attribute in ATTRIBUTES.items() if not _lacks(drive, attribute))
+
+
+def _lacks(drive: Drive, attribute: Attribute) -> bool:
+    if attribute.id == "color":
+        return not drive.columns.has("color") and not drive.images
+    return not all(drive.columns.has(name) for name in attribute.needs)
+
+
+def _check(drive: Drive, attribute: Attribute) -> None:
+    if not _lacks(drive, attribute):
+        return
+    remedy = attribute.missing
+    if attribute.id == "color":
+        remedy = Text(
+            "Import camera images with this drive, or points that have colours.",
+            "このドライブと一緒にカメラ画像を、または色付きの点群をインポートしてください。",
+        )
+    raise Unsuitable(
+        Text("The points have no “{title}” yet.", "点に「{title}」の情報がありません。").filled(
+            title=attribute.title
+        ),
+        Text.same(drive.info.name),
+        remedy,
+    )
+
+
+def _intensity(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
+    ends = [
+        value_at_percent(drive.folder, "intensity", drive.count, None, percent)
+        for percent in (low, high)
+    ]
+    values = np.asarray(drive.columns["intensity"][points], np.float32)
+    return grey_ramp()[stretched(values, *ends)]
+
+
+def _height(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
+    ends = [
+        value_at_percent(drive.folder, "xyz", drive.count, 2, percent) for percent in (low, high)
+    ]
+    values = np.asarray(drive.columns["xyz"][points, 2], np.float64)
+    return height_ramp()[stretched(values, *ends)]
+
+
+def _normal(drive: Drive, points: _Points) -> _Colours:
+    if drive.columns.has("normal"):
+        normals = np.asarray(drive.columns["normal"][points], np.float32) / np.float32(127)
+    else:
+        normals = _surfaces(drive, points).normals
+    shown = normal_ramp()[stretched(np.abs(normals[:, 2]), 0.0, 1.0)]
+    shown[~normals.any(axis=1)] = UNKNOWN_COLOUR
+    return shown
+
+
+def _shape(drive: Drive, points: _Points) -> _Colours:
+    if drive.columns.has("shape"):
+        shapes = np.asarray(drive.columns["shape"][points], dtype=np.uint8)
+    else:
+        shapes = np.rint(_surfaces(drive, points).shapes * 255).astype(np.uint8)
+    shown = np.array(shapes)
+    shown[~shapes.any(axis=1)] = UNKNOWN_COLOUR
+    return shown
+
+
+def _surfaces(drive: Drive, points: _Points) -> SurfaceShapes:
+    turns = drive.turns
+    kind = ImageKind.TOP_VIEW if turns is None else ImageKind.TRAJECTORY_REVERSIBLE
+    image = drive.image(kind)
+    pulses, row_starts, doubled_origins = image.layout[:3]
+    layout = RowLayout(pulses, row_starts, doubled_origins // 2, image.segments)
+    return surface_shapes(drive.columns["xyz"], drive.info.scale, layout, points, SHOWN_RADIUS_M)
+
+
+def _segment(drive: Drive, points: _Points) -> _Colours:
+    return segment_colours(drive.columns["segment"][points])
+
+
+def _color(drive: Drive, points: _Points) -> _Colours:
+    if drive.columns.has("color"):
+        # Some deliveries fill only the lower eight of the sixteen bits.
+        brightest = max(
+            value_at_percent(drive.folder, "color", drive.count, axis, 100.0) for axis in range(3)
+        )
+        return (drive.columns["color"][points] >> (8 if brightest > 255 else 0)).astype(np.uint8)
+    if drive.images is None:
+        message = "a drive without images was not refused"
+        raise RuntimeError(message)
+    seen = colours_from_images(drive.xyz(points), drive.columns["time"][points], drive.images)
+    seen.colours[~seen.is_seen] = UNKNOWN_COLOUR
+    return seen.colours
+
+
+def _label(drive: Drive, points: _Points) -> _Colours:
+    return np.asarray(class_colours()[drive.columns["label"][points]])
+
+
+def _class(drive: Drive, points: _Points) -> _Colours:
+    return np.asarray(class_colours()[drive.columns["classification"][points]])
+
+
+_STRETCHED: Mapping[str, Callable[[Drive, _Points, float, float], _Colours]] = {
+    "intensity": _intensity,
+    "height": _height,
+}
+_PLAIN: Mapping[str, Callable[[Drive, _Points], _Colours]] = {
+    "normal": _normal,
+    "shape": _shape,
+    "segment": _segment,
+    "color": _color,
+    "label": _label,
+    "class": _class,
+}

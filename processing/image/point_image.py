@@ -1,0 +1,266 @@
+"""PointCloudImage: the recording as a picture in which every pixel is a measured point.
+
+Nothing the size of the recording is held: rows say where points begin, the pulse column says in
+which pixel a point is, and rasters are made for the stretch that is asked for.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.image.coordinates import Coordinates
+from processing.image.fixed_raster import FixedRaster, fixed_raster_of
+from processing.image.gaps import STOP_S, closed_up, row_starts_of
+from processing.image.grid import PixelGrid
+from processing.image.kinds import ImageKind
+from processing.image.point_image_kernels import (
+    PixelLayout,
+    columns_kernel,
+    first_at_column,
+    raster_kernel,
+    shown_point,
+)
+from processing.image.rows_of_kind import Revolutions, plan_of_cells, plan_of_turns
+from processing.image.tiles import TilePyramid
+
+if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a circle
+    from processing.points.drive import Drive
+
+_Integers = NDArray[np.int64]
+
+
+class PointCloudImage:
+    """One kind of image over one recording; pixel to points and point to pixel, both exact.
+
+    Parameters
+    ----------
+    kind : ImageKind
+    pulses : (n,) int64
+        The column ``pulse``: not decreasing; for a top view the cell of every point.
+    folding : Revolutions or int
+        The recording's turns; for a top view the number of cells per row.
+    coordinates : Coordinates, optional
+        Where the points are; without them there is no pyramid.
+
+    Attributes
+    ----------
+    rows, width : int
+        Size of the image. Rows of the trajectory-based reversible kind differ in width; the
+        image is as wide as its widest row.
+    mode_width : int
+        The most frequent width of a row.
+    drive_count : int
+        Number of points; every one is in exactly one pixel.
+    row_starts : (rows + 1,) int64
+        Row r holds the points ``row_starts[r] … row_starts[r + 1] − 1`` of the recording.
+    segments : (rows,) int32
+        Stretches between stops. No row is empty but inside a gap of at most 1.0 s.
+    row_times : (rows,) float64
+        Time of the left edge, s; NaN for the top view.
+    row_widths : (rows,) int64
+        Columns of each row.
+    layout : PixelLayout
+        The arrays from which kernels compute the pixel of a point.
+    """
+
+    def __init__(
+        self,
+        kind: ImageKind,
+        pulses: _Integers,
+        folding: Revolutions | int,
+        *,
+        coordinates: Coordinates | None = None,
+    ) -> None:
+        self.kind = kind
+        self._pulses = _read_only(pulses)
+        if isinstance(folding, int):
+            plan = plan_of_cells(folding, self._pulses)
+            self.row_times = np.full(plan.first_pulses.size, np.nan)
+        else:
+            plan = plan_of_turns(kind, folding, self._pulses)
+            plan = closed_up(plan, self._pulses, STOP_S * folding.pulse_rate_hz)
+            self.row_times = _times_of(plan.doubled_origins / 2, folding)
+        self.layout = PixelLayout(
+            pulses=self._pulses,
+            row_starts=_read_only(row_starts_of(plan, self._pulses)),
+            origins=_read_only(plan.doubled_origins),
+            spans=_read_only(plan.doubled_spans),
+            per_span=plan.columns_per_span,
+        )
+        self.row_starts = self.layout.row_starts
+        self.segments = plan.segments
+        self.row_widths = plan.widths
+        self.rows = int(plan.first_pulses.size)
+        self.width = int(plan.widths.max(initial=0))
+        self.drive_count = int(self._pulses.size)
+        self._coordinates = coordinates
+
+    @classmethod
+    def of_drive(cls, drive: Drive, kind: ImageKind) -> Self:
+        """The image of a drive that has what the kind needs."""
+        turns = drive.turns
+        has_turns = turns is not None and kind is not ImageKind.TOP_VIEW
+        folding = turns if turns is not None and has_turns else drive.info.cells_per_row
+        coordinates = Coordinates(
+            drive.columns["xyz"], drive.info.scale, drive.info.offset, folder=drive.folder
+        )
+        return cls(kind, drive.columns["pulse"], folding, coordinates=coordinates)
+
+    @property
+    def mode_width(self) -> int:
+        """The most frequent row width; the width of a raster for networks (specification 3.6)."""
+        return int(np.bincount(self.row_widths).argmax()) if self.rows else 0
+
+    @property
+    def split_rows(self) -> _Integers:
+        """(k,) int64: the first row after each stop."""
+        return np.flatnonzero(np.diff(self.segments)) + 1
+
+    @cached_property
+    def pyramid(self) -> TilePyramid:
+        """The tiles of the image.
+
+        Raises
+        ------
+        ValueError
+            The image was made without coordinates.
+        """
+        if self._coordinates is None:
+            message = "an image without coordinates has no pyramid"
+            raise ValueError(message)
+        return TilePyramid(self, self._coordinates)
+
+    def columns_of(self, start: int, stop: int) -> NDArray[np.int32]:
+        """Columns of the points ``start … stop − 1``."""
+        columns = np.empty(max(0, stop - start), np.int32)
+        if columns.size:
+            row = int(np.searchsorted(self.row_starts, start, side="right")) - 1
+            columns_kernel(self.layout, np.array([start, row]), columns)
+        return columns
+
+    def points_at(self, row: int, column: int) -> _Integers:
+        """All points of a pixel, the shown one first; empty where there are none.
+
+        Returns
+        -------
+        (k,) int64
+        """
+        if not (0 <= row < self.rows and 0 <= column < self.width):
+            return np.empty(0, np.int64)
+        start, end = (first_at_column(self.layout, row, edge) for edge in (column, column + 1))
+        if start == end:
+            return np.empty(0, np.int64)
+        points = np.arange(start, end)
+        shown = shown_point(self.layout, row, start, end)
+        return np.concatenate([points[points == shown], points[points != shown]])
+
+    def pixel_of(self, points: _Integers) -> tuple[_Integers, NDArray[np.int32]]:
+        """Row and column of points.
+
+        Parameters
+        ----------
+        points : (k,) int64
+            In any order, each a point of the recording.
+
+        Returns
+        -------
+        rows : (k,) int64
+        columns : (k,) int32
+        """
+        points = np.asarray(points, dtype=np.int64)
+        if points.size and not (points.min() >= 0 and points.max() < self.drive_count):
+            message = "a point that the recording doesn't have"
+            raise IndexError(message)
+        rows = np.searchsorted(self.row_starts, points, side="right").astype(np.int64) - 1
+        layout = self.layout
+        doubled = 2 * layout.pulses[points] - layout.origins[rows]
+        return rows, (doubled * layout.per_span // layout.spans[rows]).astype(np.int32)
+
+    def nearest_filled(self, row: int, column: int, within_px: int = 3) -> int:
+        """The point shown at a pixel, or nearest to it in the row; −1 where all is empty."""
+        if not 0 <= row < self.rows:
+            return -1
+        first = max(0, column - within_px)
+        columns = range(first, min(self.width, column + within_px + 1))
+        if not len(columns):
+            return -1
+        shown = self.raster(range(row, row + 1), columns)[0]
+        filled = np.flatnonzero(shown >= 0)
+        if not filled.size:
+            return -1
+        return int(shown[filled[np.abs(filled + first - column).argmin()]])
+
+    def raster(self, rows: range, columns: range, step: int = 1) -> _Integers:
+        """The points shown in a window.
+
+        Parameters
+        ----------
+        rows, columns : range
+            Consecutive, inside the image.
+        step : int
+            Every so many rows; and of so many columns the first filled one.
+
+        Returns
+        -------
+        (ceil(len(rows) / step), ceil(len(columns) / step)) int64
+            −1 for empty pixels.
+        """
+        height, width = -(-len(rows) // step), -(-len(columns) // step)
+        raster = np.empty((height, width), np.int64)
+        if raster.size:
+            self._check_window(rows, columns)
+            window = np.array([rows.start, step, columns.start, columns.stop])
+            raster_kernel(self.layout, window, raster)
+        return raster
+
+    def grid(self, rows: range) -> tuple[PixelGrid, slice]:
+        """The pixels of a stretch of rows for tools, and the points they hold.
+
+        In the fixed-width kinds the shown point of a pixel need not be its first.
+        """
+        start, stop = int(self.row_starts[rows.start]), int(self.row_starts[rows.stop])
+        grid = PixelGrid(
+            row_starts=self.row_starts[rows.start : rows.stop + 1] - start,
+            columns=self.columns_of(start, stop),
+            segments=self.segments[rows.start : rows.stop],
+            width=self.width,
+        )
+        return grid, slice(start, stop)
+
+    def fixed_raster(self, rows: range) -> FixedRaster:
+        """The raster of `mode_width` columns for networks, and the points that it leaves out."""
+        return fixed_raster_of(self, rows)
+
+    def _check_window(self, rows: range, columns: range) -> None:
+        inside = rows.start >= 0 and rows.stop <= self.rows
+        if not (inside and columns.start >= 0 and columns.stop <= self.width):
+            message = f"rows {rows}, columns {columns} of {self.rows} × {self.width}"
+            raise IndexError(message)
+
+
+def warm_up() -> None:
+    """Compile the kernels."""
+    image = PointCloudImage(ImageKind.TOP_VIEW, np.array([0, 1, 1, 5]), 4)
+    image.raster(range(2), range(4))
+    image.points_at(0, 1)
+    image.columns_of(0, 4)
+
+
+def _read_only(values: _Integers) -> _Integers:
+    # Kernels are compiled for read-only arrays, which is what mapped columns are.
+    view = np.asarray(values).view(np.ndarray)
+    view.flags.writeable = False
+    return view
+
+
+def _times_of(pulses: NDArray[np.float64], turns: Revolutions) -> NDArray[np.float64]:
+    """Times of pulses by the fold before each."""
+    folds = np.searchsorted(turns.fold_pulses, pulses, side="right") - 1
+    folds = np.clip(folds, 0, turns.fold_pulses.size - 1)
+    since = pulses - turns.fold_pulses[folds]
+    times: NDArray[np.float64] = turns.reference_times[folds] + since / turns.pulse_rate_hz
+    return times

@@ -1,0 +1,167 @@
+"""Loops that join neighbouring points into components; a component's root is its first point."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.kernels import kernel
+
+_Integers = NDArray[np.int64]
+_Floats = NDArray[np.float64]
+
+_COLUMNS_ASIDE = 3
+_POINTS_AHEAD = 2
+_SAMPLED = 4  # every fourth point of a row tells how far the next row lies
+_FEWEST = 8
+_FAR = 1e30
+
+
+class JoiningRows(NamedTuple):
+    """Points in their rows, and what is being found about them.
+
+    ``limits``: distance, ratio, farthest; ``scratch`` has a place for every point of a row;
+    ``parents`` lead from every point to the first of its component.
+    """
+
+    xyz: _Floats
+    columns: NDArray[np.int32]
+    row_starts: _Integers
+    segments: NDArray[np.int32]
+    limits: _Floats
+    scratch: _Floats
+    parents: _Integers
+
+
+@kernel
+def join_rows_kernel(rows: JoiningRows, first: int, end: int) -> None:
+    """Join the points of the rows ``first … end − 1`` with each other and the next row."""
+    last = rows.row_starts.size - 2
+    for row in range(first, end):
+        start, stop = rows.row_starts[row], rows.row_starts[row + 1]
+        has_next = row < last and rows.segments[row + 1] == rows.segments[row]
+        after = rows.row_starts[row + 2] if has_next else stop
+        _join_along(rows, start, stop, after)
+        if start < stop < after:
+            limit = _limit(rows.limits, _row_distance(rows, start, stop, after))
+            below = stop
+            for point in range(start, stop):
+                below = _first_near(rows, below, after, point)
+                near, distance = _nearest(rows, point, below, after)
+                if distance <= limit:
+                    _join(rows.parents, point, near)
+
+
+@kernel
+def roots_kernel(parents: _Integers) -> None:
+    """Let every point name its component's first point itself."""
+    for point in range(parents.size):
+        # Parents come before their children, so the parent's own root is known already.
+        parents[point] = parents[parents[point]]
+
+
+@kernel
+def unite_kernel(parents: _Integers, one: _Integers, other: _Integers) -> None:
+    """Join pairs of numbers."""
+    for i in range(one.size):
+        _join(parents, one[i], other[i])
+
+
+@kernel
+def renumber_kernel(
+    numbers: NDArray[np.int32], parents: _Integers, order: NDArray[np.int32]
+) -> None:
+    """Replace numbers by the rank, by first appearance, of what they were joined to.
+
+    ``order``: −1 for every number; holds the ranks afterwards.
+    """
+    rank = 0
+    for i in range(numbers.size):
+        root = parents[numbers[i]]
+        if order[root] < 0:
+            order[root] = rank
+            rank += 1
+        numbers[i] = order[root]
+
+
+@kernel
+def _limit(limits: _Floats, expected: float) -> float:
+    return float(min(max(limits[0], limits[1] * expected), limits[2]))
+
+
+@kernel
+def _join_along(rows: JoiningRows, start: int, stop: int, after: int) -> None:
+    steps = rows.scratch
+    for point in range(start, stop - 1):
+        steps[point - start] = _distance(rows.xyz, point, point + 1)
+    for point in range(start, stop):
+        before = steps[point - start - 1] if point > start else _FAR
+        behind = steps[point - start + 1] if point + 2 < stop else _FAR
+        expected = min(before, behind)
+        limit = _limit(rows.limits, expected if expected < _FAR else 0.0)
+        if point + 1 == stop and stop < after and _distance(rows.xyz, point, stop) <= limit:
+            # The scanner went on from the end of a row to the next one without a break.
+            _join(rows.parents, point, stop)
+        for other in range(point + 1, min(point + 1 + _POINTS_AHEAD, stop)):
+            is_near = rows.columns[other] - rows.columns[point] <= _COLUMNS_ASIDE
+            if is_near and _distance(rows.xyz, point, other) <= limit:
+                _join(rows.parents, point, other)
+
+
+@kernel
+def _row_distance(rows: JoiningRows, start: int, stop: int, after: int) -> float:
+    """Median distance of a row's points from the nearest in the next row; 0 for too few."""
+    below, count = stop, 0
+    for point in range(start, stop, _SAMPLED):
+        below = _first_near(rows, below, after, point)
+        _, distance = _nearest(rows, point, below, after)
+        if distance < _FAR:
+            rows.scratch[count] = distance
+            count += 1
+    if count < _FEWEST:
+        return 0.0
+    return float(np.median(rows.scratch[:count]))
+
+
+@kernel
+def _first_near(rows: JoiningRows, below: int, after: int, point: int) -> int:
+    while below < after and rows.columns[below] < rows.columns[point] - _COLUMNS_ASIDE:
+        below += 1
+    return below
+
+
+@kernel
+def _nearest(rows: JoiningRows, point: int, below: int, after: int) -> tuple[int, float]:
+    near, best = -1, _FAR
+    other = below
+    while other < after and rows.columns[other] <= rows.columns[point] + _COLUMNS_ASIDE:
+        distance = _distance(rows.xyz, point, other)
+        if distance < best:
+            near, best = other, distance
+        other += 1
+    return near, best
+
+
+@kernel
+def _distance(xyz: _Floats, one: int, other: int) -> float:
+    dx = xyz[other, 0] - xyz[one, 0]
+    dy = xyz[other, 1] - xyz[one, 1]
+    dz = xyz[other, 2] - xyz[one, 2]
+    return math.sqrt(dx * dx + dy * dy + dz * dz)
+
+
+@kernel
+def _join(parents: _Integers, one: int, other: int) -> None:
+    while parents[one] != one:
+        parents[one] = parents[parents[one]]
+        one = parents[one]
+    while parents[other] != other:
+        parents[other] = parents[parents[other]]
+        other = parents[other]
+    if one < other:
+        parents[other] = one
+    elif other < one:
+        parents[one] = other

@@ -1,0 +1,231 @@
+"""TileCache: one store and one loader of coloured tiles for all views."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.errors import UserError
+from processing.image.attributes import colours
+from processing.image.kinds import ImageKind
+from processing.image.tiles import TileKey
+from processing.points.drive import Drive
+
+LIMIT_BYTES = 256 * 2**20
+_LOADERS = 2
+
+
+@dataclass(frozen=True)
+class TileRequest:
+    """A tile as a view wants to show it."""
+
+    drive_id: str
+    kind: ImageKind
+    key: TileKey
+    attribute: str
+    low_percent: float
+    high_percent: float
+
+
+@dataclass(frozen=True)
+class TilePixels:
+    """What a tile shows.
+
+    Attributes
+    ----------
+    points : (h, w) int64
+        −1 where empty.
+    colours : (h, w, 3) uint8
+    """
+
+    points: NDArray[np.int64]
+    colours: NDArray[np.uint8]
+
+    @property
+    def size_bytes(self) -> int:
+        """Memory held."""
+        return self.points.nbytes + self.colours.nbytes
+
+
+Done = Callable[[TileRequest, TilePixels], None]
+"""Told of a finished tile, from a loader's thread."""
+
+
+class TileCache:
+    """Coloured tiles, the ones used last kept; may be called from any thread.
+
+    Parameters
+    ----------
+    limit_bytes : int
+        What the tiles may hold together.
+    """
+
+    def __init__(self, *, limit_bytes: int = LIMIT_BYTES) -> None:
+        self._drive_of: Callable[[str], Drive] | None = None
+        self._limit_bytes = limit_bytes
+        self._changed = threading.Condition()
+        self._tiles: OrderedDict[TileRequest, TilePixels] = OrderedDict()
+        self._held_bytes = 0
+        # The newest request is last and is served first.
+        self._waiting: OrderedDict[TileRequest, list[Done]] = OrderedDict()
+        self._loading: dict[TileRequest, list[Done]] = {}
+        self._refusals: dict[tuple[str, str], UserError] = {}
+        self._ages: dict[str, int] = {}
+        self._is_closed = False
+        self._loaders = [
+            threading.Thread(target=self._load_all, name=f"tiles-{number}", daemon=True)
+            for number in range(_LOADERS)
+        ]
+        for loader in self._loaders:
+            loader.start()
+
+    def use(self, drive_of: Callable[[str], Drive]) -> None:
+        """Say where drives come from, before anything is requested.
+
+        Parameters
+        ----------
+        drive_of : callable
+            From an id to the open drive, called from loaders' threads; KeyError when there is no
+            open drive of that id.
+        """
+        self._drive_of = drive_of
+
+    @property
+    def held_bytes(self) -> int:
+        """What the tiles hold now."""
+        with self._changed:
+            return self._held_bytes
+
+    def get(self, request: TileRequest) -> TilePixels | None:
+        """The tile if it is there; never waits for a loader."""
+        with self._changed:
+            pixels = self._tiles.get(request)
+            if pixels is not None:
+                self._tiles.move_to_end(request)
+            return pixels
+
+    def request(self, request: TileRequest, done: Done) -> None:
+        """Load a tile, before all that was asked for earlier, and tell ``done``.
+
+        A tile that is there already is told at once, from this thread. What can't be shown (see
+        :meth:`refusal`) is never told.
+
+        Raises
+        ------
+        ValueError
+            Before :meth:`use`.
+        """
+        if self._drive_of is None:
+            message = "the tile cache was not told where drives come from"
+            raise ValueError(message)
+        with self._changed:
+            if self._is_closed or (request.drive_id, request.attribute) in self._refusals:
+                return
+            pixels = self._tiles.get(request)
+            if pixels is None:
+                self._wait_for(request, done)
+                return
+        done(request, pixels)
+
+    def keep_only(self, done: Done, wanted: Collection[TileRequest]) -> None:
+        """Give up what a listener asked for and no longer wants, as far as it isn't loading."""
+        with self._changed:
+            for request in list(self._waiting):
+                listeners = self._waiting[request]
+                if request not in wanted and done in listeners:
+                    listeners.remove(done)
+                    if not listeners:
+                        del self._waiting[request]
+
+    def refusal(self, drive_id: str, attribute: str) -> UserError | None:
+        """Why a drive can't be shown by an attribute, once a loader has found out."""
+        with self._changed:
+            return self._refusals.get((drive_id, attribute))
+
+    def drop(self, drive_id: str) -> None:
+        """Forget all tiles of a drive: its columns changed or it was closed."""
+        with self._changed:
+            self._ages[drive_id] = self._ages.get(drive_id, 0) + 1
+            for request in [request for request in self._tiles if request.drive_id == drive_id]:
+                self._held_bytes -= self._tiles.pop(request).size_bytes
+            for refused in [refused for refused in self._refusals if refused[0] == drive_id]:
+                del self._refusals[refused]
+
+    def close(self) -> None:
+        """Stop the loaders and wait for them; nothing is told afterwards."""
+        with self._changed:
+            self._is_closed = True
+            self._waiting.clear()
+            self._changed.notify_all()
+        for loader in self._loaders:
+            if loader is not threading.current_thread():
+                loader.join()
+
+    def _wait_for(self, request: TileRequest, done: Done) -> None:
+        listeners = self._loading.get(request)
+        if listeners is None:
+            listeners = self._waiting.setdefault(request, [])
+            self._waiting.move_to_end(request)
+            self._changed.notify()
+        if done not in listeners:
+            listeners.append(done)
+
+    def _load_all(self) -> None:
+        while True:
+            with self._changed:
+                while not self._waiting and not self._is_closed:
+                    self._changed.wait()
+                drive_of = self._drive_of
+                if self._is_closed or drive_of is None:
+                    return
+                request, listeners = self._waiting.popitem()
+                self._loading[request] = listeners
+                age = self._ages.get(request.drive_id, 0)
+            self._load(request, age, drive_of)
+
+    def _load(self, request: TileRequest, age: int, drive_of: Callable[[str], Drive]) -> None:
+        pixels: TilePixels | None = None
+        refusal: UserError | None = None
+        try:
+            pixels = self._pixels_of(request, drive_of)
+        except UserError as error:
+            refusal = error
+        except KeyError:
+            refusal = None  # the drive was closed meanwhile; no one waits for its tiles
+        finally:
+            with self._changed:
+                listeners = self._loading.pop(request)
+        with self._changed:
+            if self._is_closed:
+                return
+            if age != self._ages.get(request.drive_id, 0):
+                # The drive changed while the tile was made: make it again for who still waits.
+                for done in listeners:
+                    self._wait_for(request, done)
+                return
+            if refusal is not None:
+                self._refusals[request.drive_id, request.attribute] = refusal
+            if pixels is not None:
+                self._keep(request, pixels)
+        if pixels is not None:
+            for done in listeners:
+                done(request, pixels)
+
+    def _pixels_of(self, request: TileRequest, drive_of: Callable[[str], Drive]) -> TilePixels:
+        drive = drive_of(request.drive_id)
+        points = drive.image(request.kind).pyramid.points(request.key)
+        shown = colours(drive, points, request.attribute, request.low_percent, request.high_percent)
+        return TilePixels(points, shown)
+
+    def _keep(self, request: TileRequest, pixels: TilePixels) -> None:
+        if request not in self._tiles:
+            self._held_bytes += pixels.size_bytes
+        self._tiles[request] = pixels
+        while self._held_bytes > self._limit_bytes and len(self._tiles) > 1:
+            _, oldest = self._tiles.popitem(last=False)
+            self._held_bytes -= oldest.size_bytes

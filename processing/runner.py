@@ -1,0 +1,167 @@
+"""Running a tool on a drive: the one door for the window, the command line and batch jobs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.errors import OutOfRange, Unsuitable
+from processing.image.kinds import ImageKind
+from processing.image.point_image import PointCloudImage
+from processing.monitor import Monitor
+from processing.points.drive import Drive
+from processing.points.ordering import read_stretch
+from processing.text import Text
+from processing.tools.blocks import blocks_of, results_of
+from processing.tools.registry import TOOLS
+from processing.tools.tool import Needs, PointBlock, PointResult, Tool
+
+
+@dataclass(frozen=True)
+class RunRequest:
+    """What to run.
+
+    Attributes
+    ----------
+    tool : str
+        A key of `TOOLS`.
+    drive : Drive
+    parameters : object
+        An instance of the tool's own parameter class.
+    """
+
+    tool: str
+    drive: Drive
+    parameters: object
+
+
+def run(request: RunRequest, monitor: Monitor) -> PointResult:
+    """Run a tool on a whole drive, block by block; the drive itself isn't changed.
+
+    Returns
+    -------
+    PointResult
+        A column for every point of the drive; :meth:`processing.points.columns.Columns.add`
+        stores it.
+
+    Raises
+    ------
+    Unsuitable
+        The drive lacks what the tool needs.
+    OutOfRange
+        There is no such tool, or parameters contradict each other.
+    Cancelled
+        Nothing is kept.
+    """
+    tool = tool_of(request.tool)
+    check_needs(tool, request.drive)
+    image = _image_of(request.drive)
+    results = results_of(tool, image.row_starts)
+    total = max(request.drive.count, 1)
+    text = Text("{tool}: {name}", "{tool}: {name}").filled(
+        tool=tool.name, name=request.drive.info.name
+    )
+    for block in blocks_of(image.row_starts, tool.overlap_rows):
+        monitor.check()
+        monitor.report(float(image.row_starts[block.rows.start]) / total, text)
+        points = _block_of(request.drive, image, block.rows_with_overlap)
+        results.add(block, tool.compute(points, request.parameters, monitor))
+    monitor.check()
+    result = results.finished()
+    monitor.report(1.0, text)
+    return result
+
+
+def tool_of(name: str) -> Tool:
+    """The tool of an id.
+
+    Raises
+    ------
+    OutOfRange
+        There is none.
+    """
+    if name not in TOOLS:
+        raise OutOfRange(
+            Text("There is no such tool.", "そのようなツールはありません。"),
+            Text.same(name),
+            Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
+                names=", ".join(TOOLS)
+            ),
+        )
+    return TOOLS[name]
+
+
+def check_needs(tool: Tool, drive: Drive) -> None:
+    """Refuse a drive that lacks what a tool needs.
+
+    Raises
+    ------
+    Unsuitable
+    """
+    is_met, what, remedy = _NEEDS[tool.needs]
+    if is_met(drive):
+        return
+    if tool.needs is Needs.TURNS and drive.info.rows_reason.en:
+        remedy = drive.info.rows_reason
+    raise Unsuitable(what.filled(tool=tool.name), Text.same(drive.info.name), remedy)
+
+
+_Need = tuple[Callable[[Drive], bool], Text, Text]
+_NEEDS: Mapping[Needs, _Need] = {
+    Needs.POINTS: (lambda _: True, Text("", ""), Text("", "")),
+    Needs.PIXELS: (lambda _: True, Text("", ""), Text("", "")),
+    Needs.TURNS: (
+        lambda drive: drive.turns is not None,
+        Text(
+            "“{tool}” needs the revolutions of the scanner, which this drive doesn't have.",
+            "「{tool}」にはスキャナの回転情報が必要ですが、このドライブにはありません。",
+        ),
+        Text(
+            "Import the points of a rotating scanner with their times and the trajectory.",
+            "回転式スキャナの時刻付き点群を走行軌跡と一緒にインポートしてください。",
+        ),
+    ),
+    Needs.TRAJECTORY: (
+        lambda drive: drive.trajectory is not None,
+        Text(
+            "“{tool}” needs a trajectory, which this drive doesn't have.",
+            "「{tool}」には走行軌跡が必要ですが、このドライブにはありません。",
+        ),
+        Text(
+            "Import the drive again together with its trajectory.",
+            "走行軌跡と一緒にドライブをインポートし直してください。",
+        ),
+    ),
+}
+
+
+def _image_of(drive: Drive) -> PointCloudImage:
+    """The image whose pixels hold one pulse or cell each, so that neighbours are true ones."""
+    has_turns = drive.turns is not None
+    return drive.image(ImageKind.TRAJECTORY_REVERSIBLE if has_turns else ImageKind.TOP_VIEW)
+
+
+def _block_of(drive: Drive, image: PointCloudImage, rows: range) -> PointBlock:
+    grid, points = image.grid(rows)
+
+    # The type of a column's values is the column's own.
+    def read(name: str) -> NDArray[Any]:
+        # Read, not mapped: what was read doesn't stay in memory with the next block.
+        return read_stretch(drive.folder, name, points.start, points.stop)
+
+    has_classes = drive.columns.has("classification")
+    return PointBlock(
+        xyz=read("xyz") * np.array(drive.info.scale) + np.array(drive.info.offset),
+        intensity=read("intensity"),
+        time=read("time"),
+        classification=(
+            read("classification")
+            if has_classes
+            else np.zeros(points.stop - points.start, np.uint8)
+        ),
+        grid=grid,
+    )

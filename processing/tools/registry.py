@@ -1,0 +1,11 @@
+"""Every processing tool by id, in the order in which they are listed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from processing.tools.normals import NORMALS
+from processing.tools.segments import SEGMENTS
+from processing.tools.tool import Tool
+
+TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in (NORMALS, SEGMENTS)}
