@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from app.cli.terminal import run_in_terminal
+from app.cli.terminal import ended, run_in_terminal
 from app.error_log import start_log
 
 
@@ -15,9 +15,13 @@ def main() -> int:
     wish = run_in_terminal(arguments)
     if isinstance(wish, int):
         return wish
-    from app.application import run_window
 
-    return run_window(wish)
+    def show() -> int:
+        from app.application import run_window
+
+        return run_window(wish)
+
+    return ended(show)
 
 
 if __name__ == "__main__":

@@ -8,12 +8,6 @@ from pathlib import Path
 from platformdirs import user_documents_path
 from PySide6.QtCore import Qt, QTimer, QTranslator
 from PySide6.QtWidgets import QApplication
-from widgets.image_view.view import ImageView
-from widgets.mouse_tools.draw_area import DrawArea
-from widgets.mouse_tools.draw_line import DrawLine
-from widgets.mouse_tools.draw_point import DrawPoint
-from widgets.mouse_tools.edit_vertices import EditVertices
-from widgets.mouse_tools.select import Select
 from widgets.panels.attribute_panel import AttributePanel
 from widgets.panels.jobs_panel import JobsPanel
 from widgets.panels.layers_panel import LayersPanel
@@ -39,6 +33,12 @@ from app.window_parts import WindowParts
 from app.wiring import connect_parts
 from processing.text import Text
 from resources import path_of
+from widgets.image_view.view import ImageView
+from widgets.mouse_tools.draw_area import DrawArea
+from widgets.mouse_tools.draw_line import DrawLine
+from widgets.mouse_tools.draw_point import DrawPoint
+from widgets.mouse_tools.edit_vertices import EditVertices
+from widgets.mouse_tools.select import Select
 from widgets.mouse_tools.toolbox import MouseToolbox
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
@@ -102,7 +102,7 @@ def _make_parts(settings: Settings) -> WindowParts:
     jobs = JobQueue()
     document = Document(jobs)
     shared, tiles = document.shared, document.tiles
-    image_view = ImageView(document, shared, tiles)
+    image_view = ImageView(document, shared, tiles, language=language)
     scene_view = SceneView(document, shared, tiles)
     image_bar = ImageBar(document, shared, language)
     message_bar = MessageBar(language)

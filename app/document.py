@@ -9,24 +9,24 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from processing.image.tile_cache import TileCache
 from processing.project.export import ExportRequest, export
 from processing.project.project import Project
-from processing.runner import RunRequest, run
-from processing.tools.registry import TOOLS
 from PySide6.QtCore import QObject, Signal
 
 from app.jobs import JobQueue
 from app.undo import UndoStack
 from processing.errors import UserError
 from processing.image.kinds import ImageKind
+from processing.image.tile_cache import TileCache
 from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.change import Change
 from processing.project.feature import Feature
 from processing.project.importing import ImportRequest, import_drives
+from processing.runner import RunRequest, run
 from processing.text import Text
+from processing.tools.registry import TOOLS
 from processing.tools.tool import PointResult
 from resources import path_of
 from widgets.shared.cursor import Cursor

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from widgets.image_view.view import ImageView
 from widgets.panels.attribute_panel import AttributePanel
 from widgets.panels.jobs_panel import JobsPanel
 from widgets.panels.layers_panel import LayersPanel
@@ -19,6 +18,7 @@ from app.jobs import JobQueue
 from app.main_window import MainWindow
 from app.settings import Settings
 from processing.text import Language
+from widgets.image_view.view import ImageView
 from widgets.mouse_tools.toolbox import MouseToolbox
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from processing.runner import reason_against
 from PySide6.QtCore import QObject
 from widgets.panels.jobs_panel import JobView
 
 from app.jobs import JobState, JobStatus
 from app.window_parts import WindowParts, take_down
+from processing.errors import Unsuitable
+from processing.runner import check_needs, tool_of
 from processing.text import Text
 
 
@@ -65,7 +66,11 @@ class _Wiring(QObject):
         drive_id = self._parts.document.shared.view_settings.drive_id
         if not drive_id:
             return Text("Open a drive first.", "先にドライブを開いてください。")
-        return reason_against(tool, self._parts.document.drive(drive_id))
+        try:
+            check_needs(tool_of(tool), self._parts.document.drive(drive_id))
+        except Unsuitable as reason:
+            return reason.what
+        return None
 
     def on_document_opened(self) -> None:
         project = self._parts.document.project

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import argparse
 
-from processing.runner import RunRequest, run
-
 from app.cli.opened import opened_drives, terminal_monitor
 from app.cli.output import print_lines
-from app.cli.tools import tool_named
 from processing.errors import OutOfRange
 from processing.monitor import PartMonitor
 from processing.project.point_results import write_point_results
+from processing.runner import RunRequest, run, tool_of
 from processing.text import Text
 from processing.tools.parameters import filled_in
 
@@ -20,7 +18,7 @@ _RUNNING = 0.8
 
 def command(arguments: argparse.Namespace) -> int:
     """Run a tool on every drive of the input and write its result."""
-    tool = tool_named(arguments.tool)
+    tool = tool_of(arguments.tool)
     parameters = filled_in(tool.parameters, _settings(arguments.set))
     _check_output(arguments)
     monitor = terminal_monitor()

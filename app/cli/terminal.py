@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import signal
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from types import FrameType
+from typing import TypeVar
 
 from app.cli.parser import read_arguments
 from app.cli.window_wish import WindowWish
@@ -13,6 +14,7 @@ from app.error_log import defect_of, log_user_error
 from app.language import system_language
 from processing.errors import Cancelled, UserError
 
+StatusT = TypeVar("StatusT")
 DONE, DEFECT, BAD_INPUT, CANCELLED = 0, 1, 2, 3
 
 
@@ -26,9 +28,18 @@ def run_in_terminal(arguments: Sequence[str]) -> int | WindowWish:
         show.
     """
     signal.signal(signal.SIGTERM, _stop)
-    try:
+
+    def act() -> int | WindowWish:
         command, namespace = read_arguments(arguments)
         return command(namespace)
+
+    return ended(act)
+
+
+def ended(act: Callable[[], StatusT]) -> StatusT | int:
+    """Do something; whatever goes wrong ends here, as one line and an exit status."""
+    try:
+        return act()
     except UserError as error:
         log_user_error(error)
         _say(error.line(system_language()))

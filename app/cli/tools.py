@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import argparse
 
-from processing.tools.registry import TOOLS
-
 from app.cli.output import print_json, print_lines
 from app.language import system_language
-from processing.errors import OutOfRange
-from processing.text import Text
+from processing.runner import tool_of
 from processing.tools.parameters import Parameter, parameters_of
+from processing.tools.registry import TOOLS
 from processing.tools.tool import Tool
 
 
 def command(arguments: argparse.Namespace) -> int:
     """List all tools, or one."""
-    chosen = [tool_named(arguments.name)] if arguments.name else list(TOOLS.values())
+    chosen = [tool_of(arguments.name)] if arguments.name else list(TOOLS.values())
     if arguments.json:
         described = [_described(tool) for tool in chosen]
         print_json(described[0] if arguments.name else described)
@@ -24,25 +22,6 @@ def command(arguments: argparse.Namespace) -> int:
         for tool in chosen:
             print_lines(*_lines(tool))
     return 0
-
-
-def tool_named(name: str) -> Tool:
-    """The tool of that id.
-
-    Raises
-    ------
-    OutOfRange
-        There is none.
-    """
-    if name not in TOOLS:
-        raise OutOfRange(
-            Text("There is no such tool.", "そのようなツールはありません。"),
-            Text.same(name),
-            Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
-                names=", ".join(TOOLS)
-            ),
-        )
-    return TOOLS[name]
 
 
 def _described(tool: Tool) -> dict[str, object]:

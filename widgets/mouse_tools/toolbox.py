@@ -85,6 +85,10 @@ class MouseToolbox(QObject):
             self.kind_chosen.emit(kind)
         self.choose(_TOOL_OF_GEOMETRY[kind.geometry])
 
+    def complete(self) -> None:
+        """End the gesture of the tool in the hand and keep what it made."""
+        self._tools[self._name].complete()
+
     def _hand_out(self) -> None:
         for view in self._views:
             view.set_mouse_tool(self._tools[self._name])
