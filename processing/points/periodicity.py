@@ -1,0 +1,151 @@
+"""The scanner's way found from the points alone, where no trajectory was delivered.
+
+In a few hundredths of a second a line scanner stays nearly in place: its points lie in one plane,
+and the only centre in that plane about which their angle keeps step with the clock is the scanner.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.monitor import Monitor
+from processing.points.ordering import stretches
+from processing.points.point_source import PointColumns, PointSource
+from processing.points.rotation_fit import PlanePoints, RotationFit, fit_rotation
+from processing.points.scan_plane import ScanPlane, find_plane
+from processing.points.trajectory import Trajectory
+
+Floats = NDArray[np.float64]
+
+_WINDOW_S = 0.06
+_EVERY_S = 0.2
+_MOST_POINTS = 1_500
+_LEAST_POINTS = 200
+_FLATTEST = 0.05
+_LEAST_COHERENCE = 0.8
+_READ_POINTS = 2_000_000
+
+
+def trajectory_from_points(points: PointSource, monitor: Monitor) -> Trajectory | None:
+    """Where the scanner was; None when the points don't tell.
+
+    Returns
+    -------
+    Trajectory or None
+        Of the scanner's centre; the heading follows the turn of the scan plane.
+    """
+    finder = _CentreFinder()
+    next_time = -np.inf
+    tried = 0
+    for start, stop in stretches(points.count, _READ_POINTS):
+        part = points.stretch(start, stop)
+        time = float(part.time[0])
+        while True:
+            time = max(time, next_time)
+            first = int(np.searchsorted(part.time, time))
+            if first >= part.count:
+                break
+            time = float(part.time[first])
+            last = int(np.searchsorted(part.time, time + _WINDOW_S))
+            next_time = time + _EVERY_S
+            monitor.check()
+            if last - first >= _LEAST_POINTS:
+                finder.add(part.stretch(first, last))
+                tried += 1
+            if tried >= 8 and not finder.times:
+                return None
+    if not finder.times or len(finder.times) < 0.3 * tried:
+        return None
+    ends = (float(points.stretch(0, 1).time[0]), float(part.time[-1]))
+    return finder.trajectory(ends)
+
+
+class _CentreFinder:
+    """Finds the scanner's centre window by window; each starts from the one before."""
+
+    def __init__(self) -> None:
+        self.times: list[float] = []
+        self._centres: list[Floats] = []
+        self._velocities: list[Floats] = []
+        self._normals: list[Floats] = []
+        self._rate_hz: float | None = None
+
+    def add(self, window: PointColumns) -> None:
+        """Take one window of points; nothing is added when it doesn't tell."""
+        part = window.stretch(0, window.count)
+        every = max(1, part.count // _MOST_POINTS)
+        middle = 0.5 * float(part.time[0] + part.time[-1])
+        time = part.time[::every] - middle
+        places = part.xyz[::every] * np.array(part.scale) + np.array(part.offset)
+        base = np.median(places, axis=0)
+        local = places - base
+        steady = np.column_stack([np.ones(time.size), time])
+        plane = find_plane(local, steady)
+        if plane.flatness > _FLATTEST:
+            return
+        fit = self._fitted(plane, local, time, middle, base)
+        if fit is None or fit.coherence < _LEAST_COHERENCE:
+            return
+        off_plane = np.linalg.lstsq(steady, local @ plane.normal)[0]
+        self.times.append(middle)
+        self._rate_hz = fit.rate_hz
+        self._centres.append(base + fit.centre @ plane.axes + off_plane[0] * plane.normal)
+        self._velocities.append(fit.velocity @ plane.axes + off_plane[1] * plane.normal)
+        same_side = not self._normals or self._normals[-1] @ plane.normal > 0
+        self._normals.append(plane.normal if same_side else -plane.normal)
+
+    def trajectory(self, ends: tuple[float, float]) -> Trajectory:
+        """All windows together, led on steadily to both ends of the recording."""
+        times, centres = np.array(self.times), np.array(self._centres)
+        normals = np.array(self._normals)
+        velocity = np.median(np.array(self._velocities), axis=0)
+        if times.size > 1:
+            first_velocity = (centres[1] - centres[0]) / (times[1] - times[0])
+            last_velocity = (centres[-1] - centres[-2]) / (times[-1] - times[-2])
+            velocity = (centres[-1] - centres[0]) / (times[-1] - times[0])
+        else:
+            first_velocity = last_velocity = velocity
+        before = centres[0] + (ends[0] - 1e-3 - times[0]) * first_velocity
+        after = centres[-1] + (ends[1] + 1e-3 - times[-1]) * last_velocity
+        times = np.concatenate([[ends[0] - 1e-3], times, [ends[1] + 1e-3]])
+        centres = np.vstack([before, centres, after])
+        normals = np.vstack([normals[:1], normals, normals[-1:]])
+        angles = np.zeros((times.size, 3))
+        angles[:, 2] = _headings_deg(times, centres, normals, velocity)
+        return Trajectory(times, centres, angles, has_attitude=False)
+
+    def _fitted(
+        self, plane: ScanPlane, local: Floats, time: Floats, middle: float, base: Floats
+    ) -> RotationFit | None:
+        flat = PlanePoints(plane.project(local), time, np.zeros(time.size, dtype=np.int64))
+        starts = [np.median(flat.place, axis=0)]
+        starts.append(starts[0] + np.array([-1.5, 0.0]))
+        rates = None
+        if self._rate_hz is not None:
+            # The sense of the angle depends on the side the normal points to.
+            same_side = self._normals[-1] @ plane.normal > 0
+            rates = [self._rate_hz if same_side else -self._rate_hz]
+            since = middle - self.times[-1]
+            guess = self._centres[-1] + since * self._velocities[-1] - base
+            near = fit_rotation(flat, [plane.project(guess)], moves=True, rates_hz=rates)
+            if near.coherence > _LEAST_COHERENCE:
+                return near
+        return fit_rotation(flat, starts, moves=True, rates_hz=rates)
+
+
+def _headings_deg(times: Floats, centres: Floats, normals: Floats, velocity: Floats) -> Floats:
+    """Clockwise from north: the plane's azimuth, set to the motion on the whole."""
+    azimuth = np.unwrap(np.arctan2(normals[:, 0], normals[:, 1]))
+    if np.median(np.hypot(normals[:, 0], normals[:, 1])) < 0.2:
+        azimuth = np.zeros(times.size)
+    speed = np.hypot(velocity[0], velocity[1])
+    if speed < 0.5 or times.size < 2:
+        level: Floats = np.degrees(azimuth - azimuth[0]) % 360.0
+        return level
+    motion = np.diff(centres, axis=0)[:, :2]
+    middle = 0.5 * (azimuth[1:] + azimuth[:-1])
+    # Motion as seen along the plane's azimuth: one constant angle for a vehicle that drives ahead.
+    turned = (motion[:, 1] + 1j * motion[:, 0]) * np.exp(-1j * middle)
+    headings: Floats = np.degrees(azimuth + np.angle(turned.sum())) % 360.0
+    return headings

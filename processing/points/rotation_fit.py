@@ -1,0 +1,169 @@
+"""The turn of a line scanner found from its points: rate, direction and centre of rotation.
+
+Every point lies on the ray of its phase, so phase and centre are found by turns: a rough centre
+gives angles, angles give the rate at which they agree with the clock, and the rate gives a better
+centre.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+SLOWEST_HZ, FASTEST_HZ = 38.0, 310.0
+
+_ROUNDS = 12
+_CLEAR_ANGLE_RAD = 0.6
+_MOST_SEARCHED = 1_500
+
+
+@dataclass(frozen=True)
+class RotationFit:
+    """A steady rotation that explains points in the scan plane over short windows of time.
+
+    Attributes
+    ----------
+    rate_hz : float
+        Turns a second; negative when the angle falls.
+    centre : (2,) float64
+        Centre of rotation in the plane, m, at time 0 of its window.
+    velocity : (2,) float64
+        Its motion, m/s; 0 unless it was asked for.
+    phases : (w,) float64
+        Angle at time 0 of each window, rad.
+    coherence : float
+        0..1: length of the mean of exp(i · (angle − clock)).
+    """
+
+    rate_hz: float
+    centre: Floats
+    velocity: Floats
+    phases: Floats
+    coherence: float
+
+
+@dataclass(frozen=True)
+class PlanePoints:
+    """Points in the scan plane, in a few short windows of time.
+
+    Attributes
+    ----------
+    place : (n, 2) float64
+        m.
+    time : (n,) float64
+        s since the middle of the window.
+    window : (n,) int64
+        0 … w − 1.
+    """
+
+    place: Floats
+    time: Floats
+    window: NDArray[np.int64]
+
+    @property
+    def windows(self) -> int:
+        """Number of windows."""
+        return int(self.window.max()) + 1
+
+
+def fit_rotation(
+    points: PlanePoints, starts: list[Floats], *, moves: bool, rates_hz: list[float] | None = None
+) -> RotationFit:
+    """The rotation that best explains points.
+
+    Parameters
+    ----------
+    starts : list of (2,) float64
+        Rough centres to start from.
+    moves : bool
+        Whether the centre moves within a window at an unknown velocity.
+    rates_hz : list of float, optional
+        Signed rates to try; searched for when not given.
+
+    Returns
+    -------
+    RotationFit
+        The most coherent one; whether that is good enough is for the caller to say.
+    """
+    fits: list[RotationFit] = []
+    for start in starts:
+        angle = _angles(points.place - start)
+        candidates = rates_hz or _candidate_rates(angle, points)
+        fits.extend(_refined(points, rate, start, moves=moves) for rate in candidates)
+    return max(fits, key=lambda fit: fit.coherence)
+
+
+def _angles(place: Floats) -> Floats:
+    angle: Floats = np.arctan2(place[:, 1], place[:, 0])
+    return angle
+
+
+def _candidate_rates(angle: Floats, points: PlanePoints) -> list[float]:
+    every = max(1, angle.size // _MOST_SEARCHED)
+    angle, time, window = angle[::every], points.time[::every], points.window[::every]
+    span = float(time.max() - time.min())
+    step = 0.25 / span
+    positive = np.arange(SLOWEST_HZ, FASTEST_HZ, step)
+    rates = np.concatenate([-positive[::-1], positive])
+    strength = _strengths(rates, angle, time, window)
+    found: list[float] = []
+    for at in np.argsort(strength)[::-1]:
+        if all(abs(rates[at] - rate) > 6 * step for rate in found):
+            found.append(float(rates[at]))
+        if len(found) == 3:
+            break
+    refined = []
+    for rate in found:
+        near = rate + np.linspace(-step, step, 21)
+        refined.append(float(near[np.argmax(_strengths(near, angle, time, window))]))
+    return refined
+
+
+def _strengths(rates: Floats, angle: Floats, time: Floats, window: NDArray[np.int64]) -> Floats:
+    strength = np.zeros(rates.size)
+    for number in range(int(window.max()) + 1):
+        mine = window == number
+        turned = np.exp(-2j * np.pi * np.outer(rates, time[mine]))
+        strength += np.abs(turned @ np.exp(1j * angle[mine]))
+    return strength / angle.size
+
+
+def _refined(points: PlanePoints, rate_hz: float, start: Floats, *, moves: bool) -> RotationFit:
+    """Gauss-Newton on centre, velocity, rate and the windows' phases; far misses count less."""
+    windows = points.windows
+    centre, velocity, rate = start.astype(np.float64), np.zeros(2), 2 * np.pi * rate_hz
+    phases = np.zeros(windows)
+    member = points.window[:, None] == np.arange(windows)
+    for turn in range(_ROUNDS + 1):
+        rays = points.place - centre - points.time[:, None] * velocity
+        distance = np.maximum(np.hypot(rays[:, 0], rays[:, 1]), 0.3)
+        waves = np.exp(1j * (_angles(rays) - rate * points.time))
+        phases = np.angle(member.T @ waves)
+        clock = phases[points.window] + rate * points.time
+        miss = np.angle(waves * np.exp(-1j * phases[points.window]))
+        if turn == _ROUNDS:
+            break
+        across = np.column_stack([-np.sin(clock), np.cos(clock)]) / distance[:, None]
+        parts = [member.astype(np.float64), points.time[:, None], across]
+        if moves:
+            parts.append(across * points.time[:, None])
+        design = np.hstack(parts)
+        scale = max(float(np.median(np.abs(miss))) * 2.0, 1e-3)
+        weight = np.minimum(1.0, scale / np.maximum(np.abs(miss), 1e-12))
+        weight[np.abs(miss) > max(_CLEAR_ANGLE_RAD, 3 * scale)] = 0.0
+        # A trace of ridge keeps what the points don't determine where it is.
+        ridge = np.full(design.shape[1], 1e-9 * points.time.size)
+        ridge[windows + 1 :] = 1e-6 * points.time.size
+        normal = (design * weight[:, None]).T @ design + np.diag(ridge)
+        change = np.linalg.solve(normal, (design * weight[:, None]).T @ miss)
+        rate += change[windows]
+        shift = change[windows + 1 : windows + 3]
+        centre = centre + shift * min(1.0, 1.5 / max(float(np.hypot(*shift)), 1e-9))
+        if moves:
+            velocity = velocity + change[windows + 3 :]
+    coherence = float(np.mean(np.cos(miss)))
+    return RotationFit(rate / (2 * np.pi), centre, velocity, phases, max(coherence, 0.0))

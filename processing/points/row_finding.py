@@ -1,0 +1,239 @@
+"""Rows of a whole drive, stretch by stretch: pulses, the mirror's phase, and where rows begin."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.monitor import Monitor
+from processing.points.ordering import stretches
+from processing.points.point_source import PointSource
+from processing.points.pulse_clock import LONGEST_MISSING_S, PulseClock, PulseNumbering
+from processing.points.pulse_store import PulseStore
+from processing.points.reference_times import SEARCHED_SHARE, find_crossings, repaired
+from processing.points.scan_angle import SeenAngle, Spin
+from processing.points.turn_tracking import TurnPhase, track_turns
+
+Floats = NDArray[np.float64]
+
+READ_POINTS = 2_000_000
+"""Points read at a time."""
+
+_TRACKED_PER_TURN = 64
+_BELOW_CENTRE_M = 0.3
+
+
+@dataclass(frozen=True)
+class FoundRows:
+    """Rows as :class:`processing.points.turns.Turns` has them, and the rates found on the way."""
+
+    reference_times: Floats
+    fold_pulses: NDArray[np.int64]
+    segments: NDArray[np.int32]
+    row_ends: NDArray[np.int64]
+    turn_rate_hz: float
+    interval_s: float
+    coherence: float
+
+
+@dataclass(frozen=True)
+class _Segment:
+    """A stretch without a stop: its times, and the angles sampled in it."""
+
+    first_time: float
+    last_time: float
+    phase: TurnPhase
+
+
+@dataclass
+class _Turns:
+    """Turns of a segment: where rows are expected, what was found there."""
+
+    predicted: Floats
+    crossed: Floats
+    chord: NDArray[np.int64]
+    anchor_time: Floats
+    anchor_pulse: NDArray[np.int64]
+
+
+def find_rows(
+    points: PointSource, clock: PulseClock, spin: Spin, pulses: PulseStore, monitor: Monitor
+) -> FoundRows:
+    """Number the pulses of all points and find where rows begin.
+
+    Parameters
+    ----------
+    pulses : PulseStore
+        Empty; holds all pulses afterwards.
+    """
+    segments, interval_s = _first_pass(points, clock, spin, pulses, monitor)
+    monitor.report(0.6)
+    turns = [(segment, _expected(segment, spin)) for segment in segments]
+    _second_pass(points, spin, pulses, turns, monitor)
+    monitor.report(0.95)
+    return _assembled(turns, interval_s)
+
+
+def _first_pass(
+    points: PointSource, clock: PulseClock, spin: Spin, pulses: PulseStore, monitor: Monitor
+) -> tuple[list[_Segment], float]:
+    first_time = float(points.stretch(0, 1).time[0])
+    # Room for the turn that has begun before the first point, and one more.
+    per_turn = 1.0 / (clock.interval_s * abs(spin.rate_hz))
+    numbering = PulseNumbering(clock, first_time, int(2.0 * per_turn) + 1)
+    every = max(1, int(_points_per_turn(points, spin) / _TRACKED_PER_TURN))
+    times, angles, starts, ends = [], [], [first_time], []
+    start, last_time = 0, first_time
+    while start < points.count:
+        monitor.check()
+        stop = min(start + READ_POINTS, points.count)
+        part = points.stretch(start, stop)
+        numbers = numbering.number(part, is_last=stop == points.count)
+        pulses.append(numbers)
+        part = part.stretch(0, numbers.size)
+        time, angle = spin.mirror.angles(part, every)
+        times.append(time)
+        angles.append(angle)
+        steps = np.diff(part.time, prepend=last_time)
+        for at in np.flatnonzero(steps > LONGEST_MISSING_S):
+            ends.append(float(part.time[at - 1]) if at else last_time)
+            starts.append(float(part.time[at]))
+        last_time = float(part.time[-1])
+        start += numbers.size
+        monitor.report(0.2 + 0.4 * start / points.count)
+    pulses.finish()
+    ends.append(last_time)
+    sampled, angle = np.concatenate(times), np.concatenate(angles)
+    return _tracked(starts, ends, sampled, angle, spin), numbering.interval_s
+
+
+def _points_per_turn(points: PointSource, spin: Spin) -> float:
+    size = min(points.count, 20_000)
+    start = (points.count - size) // 2
+    time = points.stretch(start, start + size).time
+    return size / (max(float(time[-1] - time[0]), 1e-9) * abs(spin.rate_hz))
+
+
+def _tracked(
+    starts: list[float], ends: list[float], time: Floats, angle: Floats, spin: Spin
+) -> list[_Segment]:
+    segments = []
+    for start, end in zip(starts, ends, strict=True):
+        first, last = np.searchsorted(time, [start, end + 1e-9])
+        if last == first:
+            middle = np.array([0.5 * (start + end)])
+            phase = TurnPhase(middle, np.zeros(1), abs(spin.rate_hz), 0.0)
+        else:
+            phase = track_turns(time[first:last], angle[first:last], spin.rate_hz)
+        segments.append(_Segment(start, end, phase))
+    return segments
+
+
+def _expected(segment: _Segment, spin: Spin) -> _Turns:
+    """The turns that may hold points of the segment, with one to spare at both ends."""
+    fold = spin.fold_angle * np.sign(spin.rate_hz) / (2 * np.pi)
+    first, last = segment.phase.turns_at(np.array([segment.first_time, segment.last_time])) - fold
+    turns = np.arange(np.floor(first) - 1, np.ceil(last) + 2) + fold
+    predicted = segment.phase.times_of(turns)
+    return _Turns(
+        predicted=predicted,
+        crossed=np.full(predicted.size, np.nan),
+        chord=np.zeros(predicted.size, dtype=np.int64),
+        anchor_time=np.full(predicted.size, np.nan),
+        anchor_pulse=np.zeros(predicted.size, dtype=np.int64),
+    )
+
+
+def _second_pass(
+    points: PointSource,
+    spin: Spin,
+    pulses: PulseStore,
+    turns: list[tuple[_Segment, _Turns]],
+    monitor: Monitor,
+) -> None:
+    for start, stop in _overlapping(points, 1.0 / abs(spin.rate_hz)):
+        monitor.check()
+        part = points.stretch(start, stop)
+        numbers = pulses.stretch(start, stop)
+        for segment, mine in turns:
+            period = 1.0 / segment.phase.rate_hz
+            low = -np.inf if start == 0 else part.time[0] + SEARCHED_SHARE * period
+            first = int(np.searchsorted(mine.predicted, max(low, segment.first_time - 3 * period)))
+            last = int(np.searchsorted(mine.predicted, part.time[-1]))
+            if stop == points.count:
+                last = mine.predicted.size
+            if last <= first or part.time[-1] < segment.first_time:
+                continue
+            asked = slice(first, last)
+            _anchor(mine, asked, segment, part.time, numbers)
+            if isinstance(spin.mirror, SeenAngle):
+                mine.crossed[asked], mine.chord[asked] = find_crossings(
+                    part,
+                    numbers,
+                    spin.mirror.poses,
+                    mine.predicted[asked],
+                    period_s=period,
+                    below_m=spin.mirror.height_m - _BELOW_CENTRE_M,
+                )
+        monitor.report(0.6 + 0.35 * stop / points.count)
+
+
+def _overlapping(points: PointSource, period_s: float) -> list[tuple[int, int]]:
+    """Stretches that share two turns with the one before, so that each turn lies in one of them."""
+    found = []
+    for start, stop in stretches(points.count, READ_POINTS):
+        lead = max(0, start - READ_POINTS // 4)
+        if start:
+            time = points.stretch(lead, start).time
+            lead += int(np.searchsorted(time, time[-1] - 2 * period_s))
+        found.append((lead, stop))
+    return found
+
+
+def _anchor(
+    turns: _Turns, asked: slice, segment: _Segment, time: Floats, numbers: NDArray[np.int64]
+) -> None:
+    """Note a point of known pulse near each expected row start."""
+    first = int(np.searchsorted(time, segment.first_time))
+    last = int(np.searchsorted(time, segment.last_time, side="right")) - 1
+    if last < first:
+        return
+    after = np.clip(np.searchsorted(time, turns.predicted[asked]), first, last)
+    before = np.clip(after - 1, first, last)
+    wanted = turns.predicted[asked]
+    nearer = np.where(np.abs(time[before] - wanted) < np.abs(time[after] - wanted), before, after)
+    turns.anchor_time[asked] = time[nearer]
+    turns.anchor_pulse[asked] = numbers[nearer]
+
+
+def _assembled(turns: list[tuple[_Segment, _Turns]], interval_s: float) -> FoundRows:
+    segments = [segment for segment, _ in turns]
+    times, folds, ends, numbers = [], [], [], []
+    last_time, last_fold = 0.0, 0
+    for number, (segment, mine) in enumerate(turns):
+        period = 1.0 / segment.phase.rate_hz
+        begins = repaired(mine.predicted, mine.crossed, mine.chord, period)
+        first = max(0, int(np.searchsorted(begins, segment.first_time, side="right")) - 1)
+        last = int(np.searchsorted(begins, segment.last_time, side="right"))
+        kept = slice(first, last + 1)
+        steps = np.ceil((begins[kept] - mine.anchor_time[kept]) / interval_s - 1e-3)
+        fold = np.maximum.accumulate(mine.anchor_pulse[kept] + steps.astype(np.int64))
+        times.append(begins[kept][:-1])
+        folds.append(fold[:-1])
+        ends.append(fold[1:])
+        numbers.append(np.full(fold.size - 1, number, dtype=np.int32))
+        last_time, last_fold = float(begins[kept][-1]), int(fold[-1])
+    weights = [segment.last_time - segment.first_time + 1e-9 for segment in segments]
+    return FoundRows(
+        reference_times=np.append(np.concatenate(times), last_time),
+        fold_pulses=np.append(np.concatenate(folds), last_fold),
+        segments=np.concatenate(numbers),
+        row_ends=np.concatenate(ends),
+        turn_rate_hz=float(np.median([segment.phase.rate_hz for segment in segments])),
+        interval_s=interval_s,
+        coherence=float(
+            np.average([segment.phase.coherence for segment in segments], weights=weights)
+        ),
+    )
