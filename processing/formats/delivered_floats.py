@@ -114,6 +114,7 @@ def chunks_of(file: FloatFile, chunk_points: int) -> Iterator[PointChunk]:
                 yield PointChunk(_chunk_columns(values, summary, scale, offset))
 
 
+@np.errstate(invalid="ignore")
 def _chunk_columns(
     values: Block, summary: _Summary, scale: float, offset: Vector3
 ) -> dict[str, NDArray[np.generic]]:
@@ -160,6 +161,7 @@ def _bounded(values: NDArray[np.generic], low: float, high: float) -> NDArray[np
     return np.asarray(np.clip(np.nan_to_num(numbers, nan=low), low, high), dtype=np.float64)
 
 
+@np.errstate(invalid="ignore")
 def _usable(xyz: NDArray[np.generic]) -> NDArray[np.bool_]:
     return np.asarray(np.isfinite(xyz).all(axis=1))
 
@@ -189,6 +191,7 @@ class _Key:
 
 
 @lru_cache(maxsize=256)
+@np.errstate(invalid="ignore")
 def _read_summary(key: _Key) -> _Summary:
     """One pass; kept, as the same file is asked for its facts, a sample and its points."""
     count = 0

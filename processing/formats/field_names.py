@@ -33,6 +33,8 @@ def has_position(names: tuple[str, ...]) -> bool:
     return all(any(name in known for name in axis) for axis in _POSITION)
 
 
+# A damaged file may hold signalling NaNs, at which any cast would warn.
+@np.errstate(invalid="ignore")
 def block_of(
     fields: Mapping[str, NDArray[np.generic]], offset: tuple[float, float, float] = (0, 0, 0)
 ) -> Block:

@@ -227,6 +227,7 @@ def _field(
     return np.ndarray(shape, dtype, records.data, byte, strides).copy()
 
 
+@np.errstate(invalid="ignore")
 def _times(times: NDArray[np.generic]) -> NDArray[np.generic]:
     """Times with NaN for what no clock can say; one comparison in the usual case."""
     good = np.abs(times) < _LONGEST_TIME_S

@@ -214,6 +214,7 @@ def _placement(path: Path, start: bytes) -> tuple[Vector3, Vector3]:
     return numbers[:3], numbers[3:]
 
 
+@np.errstate(invalid="ignore")
 def _extent(bounds: np.ndarray[tuple[int, int], np.dtype[np.float64]], side: int) -> Vector3:
     """One corner of the box in the header; NaN when no box was ever entered there."""
     high, low = bounds[:, 0], bounds[:, 1]

@@ -78,7 +78,9 @@ def _text_fields(header: _Header) -> Iterator[dict[str, NDArray[np.generic]]]:
     done = 0
     for numbers in number_blocks(part, int(places[-1])) if header.count else ():
         done += numbers.shape[0]
-        fields = {name: numbers[:, places[i]] for i, name in enumerate(header.names)}
+        fields: dict[str, NDArray[np.generic]] = {
+            name: numbers[:, places[i]] for i, name in enumerate(header.names)
+        }
         # Packed colours need the type that they were packed in; coordinates lose nothing as text.
         for i, name in enumerate(header.names):
             if name in _PACKED_COLORS:

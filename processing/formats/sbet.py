@@ -84,6 +84,7 @@ def read_sbet(path: Path, crs: str) -> Trajectory:
     return Trajectory(time, xyz, angles, has_attitude=True)
 
 
+@np.errstate(invalid="ignore")
 def _read_records(path: Path) -> NDArray[np.void]:
     with told_as_user_error(path):
         data = path.read_bytes()

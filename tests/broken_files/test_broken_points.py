@@ -235,6 +235,17 @@ def test_a_ply_header_that_lies_is_refused(tmp_path: Path, old: bytes, new: byte
     _refusal(path)
 
 
+def test_signalling_nans_warn_of_nothing(tmp_path: Path) -> None:
+    path = tmp_path / "a.ply"
+    data = bytearray(ply_bytes(count=20))
+    first = data.index(b"end_header\n") + len(b"end_header\n")
+    for start in range(first, first + 20 * 38, 38):
+        data[start : start + 8] = b"\x01\0\0\0\0\0\xf0\x7f"
+        data[start + 8 : start + 12] = data[start + 34 : start + 38] = b"\x01\0\x80\x7f"
+    path.write_bytes(data)
+    assert _read_all(path) == 0
+
+
 @pytest.mark.parametrize(
     ("text", "line"),
     [("1 2 3\n4 5 six\n7 8 9\n", 2), ("1 2 3\n\n4 5\n", 3), ("x,y,z\n1,2,3\n1,2,\n", 3)],
