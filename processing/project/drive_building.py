@@ -44,6 +44,8 @@ class BuildPlan:
         What the files say of their clock; None when they don't.
     images : ImageList or None
         Camera images, noted in each drive.
+    shared_sources : frozenset of int
+        Files that hold the points of several recordings.
     """
 
     sources: tuple[SourceFile, ...]
@@ -51,6 +53,7 @@ class BuildPlan:
     trajectories: tuple[NamedTrajectory, ...]
     images: ImageList | None
     is_adjusted_standard: bool | None = None
+    shared_sources: frozenset[int] = frozenset()
 
 
 def build_drive(writer: RecordingWriter, plan: BuildPlan, monitor: Monitor) -> Path:
@@ -119,7 +122,8 @@ def _name_of(writer: RecordingWriter, plan: BuildPlan) -> str:
     """The file's name; with the scanner's number where the files tell several scanners apart."""
     sources = sorted(writer.points_of_source)
     stem = Path(plan.sources[sources[0]].path).stem
-    return f"{stem} ({writer.scanner})" if writer.shares_files else stem
+    is_shared = any(source in plan.shared_sources for source in sources)
+    return f"{stem} ({writer.scanner})" if is_shared else stem
 
 
 def _plain(name: str) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import shutil
+from collections import Counter
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
@@ -90,7 +91,14 @@ def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple
                 _source_file(info, checksum)
                 for info, checksum in zip(files, checksums, strict=True)
             )
-        plan = BuildPlan(sources, delivery.crs, trajectories, images, _is_adjusted_standard(files))
+        plan = BuildPlan(
+            sources,
+            delivery.crs,
+            trajectories,
+            images,
+            _is_adjusted_standard(files),
+            _shared_sources(writers),
+        )
         folders = []
         for number, writer in enumerate(writers):
             share = (1 - _READING) / len(writers)
@@ -205,6 +213,11 @@ def _is_adjusted_standard(files: tuple[PointFileInfo, ...]) -> bool | None:
     """What the files say of their clock, where they agree."""
     said = {info.is_adjusted_standard for info in files}
     return said.pop() if len(said) == 1 else None
+
+
+def _shared_sources(writers: list[RecordingWriter]) -> frozenset[int]:
+    uses = Counter(source for writer in writers for source in writer.points_of_source)
+    return frozenset(source for source, count in uses.items() if count > 1)
 
 
 def _checksum(path: Path) -> str:
