@@ -99,7 +99,9 @@ class Camera:
             azimuth = right * 2 * np.pi / self.image.width_px
             below = down * np.pi / self.image.height_px
             level = np.cos(below)
-            seen = np.column_stack([level * np.sin(azimuth), -np.sin(below), -level * np.cos(azimuth)])
+            seen = np.column_stack(
+                [level * np.sin(azimuth), -np.sin(below), -level * np.cos(azimuth)]
+            )
         else:
             x, y = self._undistorted(right / self.image.focal_px, down / self.image.focal_px)
             seen = np.column_stack([x, -y, np.full(x.size, -1.0)])

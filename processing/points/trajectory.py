@@ -241,9 +241,7 @@ class Trajectory:
 
 
 @kernel
-def _mark_steps_kernel(
-    xyz: NDArray[np.float64], step_m: float, kept: NDArray[np.bool_]
-) -> None:
+def _mark_steps_kernel(xyz: NDArray[np.float64], step_m: float, kept: NDArray[np.bool_]) -> None:
     """Mark the first record and each that is ``step_m`` away from the one marked before."""
     if xyz.shape[0] == 0:
         return
