@@ -6,8 +6,11 @@ is at work and emits a change when the gesture ends. It never knows which view w
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Qt, Signal
 
 from processing.project.feature import Vertex
@@ -42,6 +45,24 @@ class Hit:
         return None if self.place is None else Vertex(self.place.xyz, self.place.measured)
 
 
+@dataclass(frozen=True)
+class Boxed:
+    """What a rectangle that was drawn in a view holds.
+
+    Attributes
+    ----------
+    features : frozenset of str
+        Ids of the features that lie wholly inside.
+    points : mapping of str to (n,) int64
+        Drive id to measured points inside.
+    modifiers : Qt.KeyboardModifier
+    """
+
+    features: frozenset[str]
+    points: Mapping[str, NDArray[np.int64]]
+    modifiers: Qt.KeyboardModifier = field(default=Qt.KeyboardModifier.NoModifier)
+
+
 class MouseTool(QObject):
     """Base of all mouse tools; a subclass fills the hooks it needs.
 
@@ -68,6 +89,13 @@ class MouseTool(QObject):
     def release(self, hit: Hit) -> None:
         """The left button went up."""
 
+    def takes_box(self, hit: Hit) -> bool:  # noqa: ARG002 - asked by the view after the press
+        """Whether a drag that starts at this hit draws a rectangle; asked after :meth:`press`."""
+        return False
+
+    def choose_box(self, boxed: Boxed) -> None:
+        """A rectangle was drawn; comes in place of :meth:`release`."""
+
     def complete(self) -> None:
         """Right button, Enter or double click: end the gesture and keep it."""
 
@@ -75,7 +103,10 @@ class MouseTool(QObject):
         """Backspace: take back the last vertex."""
 
     def leave(self) -> None:
-        """Escape: drop the gesture."""
+        """Escape: drop the gesture; with nothing being drawn, give the hand back."""
+
+    def put_down(self) -> None:
+        """Another tool is taken: drop the gesture and say nothing."""
 
     def delete(self) -> None:
         """Delete: remove what is chosen."""

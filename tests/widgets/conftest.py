@@ -1,0 +1,20 @@
+"""What tests of widgets share: two imported drives, made once."""
+
+from __future__ import annotations
+
+import pytest
+
+from processing.points.drive import Drive
+from tests.widgets.builders import imported_drive
+
+
+@pytest.fixture(scope="session")
+def left_drive(tmp_path_factory: pytest.TempPathFactory) -> Drive:
+    """Give the left scanner's recording of a street of ten metres; read only."""
+    return imported_drive(tmp_path_factory.mktemp("left"))
+
+
+@pytest.fixture(scope="session")
+def right_drive(tmp_path_factory: pytest.TempPathFactory) -> Drive:
+    """Give the right scanner's recording of the same street; read only."""
+    return imported_drive(tmp_path_factory.mktemp("right"), head="right", seed=2)

@@ -1,0 +1,55 @@
+"""Edges: what stands round the picture. Ruler above, minimap below, or the empty page."""
+
+from __future__ import annotations
+
+from PySide6.QtWidgets import QWidget
+
+from processing.image.tile_cache import TileCache
+from widgets.image_view.empty_page import EmptyPage
+from widgets.image_view.minimap import Minimap
+from widgets.image_view.picture import Picture
+from widgets.image_view.ruler import Ruler
+from widgets.image_view.viewport import Viewport
+from widgets.shared.view_settings import PointLook
+
+_RULER_PX = 20
+_MINIMAP_PX = 40
+
+
+class Edges:
+    """Holds the parts at the edges of a view and tells them what is shown.
+
+    Parameters
+    ----------
+    view : QWidget
+        The parts are its children.
+    tiles : TileCache
+    """
+
+    def __init__(self, view: QWidget, tiles: TileCache) -> None:
+        self._view = view
+        self.ruler = Ruler(view)
+        self.minimap = Minimap(tiles, view)
+        self.empty = EmptyPage(view)
+
+    def lay_out(self, viewport: Viewport) -> Viewport:
+        """Stand at the edges of the view; the viewport gets what is left."""
+        width, height = self._view.width(), self._view.height()
+        self.ruler.setGeometry(0, 0, width, _RULER_PX)
+        self.minimap.setGeometry(0, height - _MINIMAP_PX, width, _MINIMAP_PX)
+        self.empty.setGeometry(0, 0, width, height)
+        return viewport.sized(width, height - _RULER_PX - _MINIMAP_PX, _RULER_PX)
+
+    def show_picture(self, picture: Picture | None, look: PointLook, *, is_refused: bool) -> None:
+        """Belong to a picture, or say that there is none."""
+        self.minimap.show_picture(picture, look)
+        self.empty.setVisible(picture is None and not is_refused)
+        self.ruler.setVisible(picture is not None)
+        self.minimap.setVisible(picture is not None)
+
+    def show_part(self, picture: Picture | None, viewport: Viewport) -> None:
+        """Tell which part of the picture is shown."""
+        self.ruler.show_part(picture, viewport)
+        if picture is not None:
+            span = viewport.span
+            self.minimap.mark(span.left, span.right)

@@ -1,0 +1,193 @@
+"""FeaturePlaces: all features of the map in picture coordinates, kept until they change."""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Iterable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.project.feature import Feature, Vertex
+from widgets.image_view.picture import Picture
+from widgets.image_view.placed_feature import PlacedFeature, placed
+from widgets.shared.map_source import MapSource
+
+Floats = NDArray[np.float64]
+
+NEAR_M = 0.3
+"""How far a vertex may be from the measured point that stands for it in another drive."""
+
+_UNKNOWN, _NONE = -2, -1
+_MOST_SEARCHED = 10_000
+
+
+class FeaturePlaces:
+    """Looks up the measured points of vertices once and places them in the picture shown.
+
+    A vertex that rests on a point of the drive shown is placed at once. For others the nearest
+    point is searched, which takes time: :meth:`search` does as much as a moment allows.
+
+    Parameters
+    ----------
+    source : MapSource
+    """
+
+    def __init__(self, source: MapSource) -> None:
+        self._source = source
+        self._picture: Picture | None = None
+        self._features: dict[str, Feature] = {}
+        self._points: dict[tuple[str, str], NDArray[np.int64]] = {}
+        self._placed: dict[str, PlacedFeature] = {}
+        self._waiting: deque[str] = deque()
+        self._bounds: Floats | None = None
+        self._ids: list[str] = []
+        self._searched: dict[tuple[str, Vertex], int] = {}
+
+    @property
+    def is_searching(self) -> bool:
+        """Whether vertices wait for their nearest point."""
+        return bool(self._waiting)
+
+    def show(self, picture: Picture | None) -> None:
+        """Place everything in another picture."""
+        self._picture = picture
+        self._place(self._features.values())
+
+    def read_all(self) -> None:
+        """Read all features anew, when another project is open."""
+        self._points.clear()
+        self._features = {feature.id: feature for feature in self._source.features()}
+        self._placed.clear()
+        self._place(self._features.values())
+
+    def read(self, ids: Iterable[str]) -> None:
+        """Read the features that were added, replaced or removed."""
+        changed = []
+        for id_ in ids:
+            for key in [key for key in self._points if key[1] == id_]:
+                del self._points[key]
+            feature = self._source.feature(id_)
+            if feature is None:
+                self._features.pop(id_, None)
+                self._placed.pop(id_, None)
+            else:
+                self._features[id_] = feature
+                changed.append(feature)
+        self._bounds = None
+        self._place(changed)
+
+    def get(self, id_: str) -> PlacedFeature | None:
+        """A feature in the picture; None when it isn't there."""
+        return self._placed.get(id_)
+
+    def within(
+        self, left: float, top: float, right: float, bottom: float
+    ) -> Iterator[PlacedFeature]:
+        """Features whose bounds touch a rectangle in picture coordinates."""
+        if self._bounds is None:
+            self._ids = list(self._placed)
+            self._bounds = np.array([one.bounds for one in self._placed.values()]).reshape(-1, 4)
+        bounds = self._bounds
+        touches = (
+            (bounds[:, 0] <= right)
+            & (bounds[:, 2] >= left)
+            & (bounds[:, 1] <= bottom)
+            & (bounds[:, 3] >= top)
+        )
+        return (self._placed[self._ids[index]] for index in np.flatnonzero(touches))
+
+    def places_of(self, vertices: tuple[Vertex, ...]) -> Floats:
+        """(n, 2) places of a few vertices, searched at once; NaN for those without."""
+        picture = self._picture
+        if picture is None:
+            return np.full((len(vertices), 2), np.nan)
+        points = _own_points(picture, vertices)
+        for index in np.flatnonzero(points == _UNKNOWN):
+            key = (picture.drive.id, vertices[index])
+            if key not in self._searched:
+                if len(self._searched) > _MOST_SEARCHED:
+                    self._searched.clear()
+                self._searched[key] = _nearest(picture, vertices[index])
+            points[index] = self._searched[key]
+        return _places(picture, points)
+
+    def search(self, for_s: float) -> bool:
+        """Search nearest points for a while; says whether any feature got its place."""
+        picture, until = self._picture, time.perf_counter() + for_s
+        if picture is None:
+            return False
+        found = []
+        while self._waiting and time.perf_counter() < until:
+            feature = self._features.get(self._waiting[0])
+            points = None if feature is None else self._points.get((picture.drive.id, feature.id))
+            unknown = (
+                np.empty(0, np.int64) if points is None else np.flatnonzero(points == _UNKNOWN)
+            )
+            if feature is None or points is None or not unknown.size:
+                self._waiting.popleft()
+                if feature is not None:
+                    found.append(feature)
+                continue
+            points[unknown[0]] = _nearest(picture, feature.vertices[unknown[0]])
+        self._place_known(picture, found)
+        return bool(found)
+
+    def _place(self, features: Iterable[Feature]) -> None:
+        picture = self._picture
+        self._bounds = None
+        if picture is None:
+            self._placed.clear()
+            self._waiting.clear()
+            return
+        known = []
+        for feature in features:
+            key = (picture.drive.id, feature.id)
+            if key not in self._points:
+                self._points[key] = _own_points(picture, feature.vertices)
+            if (self._points[key] == _UNKNOWN).any():
+                self._waiting.append(feature.id)
+            known.append(feature)
+        self._place_known(picture, known)
+
+    def _place_known(self, picture: Picture, features: list[Feature]) -> None:
+        if not features:
+            return
+        self._bounds = None
+        points = [self._points[picture.drive.id, feature.id] for feature in features]
+        places = _places(picture, np.concatenate(points))
+        ends = np.cumsum([one.size for one in points])
+        for feature, own in zip(features, np.split(places, ends[:-1]), strict=True):
+            self._placed[feature.id] = placed(feature, own, picture)
+
+
+def _own_points(picture: Picture, vertices: tuple[Vertex, ...]) -> NDArray[np.int64]:
+    """(n,) points of the drive on which vertices rest; unknown for the others."""
+    drive = picture.drive
+    return np.array(
+        [
+            vertex.measured.point
+            if vertex.measured is not None
+            and vertex.measured.drive == drive.id
+            and 0 <= vertex.measured.point < drive.count
+            else _UNKNOWN
+            for vertex in vertices
+        ],
+        dtype=np.int64,
+    )
+
+
+def _nearest(picture: Picture, vertex: Vertex) -> int:
+    return max(picture.drive.nearest_point(np.array(vertex.xyz), NEAR_M), _NONE)
+
+
+def _places(picture: Picture, points: NDArray[np.int64]) -> Floats:
+    places = np.full((points.size, 2), np.nan)
+    is_known = points >= 0
+    if is_known.any():
+        rows, columns = picture.image.pixel_of(points[is_known])
+        own = picture.places(rows, columns.astype(np.int64))
+        own[rows < 0] = np.nan
+        places[is_known] = own
+    return places

@@ -1,0 +1,110 @@
+"""Picture: a point-cloud image as it is laid before the eye, not mirrored, the street across.
+
+Picture coordinates count pixels of the image, u to the right and v downwards, whichever way the
+image's own rows and columns run.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.image.kinds import ImageKind
+from processing.image.point_image import PointCloudImage
+from processing.points.drive import Drive
+from widgets.image_view.drive_lay import DriveLay, lay_of
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Span:
+    """A rectangle in picture coordinates."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+
+@dataclass(frozen=True)
+class Picture:
+    """One drive's image of one kind, with its orientation.
+
+    Attributes
+    ----------
+    rows_go_right : bool
+        Rows from left to right; a top view has them from top to bottom, north up.
+    is_flipped : bool
+        Columns run against v: the left side of the drive is up.
+    """
+
+    drive: Drive
+    image: PointCloudImage
+    lay: DriveLay
+    rows_go_right: bool
+    is_flipped: bool
+
+    @staticmethod
+    def of(drive: Drive, kind: ImageKind) -> Picture:
+        """Lay out an image.
+
+        Raises
+        ------
+        Unsuitable
+            The drive has no image of this kind.
+        """
+        image = drive.image(kind)
+        lay = lay_of(drive, image)
+        is_top = kind is ImageKind.TOP_VIEW
+        return Picture(drive, image, lay, not is_top, not is_top and lay.left_columns_are_high)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Extent in u and in v."""
+        image = self.image
+        return (image.rows, image.width) if self.rows_go_right else (image.width, image.rows)
+
+    @property
+    def stretch(self) -> float:
+        """How much longer a step in u is on the ground than one in v."""
+        return self.lay.stretch
+
+    def places(self, rows: NDArray[np.int64], columns: NDArray[np.int64]) -> Floats:
+        """(n, 2) picture coordinates of the centres of pixels."""
+        along = rows + 0.5
+        across = (self.image.width - columns - 0.5) if self.is_flipped else columns + 0.5
+        return np.column_stack([along, across] if self.rows_go_right else [across, along])
+
+    def pixel_at(self, u: float, v: float) -> tuple[int, int]:
+        """Row and column at a place; outside the image they are outside its range."""
+        along, across = (u, v) if self.rows_go_right else (v, u)
+        across = self.image.width - across if self.is_flipped else across
+        column = np.ceil(across) - 1 if self.is_flipped else np.floor(across)
+        return int(np.floor(along)), int(column)
+
+    def rows_columns(self, span: Span) -> tuple[range, range]:
+        """The rows and columns that a rectangle touches, inside the image."""
+        first = self.pixel_at(span.left, span.top)
+        last = self.pixel_at(span.right, span.bottom)
+        ends = [sorted(pair) for pair in zip(first, last, strict=True)]
+        limits = (self.image.rows, self.image.width)
+        rows, columns = (
+            range(max(low, 0), max(min(high + 1, limit), 0))
+            for (low, high), limit in zip(ends, limits, strict=True)
+        )
+        return rows, columns
+
+    def span_of(self, row: int, column: int, rows: int, columns: int) -> Span:
+        """The rectangle of so many rows and columns from a first row and column."""
+        across = self.image.width - column - columns if self.is_flipped else column
+        if self.rows_go_right:
+            return Span(row, across, row + rows, across + columns)
+        return Span(across, row, across + columns, row + rows)
+
+    def laid(self, pixels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        """Turn (rows, columns, …) values into (v, u, …): a view."""
+        turned = pixels.swapaxes(0, 1) if self.rows_go_right else pixels
+        return turned[::-1] if self.is_flipped else turned

@@ -1,0 +1,73 @@
+"""Ruler: metres along the drive at the upper edge of the picture."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from PySide6.QtCore import QLineF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QWidget
+from typing_extensions import override
+
+from widgets.image_view.picture import Picture
+from widgets.image_view.viewport import Viewport
+
+HEIGHT_PX = 20
+_LABEL_EVERY_PX = 96.0
+_BACKGROUND = QColor("#1b1e23")
+_INK = QColor("#b9c0c9")
+_MINOR = QColor("#5b636d")
+
+
+class Ruler(QWidget):
+    """Shows where along the drive the picture is."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._picture: Picture | None = None
+        self._viewport = Viewport()
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+
+    def show_part(self, picture: Picture | None, viewport: Viewport) -> None:
+        """Measure this part of this picture."""
+        self._picture, self._viewport = picture, viewport
+        self.update()
+
+    @override
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.fillRect(self.rect(), _BACKGROUND)
+        picture = self._picture
+        if picture is not None and picture.lay.length_m > 0:
+            self._paint_ticks(painter, picture)
+        painter.end()
+
+    def _paint_ticks(self, painter: QPainter, picture: Picture) -> None:
+        span = self._viewport.span
+        ends = np.clip([span.left, span.right], 0.0, picture.size[0])
+        start_m, end_m = picture.lay.distance_m(ends).tolist()
+        shown_px = (ends[1] - ends[0]) * self._viewport.zoom_u
+        if end_m <= start_m or shown_px <= 0:
+            return
+        step_m = round_step((end_m - start_m) / shown_px * _LABEL_EVERY_PX)
+        fifths = np.arange(math.ceil(start_m / step_m * 5), math.floor(end_m / step_m * 5) + 1)
+        places = picture.lay.rows_at(fifths * step_m / 5)
+        digits = max(0, -math.floor(math.log10(step_m)))
+        height = float(self.height())
+        for fifth, place in zip(fifths.tolist(), places.tolist(), strict=True):
+            x = self._viewport.x_of(place)
+            is_labelled = fifth % 5 == 0
+            painter.setPen(QPen(_INK if is_labelled else _MINOR, 1.0))
+            painter.drawLine(QLineF(x, height - (8 if is_labelled else 4), x, height))
+            if is_labelled:
+                label = f"{fifth * step_m / 5:,.{digits}f} m"
+                box = QRectF(x + 4, 0, _LABEL_EVERY_PX, height - 2)
+                if x + 4 + painter.fontMetrics().horizontalAdvance(label) <= self.width():
+                    painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, label)
+
+
+def round_step(least: float) -> float:
+    """The smallest of 1, 2, 5 × 10^k that is not less."""
+    power = 10.0 ** math.floor(math.log10(least))
+    return next(step * power for step in (1.0, 2.0, 5.0, 10.0) if step * power >= least * 0.999)

@@ -1,0 +1,139 @@
+"""ScenePainter: everything that is painted in the image view, from the ground up."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from PySide6.QtCore import QCoreApplication, QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPen
+from PySide6.QtWidgets import QWidget
+
+from processing.errors import UserError
+from processing.image.attributes import ATTRIBUTES
+from processing.project.catalogue import Catalogue
+from processing.text import Language
+from widgets.image_view.feature_overlay import FeatureOverlay, paint_cross
+from widgets.image_view.mosaic import Mosaic
+from widgets.image_view.picture import Picture
+from widgets.image_view.shown_cursor import ShownCursor
+from widgets.image_view.tile_images import TileImages
+from widgets.image_view.viewport import Viewport
+from widgets.shared.feature_style import ACCENT, CURSOR_COLOUR
+from widgets.shared.sketch import Drawing
+from widgets.shared.view_settings import PointLook
+
+BACKGROUND = QColor("#14161a")
+_PLATE = QColor(16, 18, 22, 190)
+_INK = QColor("#d5dae0")
+
+
+@dataclass(frozen=True)
+class Overlays:
+    """What is painted over the tiles.
+
+    Attributes
+    ----------
+    box : QRectF or None
+        The rectangle that is being drawn, widget pixels.
+    refusal : UserError or None
+        Why there is no picture.
+    """
+
+    drawing: Drawing | None
+    catalogue: Catalogue
+    look: PointLook
+    cursor: ShownCursor
+    box: QRectF | None
+    refusal: UserError | None
+
+
+class ScenePainter:
+    """Paints a view.
+
+    Parameters
+    ----------
+    view : QWidget
+    language : Language
+        Of what comes from below Qt.
+    """
+
+    def __init__(
+        self, view: QWidget, images: TileImages, features: FeatureOverlay, language: Language
+    ) -> None:
+        self._view = view
+        self._images = images
+        self._mosaic = Mosaic(images)
+        self._features = features
+        self._language: Language = language
+
+    def paint(self, picture: Picture | None, viewport: Viewport, overlays: Overlays) -> bool:
+        """Paint everything; says whether the tiles are as sharp as they will be."""
+        painter = QPainter(self._view)
+        painter.fillRect(self._view.rect(), BACKGROUND)
+        refusal, is_sharp = overlays.refusal, False
+        if picture is not None:
+            painter.setClipRect(QRectF(0, viewport.top, viewport.width, viewport.height))
+            is_sharp = self._mosaic.paint(painter, picture, viewport)
+            self._paint_over(painter, picture, viewport, overlays)
+            self._paint_line(painter, self._described(picture, viewport, overlays.look))
+            refusal = self._images.refusal
+        if refusal is not None:
+            self._paint_refusal(painter, refusal)
+        painter.end()
+        return is_sharp
+
+    def _paint_over(
+        self, painter: QPainter, picture: Picture, viewport: Viewport, overlays: Overlays
+    ) -> None:
+        drawing, catalogue = overlays.drawing, overlays.catalogue
+        self._features.paint(painter, viewport, catalogue, drawing)
+        if drawing is not None:
+            self._features.paint_sketch(
+                painter, viewport, picture, catalogue=catalogue, drawing=drawing
+            )
+        spot, before = overlays.cursor.spot, overlays.cursor.before
+        if spot is not None:
+            x, y = viewport.x_of(spot[0]), viewport.y_of(spot[1])
+            trail = None if before is None else (viewport.x_of(before[0]), viewport.y_of(before[1]))
+            paint_cross(painter, x, y, trail, CURSOR_COLOUR)
+        if overlays.box is not None:
+            fill = QColor(ACCENT)
+            fill.setAlpha(40)
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=False)
+            painter.setPen(QPen(ACCENT, 1.0, Qt.PenStyle.DashLine))
+            painter.setBrush(fill)
+            painter.drawRect(overlays.box)
+
+    def _described(self, picture: Picture, viewport: Viewport, look: PointLook) -> str:
+        attribute = ATTRIBUTES.get(look.attribute)
+        row_m = picture.lay.length_m / max(picture.size[0], 1)
+        scale = QCoreApplication.translate("ScenePainter", "1 px = {metres:.3f} m").format(
+            metres=row_m / viewport.zoom_u
+        )
+        words = (
+            picture.drive.info.name,
+            picture.image.kind.title.spoken(self._language),
+            "" if attribute is None else attribute.title.spoken(self._language),
+            scale,
+        )
+        return "  ·  ".join(word for word in words if word)
+
+    def _paint_line(self, painter: QPainter, line: str) -> None:
+        clip = painter.clipBoundingRect()
+        room = clip.width() - 32
+        metrics = painter.fontMetrics()
+        shown = metrics.elidedText(line, Qt.TextElideMode.ElideRight, int(room))
+        width, height = metrics.horizontalAdvance(shown), metrics.height()
+        plate = QRectF(8, clip.bottom() - height - 12, width + 16, height + 4)
+        painter.fillRect(plate, _PLATE)
+        painter.setPen(_INK)
+        painter.drawText(QPointF(16, plate.bottom() - 2 - metrics.descent()), shown)
+
+    def _paint_refusal(self, painter: QPainter, refusal: UserError) -> None:
+        what, remedy = (part.spoken(self._language) for part in (refusal.what, refusal.remedy))
+        room = QRectF(self._view.rect()).adjusted(24, 24, -24, -24)
+        flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
+        box = painter.boundingRect(room, int(flags), f"{what}\n{remedy}")
+        painter.fillRect(box.adjusted(-12, -8, 12, 8), _PLATE)
+        painter.setPen(_INK)
+        painter.drawText(room, int(flags), f"{what}\n{remedy}")

@@ -1,0 +1,47 @@
+"""ShownCursor: where the shared cursor is in the picture, and where it was before."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from widgets.image_view.picture import Picture
+from widgets.shared.cursor import Place
+
+Spot = tuple[float, float]
+
+NEAR_M = 1.0
+"""How far the cursor may be from the point of the drive that stands for it."""
+
+
+class ShownCursor:
+    """Finds places in the picture; remembers the last two of the cursor."""
+
+    def __init__(self) -> None:
+        self.spot: Spot | None = None
+        self.before: Spot | None = None
+
+    def move_to(self, picture: Picture | None, place: Place | None) -> Spot | None:
+        """Where the cursor is now, picture coordinates; None when it isn't in the picture."""
+        spot = None if picture is None or place is None else self.find(picture, place)
+        self.before, self.spot = self.spot, spot
+        return spot
+
+    def forget_trail(self) -> None:
+        """Another picture is shown; where the cursor was in the one before means nothing."""
+        self.before = None
+
+    @staticmethod
+    def find(picture: Picture, place: Place) -> Spot | None:
+        """Picture coordinates of a place; None when no point of the drive is near."""
+        measured, drive = place.measured, picture.drive
+        if measured is not None and measured.drive == drive.id:
+            point = measured.point if 0 <= measured.point < drive.count else -1
+        else:
+            point = drive.nearest_point(np.array(place.xyz), NEAR_M)
+        if point < 0:
+            return None
+        rows, columns = picture.image.pixel_of(np.array([point]))
+        if rows[0] < 0:
+            return None
+        u, v = picture.places(rows, columns.astype(np.int64))[0].tolist()
+        return u, v

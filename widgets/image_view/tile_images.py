@@ -1,0 +1,224 @@
+"""TileImages: tiles as pictures that can be painted at once; what is missing is asked for.
+
+Painting never computes points: a tile that isn't there is requested from the loader, and
+``changed`` tells when it has come. Until then the painter shows an older or a coarser one.
+"""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtGui import QColor, QImage
+
+from processing.errors import UserError
+from processing.image.kinds import ImageKind
+from processing.image.tile_cache import TileCache, TilePixels, TileRequest
+from processing.image.tiles import TileKey
+from widgets.image_view.picture import Picture
+from widgets.shared.feature_style import ACCENT
+from widgets.shared.view_settings import PointLook
+
+MOST_BYTES = 192 * 2**20
+THINNINGS = (1, 2, 4, 8)
+"""How many columns of a tile may become one; a street is some six times denser across."""
+
+_TINT_SHARE = 0.65
+
+_Slot = tuple[str, ImageKind, TileKey, int]
+
+
+@dataclass(frozen=True)
+class _Made:
+    """A picture of a tile and what it was made for."""
+
+    token: tuple[object, ...]
+    image: QImage
+
+
+class TileImages(QObject):
+    """Pictures of tiles, the least used thrown away; lives on the window's thread.
+
+    Parameters
+    ----------
+    tiles : TileCache
+        Loads and colours tiles in its own threads.
+    limit_bytes : int
+        What the pictures may hold together.
+    """
+
+    changed = Signal()
+    _arrived = Signal(object, object)  # TileRequest, TilePixels; sent by a loader's thread
+
+    def __init__(self, tiles: TileCache, *, limit_bytes: int = MOST_BYTES) -> None:
+        super().__init__()
+        self._tiles = tiles
+        self._limit_bytes = limit_bytes
+        self._picture: Picture | None = None
+        self._look = PointLook()
+        self._made: OrderedDict[_Slot, _Made] = OrderedDict()
+        self._bytes = 0
+        self._chosen = np.empty(0, np.int64)
+        self._age = 0
+        self._is_complete = False
+        self._version = 0
+        self._arrived.connect(self._on_arrived, Qt.ConnectionType.QueuedConnection)
+
+    @property
+    def refusal(self) -> UserError | None:
+        """Why the drive can't be shown by the attribute, once that is known."""
+        if self._picture is None:
+            return None
+        return self._tiles.refusal(self._picture.drive.id, self._look.attribute)
+
+    @property
+    def version(self) -> int:
+        """Counts whenever a picture is made."""
+        return self._version
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether all tiles asked for last were there, in the look of now."""
+        return self._is_complete
+
+    def show(self, picture: Picture | None, look: PointLook) -> None:
+        """Make pictures of this image in this look from now on."""
+        self._picture, self._look = picture, look
+
+    def tint(self, points: NDArray[np.int64]) -> None:
+        """Mark points of the drive shown, (n,) sorted."""
+        if points.size or self._chosen.size:
+            self._chosen = points
+            self._age += 1
+
+    def make_anew(self) -> None:
+        """What tiles show has changed; the old pictures stay until the new ones are there."""
+        self._age += 1
+
+    def forget(self) -> None:
+        """Drop all pictures."""
+        self._made.clear()
+        self._bytes = 0
+
+    def images(self, keys: Sequence[TileKey], thinning: int = 1) -> dict[TileKey, QImage]:
+        """Pictures of tiles as far as there are any; the rest is asked for, the first ones first.
+
+        Parameters
+        ----------
+        thinning : int
+            So many columns of a tile become one, by their mean.
+        """
+        picture = self._picture
+        if picture is None:
+            return {}
+        found: dict[TileKey, QImage] = {}
+        missing: list[TileRequest] = []
+        for key in keys:
+            request = self._request_for(picture, key)
+            slot = (picture.drive.id, picture.image.kind, key, thinning)
+            made = self._made.get(slot)
+            if made is not None and made.token == self._token(request):
+                self._made.move_to_end(slot)
+            else:
+                pixels = self._tiles.get(request)
+                if pixels is None:
+                    missing.append(request)
+                else:
+                    made = self._keep(slot, request, self._drawn(picture, pixels))
+            if made is not None:
+                found[key] = made.image
+        self._is_complete = not missing
+        self._tiles.keep_only(self._tell, frozenset(missing))
+        for request in reversed(missing):  # the loader serves the newest first
+            self._tiles.request(request, self._tell)
+        return found
+
+    def available(self, key: TileKey) -> QImage | None:
+        """The picture of a tile if there is one; asks for nothing."""
+        picture = self._picture
+        if picture is None:
+            return None
+        for thinning in THINNINGS:
+            made = self._made.get((picture.drive.id, picture.image.kind, key, thinning))
+            if made is not None:
+                return made.image
+        return None
+
+    def _tell(self, request: TileRequest, pixels: TilePixels) -> None:
+        self._arrived.emit(request, pixels)
+
+    def _on_arrived(self, request: TileRequest, pixels: TilePixels) -> None:
+        picture = self._picture
+        if picture is not None and request == self._request_for(picture, request.key):
+            slot = (picture.drive.id, picture.image.kind, request.key, 1)
+            self._keep(slot, request, self._drawn(picture, pixels))
+            self.changed.emit()
+
+    def _request_for(self, picture: Picture, key: TileKey) -> TileRequest:
+        look = self._look
+        ends = look.low_percent, look.high_percent
+        return TileRequest(picture.drive.id, picture.image.kind, key, look.attribute, *ends)
+
+    def _token(self, request: TileRequest) -> tuple[object, ...]:
+        return request.attribute, request.low_percent, request.high_percent, self._age
+
+    def _drawn(self, picture: Picture, pixels: TilePixels) -> QImage:
+        colours = pixels.colours
+        if self._chosen.size:
+            colours = tinted(pixels, self._chosen)
+        return as_image(picture.laid(colours))
+
+    def _keep(self, slot: _Slot, request: TileRequest, whole: QImage) -> _Made:
+        made = _Made(self._token(request), _thinned(whole, slot, self._picture))
+        before = self._made.pop(slot, None)
+        self._bytes += made.image.sizeInBytes() - (before.image.sizeInBytes() if before else 0)
+        self._made[slot] = made
+        self._version += 1
+        while self._bytes > self._limit_bytes and len(self._made) > 1:
+            self._bytes -= self._made.popitem(last=False)[1].image.sizeInBytes()
+        return made
+
+
+def as_image(pixels: NDArray[np.uint8]) -> QImage:
+    """(h, w, 3) colours as a picture that owns its memory."""
+    height, width = pixels.shape[:2]
+    packed = np.full((height, width, 4), 255, np.uint8)
+    packed[..., :3] = pixels[..., ::-1]  # blue first, as 32-bit colours lie in memory
+    return QImage(packed.data, width, height, 4 * width, QImage.Format.Format_RGB32).copy()
+
+
+def tinted(pixels: TilePixels, chosen: NDArray[np.int64]) -> NDArray[np.uint8]:
+    """Colours of a tile with the chosen points, (n,) sorted, in the accent colour."""
+    places = np.searchsorted(chosen, pixels.points)
+    is_chosen = chosen[np.minimum(places, chosen.size - 1)] == pixels.points
+    if not is_chosen.any():
+        return pixels.colours
+    colours = pixels.colours.copy()
+    accent = np.array(_rgb(ACCENT)) * _TINT_SHARE
+    colours[is_chosen] = (colours[is_chosen] * (1 - _TINT_SHARE) + accent).astype(np.uint8)
+    return colours
+
+
+def _rgb(colour: QColor) -> tuple[int, int, int]:
+    return colour.red(), colour.green(), colour.blue()
+
+
+def _thinned(image: QImage, slot: _Slot, picture: Picture | None) -> QImage:
+    thinning = slot[3]
+    if thinning == 1 or picture is None:
+        return image
+    width, height = image.width(), image.height()
+    if picture.rows_go_right:
+        height = -(-height // thinning)
+    else:
+        width = -(-width // thinning)
+    return image.scaled(
+        width,
+        height,
+        Qt.AspectRatioMode.IgnoreAspectRatio,
+        Qt.TransformationMode.SmoothTransformation,
+    )

@@ -1,0 +1,391 @@
+"""ImageView: the 2D view in which every laser point is a pixel."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import QEvent, QPointF, Qt, QTimer, Signal
+from PySide6.QtGui import (
+    QKeyEvent,
+    QMouseEvent,
+    QPaintEvent,
+    QResizeEvent,
+    QWheelEvent,
+)
+from PySide6.QtWidgets import QWidget
+from typing_extensions import override
+
+from processing.errors import UserError
+from processing.image.tile_cache import TileCache
+from processing.text import Language
+from widgets.image_view.edges import Edges
+from widgets.image_view.feature_overlay import FeatureOverlay
+from widgets.image_view.feature_places import FeaturePlaces
+from widgets.image_view.gesture import Gesture
+from widgets.image_view.hit_finder import HitFinder, place_of, point_under
+from widgets.image_view.navigation import Navigation, viewport_on
+from widgets.image_view.picture import Picture
+from widgets.image_view.scene_painter import Overlays, ScenePainter
+from widgets.image_view.shown_cursor import ShownCursor
+from widgets.image_view.tile_images import TileImages
+from widgets.image_view.viewport import Viewport
+from widgets.mouse_tools.mouse_tool import MouseTool
+from widgets.shared.cursor import Place
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+
+_SEARCH_S = 0.008
+_MANY_FEATURES = 1_000
+_MARGIN_PX = 24.0
+
+
+class ImageView(QWidget):
+    """Paints a drive's point-cloud image with the map on it; every pixel is an exact coordinate.
+
+    The street runs from left to right, the left side of the drive is up.
+
+    Parameters
+    ----------
+    source : MapSource
+    shared : SharedState
+    tiles : TileCache
+    language : Language
+        Of names that come from below Qt: kinds of image, attributes, refusals.
+
+    Signals
+    -------
+    open_requested, import_requested
+        The buttons of the empty view.
+    sharpened
+        The last tile that was missing in the window has come and is painted.
+    features_placed
+        Every vertex of another drive has found its point of this one, or none.
+    """
+
+    open_requested = Signal()
+    import_requested = Signal()
+    sharpened = Signal()
+    features_placed = Signal()
+
+    def __init__(
+        self,
+        source: MapSource,
+        shared: SharedState,
+        tiles: TileCache,
+        parent: QWidget | None = None,
+        *,
+        language: Language = "en",
+    ) -> None:
+        super().__init__(parent)
+        self._source = source
+        self._shared = shared
+        self._picture: Picture | None = None
+        self._refusal: UserError | None = None
+        self._is_sharp = False
+        self._viewport = Viewport()
+        self._images = TileImages(tiles)
+        self._places = FeaturePlaces(source)
+        self._overlay = FeatureOverlay(self._places)
+        self._gesture = Gesture(HitFinder(self._overlay), shared.cursor)
+        self._navigation = Navigation()
+        self._cursor = ShownCursor()
+        self._scene = ScenePainter(self, self._images, self._overlay, language)
+        self._edges = Edges(self, tiles)
+        self._search = QTimer(self)
+        self._search.setInterval(0)
+        self._search.timeout.connect(self._on_search_timeout)
+        self.setMouseTracking(True)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setMinimumSize(160, 120)
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
+        self._edges.empty.open_requested.connect(self.open_requested)
+        self._edges.empty.import_requested.connect(self.import_requested)
+        self._edges.minimap.place_chosen.connect(self._on_minimap_place_chosen)
+        self._images.changed.connect(self.update)
+        self._listen()
+        self._places.read_all()
+        self._on_settings_image_changed()
+
+    def _listen(self) -> None:
+        shared = self._shared
+        shared.cursor.moved.connect(self._on_cursor_moved)
+        shared.selection.features_changed.connect(self._on_selection_features_changed)
+        shared.selection.points_changed.connect(self._on_selection_points_changed)
+        shared.map_changes.features_changed.connect(self._on_map_features_changed)
+        shared.map_changes.drives_changed.connect(self._on_map_drives_changed)
+        shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
+        shared.view_settings.look_changed.connect(self._on_settings_look_changed)
+        shared.view_settings.image_changed.connect(self._on_settings_image_changed)
+        shared.view_settings.hidden_kinds_changed.connect(self._on_settings_hidden_kinds_changed)
+        shared.sketch.changed.connect(self.update)
+
+    # What others ask.
+
+    @property
+    def viewport(self) -> Viewport:
+        """What is shown, and how large."""
+        return self._viewport
+
+    @property
+    def picture(self) -> Picture | None:
+        """What is shown; None while the view is empty."""
+        return self._picture
+
+    def set_mouse_tool(self, tool: MouseTool | None) -> None:
+        """Tell this tool from now on what the mouse does; None: a click puts the cursor."""
+        self._gesture.drop()
+        self._gesture.tool = tool
+        self.update()
+
+    def show_everything(self) -> None:
+        """Show the whole drive."""
+        if self._picture is not None:
+            self._look_through(self._viewport.with_everything(self._picture.stretch))
+
+    def show_one_to_one(self) -> None:
+        """Show one pixel of the image on one of the screen."""
+        self._look_through(self._viewport.one_to_one())
+
+    def zoom_by(self, factor: float) -> None:
+        """Zoom about the middle."""
+        viewport = self._viewport
+        middle = viewport.width / 2, viewport.top + viewport.height / 2
+        self._look_through(viewport.zoomed(factor, *middle))
+
+    def center_on(self, place: Place) -> None:
+        """Put a place in the middle; without effect when no point of the drive is near it."""
+        found = None if self._picture is None else self._cursor.find(self._picture, place)
+        if found is not None:
+            self._look_through(self._viewport.centred_on(*found))
+
+    def center_on_selection(self) -> None:
+        """Put the chosen features in the middle, or the cursor when none is chosen."""
+        chosen = [self._places.get(id_) for id_ in self._shared.selection.features]
+        bounds = [one.bounds for one in chosen if one is not None and np.isfinite(one.bounds[0])]
+        if bounds:
+            left, top = np.min([one[:2] for one in bounds], axis=0)
+            right, bottom = np.max([one[2:] for one in bounds], axis=0)
+            self._look_through(self._viewport.holding(left, top, right, bottom))
+        elif self._shared.cursor.place is not None:
+            self.center_on(self._shared.cursor.place)
+
+    def position_of(self, place: Place) -> QPointF | None:
+        """Where a place is in this widget; None when no point of the drive is near it."""
+        found = None if self._picture is None else self._cursor.find(self._picture, place)
+        if found is None:
+            return None
+        return QPointF(self._viewport.x_of(found[0]), self._viewport.y_of(found[1]))
+
+    # Events.
+
+    @override
+    def paintEvent(self, event: QPaintEvent) -> None:
+        overlays = Overlays(
+            drawing=self._shared.sketch.drawing,
+            catalogue=self._source.catalogue(),
+            look=self._shared.view_settings.look,
+            cursor=self._cursor,
+            box=self._gesture.box,
+            refusal=self._refusal,
+        )
+        was_sharp = self._is_sharp
+        self._is_sharp = self._scene.paint(self._picture, self._viewport, overlays)
+        if self._is_sharp and not was_sharp:
+            self.sharpened.emit()
+
+    @override
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        was_sized = self._viewport.width > 1
+        viewport = self._edges.lay_out(self._viewport)
+        self._look_through(viewport if was_sized else viewport.with_start())
+
+    @override
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        if self._picture is not None:
+            self._look_through(self._navigation.wheeled(self._viewport, event))
+            self._hover(event.position())
+        event.accept()
+
+    @override
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        picture, position = self._picture, event.position()
+        if picture is None:
+            return
+        if self._navigation.starts_with(event.button()):
+            self._navigation.begin(position)
+            self.setCursor(Qt.CursorShape.ClosedHandCursor)
+        elif event.button() == Qt.MouseButton.LeftButton:
+            self._gesture.press(picture, self._viewport, position, event.modifiers())
+        elif event.button() == Qt.MouseButton.RightButton:
+            self._gesture.complete()
+
+    @override
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        picture, position = self._picture, event.position()
+        if picture is None:
+            return
+        if self._navigation.is_panning:
+            self._look_through(self._navigation.dragged(self._viewport, position))
+            return
+        self._hover(position)
+        had_box = self._gesture.box is not None
+        self._gesture.move(picture, self._viewport, position, event.modifiers())
+        if had_box or self._gesture.box is not None:
+            self.update()
+
+    @override
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        if self._navigation.is_panning:
+            self._navigation.end()
+            self._show_mouse()
+        elif self._picture is not None and event.button() == Qt.MouseButton.LeftButton:
+            self._gesture.release(
+                self._picture, self._viewport, event.position(), event.modifiers()
+            )
+            self.update()
+
+    @override
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        if event.button() == Qt.MouseButton.LeftButton:
+            self._gesture.complete()
+
+    @override
+    def leaveEvent(self, event: QEvent) -> None:
+        self._shared.cursor.hover_over(None)
+
+    @override
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        key = event.key()
+        moved = None if self._picture is None else self._navigation.keyed(self._viewport, key)
+        if moved is not None:
+            self._look_through(moved)
+        elif key == Qt.Key.Key_Space:
+            self._navigation.is_space_down = True
+            self._show_mouse()
+        elif key == Qt.Key.Key_Home:
+            self.show_everything()
+        elif key == Qt.Key.Key_F:
+            self.center_on_selection()
+        elif self._gesture.key(key):
+            self.update()
+        else:
+            super().keyPressEvent(event)
+
+    @override
+    def keyReleaseEvent(self, event: QKeyEvent) -> None:
+        if event.key() == Qt.Key.Key_Space and not event.isAutoRepeat():
+            self._navigation.is_space_down = False
+            self._show_mouse()
+        else:
+            super().keyReleaseEvent(event)
+
+    # What others tell.
+
+    def _on_cursor_moved(self, place: Place) -> None:
+        found = self._cursor.move_to(self._picture, place)
+        if found is not None and not self._viewport.shows(*found, _MARGIN_PX):
+            self._look_through(self._viewport.centred_on(*found))
+        self.update()
+
+    def _on_selection_features_changed(self, ids: frozenset[str]) -> None:
+        self._overlay.selected = ids
+        self.update()
+
+    def _on_selection_points_changed(self) -> None:
+        self._tint()
+        self.update()
+
+    def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
+        if len(ids) > _MANY_FEATURES:
+            self._places.read_all()
+        else:
+            self._places.read(ids)
+        self._search_if_needed()
+        self.update()
+
+    def _on_map_drives_changed(self) -> None:
+        self._places.read_all()
+        self._on_settings_image_changed()
+
+    def _on_map_drive_columns_changed(self, drive: str) -> None:
+        if self._picture is not None and self._picture.drive.id == drive:
+            self._images.make_anew()
+            self._edges.minimap.make_anew()
+            self.update()
+
+    def _on_settings_look_changed(self) -> None:
+        look = self._shared.view_settings.look
+        self._images.show(self._picture, look)
+        self._edges.minimap.show_picture(self._picture, look)
+        self.update()
+
+    def _on_settings_image_changed(self) -> None:
+        before = self._picture
+        self._refusal = None
+        try:
+            self._picture = self._chosen_picture()
+        except UserError as error:  # told where the picture would be
+            self._picture, self._refusal = None, error
+        picture, look = self._picture, self._shared.view_settings.look
+        self._images.show(picture, look)
+        self._edges.show_picture(picture, look, is_refused=self._refusal is not None)
+        self._places.show(picture)
+        self._tint()
+        self._cursor.move_to(picture, self._shared.cursor.place)
+        self._cursor.forget_trail()
+        self._show_mouse()
+        if picture is not None:
+            self._look_through(viewport_on(picture, before, self._viewport))
+        self._search_if_needed()
+        self.update()
+
+    def _on_settings_hidden_kinds_changed(self) -> None:
+        self._overlay.hidden_kinds = self._shared.view_settings.hidden_kinds
+        self.update()
+
+    def _on_minimap_place_chosen(self, u: float) -> None:
+        self._look_through(self._viewport.centred_on(u, self._viewport.centre[1]))
+
+    def _on_search_timeout(self) -> None:
+        if self._places.search(_SEARCH_S):
+            self.update()
+        self._search_if_needed()
+        if not self._places.is_searching:
+            self.features_placed.emit()
+
+    # What is done in more than one place.
+
+    def _chosen_picture(self) -> Picture | None:
+        settings = self._shared.view_settings
+        drives = {drive.id: drive for drive in self._source.drives()}
+        drive = drives.get(settings.drive_id)
+        return None if drive is None else Picture.of(drive, settings.image_kind)
+
+    def _look_through(self, viewport: Viewport) -> None:
+        self._viewport = viewport
+        self._edges.show_part(self._picture, viewport)
+        self.update()
+
+    def _hover(self, position: QPointF) -> None:
+        picture = self._picture
+        point = -1 if picture is None else point_under(picture, self._viewport, position)
+        place = None if picture is None or point < 0 else place_of(picture, point)
+        self._shared.cursor.hover_over(place)
+
+    def _tint(self) -> None:
+        picture = self._picture
+        chosen = self._shared.selection.points
+        if picture is not None:
+            self._images.tint(chosen.get(picture.drive.id, np.empty(0, np.int64)))
+
+    def _search_if_needed(self) -> None:
+        if self._places.is_searching:
+            self._search.start()
+        else:
+            self._search.stop()
+
+    def _show_mouse(self) -> None:
+        shape = Qt.CursorShape.ArrowCursor
+        if self._picture is not None:
+            is_space = self._navigation.is_space_down
+            shape = Qt.CursorShape.OpenHandCursor if is_space else Qt.CursorShape.CrossCursor
+        self.setCursor(shape)

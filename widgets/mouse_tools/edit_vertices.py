@@ -1,0 +1,116 @@
+"""EditVertices: vertices are dragged to other measured points, put in and taken out."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject
+from typing_extensions import override
+
+from processing.project.change import Change, Replacement
+from processing.project.feature import Feature
+from processing.text import Text
+from widgets.mouse_tools.drawing_tool import LEAST_VERTICES, NO_POINT, TOO_FEW
+from widgets.mouse_tools.mouse_tool import Hit, MouseTool
+from widgets.mouse_tools.removal import removal_of
+from widgets.mouse_tools.vertex_drag import VertexDrag
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+
+MOVE_VERTEX = Text("Move a vertex", "頂点の移動")
+INSERT_VERTEX = Text("Insert a vertex", "頂点の挿入")
+REMOVE_VERTEX = Text("Remove a vertex", "頂点の削除")
+
+
+class EditVertices(MouseTool):
+    """A press on a vertex takes hold of it, a press on a segment puts a vertex in.
+
+    Parameters
+    ----------
+    source : MapSource
+    shared : SharedState
+    """
+
+    def __init__(
+        self, source: MapSource, shared: SharedState, parent: QObject | None = None
+    ) -> None:
+        super().__init__(parent)
+        self._source = source
+        self._selection = shared.selection
+        self._sketch = shared.sketch
+        self._drag: VertexDrag | None = None
+        self._under_mouse = Hit(None)
+        self._is_leaving = False
+
+    @override
+    def press(self, hit: Hit) -> None:
+        self._under_mouse = hit
+        feature = self._source.feature(hit.feature) if hit.feature else None
+        self._selection.choose_features(frozenset((feature.id,) if feature else ()))
+        if feature is None:
+            return
+        vertex = hit.as_vertex()
+        if hit.vertex >= 0:
+            self._take(VertexDrag.of_vertex(feature, hit.vertex))
+        elif hit.segment >= 0 and vertex is None:
+            self.told.emit(NO_POINT)
+        elif hit.segment >= 0 and vertex is not None:
+            self._take(VertexDrag.of_segment(feature, hit.segment, vertex))
+
+    @override
+    def move(self, hit: Hit) -> None:
+        self._under_mouse = hit
+        vertex = hit.as_vertex()
+        if self._drag is not None and vertex is not None:
+            self._take(self._drag.moved_to(vertex))
+
+    @override
+    def release(self, hit: Hit) -> None:
+        drag = self._drag
+        if drag is None:
+            return
+        self.put_down()
+        if hit.place is None and drag.vertices != drag.before.vertices:
+            self.told.emit(NO_POINT)
+        elif not drag.change.is_empty:
+            is_new = len(drag.vertices) > len(drag.before.vertices)
+            self.change_requested.emit(INSERT_VERTEX if is_new else MOVE_VERTEX, drag.change)
+
+    @override
+    def delete(self) -> None:
+        hit = self._under_mouse
+        feature = self._source.feature(hit.feature) if hit.feature else None
+        if self._drag is not None:
+            return
+        if feature is not None and hit.vertex >= 0:
+            self._remove_vertex(feature, hit.vertex)
+            return
+        chosen = [self._source.feature(id_) for id_ in sorted(self._selection.features)]
+        features = tuple(feature for feature in chosen if feature is not None)
+        if features:
+            self.change_requested.emit(*removal_of(features))
+
+    @override
+    def leave(self) -> None:
+        if self._drag is not None:
+            self.put_down()
+        elif not self._is_leaving:
+            self._is_leaving = True
+            self.finished.emit()
+            self._is_leaving = False
+
+    @override
+    def put_down(self) -> None:
+        self._drag = None
+        self._sketch.show(None)
+
+    def _take(self, drag: VertexDrag) -> None:
+        self._drag = drag
+        self._sketch.show(drag.drawing)
+
+    def _remove_vertex(self, feature: Feature, index: int) -> None:
+        if len(feature.vertices) <= LEAST_VERTICES[feature.geometry]:
+            self.told.emit(TOO_FEW[feature.geometry])
+            return
+        vertices = (*feature.vertices[:index], *feature.vertices[index + 1 :])
+        self._under_mouse = Hit(None)  # its vertex numbers no longer hold
+        change = Change(replaced=(Replacement(feature, feature.with_vertices(vertices)),))
+        self.change_requested.emit(REMOVE_VERTEX, change)

@@ -1,0 +1,102 @@
+"""FeatureStyle: how a feature looks, the same in every view."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor, QPen
+
+from processing.project.catalogue import Catalogue
+from processing.project.feature import Feature, Status
+
+ACCENT = QColor("#4da3ff")
+"""What is chosen, and what the mouse is about to make."""
+
+CURSOR_COLOUR = QColor("#ffd23f")
+
+_HALO_ALPHA = 190
+_UNKNOWN_KIND = "#d0d0d0"
+_REJECTED = "#8a8a8a"
+_PLAIN_PX = 1.75
+_CHOSEN_PX = 2.5
+_HALO_EXTRA_PX = 2.5
+
+
+@dataclass(frozen=True)
+class FeatureStyle:
+    """Colour, width and pattern of a feature.
+
+    Attributes
+    ----------
+    colour : str
+        ``#rrggbb``.
+    width_px : float
+        On the screen, at any zoom.
+    is_dashed : bool
+        Nobody has agreed to it yet.
+    is_shown : bool
+        Rejected features are not.
+    has_vertices : bool
+        Whether vertices are marked by squares.
+    halo_alpha : int
+        0 to 255; candidates with more confidence have a stronger halo.
+    symbol : str
+        Of a point feature, as the catalogue names it.
+    """
+
+    colour: str
+    width_px: float = _PLAIN_PX
+    is_dashed: bool = False
+    is_shown: bool = True
+    has_vertices: bool = False
+    halo_alpha: int = _HALO_ALPHA
+    symbol: str = ""
+
+    @property
+    def rgb(self) -> tuple[float, float, float]:
+        """The colour as three shares of 1."""
+        colour = QColor(self.colour)
+        return colour.redF(), colour.greenF(), colour.blueF()
+
+    def pen(self) -> QPen:
+        """The line itself."""
+        pen = QPen(QColor(self.colour), self.width_px)
+        pen.setCosmetic(True)
+        pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+        if self.is_dashed:
+            pen.setDashPattern([5.0, 3.0])
+        return pen
+
+    def halo_pen(self) -> QPen:
+        """The dark line below it, by which it reads on bright and on dark points."""
+        pen = QPen(QColor(0, 0, 0, self.halo_alpha), self.width_px + _HALO_EXTRA_PX)
+        pen.setCosmetic(True)
+        pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+        return pen
+
+
+def colour_of_kind(catalogue: Catalogue, kind: str) -> str:
+    """``#rrggbb`` of a kind; a neutral grey for one that the catalogue doesn't know."""
+    return catalogue[kind].colour if kind in catalogue else _UNKNOWN_KIND
+
+
+def style_of(catalogue: Catalogue, feature: Feature, *, is_selected: bool) -> FeatureStyle:
+    """The look of a feature."""
+    is_candidate = feature.status is Status.CANDIDATE
+    is_rejected = feature.status is Status.REJECTED
+    confidence = min(max(feature.provenance.confidence, 0.0), 1.0)
+    return FeatureStyle(
+        colour=_REJECTED if is_rejected else colour_of_kind(catalogue, feature.kind),
+        width_px=_CHOSEN_PX if is_selected else _PLAIN_PX,
+        is_dashed=is_candidate,
+        is_shown=not is_rejected,
+        has_vertices=is_selected,
+        halo_alpha=round(70 + 120 * confidence) if is_candidate else _HALO_ALPHA,
+        symbol=catalogue[feature.kind].symbol if feature.kind in catalogue else "",
+    )
+
+
+def sketch_style(catalogue: Catalogue, kind: str) -> FeatureStyle:
+    """The look of what is being drawn."""
+    return FeatureStyle(colour_of_kind(catalogue, kind), width_px=_CHOSEN_PX, has_vertices=True)
