@@ -89,28 +89,30 @@ class _CentreFinder:
             return
         off_plane = np.linalg.lstsq(steady, local @ plane.normal)[0]
         self.times.append(middle)
-        self._rate_hz = fit.rate_hz
         self._centres.append(base + fit.centre @ plane.axes + off_plane[0] * plane.normal)
         self._velocities.append(fit.velocity @ plane.axes + off_plane[1] * plane.normal)
         same_side = not self._normals or self._normals[-1] @ plane.normal > 0
         self._normals.append(plane.normal if same_side else -plane.normal)
+        self._rate_hz = fit.rate_hz if same_side else -fit.rate_hz
 
     def trajectory(self, ends: tuple[float, float]) -> Trajectory:
         """All windows together, led on steadily to both ends of the recording."""
         times, centres = np.array(self.times), np.array(self._centres)
         normals = np.array(self._normals)
-        velocity = np.median(np.array(self._velocities), axis=0)
-        if times.size > 1:
-            first_velocity = (centres[1] - centres[0]) / (times[1] - times[0])
-            last_velocity = (centres[-1] - centres[-2]) / (times[-1] - times[-2])
-            velocity = (centres[-1] - centres[0]) / (times[-1] - times[0])
-        else:
-            first_velocity = last_velocity = velocity
-        before = centres[0] + (ends[0] - 1e-3 - times[0]) * first_velocity
-        after = centres[-1] + (ends[1] + 1e-3 - times[-1]) * last_velocity
-        times = np.concatenate([[ends[0] - 1e-3], times, [ends[1] + 1e-3]])
-        centres = np.vstack([before, centres, after])
-        normals = np.vstack([normals[:1], normals, normals[-1:]])
+        velocities = np.array(self._velocities)
+        # Each run of windows is led on to its ends: over a gap the vehicle may have stood.
+        gaps = np.flatnonzero(np.diff(times) > 3 * _EVERY_S)
+        first = np.concatenate([[0], gaps + 1])
+        last = np.concatenate([gaps, [times.size - 1]])
+        begins = np.concatenate([[ends[0] - 1e-3], times[first[1:]] - _EVERY_S])
+        stops = np.concatenate([times[last[:-1]] + _EVERY_S, [ends[1] + 1e-3]])
+        led_times = np.concatenate([begins, times, stops])
+        order = np.argsort(led_times)
+        led = np.concatenate([first, np.arange(times.size), last])[order]
+        times, since = led_times[order], led_times[order] - times[led]
+        centres = centres[led] + since[:, None] * _smoothed(velocities)[led]
+        normals = normals[led]
+        velocity = np.median(velocities, axis=0)
         angles = np.zeros((times.size, 3))
         angles[:, 2] = _headings_deg(times, centres, normals, velocity)
         return Trajectory(times, centres, angles, has_attitude=False)
@@ -132,6 +134,14 @@ class _CentreFinder:
             if near.coherence > _LEAST_COHERENCE:
                 return near
         return fit_rotation(flat, starts, moves=True, rates_hz=rates)
+
+
+def _smoothed(velocities: Floats) -> Floats:
+    """Medians of five neighbours: one short window tells a velocity badly."""
+    padded = np.pad(velocities, ((2, 2), (0, 0)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 5, axis=0)
+    median: Floats = np.median(windows, axis=2)
+    return median
 
 
 def _headings_deg(times: Floats, centres: Floats, normals: Floats, velocity: Floats) -> Floats:

@@ -22,7 +22,8 @@ LONGEST_MISSING_S = 1.0
 """Longer times without a point are a stop; shorter ones are pulses without return."""
 
 _LEAST_COHERENCE = 0.6
-_TIES_OF_ROUNDED_TIMES = 0.002
+# Fewer ties are returns that the file does not number well: they share a pulse.
+_TIES_OF_ROUNDED_TIMES = 0.15
 _STAGES = (16, 64, 256, 1024, 4096, 16384)
 
 
@@ -125,11 +126,11 @@ class PulseNumbering:
 def _is_same_pulse(points: PointColumns) -> NDArray[np.bool_]:
     """Whether a point is a later return of the pulse of the point before it."""
     same = np.zeros(points.count, dtype=np.bool_)
-    if points.count == 0 or points.number_of_returns.max() <= 1:
-        return same
+    later = np.flatnonzero(points.time[1:] == points.time[:-1]) + 1
     number, returns = points.return_number, points.number_of_returns
-    same[1:] = (number[1:] > number[:-1]) & (returns[1:] > 1) & (returns[:-1] > 1)
-    same[1:] &= points.time[1:] == points.time[:-1]
+    rises = (number[later] > number[later - 1]) & (returns[later] > 1) & (returns[later - 1] > 1)
+    is_copy = (points.xyz[later] == points.xyz[later - 1]).all(axis=1)
+    same[later] = rises | is_copy
     return same
 
 

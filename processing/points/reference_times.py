@@ -17,6 +17,7 @@ SEARCHED_SHARE = 0.2
 _LONG_CHORD_PULSES = 20
 _CLOSE_TURNS = 0.01
 _FAR_TURNS = 0.04
+_LEAST_MISS_TURNS = 0.003
 _MEDIAN_OVER = 31
 _LEAST_SHARE = 0.1
 
@@ -96,8 +97,9 @@ def repaired(
     Notes
     -----
     Crossings are compared with the prediction shifted by the running median of their differences.
-    One across a long chord may differ by 1 % of a turn, others by 4 %; else the prediction counts,
-    as it does where no crossing was found: the road is hidden, wet, or not in the recording.
+    One that differs by much more than they usually do, by 1 % of a turn across a long chord or by
+    4 % at most, does not count; then the prediction does, as it does where no crossing was found:
+    the road is hidden, wet, or not in the recording.
     """
     shift = (crossed - predicted) / period_s
     found = np.flatnonzero(np.isfinite(shift))
@@ -105,7 +107,9 @@ def repaired(
         return predicted.copy()
     usual = np.interp(np.arange(predicted.size), found, _running_median(shift[found]))
     miss = np.abs(shift - usual)
+    usual_miss = max(_LEAST_MISS_TURNS, 6.0 * float(np.median(miss[found])))
     allowed = np.where(chord > _LONG_CHORD_PULSES, _CLOSE_TURNS, _FAR_TURNS)
+    allowed = np.minimum(allowed, usual_miss)
     good = np.isfinite(shift) & (miss <= allowed)
     times: Floats = predicted + period_s * np.where(good, shift, usual)
     return times

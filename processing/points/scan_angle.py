@@ -97,7 +97,7 @@ def find_seen_spin(points: PointSource, poses: Poses) -> Spin | None:
     beams, window, time = _windows(points, poses)
     if time.size < 200:
         return None
-    plane = find_plane(beams, np.ones((time.size, 1)))
+    plane = find_plane(beams, np.ones((time.size, 1)), reference=np.zeros(3))
     if plane.flatness > _FLATTEST:
         return None
     flat = PlanePoints(plane.project(beams), time, window)

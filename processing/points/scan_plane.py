@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 _ROUNDS = 8
+_TRIED_PLANES = 200
+_CLEAR_MISS = 0.1
 _UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -41,42 +43,63 @@ class ScanPlane:
         return flat
 
 
-def find_plane(places: Floats, along: Floats, *, through_origin: bool = False) -> ScanPlane:
+def find_plane(places: Floats, along: Floats, *, reference: Floats | None = None) -> ScanPlane:
     """The plane of points that may move steadily along its normal.
 
     Parameters
     ----------
     places : (n, 3) float64
     along : (n, k) float64
-        What the plane may shift with, one column each: time, or membership of a window; it must
-        hold the constant unless ``through_origin``.
-    through_origin : bool
-        The plane does not shift.
+        What the plane may shift with, one column each: the constant, and time if it moves.
+    reference : (3,) float64, optional
+        A place near the plane, which decides where points on a line leave the plane open.
 
     Notes
     -----
-    Least squares with points weighted by 1 / distance², so that far ones don't rule, trimmed and
-    repeated.
+    1. Of many planes through three points, the one that most points lie on is the start: least
+       squares alone would take a wide road for the plane.
+    2. Least squares with points weighted by 1 / distance², so that far ones don't rule, trimmed and
+       repeated.
     """
-    spread = places - np.median(places, axis=0)
-    if through_origin:
-        spread = places
-    distance = np.maximum(np.linalg.norm(spread, axis=1), 0.5)
-    weight = 1.0 / distance**2
-    normal = _UP
-    miss = np.zeros(distance.size)
+    distance = np.maximum(np.linalg.norm(places - np.median(places, axis=0), axis=1), 0.5)
+    centred = places - along @ np.linalg.lstsq(along, places)[0]
+    normal = _normal_of_most(centred, distance)
+    offset = centred @ normal
+    miss = np.abs(offset - np.median(offset))
     for _ in range(_ROUNDS):
-        centred = places
-        if not through_origin:
-            normal_matrix = (along * weight[:, None]).T @ along
-            trend = np.linalg.lstsq(normal_matrix, (along * weight[:, None]).T @ places)[0]
-            centred = places - along @ trend
-        moments = (centred * weight[:, None]).T @ centred
-        normal = np.linalg.eigh(moments)[1][:, 0]
-        miss = np.abs(centred @ normal)
         limit = max(3.0 * float(np.median(miss)), 1e-3)
         weight = np.where(miss < limit, 1.0, (limit / np.maximum(miss, 1e-12)) ** 2) / distance**2
+        trend = np.linalg.lstsq(
+            (along * weight[:, None]).T @ along, (along * weight[:, None]).T @ places
+        )[0]
+        centred = places - along @ trend
+        moments = (centred * weight[:, None]).T @ centred
+        if reference is not None:
+            aside = reference - trend[0]
+            moments += 1e-6 * float(weight.sum()) * np.outer(aside, aside)
+        normal = np.linalg.eigh(moments)[1][:, 0]
+        miss = np.abs(centred @ normal)
     normal = normal if normal[np.argmax(np.abs(normal))] > 0 else -normal
+    return _with_axes(normal, float(np.median(miss / distance)))
+
+
+def _normal_of_most(centred: Floats, distance: Floats) -> Floats:
+    random = np.random.default_rng(0)
+    every = max(1, centred.shape[0] // 500)
+    some, reach = centred[::every], distance[::every]
+    corners = some[random.integers(0, some.shape[0], (_TRIED_PLANES, 3))]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    length = np.linalg.norm(normals, axis=1)
+    normals = normals[length > 1e-6] / length[length > 1e-6, None]
+    if normals.shape[0] == 0:
+        return _UP
+    offsets = some @ normals.T
+    misses = np.abs(offsets - np.median(offsets, axis=0)) / reach[:, None]
+    best: Floats = normals[np.argmin(np.minimum(misses, _CLEAR_MISS).mean(axis=0))]
+    return best
+
+
+def _with_axes(normal: Floats, flatness: float) -> ScanPlane:
     down = -_UP + normal * normal[2]
     steep = float(np.linalg.norm(down))
     knows_down = steep > 0.3
@@ -84,9 +107,4 @@ def find_plane(places: Floats, along: Floats, *, through_origin: bool = False) -
         down = np.cross(normal, [0.0, 1.0, 0.0])
         steep = float(np.linalg.norm(down))
     first = down / steep
-    return ScanPlane(
-        axes=np.stack([first, np.cross(normal, first)]),
-        normal=normal,
-        flatness=float(np.median(miss / distance)),
-        knows_down=knows_down,
-    )
+    return ScanPlane(np.stack([first, np.cross(normal, first)]), normal, flatness, knows_down)

@@ -27,7 +27,7 @@ class TurnPhase:
     turns : (k,) float64
         Turns of the mirror at the knots, rising; whole numbers where its angle is 0.
     rate_hz : float
-        Median rate, positive.
+        Mean rate, positive.
     coherence : float
         0..1, mean over the windows.
     """
@@ -134,5 +134,5 @@ def _phase_of(
     rising = np.concatenate([[True], np.diff(turns) > 0.5 * rate_hz * np.diff(knots)])
     knots, turns, coherences = knots[rising], turns[rising], coherences[rising]
     if knots.size > 1:
-        rate_hz = float(np.median(np.diff(turns) / np.diff(knots)))
+        rate_hz = float((turns[-1] - turns[0]) / (knots[-1] - knots[0]))
     return TurnPhase(knots, turns, rate_hz, float(np.mean(coherences)))

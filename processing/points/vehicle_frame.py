@@ -75,7 +75,7 @@ def _beams_kernel(
     last = pose_time.shape[0] - 2
     for i in range(time.shape[0]):
         if pose_time[min(j + 8, last)] < time[i]:
-            j = min(np.searchsorted(pose_time, time[i]), last)
+            j = min(max(np.searchsorted(pose_time, time[i]) - 1, 0), last)
         while j < last and pose_time[j + 1] < time[i]:
             j += 1
         share = (time[i] - pose_time[j]) / (pose_time[j + 1] - pose_time[j])
