@@ -24,6 +24,8 @@ _MOST_POINTS = 1_500
 _LEAST_POINTS = 200
 _FLATTEST = 0.05
 _LEAST_COHERENCE = 0.8
+_LESS_COHERENT = 0.03
+_STARTS_M = ((-1.5, 0.0), (0.0, 3.0), (0.0, -3.0))
 _READ_POINTS = 2_000_000
 
 
@@ -69,6 +71,7 @@ class _CentreFinder:
         self._centres: list[Floats] = []
         self._velocities: list[Floats] = []
         self._normals: list[Floats] = []
+        self._coherences: list[float] = []
         self._rate_hz: float | None = None
 
     def add(self, window: PointColumns) -> None:
@@ -85,10 +88,11 @@ class _CentreFinder:
         if plane.flatness > _FLATTEST:
             return
         fit = self._fitted(plane, local, time, middle, base)
-        if fit is None or fit.coherence < _LEAST_COHERENCE:
+        if fit.coherence < _LEAST_COHERENCE:
             return
         off_plane = np.linalg.lstsq(steady, local @ plane.normal)[0]
         self.times.append(middle)
+        self._coherences.append(fit.coherence)
         self._centres.append(base + fit.centre @ plane.axes + off_plane[0] * plane.normal)
         self._velocities.append(fit.velocity @ plane.axes + off_plane[1] * plane.normal)
         same_side = not self._normals or self._normals[-1] @ plane.normal > 0
@@ -119,10 +123,10 @@ class _CentreFinder:
 
     def _fitted(
         self, plane: ScanPlane, local: Floats, time: Floats, middle: float, base: Floats
-    ) -> RotationFit | None:
+    ) -> RotationFit:
         flat = PlanePoints(plane.project(local), time, np.zeros(time.size, dtype=np.int64))
         starts = [np.median(flat.place, axis=0)]
-        starts.append(starts[0] + np.array([-1.5, 0.0]))
+        starts += [starts[0] + np.array(step) for step in _STARTS_M]
         rates = None
         if self._rate_hz is not None:
             # The sense of the angle depends on the side the normal points to.
@@ -130,9 +134,10 @@ class _CentreFinder:
             rates = [self._rate_hz if same_side else -self._rate_hz]
             since = middle - self.times[-1]
             guess = self._centres[-1] + since * self._velocities[-1] - base
-            near = fit_rotation(flat, [plane.project(guess)], moves=True, rates_hz=rates)
-            if near.coherence > _LEAST_COHERENCE:
-                return near
+            if since < 3 * _EVERY_S:
+                near = fit_rotation(flat, [plane.project(guess)], moves=True, rates_hz=rates)
+                if near.coherence > np.median(self._coherences) - _LESS_COHERENT:
+                    return near
         return fit_rotation(flat, starts, moves=True, rates_hz=rates)
 
 
