@@ -1,0 +1,78 @@
+"""SceneHits: from pixels of the 3D view to hits that mouse tools understand."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QPointF, QRectF, Qt
+
+from widgets.mouse_tools.mouse_tool import Boxed, Hit
+from widgets.scene_view.map.feature_hits import are_within, feature_at, features_within
+from widgets.scene_view.map.feature_shapes import FlatShapes, flattened
+from widgets.scene_view.points.point_finder import FoundPoint, PointFinder
+from widgets.scene_view.points.scene_tile import DrawnTile
+from widgets.scene_view.projection import Projection
+
+Floats = NDArray[np.float64]
+
+
+class SceneHits:
+    """What is in the picture now; the view keeps it up to date.
+
+    Attributes
+    ----------
+    projection : Projection
+    drawn : tuple of DrawnTile
+    flat : FlatShapes
+        The features that are drawn.
+    selected : frozenset of str
+        Chosen features, which are hit before others.
+    """
+
+    def __init__(self, finder: PointFinder, projection: Projection) -> None:
+        self._finder = finder
+        self.projection = projection
+        self.drawn: tuple[DrawnTile, ...] = ()
+        self.flat: FlatShapes = flattened(())
+        self.selected: frozenset[str] = frozenset()
+
+    def exact_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
+        """What is under a pixel, among all measured points."""
+        found = self._finder.exact(self.projection, position.x(), position.y())
+        return self._hit(found, position, modifiers)
+
+    def quick_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
+        """What is under a pixel, among the points that are drawn."""
+        return self._hit(self._drawn_point(position), position, modifiers)
+
+    def boxed(self, box: QRectF, modifiers: Qt.KeyboardModifier) -> Boxed:
+        """The features wholly inside a rectangle, and the drawn points inside it."""
+        points: dict[str, list[NDArray[np.int64]]] = {}
+        for one in self.drawn:
+            pixels, _ = self.projection.to_screen(one.tile.local_xyz)
+            inside = one.tile.points[are_within(pixels, box)]
+            if inside.size:
+                points.setdefault(one.tile.id.drive_id, []).append(inside)
+        joined = {drive: np.unique(np.concatenate(parts)) for drive, parts in points.items()}
+        return Boxed(features_within(self.flat, self.projection, box), joined, modifiers)
+
+    def place_under(self, position: QPointF) -> Floats:
+        """(3,): the drawn point under a pixel, or what is at the distance looked at.
+
+        Metres from the view's origin; what drags turn about and the wheel zooms to.
+        """
+        found = self._drawn_point(position)
+        camera = self.projection.camera
+        depth_m = camera.distance_m if found is None else found.depth_m
+        return self.projection.place_at(position.x(), position.y(), depth_m)
+
+    def _drawn_point(self, position: QPointF) -> FoundPoint | None:
+        return self._finder.drawn(self.drawn, self.projection, position.x(), position.y())
+
+    def _hit(
+        self, found: FoundPoint | None, position: QPointF, modifiers: Qt.KeyboardModifier
+    ) -> Hit:
+        place = None if found is None else found.place
+        mouse = position.x(), position.y()
+        feature = feature_at(self.flat, self.projection, mouse, self.selected)
+        return Hit(place, feature.feature, feature.vertex, feature.segment, modifiers)

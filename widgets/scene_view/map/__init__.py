@@ -1,0 +1,1 @@
+"""The map's features in the scene: drawn and hit."""

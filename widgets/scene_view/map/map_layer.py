@@ -1,0 +1,77 @@
+"""MapLayer: the map's features as the 3D view draws and hits them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from widgets.scene_view.map.feature_shapes import FeatureShapes, FlatShapes, flattened
+from widgets.shared.feature_style import style_of
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+
+if TYPE_CHECKING:  # importing it imports VTK, which is done after the view was shown
+    from widgets.scene_view.stage import Stage
+
+
+class MapLayer:
+    """Reads features from the document, keeps those that are drawn, and draws them.
+
+    Parameters
+    ----------
+    source : MapSource
+    shared : SharedState
+
+    Attributes
+    ----------
+    flat : FlatShapes
+        The features that are drawn.
+    replaced : str
+        The feature that isn't, because it is being edited; or empty.
+    """
+
+    def __init__(self, source: MapSource, shared: SharedState) -> None:
+        self._source = source
+        self._shared = shared
+        self._shapes = FeatureShapes(np.zeros(3), ())
+        self.flat: FlatShapes = flattened(())
+        self.replaced = ""
+
+    def read_all(self) -> None:
+        """Take over all features, about the document's origin."""
+        self._shapes = FeatureShapes(self._source.origin(), self._source.features())
+
+    def read(self, ids: Iterable[str]) -> None:
+        """Take over these features as they are now."""
+        for id_ in ids:
+            self._shapes.replace(id_, self._source.feature(id_))
+
+    def show(self, stage: Stage | None) -> None:
+        """Draw what is to be seen, once there is a stage."""
+        drawing = self._shared.sketch.drawing
+        self.replaced = "" if drawing is None else drawing.replaces
+        seen = self._shapes.seen(self._shared.view_settings.hidden_kinds, self.replaced)
+        self.flat = flattened(seen)
+        if stage is None:
+            return
+        # Imported here: it draws by VTK.
+        from widgets.scene_view.map.feature_actors import StyledShape
+
+        catalogue, chosen = self._source.catalogue(), self._shared.selection.features
+        styled = [
+            StyledShape(
+                shape,
+                style_of(catalogue, shape.feature, is_selected=shape.feature.id in chosen),
+            )
+            for shape in seen
+        ]
+        stage.features.show(styled, stage.scale)
+
+    def places_of(self, ids: Iterable[str]) -> NDArray[np.float64] | None:
+        """(n, 3): vertices of features, metres from the origin; None when there are none."""
+        shapes = [self._shapes.get(id_) for id_ in ids]
+        places = [shape.local_xyz for shape in shapes if shape is not None]
+        return np.concatenate(places) if places else None

@@ -1,0 +1,102 @@
+"""Where to look from at first: along the drive, from above, at everything, at a selection."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.points.drive import Drive
+from widgets.scene_view.camera import Camera
+
+Floats = NDArray[np.float64]
+
+_BEHIND_M, _ABOVE_M, _AHEAD_M = 14.0, 9.0, 22.0
+_LOOK_AHEAD_M = 8.0
+_OBLIQUE_DEG = -35.0
+_ROOM = 1.15
+
+
+def along_drive(drive: Drive, origin: Floats, near: Floats | None = None) -> Camera | None:
+    """From behind and above the vehicle, forwards; None for a drive without a trajectory.
+
+    Parameters
+    ----------
+    near : (3,) float64, optional
+        The place to be seen, metres from the origin; otherwise the drive's beginning.
+    """
+    way = _way_of(drive, origin)
+    if way is None:
+        return None
+    at = 0 if near is None else int(np.hypot(*(way[:, :2] - near[:2]).T).argmin())
+    heading_deg = _heading_deg(way, at)
+    heading = math.radians(heading_deg)
+    ahead = np.array([math.sin(heading), math.cos(heading), 0.0])
+    # The trajectory is that of the vehicle; its road lies some two metres lower.
+    target = way[at] - [0.0, 0.0, 2.0] if near is None else near
+    target = target + (ahead * _AHEAD_M * (near is None))
+    back_m = _BEHIND_M + (_AHEAD_M if near is None else 0.0)
+    position = target - ahead * back_m + np.array([0.0, 0.0, _ABOVE_M])
+    away = target - position
+    pitch_deg = math.degrees(math.atan2(away[2], math.hypot(away[0], away[1])))
+    return Camera(
+        position=(float(position[0]), float(position[1]), float(position[2])),
+        heading_deg=heading_deg,
+        pitch_deg=pitch_deg,
+        distance_m=float(np.linalg.norm(away)),
+    )
+
+
+def course_deg(drive: Drive, origin: Floats, near: Floats) -> float | None:
+    """Direction of the drive at a place, clockwise from grid north; None without trajectory."""
+    way = _way_of(drive, origin)
+    if way is None:
+        return None
+    return _heading_deg(way, int(np.hypot(*(way[:, :2] - near[:2]).T).argmin()))
+
+
+def holding(places: Floats, camera: Camera) -> Camera:
+    """All places in the picture, seen from the same side.
+
+    Parameters
+    ----------
+    places : (n, 3) float64
+        Metres from the origin; n >= 1.
+    """
+    middle = (places.min(axis=0) + places.max(axis=0)) / 2
+    radius = float(np.linalg.norm(places - middle, axis=1).max())
+    away = _ROOM * max(radius, 2.0) / math.sin(math.radians(camera.angle_deg) / 2)
+    return camera.centred_on(middle, away)
+
+
+def oblique(drives: Iterable[Drive], origin: Floats) -> Camera | None:
+    """Everything from the south, halfway from above; None when there are no drives."""
+    corners = [corner for drive in drives for corner in (drive.info.lowest, drive.info.highest)]
+    if not corners:
+        return None
+    view = Camera((0.0, 0.0, 0.0), heading_deg=0.0, pitch_deg=_OBLIQUE_DEG)
+    return holding(np.array(corners) - origin, view)
+
+
+def _way_of(drive: Drive, origin: Floats) -> Floats | None:
+    """(m, 3): where the vehicle was while this drive's points were measured."""
+    trajectory = drive.trajectory
+    if trajectory is None:
+        return None
+    low, high = np.array(drive.info.lowest), np.array(drive.info.highest)
+    inside = ((trajectory.xyz >= low) & (trajectory.xyz <= high))[:, :2].all(axis=1)
+    way: Floats = (trajectory.xyz[inside] if inside.any() else trajectory.xyz) - origin
+    return way
+
+
+def _heading_deg(way: Floats, at: int) -> float:
+    gone = np.hypot(*(way[:, :2] - way[at, :2]).T)
+    ahead = np.flatnonzero(gone[at:] >= _LOOK_AHEAD_M)
+    start, stop = at, at + int(ahead[0]) if ahead.size else len(way) - 1
+    if gone[stop] < _LOOK_AHEAD_M:  # the end is near: how it came here
+        before = np.flatnonzero(gone[: at + 1] >= _LOOK_AHEAD_M)
+        start = int(before[-1]) if before.size else 0
+    step = way[stop] - way[start]
+    return math.degrees(math.atan2(step[0], step[1])) % 360.0

@@ -1,0 +1,254 @@
+"""Cloud: which points are in the scene now, coarse while the camera moves and sharp at rest."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from processing.image.kinds import ImageKind
+from processing.image.tile_cache import TileCache
+from processing.image.tile_choice import Camera3D
+from processing.points.drive import Drive
+from widgets.scene_view.points.budget import FrameBudget
+from widgets.scene_view.points.scene_tile import DrawnTile, SceneTile, TileId, shown_tiles
+from widgets.scene_view.points.tile_feed import Choice, TileFeed, Wish
+from widgets.scene_view.stage import Stage
+from widgets.shared.feature_style import ACCENT
+from widgets.shared.view_settings import PointLook
+
+Floats = NDArray[np.float64]
+
+REST_MS = 200
+_POINTS_PER_PORTION = 150_000
+
+
+class Cloud(QObject):
+    """Keeps two sets of tiles: one small enough to move, one that is sharp.
+
+    Parameters
+    ----------
+    stage : Stage
+    tiles : TileCache
+
+    Signals
+    -------
+    changed()
+        Other points are in the scene, or the shading is another.
+    """
+
+    changed = Signal()
+
+    def __init__(self, stage: Stage, tiles: TileCache, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self.budget = FrameBudget()
+        self._stage = stage
+        self._feed = TileFeed(tiles)
+        self._feed.chosen.connect(self._on_feed_chosen)
+        self._feed.arrived.connect(self._on_feed_arrived)
+        self._drives: tuple[tuple[Drive, ImageKind], ...] = ()
+        self._origin: Floats = np.zeros(3)
+        self._age = 0
+        self._camera: Camera3D | None = None
+        self._look = PointLook()
+        self._marked: dict[str, NDArray[np.int64]] = {}
+        self._chosen: dict[bool, frozenset[TileId]] = {False: frozenset(), True: frozenset()}
+        self._looks: dict[TileId, PointLook] = {}
+        self._arrived: list[SceneTile] = []
+        self._is_moving = False
+        self._is_shading_wanted = True
+        self._was_changed = True
+        self._is_chosen = False
+        self._rest = QTimer(self, singleShot=True, interval=REST_MS)
+        self._rest.timeout.connect(self._on_rest_timeout)
+        self._portions = QTimer(self, singleShot=True, interval=0)
+        self._portions.timeout.connect(self._on_portions_timeout)
+
+    @property
+    def drawn(self) -> tuple[DrawnTile, ...]:
+        """The tiles that are drawn."""
+        return self._stage.tiles.shown
+
+    @property
+    def is_shading_wanted(self) -> bool:
+        """Whether eye-dome lighting is on, at least at rest."""
+        return self._is_shading_wanted
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the camera rests and all that it sees is there in its sharpest form."""
+        there = self._looks
+        return (
+            not self._is_moving
+            and self._is_chosen
+            and not self._arrived
+            and all(there.get(tile) == self._look for tile in self._chosen[True])
+        )
+
+    def use(self, drives: Sequence[tuple[Drive, ImageKind]], origin: Floats) -> None:
+        """Show these drives from now on, by the tiles of these images."""
+        self._drives, self._origin = tuple(drives), origin
+        self._age += 1
+        self._arrived.clear()
+        self._looks.clear()
+        self._stage.tiles.keep_only(())
+        self._chosen = {False: frozenset(), True: frozenset()}
+        self._wish_again()
+        self._tell()
+
+    def look_from(self, camera: Camera3D) -> None:
+        """The camera moved."""
+        if camera == self._camera:
+            return
+        self._camera = camera
+        if not self._is_moving:
+            self._is_moving = True
+            self._show()
+        self._rest.start()
+        self._wish()
+
+    def colour(self, look: PointLook) -> None:
+        """Show points in these colours; their size is the stage's matter."""
+        look = _colours_only(look)
+        if look != self._look:
+            self._look = look
+            self._wish_again()
+        self._tell()
+
+    def mark(self, points: Mapping[str, NDArray[np.int64]]) -> None:
+        """Mark chosen points: drive id to sorted indices."""
+        marked = dict(points)
+        touched = set(marked) | set(self._marked)
+        self._marked = marked
+        for tile in self._stage.tiles.tiles.values():
+            if tile.id.drive_id in touched:
+                self._stage.tiles.put(tile, self._colours_of(tile))
+        self._tell()
+
+    def refresh(self, drive_id: str) -> None:
+        """The drive's columns changed: get its colours again."""
+        self._looks = {
+            tile: look for tile, look in self._looks.items() if tile.drive_id != drive_id
+        }
+        self._wish_again()
+
+    def set_shading(self, *, is_on: bool) -> None:
+        """Turn eye-dome lighting on or off."""
+        self._is_shading_wanted = is_on
+        self._shade()
+        self._tell()
+
+    def record_frame(self, seconds: float) -> None:
+        """Learn from how long a frame took."""
+        # A frame that has to hand new points to the graphics says nothing about the next ones.
+        if self._was_changed:
+            self._was_changed = False
+            return
+        points = self._stage.tiles.points_shown
+        if self._is_moving:
+            self.budget.record_moving(points, seconds)
+        elif self.is_settled:
+            self.budget.record_still(points, seconds)
+
+    def close(self) -> None:
+        """Stop choosing and loading; may be called again."""
+        self._rest.stop()
+        self._portions.stop()
+        self._feed.close()
+
+    def _wish_again(self) -> None:
+        self._is_chosen = False
+        if self._is_moving:
+            self._rest.start()
+        self._wish()
+
+    def _wish(self) -> None:
+        if self._camera is None:
+            return
+        is_still = not self._is_moving
+        budget = self.budget.still_points if is_still else self.budget.moving_points
+        self._feed.wish(
+            Wish(
+                drives=self._drives,
+                origin=self._origin,
+                age=self._age,
+                camera=self._camera,
+                look=self._look,
+                budget_points=budget,
+                is_still=is_still,
+                kept=self._chosen[not is_still] & self._stage.tiles.tiles.keys(),
+                known=frozenset(self._looks.items()),
+            )
+        )
+
+    def _on_rest_timeout(self) -> None:
+        self._is_moving = False
+        self._is_chosen = False
+        self._shade()
+        self._wish()
+        self._tell()
+
+    def _on_feed_chosen(self, choice: Choice) -> None:
+        wish = choice.wish
+        # A still picture chosen for a camera that has moved on is of no use.
+        if wish.age != self._age or wish.is_still is self._is_moving:
+            return
+        self._chosen[wish.is_still] = frozenset(choice.tiles)
+        self._is_chosen = wish.camera == self._camera
+        self._show()
+
+    def _on_feed_arrived(self, tile: SceneTile) -> None:
+        self._arrived.append(tile)
+        self._portions.start()
+
+    def _on_portions_timeout(self) -> None:
+        wanted = self._chosen[False] | self._chosen[True]
+        points = 0
+        while self._arrived and points < _POINTS_PER_PORTION:
+            tile = self._arrived.pop(0)
+            look = tile.look
+            if tile.age != self._age or tile.id not in wanted or look != self._look:
+                continue
+            self._stage.tiles.put(tile, self._colours_of(tile))
+            self._looks[tile.id] = look
+            points += tile.points.size
+        if self._arrived:
+            self._portions.start()
+        self._show()
+
+    def _show(self) -> None:
+        actors = self._stage.tiles
+        shown = shown_tiles(self._chosen[not self._is_moving], self._looks)
+        actors.show(shown)
+        self._keep(shown | self._chosen[False] | self._chosen[True])
+        self._shade()
+        self._tell()
+
+    def _keep(self, tiles: Collection[TileId]) -> None:
+        self._stage.tiles.keep_only(tiles)
+        self._looks = {tile: look for tile, look in self._looks.items() if tile in tiles}
+
+    def _shade(self) -> None:
+        has_time = not self._is_moving or self.budget.is_fast
+        self._stage.shade(is_on=self._is_shading_wanted and has_time)
+
+    def _colours_of(self, tile: SceneTile) -> NDArray[np.uint8]:
+        marked = self._marked.get(tile.id.drive_id)
+        if marked is None or not marked.size:
+            return tile.colours
+        places = np.minimum(np.searchsorted(marked, tile.points), marked.size - 1)
+        colours = tile.colours.copy()
+        colours[marked[places] == tile.points] = (ACCENT.red(), ACCENT.green(), ACCENT.blue())
+        return colours
+
+    def _tell(self) -> None:
+        self._was_changed = True
+        self.changed.emit()
+
+
+def _colours_only(look: PointLook) -> PointLook:
+    """The look without what the graphics do by themselves."""
+    return replace(look, point_size_px=PointLook().point_size_px)

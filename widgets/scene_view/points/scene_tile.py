@@ -1,0 +1,117 @@
+"""SceneTile: the points of one tile as the 3D view draws them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.image.kinds import ImageKind
+from processing.image.tile_cache import TileRequest
+from processing.image.tiles import TileKey
+from widgets.shared.view_settings import PointLook
+
+
+@dataclass(frozen=True)
+class TileId:
+    """One tile of one drive's image."""
+
+    drive_id: str
+    kind: ImageKind
+    key: TileKey
+
+    @property
+    def parent(self) -> TileId:
+        """The tile of the next coarser level that covers it, whether the image has it or not."""
+        key = TileKey(self.key.level + 1, self.key.row // 2, self.key.column // 2)
+        return TileId(self.drive_id, self.kind, key)
+
+
+@dataclass(frozen=True)
+class SceneTile:
+    """Filled pixels of a tile, in one order throughout.
+
+    Attributes
+    ----------
+    request : TileRequest
+        What was asked for, colours included.
+    points : (n,) int64
+        Indices in the drive.
+    local_xyz : (n, 3) float32
+        Metres from the view's origin.
+    colours : (n, 3) uint8
+    spacing_m : float
+        Mean distance of neighbours.
+    age : int
+        Of the wish it was made for: places are about the origin of that time.
+    """
+
+    request: TileRequest
+    points: NDArray[np.int64]
+    local_xyz: NDArray[np.float32]
+    colours: NDArray[np.uint8]
+    spacing_m: float
+    age: int = 0
+
+    @property
+    def id(self) -> TileId:
+        """Which tile it is."""
+        return TileId(self.request.drive_id, self.request.kind, self.request.key)
+
+    @property
+    def look(self) -> PointLook:
+        """What its colours show."""
+        request = self.request
+        return PointLook(request.attribute, request.low_percent, request.high_percent)
+
+
+@dataclass(frozen=True)
+class DrawnTile:
+    """A tile in the scene and its bounds, (3,) float32 metres from the view's origin."""
+
+    tile: SceneTile
+    low: NDArray[np.float32]
+    high: NDArray[np.float32]
+
+
+def shown_tiles(wanted: Collection[TileId], loaded: Collection[TileId]) -> frozenset[TileId]:
+    """The tiles to draw while some of those wanted are still on their way.
+
+    In place of a missing tile stands the nearest coarser one that is there; where none is, the
+    finer ones that are there. So nothing disappears before its successor has come.
+    """
+    there = set(loaded)
+    highest = max((tile.key.level for tile in there), default=0)
+    shown: set[TileId] = set()
+    for tile in wanted:
+        if tile in there:
+            shown.add(tile)
+            continue
+        above = tile.parent
+        while above not in there and above.key.level < highest:
+            above = above.parent
+        if above in there:
+            shown.add(above)
+        else:
+            shown.update(finer for finer in there if _covers(tile, finer))
+    return frozenset(tile for tile in shown if not _is_covered(tile, shown, highest))
+
+
+def _covers(coarse: TileId, fine: TileId) -> bool:
+    steps = coarse.key.level - fine.key.level
+    return (
+        steps > 0
+        and (coarse.drive_id, coarse.kind) == (fine.drive_id, fine.kind)
+        and (coarse.key.row, coarse.key.column) == (fine.key.row >> steps, fine.key.column >> steps)
+    )
+
+
+def _is_covered(tile: TileId, shown: set[TileId], highest: int) -> bool:
+    # A coarser tile that stands in for a missing one shows all that lies below it.
+    while tile.key.level < highest:
+        tile = tile.parent
+        if tile in shown:
+            return True
+    return False

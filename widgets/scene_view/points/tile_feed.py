@@ -1,0 +1,173 @@
+"""TileFeed: chooses tiles and gets their points beside the window's thread."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QObject, Signal
+
+from processing.errors import UserError
+from processing.image.kinds import ImageKind
+from processing.image.tile_cache import TileCache, TilePixels, TileRequest
+from processing.image.tile_choice import Camera3D, tiles_in_view
+from processing.points.drive import Drive
+from widgets.scene_view.points.scene_tile import SceneTile, TileId
+from widgets.shared.view_settings import PointLook
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What the view wants to see.
+
+    Attributes
+    ----------
+    drives : tuple of (Drive, ImageKind)
+        With the kind of image whose tiles are drawn.
+    origin : (3,) float64
+        The view's local origin, m, project CRS.
+    age : int
+        Raised with every change of drives and origin; told back with the tiles.
+    look : PointLook
+        With the standard point size, which makes no difference here.
+    budget_points : int
+    is_still : bool
+        Whether the camera rests; told back with the choice.
+    kept : frozenset of TileId
+        Tiles outside the choice that need the look as well.
+    known : frozenset of (TileId, PointLook)
+        What the view has already.
+    """
+
+    drives: tuple[tuple[Drive, ImageKind], ...]
+    origin: NDArray[np.float64]
+    age: int
+    camera: Camera3D
+    look: PointLook
+    budget_points: int
+    is_still: bool
+    kept: frozenset[TileId]
+    known: frozenset[tuple[TileId, PointLook]]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """The tiles to draw for a wish."""
+
+    wish: Wish
+    tiles: tuple[TileId, ...]
+
+
+class TileFeed(QObject):
+    """Works out wishes one after the other; the newest is the one that counts.
+
+    It has no parent: a loader may be telling it of a tile while the view goes away.
+
+    Signals
+    -------
+    chosen(choice: Choice), arrived(tile: SceneTile)
+        Sent from other threads, so received through the window's event queue.
+    """
+
+    chosen = Signal(object)
+    arrived = Signal(object)
+
+    def __init__(self, tiles: TileCache) -> None:
+        super().__init__()
+        self._tiles = tiles
+        self._changed = threading.Condition()
+        self._next: Wish | None = None
+        self._current: Wish | None = None
+        self._is_closed = False
+        self._worker = threading.Thread(target=self._work, name="scene tiles", daemon=True)
+        self._worker.start()
+
+    def wish(self, wish: Wish) -> None:
+        """Ask for what is to be seen now; replaces what was asked for and isn't begun."""
+        with self._changed:
+            self._next = wish
+            self._changed.notify()
+
+    def close(self) -> None:
+        """Stop the worker and wait for it; nothing is told afterwards."""
+        with self._changed:
+            self._is_closed = True
+            self._next = None
+            self._changed.notify()
+        self._worker.join()
+        self._tiles.keep_only(self._on_tiles_done, ())
+
+    def _work(self) -> None:
+        while True:
+            with self._changed:
+                while self._next is None and not self._is_closed:
+                    self._changed.wait()
+                if self._is_closed:
+                    return
+                wish, self._next = self._next, None
+                self._current = wish
+            if wish is not None:
+                self._fulfil(wish)
+
+    def _fulfil(self, wish: Wish) -> None:
+        drives, pyramids = [], []
+        for drive, kind in wish.drives:
+            try:
+                pyramid = drive.image(kind).pyramid
+                pyramid.prepare()
+            except UserError:
+                continue  # the image view says why; here the drive's points are just not there
+            drives.append((drive.id, kind))
+            pyramids.append(pyramid)
+        chosen = tuple(
+            TileId(*drives[number], key)
+            for number, key in tiles_in_view(pyramids, wish.camera, wish.budget_points)
+        )
+        self._emit_chosen(Choice(wish, chosen))
+        wanted = [*chosen, *sorted(wish.kept - set(chosen), key=lambda tile: tile.key.level)]
+        requests = [
+            _request_of(tile, wish.look) for tile in wanted if (tile, wish.look) not in wish.known
+        ]
+        self._tiles.keep_only(self._on_tiles_done, set(requests))
+        # The cache serves the newest request first, and coarse tiles are to come first.
+        for request in reversed(requests):
+            if self._is_outdated(wish):
+                return
+            self._tiles.request(request, self._on_tiles_done)
+
+    def _is_outdated(self, wish: Wish) -> bool:
+        with self._changed:
+            return self._is_closed or (self._next is not None and self._next.look != wish.look)
+
+    def _emit_chosen(self, choice: Choice) -> None:
+        if not self._is_closed:
+            self.chosen.emit(choice)
+
+    def _on_tiles_done(self, request: TileRequest, pixels: TilePixels) -> None:
+        wish = self._current
+        if self._is_closed or wish is None:
+            return
+        drive = next((drive for drive, _ in wish.drives if drive.id == request.drive_id), None)
+        if drive is None:
+            return
+        points = pixels.points.ravel()
+        is_filled = points >= 0
+        filled = points[is_filled]
+        tile = SceneTile(
+            request=request,
+            points=filled,
+            local_xyz=drive.local_xyz(filled, wish.origin),
+            colours=pixels.colours.reshape(-1, 3)[is_filled],
+            spacing_m=drive.image(request.kind).pyramid.spacing_m(request.key),
+            age=wish.age,
+        )
+        if not self._is_closed:
+            self.arrived.emit(tile)
+
+
+def _request_of(tile: TileId, look: PointLook) -> TileRequest:
+    return TileRequest(
+        tile.drive_id, tile.kind, tile.key, look.attribute, look.low_percent, look.high_percent
+    )

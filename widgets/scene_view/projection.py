@@ -1,0 +1,115 @@
+"""Projection: places to pixels and pixels to rays, for picking, hits and the overlay."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from widgets.scene_view.camera import Camera
+
+Floats = NDArray[np.float64]
+
+NEAR_M = 0.05
+"""What is nearer to the camera's plane than this isn't seen."""
+
+
+@dataclass(frozen=True)
+class Projection:
+    """A camera and the size of its picture.
+
+    Attributes
+    ----------
+    width_px, height_px : int
+        Of the widget, in Qt's pixels.
+    """
+
+    camera: Camera
+    width_px: int
+    height_px: int
+
+    @cached_property
+    def focal_px(self) -> float:
+        """Pixels per metre, one metre in front of the camera."""
+        return self.height_px / 2 / math.tan(math.radians(self.camera.angle_deg) / 2)
+
+    def in_view(self, local_xyz: NDArray[np.floating]) -> Floats:
+        """(n, 3): metres to the right, upwards and in front of the camera."""
+        offset = np.asarray(local_xyz, dtype=np.float64) - np.array(self.camera.position)
+        seen: Floats = offset @ self._axes.T
+        return seen
+
+    def to_screen(self, local_xyz: NDArray[np.floating]) -> tuple[Floats, Floats]:
+        """Pixels of places.
+
+        Parameters
+        ----------
+        local_xyz : (n, 3)
+            Metres from the view's origin.
+
+        Returns
+        -------
+        pixels : (n, 2) float64
+            To the right and downwards from the upper left corner; NaN behind the camera.
+        depth : (n,) float64
+            Metres in front of the camera.
+        """
+        return self.on_screen(self.in_view(local_xyz))
+
+    def on_screen(self, seen: Floats) -> tuple[Floats, Floats]:
+        """Pixels and depths of what :meth:`in_view` gave."""
+        depth = seen[:, 2]
+        scale = self.focal_px / np.where(depth > NEAR_M, depth, np.nan)
+        x = self.width_px / 2 + seen[:, 0] * scale
+        y = self.height_px / 2 - seen[:, 1] * scale
+        return np.column_stack([x, y]), depth
+
+    def segments_on_screen(self, local_xyz: Floats, ends: NDArray[np.int64]) -> Floats:
+        """Segments between places, cut off in front of the camera.
+
+        Parameters
+        ----------
+        local_xyz : (n, 3) float64
+        ends : (m, 2) int64
+            Indices of the places at both ends.
+
+        Returns
+        -------
+        (m, 2, 2) float64
+            Pixels of both ends; NaN for a segment that lies wholly behind the camera.
+        """
+        seen = self.in_view(local_xyz)[ends]
+        depth = seen[:, :, 2]
+        near = 2 * NEAR_M
+        first, second = seen[:, 0], seen[:, 1]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = ((near - depth[:, 0]) / (depth[:, 1] - depth[:, 0]))[:, None]
+            crossing = first + share * (second - first)
+        behind = depth < near
+        first = np.where((behind[:, 0] & ~behind[:, 1])[:, None], crossing, first)
+        second = np.where((behind[:, 1] & ~behind[:, 0])[:, None], crossing, second)
+        return np.stack([self.on_screen(first)[0], self.on_screen(second)[0]], axis=1)
+
+    def ray(self, x: float, y: float) -> Floats:
+        """(3,): direction through a pixel, so long that it reaches one metre in front."""
+        right, up, forward = self._axes
+        across = (x - self.width_px / 2) / self.focal_px
+        upwards = (self.height_px / 2 - y) / self.focal_px
+        direction: Floats = forward + right * across + up * upwards
+        return direction
+
+    def place_at(self, x: float, y: float, depth_m: float) -> Floats:
+        """(3,): the place under a pixel so far in front of the camera, from the origin."""
+        place: Floats = np.array(self.camera.position) + self.ray(x, y) * depth_m
+        return place
+
+    def metres_per_px(self, depth_m: float) -> float:
+        """Size of a pixel at a depth."""
+        return depth_m / self.focal_px
+
+    @cached_property
+    def _axes(self) -> Floats:
+        return self.camera.axes

@@ -1,0 +1,74 @@
+"""ShownDrives: which drives are in the scene, and from where one looks at them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.image.kinds import ImageKind
+from processing.points.drive import Drive
+from widgets.scene_view import overviews
+from widgets.scene_view.camera import Camera
+from widgets.shared.map_source import MapSource
+from widgets.shared.view_settings import ViewSettings
+
+Floats = NDArray[np.float64]
+
+
+class ShownDrives:
+    """The document's drives as they were when it was asked last.
+
+    Parameters
+    ----------
+    source : MapSource
+    settings : ViewSettings
+
+    Attributes
+    ----------
+    origin : (3,) float64
+        The view's local origin, m, project CRS.
+    with_kinds : tuple of (Drive, ImageKind)
+        With the kind of image whose tiles are drawn: the image view's, where a drive has it.
+    """
+
+    def __init__(self, source: MapSource, settings: ViewSettings) -> None:
+        self._source = source
+        self._settings = settings
+        self.origin: Floats = np.zeros(3)
+        self.with_kinds: tuple[tuple[Drive, ImageKind], ...] = ()
+
+    def read(self) -> bool:
+        """Ask the document again; says whether other tiles are to be drawn."""
+        before = self.with_kinds, self.origin.tolist()
+        wanted = self._settings.image_kind
+        self.origin = self._source.origin()
+        self.with_kinds = tuple(
+            (drive, wanted if wanted in drive.image_kinds else drive.image_kinds[0])
+            for drive in self._source.drives()
+            if drive.count
+        )
+        return before != (self.with_kinds, self.origin.tolist())
+
+    def overview(self) -> Camera | None:
+        """Along the drive from its beginning; where no trajectory is, obliquely at everything."""
+        drive = self._main()
+        along = None if drive is None else overviews.along_drive(drive, self.origin)
+        if along is not None:
+            return along
+        return overviews.oblique((drive for drive, _ in self.with_kinds), self.origin)
+
+    def along(self, near: Floats) -> Camera | None:
+        """Along the drive to a place, metres from the origin; None without trajectory."""
+        drive = self._main()
+        return None if drive is None else overviews.along_drive(drive, self.origin, near)
+
+    def course_deg(self, near: Floats) -> float:
+        """Direction of the drive at a place, clockwise from grid north; north if unknown."""
+        drive = self._main()
+        course = None if drive is None else overviews.course_deg(drive, self.origin, near)
+        return 0.0 if course is None else course
+
+    def _main(self) -> Drive | None:
+        """The drive that the image view shows, or else the first one."""
+        drives = {drive.id: drive for drive, _ in self.with_kinds}
+        return drives.get(self._settings.drive_id, next(iter(drives.values()), None))

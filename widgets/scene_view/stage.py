@@ -1,0 +1,145 @@
+"""Stage: the VTK window with its layers, camera and shading.
+
+Importing this module imports VTK and pyvista, which takes more than a second; the view does it
+after it was shown, beside the window's thread.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtWidgets import QWidget
+from pyvistaqt import QtInteractor
+from vtkmodules.vtkCommonCore import vtkCommand, vtkLogger, vtkOutputWindow
+from vtkmodules.vtkRenderingCore import vtkRenderer
+from vtkmodules.vtkRenderingOpenGL2 import (
+    vtkEDLShading,
+    vtkGenericOpenGLRenderWindow,
+    vtkRenderStepsPass,
+)
+
+from widgets.scene_view.backdrop import BACKGROUND
+from widgets.scene_view.camera import Camera
+from widgets.scene_view.map.feature_actors import FeatureActors
+from widgets.scene_view.points.tile_actors import PointSizes, TileActors
+
+_NEAREST_M = 0.1
+_DEPTH_RATIO = 20_000.0
+_LAYERS = 4
+_MOST_TIMES_LEAST = 3.0
+
+
+class Stage:
+    """One interactor with four layers that share a camera: cloud, halos, lines, marks.
+
+    Parameters
+    ----------
+    parent : QWidget
+    told_frame : callable
+        Given the seconds that each frame took, from its beginning until it was on the screen.
+    """
+
+    def __init__(self, parent: QWidget, told_frame: Callable[[float], None]) -> None:
+        # Troubles of the graphics are of no use to a surveyor; on Windows they open a window.
+        vtkOutputWindow.GetInstance().SetDisplayModeToNever()
+        vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
+        self.widget = QtInteractor(parent, auto_update=False, multi_samples=0)
+        self._window = vtkGenericOpenGLRenderWindow.SafeDownCast(self.widget.ren_win)
+        self._window.SetNumberOfLayers(_LAYERS)
+        self._cloud: vtkRenderer = self.widget.renderer
+        self._layers: list[vtkRenderer] = [self._cloud]
+        for number in range(1, _LAYERS):
+            layer = vtkRenderer()
+            layer.SetLayer(number)
+            layer.SetActiveCamera(self._cloud.GetActiveCamera())
+            layer.InteractiveOff()
+            self._window.AddRenderer(layer)
+            self._layers.append(layer)
+        colour = [int(BACKGROUND[at : at + 2], 16) / 255 for at in (1, 3, 5)]
+        self._cloud.SetBackground(*colour)
+        self._shading = vtkEDLShading()
+        self._shading.SetDelegatePass(vtkRenderStepsPass())
+        self._is_shaded = False
+        self._is_closed = False
+        self._began_at = 0.0
+        self._told_frame = told_frame
+        self._observer = self._window.AddObserver(vtkCommand.StartEvent, self._on_window_start)
+        self.widget.frameSwapped.connect(self._on_widget_frame_swapped)
+        self.tiles = TileActors(self._cloud)
+        self.features = FeatureActors(*self._layers[1:])
+
+    @property
+    def scale(self) -> float:
+        """Device pixels per Qt pixel."""
+        return float(self.widget.devicePixelRatioF())
+
+    def look(self, camera: Camera) -> None:
+        """Look from here."""
+        seen = self._cloud.GetActiveCamera()
+        _, up, _ = camera.axes
+        seen.SetPosition(*camera.position)
+        seen.SetFocalPoint(*camera.focal_point)
+        seen.SetViewUp(*up)
+        seen.SetViewAngle(camera.angle_deg)
+        seen.SetClippingRange(*self._clipping(camera))
+
+    def size_points(self, least_px: float, focal_px: float) -> None:
+        """Draw points at least so large; both in Qt's pixels."""
+        sizes = PointSizes(
+            least_px * self.scale, _MOST_TIMES_LEAST * least_px * self.scale, focal_px * self.scale
+        )
+        self.tiles.set_sizes(sizes)
+
+    def shade(self, *, is_on: bool) -> None:
+        """Draw the cloud with eye-dome lighting, or plain."""
+        if is_on != self._is_shaded:
+            self._is_shaded = is_on
+            self._set_pass(self._shading if is_on else None)
+
+    def redraw(self) -> None:
+        """Draw a frame soon."""
+        if not self._is_closed:
+            self.widget.update()
+
+    def close(self) -> None:
+        """Give everything back; may be called again."""
+        if self._is_closed:
+            return
+        self._is_closed = True
+        self._window.RemoveObserver(self._observer)
+        self.tiles.close()
+        self.features.clear()
+        self._set_pass(None)
+        for layer in self._layers[1:]:
+            self._window.RemoveRenderer(layer)
+        self.widget.close()
+
+    def _set_pass(self, shading: vtkEDLShading | None) -> None:
+        # VTK's types forget that no pass means its own way of drawing.
+        self._cloud.SetPass(shading)  # type: ignore[arg-type]
+
+    def _clipping(self, camera: Camera) -> tuple[float, float]:
+        position, forward = np.array(camera.position), camera.axes[2]
+        bounds = self.tiles.bounds
+        far_m = camera.distance_m * 2
+        if bounds is not None:
+            far_m = max(far_m, float((_corners(*bounds) - position).dot(forward).max()) * 1.01 + 1)
+        return max(_NEAREST_M, far_m / _DEPTH_RATIO), far_m
+
+    def _on_window_start(self, *_: object) -> None:
+        self._began_at = time.perf_counter()
+
+    def _on_widget_frame_swapped(self) -> None:
+        if self._began_at and not self._is_closed:
+            seconds, self._began_at = time.perf_counter() - self._began_at, 0.0
+            self._told_frame(seconds)
+
+
+def _corners(low: NDArray[np.float32], high: NDArray[np.float32]) -> NDArray[np.float64]:
+    """(8, 3): the corners of a box."""
+    choice = np.indices((2, 2, 2)).reshape(3, 8).T
+    corners: NDArray[np.float64] = np.where(choice, high, low).astype(np.float64)
+    return corners

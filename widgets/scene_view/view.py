@@ -1,0 +1,388 @@
+"""SceneView: the drives and the map in three dimensions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QPoint, QPointF, QTimer
+from PySide6.QtGui import QCloseEvent, QColor, QPainter, QPaintEvent, QResizeEvent, QShowEvent
+from PySide6.QtWidgets import QMenu, QWidget
+from typing_extensions import override
+
+from processing.image.tile_cache import TileCache
+from widgets.mouse_tools.mouse_tool import MouseTool
+from widgets.scene_view import overviews
+from widgets.scene_view.backdrop import BACKGROUND
+from widgets.scene_view.camera import Camera
+from widgets.scene_view.hand import Hand
+from widgets.scene_view.hits import SceneHits
+from widgets.scene_view.map.map_layer import MapLayer
+from widgets.scene_view.overlay import OverlayContent, SceneOverlay
+from widgets.scene_view.points.point_finder import PointFinder
+from widgets.scene_view.projection import Projection
+from widgets.scene_view.shown_drives import ShownDrives
+from widgets.scene_view.stage_loader import StageLoader, reserve_graphics
+from widgets.shared.cursor import Place
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+
+if TYPE_CHECKING:  # importing these imports VTK, which is done after the view was shown
+    from widgets.scene_view.points.cloud import Cloud
+    from widgets.scene_view.stage import Stage
+
+Floats = NDArray[np.float64]
+
+_FARTHEST_M = 40.0
+_TOO_FAR = 4.0
+
+
+class SceneView(QWidget):
+    """Draws the drives' tiles as points and the map above them; every click is an exact point.
+
+    The picture itself is made after the view was shown first, since it takes more than a second.
+
+    Parameters
+    ----------
+    source : MapSource
+    shared : SharedState
+    tiles : TileCache
+    """
+
+    def __init__(
+        self,
+        source: MapSource,
+        shared: SharedState,
+        tiles: TileCache,
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self._source = source
+        self._shared = shared
+        self._tiles = tiles
+        self._stage: Stage | None = None
+        self._cloud: Cloud | None = None
+        self._is_closed = False
+        self._drives = ShownDrives(source, shared.view_settings)
+        self._cursor_before: Place | None = None
+        self._cursor: Place | None = shared.cursor.place
+        self._finder = PointFinder()
+        self._hits = SceneHits(self._finder, Projection(Camera((0.0, 0.0, 10.0)), 1, 1))
+        self._map = MapLayer(source, shared)
+        self._hand = Hand(self._hits, shared, self._drives.course_deg, self)
+        self._reserved = reserve_graphics(self)
+        self._overlay = SceneOverlay(self)
+        self._loader = StageLoader()
+        self._loader.ready.connect(self._on_loader_ready)
+        self._map_refresh = QTimer(self, singleShot=True, interval=0)
+        self._map_refresh.timeout.connect(self._on_map_refresh_timeout)
+        self.setMinimumSize(160, 120)
+        self._listen()
+        self._on_map_drives_changed()
+
+    def _listen(self) -> None:
+        shared, hand = self._shared, self._hand
+        shared.cursor.moved.connect(self._on_cursor_moved)
+        shared.selection.features_changed.connect(self._on_selection_features_changed)
+        shared.selection.points_changed.connect(self._on_selection_points_changed)
+        shared.map_changes.features_changed.connect(self._on_map_features_changed)
+        shared.map_changes.drives_changed.connect(self._on_map_drives_changed)
+        shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
+        shared.view_settings.look_changed.connect(self._on_settings_look_changed)
+        shared.view_settings.image_changed.connect(self._on_settings_image_changed)
+        shared.view_settings.hidden_kinds_changed.connect(self._map_refresh.start)
+        shared.sketch.changed.connect(self._on_sketch_changed)
+        hand.camera_moved.connect(self._look_from)
+        hand.acted.connect(self._paint_overlay)
+        hand.menu_requested.connect(self._on_hand_menu_requested)
+        hand.everything_requested.connect(self.show_everything)
+        hand.selection_requested.connect(self.center_on_selection)
+
+    # What others ask.
+
+    @property
+    def camera(self) -> Camera:
+        """From where it looks, metres from the document's origin."""
+        return self._hits.projection.camera
+
+    @property
+    def picture(self) -> QWidget | None:
+        """The widget that gets the mouse; None until the picture was made."""
+        return None if self._stage is None else self._stage.widget
+
+    @property
+    def cloud(self) -> Cloud | None:
+        """Which points are drawn; None until the picture was made."""
+        return self._cloud
+
+    @property
+    def is_settled(self) -> bool:
+        """Whether the camera rests and all points that it sees are there."""
+        return self._cloud is not None and self._cloud.is_settled
+
+    def set_mouse_tool(self, tool: MouseTool | None) -> None:
+        """Tell this tool from now on what the mouse does; None: a click puts the cursor."""
+        self._hand.gesture.drop()
+        self._hand.gesture.tool = tool
+        self._paint_overlay()
+
+    def show_everything(self) -> None:
+        """Look along the drive from its beginning; over clouds without trajectory, at all."""
+        camera = self._drives.overview()
+        if camera is not None:
+            self._look_from(camera)
+
+    def look_along_drive(self) -> None:
+        """Look at what is in the middle from behind and above, along the drive."""
+        camera = self._drives.along(self._looked_at())
+        if camera is not None:
+            self._look_from(camera)
+
+    def look_from_above(self) -> None:
+        """Look straight down on what is in the middle, north up."""
+        camera = self.camera.centred_on(self._looked_at())
+        self._look_from(camera.from_above(max(camera.distance_m, 30.0)))
+
+    def center_on(self, place: Place) -> None:
+        """Put a place in the middle, seen from the same side."""
+        distance_m = min(self.camera.distance_m, _FARTHEST_M)
+        self._look_from(self.camera.centred_on(self._local(place), distance_m))
+
+    def center_on_selection(self) -> None:
+        """Put the chosen features in the middle, or the cursor when none is chosen."""
+        places = self._map.places_of(self._shared.selection.features)
+        if places is not None:
+            self._look_from(overviews.holding(places, self.camera))
+        elif self._shared.cursor.place is not None:
+            self.center_on(self._shared.cursor.place)
+
+    def zoom_by(self, factor: float) -> None:
+        """Zoom about what is in the middle."""
+        self._look_from(self.camera.zoomed(self._looked_at(), factor))
+
+    def position_of(self, place: Place) -> QPointF | None:
+        """Where a place is in this widget; None when it is behind the camera."""
+        pixels, _ = self._hits.projection.to_screen(self._local(place)[None])
+        x, y = pixels[0].tolist()
+        return QPointF(x, y) if np.isfinite(x) else None
+
+    def set_shading(self, *, is_on: bool) -> None:
+        """Turn eye-dome lighting on or off."""
+        if self._cloud is not None:
+            self._cloud.set_shading(is_on=is_on)
+
+    @override
+    def close(self) -> bool:
+        """Close the picture and stop loading; may be called again."""
+        self._take_down()
+        return super().close()
+
+    # Events.
+
+    @override
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        if self._stage is None and not self._is_closed:
+            self._loader.start()
+
+    @override
+    def closeEvent(self, event: QCloseEvent) -> None:
+        self._take_down()
+        super().closeEvent(event)
+
+    @override
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        self._overlay.setGeometry(self.rect())
+        if self._stage is not None:
+            self._stage.widget.setGeometry(self.rect())
+        self._look_from(self.camera)
+
+    @override
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.fillRect(self.rect(), QColor(BACKGROUND))
+        painter.end()
+
+    # What others tell.
+
+    def _on_loader_ready(self) -> None:
+        if self._is_closed:
+            return
+        from widgets.scene_view.points.cloud import Cloud
+        from widgets.scene_view.stage import Stage
+
+        self._stage = Stage(self, self._on_stage_frame)
+        self._cloud = Cloud(self._stage, self._tiles, self)
+        picture = self._stage.widget
+        picture.setGeometry(self.rect())
+        picture.installEventFilter(self._hand)
+        self.setFocusProxy(picture)
+        self._hand.is_enabled = True
+        self._cloud.changed.connect(self._on_cloud_changed)
+        self._cloud.use(self._drives.with_kinds, self._drives.origin)
+        self._cloud.colour(self._shared.view_settings.look)
+        self._cloud.mark(self._shared.selection.points)
+        picture.show()
+        self._overlay.raise_()
+        self._on_map_refresh_timeout()
+        self._look_from(self.camera)
+
+    def _on_stage_frame(self, seconds: float) -> None:
+        if self._cloud is not None:
+            self._cloud.record_frame(seconds)
+
+    def _on_cloud_changed(self) -> None:
+        if self._stage is None or self._cloud is None:
+            return
+        self._hits.drawn = self._cloud.drawn
+        self._stage.look(self.camera)
+        self._stage.redraw()
+        self._paint_overlay()
+
+    def _on_cursor_moved(self, place: Place) -> None:
+        self._cursor_before, self._cursor = self._cursor, place
+        # Who clicks in this view has the place under the mouse already.
+        if not self._hand.is_clicking and not self._is_in_middle(place):
+            self.center_on(place)
+        self._paint_overlay()
+
+    def _on_selection_features_changed(self, ids: frozenset[str]) -> None:
+        self._hits.selected = ids
+        self._map_refresh.start()
+
+    def _on_selection_points_changed(self) -> None:
+        if self._cloud is not None:
+            self._cloud.mark(self._shared.selection.points)
+
+    def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
+        self._map.read(ids)
+        self._map_refresh.start()
+
+    def _on_map_drives_changed(self) -> None:
+        self._cursor = self._cursor_before = None
+        self._drives.read()
+        self._map.read_all()
+        self._use_drives()
+        self.show_everything()
+        self._map_refresh.start()
+        self._paint_overlay()
+
+    def _on_map_drive_columns_changed(self, drive_id: str) -> None:
+        if self._cloud is not None:
+            self._cloud.refresh(drive_id)
+
+    def _on_settings_look_changed(self) -> None:
+        if self._cloud is not None:
+            self._cloud.colour(self._shared.view_settings.look)
+            self._size_points()
+
+    def _on_settings_image_changed(self) -> None:
+        if self._drives.read():
+            self._use_drives()
+
+    def _on_sketch_changed(self) -> None:
+        drawing = self._shared.sketch.drawing
+        if (drawing.replaces if drawing is not None else "") != self._map.replaced:
+            self._map_refresh.start()
+        self._paint_overlay()
+
+    def _on_map_refresh_timeout(self) -> None:
+        self._map.show(self._stage)
+        self._hits.flat = self._map.flat
+        if self._stage is not None:
+            self._stage.redraw()
+
+    def _on_hand_menu_requested(self, where: QPoint) -> None:
+        menu = QMenu(self)
+        menu.addAction(self.tr("Along the drive"), self.look_along_drive)
+        menu.addAction(self.tr("From above"), self.look_from_above)
+        menu.addAction(self.tr("Show everything"), self.show_everything)
+        menu.addAction(self.tr("Centre on the selection"), self.center_on_selection)
+        menu.addSeparator()
+        shading = menu.addAction(self.tr("Shade by depth (eye-dome lighting)"))
+        shading.setCheckable(True)
+        shading.setChecked(self._cloud is not None and self._cloud.is_shading_wanted)
+        shading.toggled.connect(self._on_menu_shading_toggled)
+        menu.aboutToHide.connect(menu.deleteLater)
+        menu.popup(self.mapToGlobal(where))
+
+    def _on_menu_shading_toggled(self, is_on: bool) -> None:  # noqa: FBT001 - Qt's signal
+        self.set_shading(is_on=is_on)
+
+    # What is done in more than one place.
+
+    def _look_from(self, camera: Camera) -> None:
+        width, height = max(self.width(), 1), max(self.height(), 1)
+        self._hits.projection = Projection(camera, width, height)
+        if self._stage is not None and self._cloud is not None:
+            scale = self._stage.scale
+            size_px = round(width * scale), round(height * scale)
+            self._cloud.look_from(camera.for_tiles(self._drives.origin, *size_px))
+            self._stage.look(camera)
+            self._size_points()
+        self._paint_overlay()
+
+    def _size_points(self) -> None:
+        if self._stage is not None:
+            size_px = self._shared.view_settings.look.point_size_px
+            self._stage.size_points(size_px, self._hits.projection.focal_px)
+            self._stage.redraw()
+
+    def _use_drives(self) -> None:
+        drives = self._drives
+        self._finder.use(drives.with_kinds, drives.origin)
+        self._hits.drawn = ()
+        if self._cloud is not None:
+            self._cloud.use(drives.with_kinds, drives.origin)
+
+    def _looked_at(self) -> Floats:
+        """What is in the middle of the picture; the cursor, where that is in it."""
+        place = self._shared.cursor.place
+        if place is not None and self._is_in_middle(place):
+            return self._local(place)
+        return self._hits.place_under(QPointF(self.width() / 2, self.height() / 2))
+
+    def _is_in_middle(self, place: Place) -> bool:
+        projection = self._hits.projection
+        pixels, depth = projection.to_screen(self._local(place)[None])
+        x, y = pixels[0]
+        inside = abs(x / projection.width_px - 0.5) <= 1 / 6
+        inside &= abs(y / projection.height_px - 0.5) <= 1 / 6
+        return bool(inside and depth[0] <= _TOO_FAR * max(self.camera.distance_m, 10.0))
+
+    def _local(self, place: Place) -> Floats:
+        local_xyz: Floats = np.array(place.xyz) - self._drives.origin
+        return local_xyz
+
+    def _words(self) -> str:
+        if not self._drives.with_kinds:
+            return self.tr("The recording appears here in three dimensions once one is open.")
+        if self._stage is None:
+            return self.tr("The 3D view is starting.")
+        return "" if self._hits.drawn else self.tr("Points are being loaded.")
+
+    def _paint_overlay(self) -> None:
+        cursor, before = self._cursor, self._cursor_before
+        content = OverlayContent(
+            origin=self._drives.origin,
+            catalogue=self._source.catalogue(),
+            drawing=self._shared.sketch.drawing,
+            cursor=None if cursor is None else self._local(cursor),
+            cursor_before=None if before is None else self._local(before),
+            box=self._hand.gesture.box,
+            words=self._words(),
+        )
+        self._overlay.show_content(self._hits.projection, content)
+
+    def _take_down(self) -> None:
+        if self._is_closed:
+            return
+        self._is_closed = True
+        self._hand.is_enabled = False
+        self._loader.close()
+        if self._cloud is not None:
+            self._cloud.close()
+        if self._stage is not None:
+            self._stage.widget.removeEventFilter(self._hand)
+            self._stage.close()
