@@ -83,6 +83,8 @@ def _windows(columns: Columns | PointColumns | PointSource) -> list[tuple[Floats
     windows: list[tuple[Floats, Floats]] = []
     for start, stop in stretches(columns.count, _READ_POINTS):
         time, origin = _read(columns, start, stop)
+        if time.size == 0:
+            break
         edges = np.arange(time[0], time[-1] + _WINDOW_S, _WINDOW_S)
         bounds = np.append(np.searchsorted(time, edges[:-1]), time.size)
         for first, last in pairwise(bounds):

@@ -97,6 +97,8 @@ class PulseNumbering:
 
         Parameters
         ----------
+        points : PointColumns
+            More than share one time.
         is_last : bool
             False: pulses that share their time with the last point may follow.
 
@@ -115,12 +117,12 @@ class PulseNumbering:
             return pulses
         done = times.size
         if not is_last:
-            done = int(np.searchsorted(times, times[-1] - 0.5 * self._clock.quantum_s))
-        number_rounded(
-            times[:done], repeats, self._clock.quantum_s, LONGEST_MISSING_S, self._state, pulses
-        )
+            done = int(np.searchsorted(times, times[-1] - 0.5 * self._clock.quantum_s)) or done
+        pulses = pulses[:done]
+        limits = np.array([self._clock.quantum_s, LONGEST_MISSING_S])
+        number_rounded(times, repeats, limits, self._state, pulses)
         pulses += self._first_number
-        return pulses[:done]
+        return pulses
 
 
 def _is_same_pulse(points: PointColumns) -> NDArray[np.bool_]:

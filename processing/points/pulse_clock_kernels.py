@@ -36,13 +36,24 @@ def number_exact(times: Floats, longest_s: float, state: Floats, pulses: NDArray
 def number_rounded(
     times: Floats,
     repeats: NDArray[np.bool_],
-    quantum_s: float,
-    longest_s: float,
+    limits: Floats,
     state: Floats,
     pulses: NDArray[np.int64],
 ) -> None:
-    """Number the pulses of points of which several share a recorded time, in their order."""
-    _number_rounded_kernel(times, repeats, quantum_s, longest_s, state, pulses)
+    """Number the pulses of points of which several share a recorded time, in their order.
+
+    Parameters
+    ----------
+    times : (n,) float64
+        May hold more points than are to be numbered: what follows tells where a gap is.
+    repeats : (n,) bool
+        Whether a point is a later return of the pulse before it.
+    limits : (2,) float64
+        Step of the times, and the longest time that is no stop, s.
+    pulses : (m,) int64
+        Filled for the first ``m`` points.
+    """
+    _number_rounded_kernel(times, repeats, limits, state, pulses)
 
 
 @kernel
@@ -82,8 +93,7 @@ def _number_exact_kernel(
 def _number_rounded_kernel(
     times: Floats,
     repeats: NDArray[np.bool_],
-    quantum: float,
-    longest_s: float,
+    limits: Floats,
     state: Floats,
     pulses: NDArray[np.int64],
 ) -> None:
@@ -94,9 +104,10 @@ def _number_rounded_kernel(
     """
     base, lattice, interval, age, last = state[0], state[1], state[2], state[4], state[5]
     number = np.int64(state[3])
+    quantum, longest_s = limits[0], limits[1]
     count = times.shape[0]
     start = 0
-    while start < count:
+    while start < pulses.shape[0]:
         time = times[start] - base
         stop = start + 1
         pulses_here = 1
@@ -145,4 +156,5 @@ def warm_up() -> None:
     times = np.array([0.0, 1e-5, 2e-5])
     pulses = np.empty(3, dtype=np.int64)
     number_exact(times, 1.0, new_state(0.0, 1e-5), pulses)
-    number_rounded(times, np.zeros(3, dtype=np.bool_), 1e-5, 1.0, new_state(0.0, 4e-6), pulses)
+    limits = np.array([1e-5, 1.0])
+    number_rounded(times, np.zeros(3, dtype=np.bool_), limits, new_state(0.0, 4e-6), pulses)
