@@ -45,11 +45,11 @@ class UndoStack(QObject):
 
     def undo(self) -> Change | None:
         """Take the last change back; gives what was applied to do so."""
-        return self._moved(None if self._project is None else self._project.history.undo())
+        return self._moved(None if self._project is None else self._project.features.undo())
 
     def redo(self) -> Change | None:
         """Do again what was undone; gives what was applied."""
-        return self._moved(None if self._project is None else self._project.history.redo())
+        return self._moved(None if self._project is None else self._project.features.redo())
 
     def _moved(self, change: Change | None) -> Change | None:
         if change is not None:

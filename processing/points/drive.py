@@ -113,7 +113,10 @@ class Drive:
         """
         integers = self.columns["xyz"][points]
         shift = np.array(self.info.offset) - origin
-        return (integers * np.array(self.info.scale) + shift).astype(np.float32)
+        local: NDArray[np.float32] = (integers * np.array(self.info.scale) + shift).astype(
+            np.float32
+        )
+        return local
 
     def sources(self, start: int, stop: int) -> tuple[NDArray[np.uint16], NDArray[np.int64]]:
         """Where the points ``start … stop − 1`` were delivered.

@@ -12,16 +12,25 @@ from processing.points.turns import Turns
 from processing.text import Text
 
 _FILE_NAME = "turns.npz"
-_NUMBERS = ("turn_rate_hz", "pulse_rate_hz", "pulses_per_turn", "coherence")
-_ARRAYS = ("reference_times", "fold_pulses", "segments", "row_ends")
 
 
 def write_turns(folder: Path, turns: Turns) -> None:
     """Write a drive's turns into its folder."""
     path = folder / _FILE_NAME
-    values = {name: getattr(turns, name) for name in (*_NUMBERS, *_ARRAYS)}
     with told_as_user_error(path):
-        np.savez(path, allow_pickle=False, method=turns.method, **values)
+        np.savez(
+            path,
+            allow_pickle=False,
+            method=np.array(turns.method),
+            turn_rate_hz=np.array(turns.turn_rate_hz),
+            pulse_rate_hz=np.array(turns.pulse_rate_hz),
+            pulses_per_turn=np.array(turns.pulses_per_turn),
+            reference_times=turns.reference_times,
+            fold_pulses=turns.fold_pulses,
+            segments=turns.segments,
+            row_ends=turns.row_ends,
+            coherence=np.array(turns.coherence),
+        )
 
 
 def read_turns(folder: Path) -> Turns | None:
@@ -38,9 +47,17 @@ def read_turns(folder: Path) -> Turns | None:
     with told_as_user_error(path):
         try:
             with np.load(path, allow_pickle=False) as stored:
-                numbers = {name: float(stored[name]) for name in _NUMBERS}
-                arrays = {name: stored[name] for name in _ARRAYS}
-                return Turns(method=str(stored["method"]), **numbers, **arrays)
+                return Turns(
+                    method=str(stored["method"]),
+                    turn_rate_hz=float(stored["turn_rate_hz"]),
+                    pulse_rate_hz=float(stored["pulse_rate_hz"]),
+                    pulses_per_turn=float(stored["pulses_per_turn"]),
+                    reference_times=stored["reference_times"],
+                    fold_pulses=stored["fold_pulses"],
+                    segments=stored["segments"],
+                    row_ends=stored["row_ends"],
+                    coherence=float(stored["coherence"]),
+                )
         except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
             raise BadFile(
                 Text("The rows of a drive are damaged.", "ドライブの行データが壊れています。"),

@@ -21,11 +21,10 @@ def request_of_files(files: tuple[Path, ...], crs: str) -> ImportRequest:
     MissingInput
         There are no point files among them, or a file can't be read.
     """
-    points, trajectories, images = [], [], []
+    sorted_out: dict[str, list[Path]] = {"points": [], "trajectory": [], "images": []}
     for path in _unfolded(files):
-        {"points": points, "trajectory": trajectories, "images": images}[_content(path)].append(
-            path
-        )
+        sorted_out[_content(path)].append(path)
+    points, trajectories, images = sorted_out.values()
     if not points:
         raise MissingInput(
             Text("There are no point files among them.", "点群ファイルが含まれていません。"),

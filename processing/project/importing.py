@@ -91,6 +91,7 @@ def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple
                 _source_file(info, checksum)
                 for info, checksum in zip(files, checksums, strict=True)
             )
+        writers.sort(key=lambda writer: writer.scanner)
         plan = BuildPlan(
             sources,
             delivery.crs,

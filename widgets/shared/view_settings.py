@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from PySide6.QtCore import QObject, Signal
 
@@ -63,9 +63,22 @@ class ViewSettings(QObject):
         """Feature kinds that are not drawn."""
         return self._hidden_kinds
 
-    def change_look(self, **values: object) -> None:
-        """Set some fields of the look."""
-        look = replace(self._look, **values)  # type: ignore[arg-type] - fields checked by callers
+    def change_look(
+        self,
+        *,
+        attribute: str | None = None,
+        low_percent: float | None = None,
+        high_percent: float | None = None,
+        point_size_px: float | None = None,
+    ) -> None:
+        """Set some fields of the look; None leaves one as it is."""
+        old = self._look
+        look = PointLook(
+            old.attribute if attribute is None else attribute,
+            old.low_percent if low_percent is None else low_percent,
+            old.high_percent if high_percent is None else high_percent,
+            old.point_size_px if point_size_px is None else point_size_px,
+        )
         if look != self._look:
             self._look = look
             self.look_changed.emit(look)

@@ -1,0 +1,88 @@
+"""A real window on a real project, used by mouse and keys."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from pytestqt.qtbot import QtBot
+
+from app.application import build_window, make_application
+from app.settings import Settings
+from app.window_parts import WindowParts
+from processing.points.drive import Drive
+from processing.project.dropped_files import request_of_files
+from processing.project.feature import PointReference
+from resources import path_of
+from widgets.shared.cursor import Place
+
+WAIT_MS = 60_000
+
+
+@dataclass
+class Surveyor:
+    """Somebody in front of the window."""
+
+    bot: QtBot
+    parts: WindowParts
+
+    @property
+    def document(self):
+        return self.parts.document
+
+    @property
+    def drive(self) -> Drive:
+        return self.document.drive(self.document.shared.view_settings.drive_id)
+
+    def place_of(self, point: int) -> Place:
+        x, y, z = self.drive.xyz(np.array([point]))[0]
+        reference = PointReference(self.drive.id, point)
+        return Place((float(x), float(y), float(z)), reference)
+
+    def shown_point(self, row: int, column: int) -> int:
+        """The point in or near a pixel of the image that is shown."""
+        image = self.drive.image(self.document.shared.view_settings.image_kind)
+        point = image.nearest_filled(row, column, 40)
+        assert point >= 0
+        return point
+
+    def pixel_of(self, point: int) -> QPoint:
+        """Where a point is painted; the view goes there first."""
+        view, place = self.parts.image_view, self.place_of(point)
+        view.show_one_to_one()
+        view.center_on(place)
+        return view.position_of(place).toPoint()
+
+    def click(self, point: int) -> None:
+        """Left click on a point's pixel."""
+        position = self.pixel_of(point)
+        self.bot.mouseMove(self.parts.image_view, position)
+        self.bot.mouseClick(self.parts.image_view, Qt.MouseButton.LeftButton, pos=position)
+
+    def key(self, key: Qt.Key, modifier=Qt.KeyboardModifier.NoModifier) -> None:
+        self.bot.keyClick(self.parts.image_view, key, modifier)
+
+    def wait_for_job(self, start) -> None:
+        with self.bot.waitSignal(self.parts.jobs.finished, timeout=WAIT_MS):
+            start()
+
+    def import_sample_street(self, project: Path) -> None:
+        assert self.document.create(project, "")
+        request = request_of_files((path_of("sample_street"),), "")
+        self.wait_for_job(lambda: self.document.import_files(request))
+
+
+@pytest.fixture
+def surveyor(qtbot, tmp_path) -> Iterator[Surveyor]:
+    make_application()
+    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
+    parts.window.resize(1400, 900)
+    parts.window.show()
+    qtbot.waitExposed(parts.window)
+    yield Surveyor(qtbot, parts)
+    parts.window.close()
+    parts.window.deleteLater()
