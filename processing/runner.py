@@ -16,7 +16,7 @@ from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
 from processing.text import Text
-from processing.tools.blocks import blocks_of, results_of
+from processing.tools.blocks import POINTS_PER_BLOCK, blocks_of, results_of
 from processing.tools.registry import TOOLS
 from processing.tools.tool import Needs, PointBlock, PointResult, Tool
 
@@ -39,8 +39,15 @@ class RunRequest:
     parameters: object
 
 
-def run(request: RunRequest, monitor: Monitor) -> PointResult:
+def run(
+    request: RunRequest, monitor: Monitor, *, points_per_block: int = POINTS_PER_BLOCK
+) -> PointResult:
     """Run a tool on a whole drive, block by block; the drive itself isn't changed.
+
+    Parameters
+    ----------
+    points_per_block : int
+        What is held in memory at a time; the result doesn't depend on it.
 
     Returns
     -------
@@ -65,7 +72,7 @@ def run(request: RunRequest, monitor: Monitor) -> PointResult:
     text = Text("{tool}: {name}", "{tool}: {name}").filled(
         tool=tool.name, name=request.drive.info.name
     )
-    for block in blocks_of(image.row_starts, tool.overlap_rows):
+    for block in blocks_of(image.row_starts, tool.overlap_rows, points_per_block):
         monitor.check()
         monitor.report(float(image.row_starts[block.rows.start]) / total, text)
         points = _block_of(request.drive, image, block.rows_with_overlap)

@@ -18,13 +18,17 @@ _POINTS_AHEAD = 2
 _SAMPLED = 4  # every fourth point of a row tells how far the next row lies
 _FEWEST = 8
 _FAR = 1e30
+_CHORD_M = 0.15  # length over which the direction of a row is taken
+_CHORD_POINTS = 40
 
 
 class JoiningRows(NamedTuple):
     """Points in their rows, and what is being found about them.
 
-    ``limits``: distance, ratio, farthest; ``scratch`` has a place for every point of a row;
-    ``parents`` lead from every point to the first of its component.
+    ``limits``: distance, ratio, farthest, cosine of the largest bend; ``scratch`` has a place for
+    every point of a row; ``tangents``: direction of the row at every point; ``is_bent``: the row
+    has a corner there or too few points; ``parents`` lead from every point to the first of its
+    component.
     """
 
     xyz: _Floats
@@ -33,7 +37,32 @@ class JoiningRows(NamedTuple):
     segments: NDArray[np.int32]
     limits: _Floats
     scratch: _Floats
+    tangents: NDArray[np.float32]
+    is_bent: NDArray[np.bool_]
     parents: _Integers
+
+
+@kernel
+def tangents_kernel(rows: JoiningRows, first: int, end: int) -> None:
+    """Directions and corners of the rows ``first … end − 1``, each from the row alone."""
+    left, right = np.empty(3), np.empty(3)
+    for row in range(first, end):
+        start, stop = rows.row_starts[row], rows.row_starts[row + 1]
+        for point in range(start, stop):
+            before, steps_before = _chord(rows, point, -1, start, stop, left)
+            behind, steps_behind = _chord(rows, point, 1, start, stop, right)
+            rows.is_bent[point] = True
+            if before > 0 and behind > 0:
+                cosine = -(left[0] * right[0] + left[1] * right[1] + left[2] * right[2])
+                rows.is_bent[point] = cosine < rows.limits[3] * before * behind
+            elif max(steps_before, steps_behind) > 1:
+                # The end of a surface is as flat as the one side that is there.
+                rows.is_bent[point] = False
+            for axis in range(3):
+                left[axis] = right[axis] - left[axis]
+            length = math.sqrt(left[0] ** 2 + left[1] ** 2 + left[2] ** 2)
+            for axis in range(3):
+                rows.tangents[point, axis] = left[axis] / length if length > 0 else 0.0
 
 
 @kernel
@@ -50,9 +79,9 @@ def join_rows_kernel(rows: JoiningRows, first: int, end: int) -> None:
             below = stop
             for point in range(start, stop):
                 below = _first_near(rows, below, after, point)
-                near, distance = _nearest(rows, point, below, after)
-                if distance <= limit:
-                    _join(rows.parents, point, near)
+                near, _ = _nearest(rows, point, below, after)
+                if near >= 0:
+                    _join_near(rows, point, near, limit)
 
 
 @kernel
@@ -102,13 +131,50 @@ def _join_along(rows: JoiningRows, start: int, stop: int, after: int) -> None:
         behind = steps[point - start + 1] if point + 2 < stop else _FAR
         expected = min(before, behind)
         limit = _limit(rows.limits, expected if expected < _FAR else 0.0)
-        if point + 1 == stop and stop < after and _distance(rows.xyz, point, stop) <= limit:
+        if point + 1 == stop and stop < after:
             # The scanner went on from the end of a row to the next one without a break.
-            _join(rows.parents, point, stop)
+            _join_near(rows, point, stop, limit)
         for other in range(point + 1, min(point + 1 + _POINTS_AHEAD, stop)):
-            is_near = rows.columns[other] - rows.columns[point] <= _COLUMNS_ASIDE
-            if is_near and _distance(rows.xyz, point, other) <= limit:
-                _join(rows.parents, point, other)
+            if rows.columns[other] - rows.columns[point] <= _COLUMNS_ASIDE:
+                _join_near(rows, point, other, limit)
+
+
+@kernel
+def _join_near(rows: JoiningRows, one: int, other: int, limit: float) -> None:
+    if _distance(rows.xyz, one, other) <= limit and _go_together(rows, one, other):
+        _join(rows.parents, one, other)
+
+
+@kernel
+def _go_together(rows: JoiningRows, one: int, other: int) -> bool:
+    """Whether two near points lie on one surface, or both on none."""
+    if rows.is_bent[one] or rows.is_bent[other]:
+        return bool(rows.is_bent[one] and rows.is_bent[other])
+    cosine = 0.0
+    for axis in range(3):
+        cosine += rows.tangents[one, axis] * rows.tangents[other, axis]
+    return bool(cosine >= rows.limits[3])
+
+
+@kernel
+def _chord(
+    rows: JoiningRows, point: int, side: int, start: int, stop: int, chord: _Floats
+) -> tuple[float, int]:
+    """Distance and steps to the first point at least a chord away in the row; 0 if none is."""
+    chord[:] = 0
+    other = point
+    for step in range(1, _CHORD_POINTS + 1):
+        before, other = other, other + side
+        if other < start or other >= stop:
+            return 0.0, 0
+        if _distance(rows.xyz, before, other) > rows.limits[2]:
+            return 0.0, 0
+        distance = _distance(rows.xyz, point, other)
+        if distance >= _CHORD_M:
+            for axis in range(3):
+                chord[axis] = rows.xyz[other, axis] - rows.xyz[point, axis]
+            return distance, step
+    return 0.0, 0
 
 
 @kernel

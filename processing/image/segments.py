@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.grid import PixelGrid
-from processing.image.segment_kernels import JoiningRows, join_rows_kernel, roots_kernel
+from processing.image.segment_kernels import (
+    JoiningRows,
+    join_rows_kernel,
+    roots_kernel,
+    tangents_kernel,
+)
 from processing.monitor import Monitor, SilentMonitor
 
 OVERLAP_ROWS = 1
@@ -29,11 +36,15 @@ class JoinLimits:
         Farther ones are joined up to so many times the distance that neighbours have there.
     farthest_m : float
         Farther ones are never joined.
+    bend_deg : float
+        Nor those where the row turns by more: a surface ends at a corner. 180: only distances
+        count.
     """
 
     distance_m: float
     spacing_ratio: float
     farthest_m: float
+    bend_deg: float = 180.0
 
 
 def connected_segments(
@@ -58,7 +69,10 @@ def connected_segments(
        after, the shorter of the two.
     2. A point and the nearest in space among those of the next row that are at most three columns
        away are neighbours. Expected there is the median of such distances in the row.
-    3. Rows of different segments (stops) are never joined.
+    3. Points where the row bends, within 0.15 m on either side, are corners or leaves and are
+       joined among each other only. Others are joined when the rows run in the same direction
+       there, so a surface ends where the row turns the corner to another.
+    4. Rows of different segments (stops) are never joined.
     """
     monitor = monitor or SilentMonitor()
     starts = grid.row_starts
@@ -67,17 +81,26 @@ def connected_segments(
         columns=grid.columns,
         row_starts=starts,
         segments=grid.segments,
-        limits=np.array([limits.distance_m, limits.spacing_ratio, limits.farthest_m]),
+        limits=np.array(
+            [
+                limits.distance_m,
+                limits.spacing_ratio,
+                limits.farthest_m,
+                math.cos(math.radians(limits.bend_deg)),
+            ]
+        ),
         scratch=np.empty(int(np.diff(starts).max(initial=0)) + 1),
+        tangents=np.zeros(xyz.shape, dtype=np.float32),
+        is_bent=np.zeros(xyz.shape[0], dtype=np.bool_),
         parents=np.arange(xyz.shape[0], dtype=np.int64),
     )
-    first, count = 0, starts.size - 1
-    while first < count:
+    if limits.bend_deg < 180:
+        for first, end in _row_stretches(starts):
+            monitor.check()
+            tangents_kernel(rows, first, end)
+    for first, end in _row_stretches(starts):
         monitor.check()
-        wanted = int(np.searchsorted(starts, starts[first] + _POINTS_AT_ONCE))
-        end = min(max(wanted, first + 1), count)
         join_rows_kernel(rows, first, end)
-        first = end
     roots_kernel(rows.parents)
     return numbered_by_first(rows.parents)
 
@@ -99,4 +122,14 @@ def warm_up() -> None:
     grid = PixelGrid(
         np.array([0, 1, 2]), np.array([0, 1], np.int32), np.zeros(2, np.int32), width=2
     )
-    connected_segments(np.zeros((2, 3)), grid, JoinLimits(0.3, 2.0, 1.0))
+    connected_segments(np.zeros((2, 3)), grid, JoinLimits(0.3, 2.0, 1.0, 25.0))
+
+
+def _row_stretches(starts: NDArray[np.int64]) -> Iterator[tuple[int, int]]:
+    """First row and end of consecutive stretches of rows with so many points."""
+    first, count = 0, starts.size - 1
+    while first < count:
+        wanted = int(np.searchsorted(starts, starts[first] + _POINTS_AT_ONCE))
+        end = min(max(wanted, first + 1), count)
+        yield first, end
+        first = end

@@ -55,6 +55,11 @@ class TilePixels:
 Done = Callable[[TileRequest, TilePixels], None]
 """Told of a finished tile, from a loader's thread."""
 
+Refused = Callable[[TileRequest, UserError], None]
+"""Told why a tile can't be shown, from a loader's thread."""
+
+_Listeners = dict[Done, Refused | None]
+
 
 class TileCache:
     """Coloured tiles, the ones used last kept; may be called from any thread.
@@ -72,8 +77,8 @@ class TileCache:
         self._tiles: OrderedDict[TileRequest, TilePixels] = OrderedDict()
         self._held_bytes = 0
         # The newest request is last and is served first.
-        self._waiting: OrderedDict[TileRequest, list[Done]] = OrderedDict()
-        self._loading: dict[TileRequest, list[Done]] = {}
+        self._waiting: OrderedDict[TileRequest, _Listeners] = OrderedDict()
+        self._loading: dict[TileRequest, _Listeners] = {}
         self._refusals: dict[tuple[str, str], UserError] = {}
         self._ages: dict[str, int] = {}
         self._is_closed = False
@@ -109,11 +114,12 @@ class TileCache:
                 self._tiles.move_to_end(request)
             return pixels
 
-    def request(self, request: TileRequest, done: Done) -> None:
+    def request(self, request: TileRequest, done: Done, refused: Refused | None = None) -> None:
         """Load a tile, before all that was asked for earlier, and tell ``done``.
 
-        A tile that is there already is told at once, from this thread. What can't be shown (see
-        :meth:`refusal`) is never told.
+        A tile that is there already is told at once, from this thread. That a drive can't be
+        shown by an attribute is told to ``refused`` when a loader finds out; further requests of
+        that kind are ignored until the drive is dropped (see :meth:`refusal`).
 
         Raises
         ------
@@ -128,7 +134,7 @@ class TileCache:
                 return
             pixels = self._tiles.get(request)
             if pixels is None:
-                self._wait_for(request, done)
+                self._wait_for(request, {done: refused})
                 return
         done(request, pixels)
 
@@ -138,7 +144,7 @@ class TileCache:
             for request in list(self._waiting):
                 listeners = self._waiting[request]
                 if request not in wanted and done in listeners:
-                    listeners.remove(done)
+                    del listeners[done]
                     if not listeners:
                         del self._waiting[request]
 
@@ -166,14 +172,13 @@ class TileCache:
             if loader is not threading.current_thread():
                 loader.join()
 
-    def _wait_for(self, request: TileRequest, done: Done) -> None:
+    def _wait_for(self, request: TileRequest, more: _Listeners) -> None:
         listeners = self._loading.get(request)
         if listeners is None:
-            listeners = self._waiting.setdefault(request, [])
+            listeners = self._waiting.setdefault(request, {})
             self._waiting.move_to_end(request)
             self._changed.notify()
-        if done not in listeners:
-            listeners.append(done)
+        listeners.update(more)
 
     def _load_all(self) -> None:
         while True:
@@ -189,32 +194,38 @@ class TileCache:
             self._load(request, age, drive_of)
 
     def _load(self, request: TileRequest, age: int, drive_of: Callable[[str], Drive]) -> None:
-        pixels: TilePixels | None = None
-        refusal: UserError | None = None
+        made: TilePixels | UserError | None = None
         try:
-            pixels = self._pixels_of(request, drive_of)
+            made = self._pixels_of(request, drive_of)
         except UserError as error:
-            refusal = error
+            made = error
         except KeyError:
-            refusal = None  # the drive was closed meanwhile; no one waits for its tiles
+            made = None  # the drive was closed meanwhile; no one waits for its tiles
         finally:
-            with self._changed:
-                listeners = self._loading.pop(request)
+            listeners = self._kept(request, made, age)
+        for done, refused in listeners.items():
+            if isinstance(made, TilePixels):
+                done(request, made)
+            elif made is not None and refused is not None:
+                refused(request, made)
+
+    def _kept(
+        self, request: TileRequest, made: TilePixels | UserError | None, age: int
+    ) -> _Listeners:
+        """Keep what a loader made; gives who is to be told."""
         with self._changed:
+            listeners = self._loading.pop(request)
             if self._is_closed:
-                return
+                return {}
             if age != self._ages.get(request.drive_id, 0):
                 # The drive changed while the tile was made: make it again for who still waits.
-                for done in listeners:
-                    self._wait_for(request, done)
-                return
-            if refusal is not None:
-                self._refusals[request.drive_id, request.attribute] = refusal
-            if pixels is not None:
-                self._keep(request, pixels)
-        if pixels is not None:
-            for done in listeners:
-                done(request, pixels)
+                self._wait_for(request, listeners)
+                return {}
+            if isinstance(made, UserError):
+                self._refusals[request.drive_id, request.attribute] = made
+            elif made is not None:
+                self._keep(request, made)
+            return listeners
 
     def _pixels_of(self, request: TileRequest, drive_of: Callable[[str], Drive]) -> TilePixels:
         drive = drive_of(request.drive_id)

@@ -26,7 +26,7 @@ TILE = 256
 _POINTS_AT_ONCE = 4_000_000
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, order=True)
 class TileKey:
     """A tile's place: it covers TILE · 2^level rows and columns of the image."""
 

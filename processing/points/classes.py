@@ -59,6 +59,8 @@ def read_classes(path: Path) -> tuple[PointClass, ...]:
         entries = tomllib.loads(content.decode("utf-8")).get("class", [])
     except ValueError as error:
         raise _bad(path, str(error)) from error
+    if not isinstance(entries, list):
+        raise _bad(path, "class")
     classes: dict[int, PointClass] = {}
     for number, entry in enumerate(entries, start=1):
         place = f"[[class]] {number}"

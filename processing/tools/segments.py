@@ -8,7 +8,7 @@ from processing.errors import OutOfRange
 from processing.image.segments import OVERLAP_ROWS, JoinLimits, connected_segments
 from processing.monitor import Monitor
 from processing.text import Text
-from processing.tools.parameters import length, ratio
+from processing.tools.parameters import angle, length, ratio
 from processing.tools.tool import Needs, OutputColumn, PointBlock, PointResult, Tool
 
 
@@ -47,6 +47,18 @@ class SegmentsParameters:
             "これより離れた点は結合しません。",
         ),
     )
+    bend_deg: float = angle(
+        25.0,
+        low=5.0,
+        high=180.0,
+        name=Text("Largest bend", "最大屈曲角"),
+        explanation=Text(
+            "A surface ends where the scan line bends by more, as at a curb or the foot of a "
+            "wall. At 180° only distances count.",
+            "スキャンラインがこれより大きく曲がる所（縁石や壁の下端など）で面を区切ります。"
+            "180°では距離だけで判断します。",
+        ),
+    )
 
 
 def compute_segments(
@@ -76,7 +88,12 @@ def compute_segments(
                 "{distance:g} m以上にするか、結合距離を小さくしてください。",
             ).filled(distance=parameters.distance_m),
         )
-    limits = JoinLimits(parameters.distance_m, parameters.spacing_ratio, parameters.farthest_m)
+    limits = JoinLimits(
+        parameters.distance_m,
+        parameters.spacing_ratio,
+        parameters.farthest_m,
+        parameters.bend_deg,
+    )
     return PointResult({"segment": connected_segments(block.xyz, block.grid, limits, monitor)})
 
 
@@ -84,9 +101,9 @@ SEGMENTS = Tool(
     id="segments",
     name=Text("Segments", "セグメント分割"),
     explanation=Text(
-        "Joins points that are neighbours in the image and near in space; each connected part "
-        "gets a number of its own.",
-        "画像上で隣り合い、空間的にも近い点を結合し、つながった部分ごとに番号を付けます。",
+        "Joins points that are neighbours in the image, near in space and on one surface; each "
+        "connected part gets a number of its own.",
+        "画像上で隣り合い、空間的にも近く、同じ面にある点を結合し、つながった部分ごとに番号を付けます。",
     ),
     group=Text("Points", "点群"),
     needs=Needs.PIXELS,

@@ -1,0 +1,167 @@
+"""Running tools on drives: results for every point, refusals, progress and cancelling."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from processing.errors import Cancelled, OutOfRange, Unsuitable
+from processing.image.kinds import ImageKind
+from processing.monitor import SilentMonitor
+from processing.points.columns import COLUMN_TYPES, ColumnWriter
+from processing.points.drive import Drive
+from processing.points.drive_info import read_drive_info, write_drive_info
+from processing.runner import RunRequest, check_needs, run, tool_of
+from processing.text import Text
+from processing.tools.normals import NORMALS, NormalsParameters
+from processing.tools.parameters import parameters_of
+from processing.tools.registry import TOOLS
+from processing.tools.segments import SEGMENTS, SegmentsParameters
+from processing.tools.tool import Needs
+from tests.processing.image.recordings import small_drive
+
+
+class Watching:
+    """Notes progress, and cancels after some checks."""
+
+    def __init__(self, cancel_after: int = 10**9) -> None:
+        self.fractions: list[float] = []
+        self.texts: list[Text] = []
+        self._left = cancel_after
+
+    def report(self, fraction: float, text: Text | None = None) -> None:
+        self.fractions.append(fraction)
+        self.texts.extend([text] if text else [])
+
+    def check(self) -> None:
+        self._left -= 1
+        if self._left < 0:
+            raise Cancelled
+
+
+@pytest.fixture
+def drive(tmp_path: Path) -> Drive:
+    return small_drive(tmp_path / "d", multi_return_share=0.1)[0]
+
+
+def without_turns(drive: Drive) -> Drive:
+    """The same folder as a top view of one cell per pulse."""
+    (drive.folder / "turns.npz").unlink()
+    info = dataclasses.replace(
+        read_drive_info(drive.folder),
+        rows_by="top-view",
+        rows_reason=Text("The points have no times.", "点に時刻がありません。"),
+        cell_m=0.1,
+        cells_per_row=400,
+    )
+    write_drive_info(drive.folder, info)
+    return Drive(drive.folder)
+
+
+@pytest.mark.parametrize("name", list(TOOLS))
+def test_a_tool_gives_what_it_declares_and_the_drive_can_store_it(drive: Drive, name: str) -> None:
+    tool = TOOLS[name]
+    result = run(RunRequest(name, drive, tool.parameters()), SilentMonitor())
+    assert set(result.columns) == {output.name for output in tool.outputs}
+    for output in tool.outputs:
+        values = result.columns[output.name]
+        shape = (drive.count,) if output.width == 1 else (drive.count, output.width)
+        assert values.shape == shape
+        assert values.dtype == output.dtype
+        assert np.dtype(COLUMN_TYPES[output.name][0]) == values.dtype
+        drive.columns.add(output.name, values)
+        np.testing.assert_array_equal(drive.columns[output.name], values)
+
+
+@pytest.mark.parametrize("name", list(TOOLS))
+def test_a_tool_runs_on_a_cloud_without_turns(drive: Drive, name: str) -> None:
+    flat = without_turns(drive)
+    assert flat.image_kinds == (ImageKind.TOP_VIEW,)
+    result = run(RunRequest(name, flat, TOOLS[name].parameters()), SilentMonitor())
+    assert all(len(values) == flat.count for values in result.columns.values())
+
+
+def test_progress_rises_to_one_and_says_what_is_done(drive: Drive) -> None:
+    watching = Watching()
+    run(RunRequest("segments", drive, SegmentsParameters()), watching)
+    assert watching.fractions == sorted(watching.fractions)
+    assert watching.fractions[-1] == 1.0
+    assert "Segments" in watching.texts[0].en
+    assert drive.info.name in watching.texts[0].ja
+
+
+@pytest.mark.parametrize("checks", [0, 1, 2])
+def test_cancelling_leaves_nothing(drive: Drive, checks: int) -> None:
+    with pytest.raises(Cancelled):
+        run(RunRequest("normals", drive, NormalsParameters()), Watching(checks))
+    assert not drive.columns.has("normal")
+
+
+def test_an_unknown_tool_is_refused_with_the_known_ones() -> None:
+    with pytest.raises(OutOfRange) as refusal:
+        tool_of("magic")
+    assert "normals" in refusal.value.remedy.en
+
+
+def test_a_tool_that_needs_turns_refuses_a_cloud_without_them(drive: Drive) -> None:
+    flat = without_turns(drive)
+    tool = dataclasses.replace(NORMALS, needs=Needs.TURNS)
+    with pytest.raises(Unsuitable) as refusal:
+        check_needs(tool, flat)
+    assert refusal.value.remedy == flat.info.rows_reason
+    assert "Normals" in refusal.value.what.en
+    check_needs(dataclasses.replace(NORMALS, needs=Needs.PIXELS), flat)
+
+
+def test_a_tool_that_needs_a_trajectory_refuses_a_drive_without_one(drive: Drive) -> None:
+    assert drive.trajectory is None
+    with pytest.raises(Unsuitable):
+        check_needs(dataclasses.replace(SEGMENTS, needs=Needs.TRAJECTORY), drive)
+
+
+def test_a_drive_without_delivered_classes_can_be_processed(drive: Drive) -> None:
+    (drive.folder / "classification.bin").unlink()
+    again = Drive(drive.folder)
+    result = run(RunRequest("segments", again, SegmentsParameters()), SilentMonitor())
+    assert result.columns["segment"].max() > 0
+
+
+def test_a_drive_without_points_gives_empty_columns(drive: Drive) -> None:
+    names = ("xyz", "time", "intensity", "pulse")
+    with ColumnWriter(drive.folder) as writer:
+        writer.append({name: np.empty((0, 3) if name == "xyz" else 0) for name in names})
+    for path in drive.folder.glob("*.bin"):
+        if path.stem not in names:
+            path.unlink()
+    write_drive_info(drive.folder, dataclasses.replace(read_drive_info(drive.folder), count=0))
+    result = run(RunRequest("normals", Drive(drive.folder), NormalsParameters()), SilentMonitor())
+    assert result.columns["normal"].shape == (0, 3)
+
+
+def test_contradicting_distances_are_refused(drive: Drive) -> None:
+    parameters = SegmentsParameters(distance_m=2.0, farthest_m=1.0)
+    with pytest.raises(OutOfRange) as refusal:
+        run(RunRequest("segments", drive, parameters), SilentMonitor())
+    assert "2 m" in refusal.value.remedy.en
+
+
+def test_every_tool_explains_its_parameters_in_both_languages() -> None:
+    for tool in TOOLS.values():
+        assert tool.explanation.en
+        assert tool.explanation.ja
+        for parameter in parameters_of(tool.parameters):
+            assert parameter.explanation.en
+            assert parameter.explanation.ja
+            assert parameter.low <= float(parameter.default) <= parameter.high
+
+
+def test_many_blocks_give_the_same_as_one(drive: Drive) -> None:
+    request = RunRequest("segments", drive, SegmentsParameters())
+    whole = run(request, SilentMonitor()).columns["segment"]
+    watching = Watching()
+    cut = run(request, watching, points_per_block=500).columns["segment"]
+    np.testing.assert_array_equal(cut, whole)
+    assert len(watching.fractions) > 5
