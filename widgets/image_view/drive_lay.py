@@ -19,7 +19,7 @@ _POINTS_PER_ROW = 64
 _MOST_STRETCH = 24.0
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DriveLay:
     """Where the rows of an image are along the drive, and how its columns run.
 
@@ -104,7 +104,7 @@ def _smoothed(places: Floats) -> Floats:
     return np.column_stack([np.convolve(padded[:, axis], window, "valid") for axis in range(3)])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Profile:
     """The points of one row, by column."""
 

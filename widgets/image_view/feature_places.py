@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections import deque
 from collections.abc import Iterable, Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.project.feature import Feature, Vertex
-from widgets.image_view.picture import Picture
+from widgets.image_view.picture import Picture, Span
 from widgets.image_view.placed_feature import PlacedFeature, placed
+from widgets.image_view.waiting_features import WaitingFeatures
 from widgets.shared.map_source import MapSource
 
 Floats = NDArray[np.float64]
@@ -40,7 +40,7 @@ class FeaturePlaces:
         self._features: dict[str, Feature] = {}
         self._points: dict[tuple[str, str], NDArray[np.int64]] = {}
         self._placed: dict[str, PlacedFeature] = {}
-        self._waiting: deque[str] = deque()
+        self._waiting = WaitingFeatures()
         self._bounds: Floats | None = None
         self._ids: list[str] = []
         self._searched: dict[tuple[str, Vertex], int] = {}
@@ -82,19 +82,17 @@ class FeaturePlaces:
         """A feature in the picture; None when it isn't there."""
         return self._placed.get(id_)
 
-    def within(
-        self, left: float, top: float, right: float, bottom: float
-    ) -> Iterator[PlacedFeature]:
-        """Features whose bounds touch a rectangle in picture coordinates."""
+    def within(self, span: Span) -> Iterator[PlacedFeature]:
+        """Features whose bounds touch a rectangle."""
         if self._bounds is None:
             self._ids = list(self._placed)
             self._bounds = np.array([one.bounds for one in self._placed.values()]).reshape(-1, 4)
         bounds = self._bounds
         touches = (
-            (bounds[:, 0] <= right)
-            & (bounds[:, 2] >= left)
-            & (bounds[:, 1] <= bottom)
-            & (bounds[:, 3] >= top)
+            (bounds[:, 0] <= span.right)
+            & (bounds[:, 2] >= span.left)
+            & (bounds[:, 1] <= span.bottom)
+            & (bounds[:, 3] >= span.top)
         )
         return (self._placed[self._ids[index]] for index in np.flatnonzero(touches))
 
@@ -113,24 +111,31 @@ class FeaturePlaces:
             points[index] = self._searched[key]
         return _places(picture, points)
 
-    def search(self, for_s: float) -> bool:
-        """Search nearest points for a while; says whether any feature got its place."""
+    def search(self, for_s: float, near: tuple[float, float]) -> bool:
+        """Search nearest points for a while; says whether any feature got its place.
+
+        Parameters
+        ----------
+        near : tuple of float
+            Easting and northing; features near it come first.
+        """
         picture, until = self._picture, time.perf_counter() + for_s
         if picture is None:
             return False
         found = []
-        while self._waiting and time.perf_counter() < until:
-            feature = self._features.get(self._waiting[0])
+        while time.perf_counter() < until:
+            feature = self._features.get(self._waiting.next_to(near))
             points = None if feature is None else self._points.get((picture.drive.id, feature.id))
             unknown = (
                 np.empty(0, np.int64) if points is None else np.flatnonzero(points == _UNKNOWN)
             )
-            if feature is None or points is None or not unknown.size:
-                self._waiting.popleft()
-                if feature is not None:
-                    found.append(feature)
+            if feature is not None and points is not None and unknown.size:
+                points[unknown[0]] = _nearest(picture, feature.vertices[unknown[0]])
                 continue
-            points[unknown[0]] = _nearest(picture, feature.vertices[unknown[0]])
+            if not self._waiting.done():
+                break
+            if feature is not None:
+                found.append(feature)
         self._place_known(picture, found)
         return bool(found)
 
@@ -147,7 +152,7 @@ class FeaturePlaces:
             if key not in self._points:
                 self._points[key] = _own_points(picture, feature.vertices)
             if (self._points[key] == _UNKNOWN).any():
-                self._waiting.append(feature.id)
+                self._waiting.add(feature)
             known.append(feature)
         self._place_known(picture, known)
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
 
-from processing.project.feature import PointReference, Status
+from processing.project.feature import PointReference
 from widgets.image_view.feature_overlay import FeatureOverlay
 from widgets.image_view.picture import Picture, Span
 from widgets.image_view.placed_feature import PlacedFeature
@@ -73,7 +73,9 @@ class HitFinder:
         point = point_clicked(picture, viewport, position)
         place = None if point < 0 else place_of(picture, point)
         mouse = np.array([position.x(), position.y()])
-        shown = self._shown(viewport)
+        x, y, reach = position.x(), position.y(), VERTEX_PX
+        around = viewport.span_of(x - reach, y - reach, x + reach, y + reach)
+        shown = self._overlay.shown_in(around)
         vertex = _nearest_vertex(shown, viewport, mouse, self._overlay.selected)
         if vertex is not None:
             return Hit(place, vertex[0], vertex=vertex[1], modifiers=modifiers)
@@ -86,23 +88,15 @@ class HitFinder:
         self, picture: Picture, viewport: Viewport, box: QRectF, modifiers: Qt.KeyboardModifier
     ) -> Boxed:
         """The features wholly inside a rectangle of the window, and the points inside it."""
-        left, top = viewport.to_picture(box.left(), box.top())
-        right, bottom = viewport.to_picture(box.right(), box.bottom())
-        low, high = np.array([left, top]), np.array([right, bottom])
+        span = viewport.span_of(box.left(), box.top(), box.right(), box.bottom())
+        low, high = np.array([span.left, span.top]), np.array([span.right, span.bottom])
         features = frozenset(
             one.feature.id
-            for one in self._shown(viewport)
+            for one in self._overlay.shown_in(span)
             if bool(((one.places >= low) & (one.places <= high)).all())
         )
-        points = points_within(picture, Span(left, top, right, bottom))
+        points = points_within(picture, span)
         return Boxed(features, {picture.drive.id: points}, modifiers)
-
-    def _shown(self, viewport: Viewport) -> list[PlacedFeature]:
-        return [
-            one
-            for one in self._overlay.visible(viewport)
-            if one.feature.status is not Status.REJECTED
-        ]
 
 
 def points_within(picture: Picture, span: Span) -> NDArray[np.int64]:

@@ -60,15 +60,14 @@ class Minimap(QWidget):
 
     @override
     def paintEvent(self, event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), _BACKGROUND)
         picture = self._picture
-        if picture is not None:
-            viewport = self._viewport(picture)
-            self._mosaic.paint(painter, picture, viewport)
-            left, right = (viewport.x_of(place) for place in self._shown)
-            self._paint_part(painter, left, right)
-        painter.end()
+        with QPainter(self) as painter:
+            painter.fillRect(self.rect(), _BACKGROUND)
+            if picture is not None:
+                viewport = self._viewport(picture)
+                self._mosaic.paint(painter, picture, viewport)
+                left, right = (viewport.x_of(place) for place in self._shown)
+                self._paint_part(painter, left, right)
 
     @override
     def mousePressEvent(self, event: QMouseEvent) -> None:

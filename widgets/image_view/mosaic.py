@@ -127,16 +127,15 @@ class Mosaic:
         )
         if self._whole.size() != size:
             self._whole = QImage(size, QImage.Format.Format_RGB32)
-        painter = QPainter(self._whole)
-        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, on=True)
-        for key in keys:
-            place = grid.place(key)
-            if key in found:
-                painter.drawImage(place, found[key])
-            else:
-                painter.fillRect(place, _UNKNOWN)
-                self._paint_coarser(painter, grid, key, place)
-        painter.end()
+        with QPainter(self._whole) as painter:
+            painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, on=True)
+            for key in keys:
+                place = grid.place(key)
+                if key in found:
+                    painter.drawImage(place, found[key])
+                else:
+                    painter.fillRect(place, _UNKNOWN)
+                    self._paint_coarser(painter, grid, key, place)
 
     def _paint_coarser(self, painter: QPainter, grid: _Grid, key: TileKey, place: QRect) -> None:
         """Paint the part of the next coarser tile that there is a picture of."""

@@ -29,9 +29,9 @@ class Span:
     bottom: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Picture:
-    """One drive's image of one kind, with its orientation.
+    """One drive's image of one kind, with its orientation; equal to nothing but itself.
 
     Attributes
     ----------
@@ -84,6 +84,15 @@ class Picture:
         across = self.image.width - across if self.is_flipped else across
         column = np.ceil(across) - 1 if self.is_flipped else np.floor(across)
         return int(np.floor(along)), int(column)
+
+    def plan_position(self, u: float, v: float) -> tuple[float, float]:
+        """Easting and northing of about the middle of the row at a place, m."""
+        row = min(max(self.pixel_at(u, v)[0], 0), max(self.image.rows - 1, 0))
+        starts = self.image.row_starts
+        middle = (int(starts[row]) + int(starts[min(row + 1, self.image.rows)])) // 2
+        point = min(middle, max(self.drive.count - 1, 0))
+        easting, northing, _ = self.drive.xyz(np.array([point]))[0].tolist()
+        return easting, northing
 
     def rows_columns(self, span: Span) -> tuple[range, range]:
         """The rows and columns that a rectangle touches, inside the image."""

@@ -18,7 +18,7 @@ from widgets.image_view.picture import Picture
 Floats = NDArray[np.float64]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PlacedFeature:
     """Where a feature is in the picture.
 

@@ -36,12 +36,11 @@ class Ruler(QWidget):
 
     @override
     def paintEvent(self, event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), _BACKGROUND)
         picture = self._picture
-        if picture is not None and picture.lay.length_m > 0:
-            self._paint_ticks(painter, picture)
-        painter.end()
+        with QPainter(self) as painter:
+            painter.fillRect(self.rect(), _BACKGROUND)
+            if picture is not None and picture.lay.length_m > 0:
+                self._paint_ticks(painter, picture)
 
     def _paint_ticks(self, painter: QPainter, picture: Picture) -> None:
         span = self._viewport.span

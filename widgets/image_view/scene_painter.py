@@ -12,7 +12,8 @@ from processing.errors import UserError
 from processing.image.attributes import ATTRIBUTES
 from processing.project.catalogue import Catalogue
 from processing.text import Language
-from widgets.image_view.feature_overlay import FeatureOverlay, paint_cross
+from widgets.image_view.feature_overlay import FeatureOverlay
+from widgets.image_view.marks import paint_cross
 from widgets.image_view.mosaic import Mosaic
 from widgets.image_view.picture import Picture
 from widgets.image_view.shown_cursor import ShownCursor
@@ -68,18 +69,17 @@ class ScenePainter:
 
     def paint(self, picture: Picture | None, viewport: Viewport, overlays: Overlays) -> bool:
         """Paint everything; says whether the tiles are as sharp as they will be."""
-        painter = QPainter(self._view)
-        painter.fillRect(self._view.rect(), BACKGROUND)
         refusal, is_sharp = overlays.refusal, False
-        if picture is not None:
-            painter.setClipRect(QRectF(0, viewport.top, viewport.width, viewport.height))
-            is_sharp = self._mosaic.paint(painter, picture, viewport)
-            self._paint_over(painter, picture, viewport, overlays)
-            self._paint_line(painter, self._described(picture, viewport, overlays.look))
-            refusal = self._images.refusal
-        if refusal is not None:
-            self._paint_refusal(painter, refusal)
-        painter.end()
+        with QPainter(self._view) as painter:
+            painter.fillRect(self._view.rect(), BACKGROUND)
+            if picture is not None:
+                painter.setClipRect(QRectF(0, viewport.top, viewport.width, viewport.height))
+                is_sharp = self._mosaic.paint(painter, picture, viewport)
+                self._paint_over(painter, picture, viewport, overlays)
+                self._paint_line(painter, self._described(picture, viewport, overlays.look))
+                refusal = self._images.refusal
+            if refusal is not None:
+                self._paint_refusal(painter, refusal)
         return is_sharp
 
     def _paint_over(

@@ -34,6 +34,7 @@ from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
 _SEARCH_S = 0.008
+_SEARCH_EVERY_MS = 10
 _MANY_FEATURES = 1_000
 _MARGIN_PX = 24.0
 
@@ -91,7 +92,7 @@ class ImageView(QWidget):
         self._scene = ScenePainter(self, self._images, self._overlay, language)
         self._edges = Edges(self, tiles)
         self._search = QTimer(self)
-        self._search.setInterval(0)
+        self._search.setInterval(_SEARCH_EVERY_MS)
         self._search.timeout.connect(self._on_search_timeout)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -346,7 +347,9 @@ class ImageView(QWidget):
         self._look_through(self._viewport.centred_on(u, self._viewport.centre[1]))
 
     def _on_search_timeout(self) -> None:
-        if self._places.search(_SEARCH_S):
+        picture = self._picture
+        near = None if picture is None else picture.plan_position(*self._viewport.centre)
+        if near is not None and self._places.search(_SEARCH_S, near):
             self.update()
         self._search_if_needed()
         if not self._places.is_searching:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from PySide6.QtGui import QTransform
 
 from widgets.image_view.picture import Span
 
@@ -57,11 +58,30 @@ class Viewport:
         return max(self.zoom, min(1.0, _LEAST_SHARE * self.height / self.extent[1]))
 
     @property
+    def bottom(self) -> float:
+        """Where the window ends below the widget's upper edge."""
+        return self.top + self.height
+
+    @property
     def span(self) -> Span:
         """What is seen; may reach beyond the picture."""
         half_u, half_v = self.width / 2 / self.zoom_u, self.height / 2 / self.zoom_v
         u, v = self.centre
         return Span(u - half_u, v - half_v, u + half_u, v + half_v)
+
+    def span_with(self, margin_px: float) -> Span:
+        """What is seen, and so many screen pixels more on every side."""
+        return self.span_of(
+            -margin_px, self.top - margin_px, self.width + margin_px, self.bottom + margin_px
+        )
+
+    def span_of(self, left: float, top: float, right: float, bottom: float) -> Span:
+        """The part of the picture in a rectangle of the widget."""
+        return Span(*self.to_picture(left, top), *self.to_picture(right, bottom))
+
+    def transform(self) -> QTransform:
+        """The same as :meth:`to_screen` for Qt's shapes."""
+        return QTransform(self.zoom_u, 0.0, 0.0, self.zoom_v, self.x_of(0.0), self.y_of(0.0))
 
     def to_screen(self, places: Floats) -> Floats:
         """(n, 2) picture coordinates to (n, 2) positions in the widget."""

@@ -15,12 +15,12 @@ ACCENT = QColor("#4da3ff")
 
 CURSOR_COLOUR = QColor("#ffd23f")
 
-_HALO_ALPHA = 190
 _UNKNOWN_KIND = "#d0d0d0"
 _REJECTED = "#8a8a8a"
 _PLAIN_PX = 1.75
 _CHOSEN_PX = 2.5
-_HALO_EXTRA_PX = 2.5
+_HALO_PX = 1.25
+_HALO = "#0b0d10"
 
 
 @dataclass(frozen=True)
@@ -39,8 +39,8 @@ class FeatureStyle:
         Rejected features are not.
     has_vertices : bool
         Whether vertices are marked by squares.
-    halo_alpha : int
-        0 to 255; candidates with more confidence have a stronger halo.
+    halo_px : float
+        Of the dark line on either side; wider for candidates with more confidence.
     symbol : str
         Of a point feature, as the catalogue names it.
     """
@@ -50,7 +50,7 @@ class FeatureStyle:
     is_dashed: bool = False
     is_shown: bool = True
     has_vertices: bool = False
-    halo_alpha: int = _HALO_ALPHA
+    halo_px: float = _HALO_PX
     symbol: str = ""
 
     @property
@@ -63,16 +63,20 @@ class FeatureStyle:
         """The line itself."""
         pen = QPen(QColor(self.colour), self.width_px)
         pen.setCosmetic(True)
-        pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+        pen.setJoinStyle(Qt.PenJoinStyle.BevelJoin)
         if self.is_dashed:
             pen.setDashPattern([5.0, 3.0])
         return pen
 
     def halo_pen(self) -> QPen:
-        """The dark line below it, by which it reads on bright and on dark points."""
-        pen = QPen(QColor(0, 0, 0, self.halo_alpha), self.width_px + _HALO_EXTRA_PX)
+        """The dark line below it, by which it reads on bright and on dark points.
+
+        Opaque, with plain joins and ends: a see-through one takes five times as long to paint.
+        """
+        pen = QPen(QColor(_HALO), self.width_px + 2 * self.halo_px)
         pen.setCosmetic(True)
-        pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+        pen.setJoinStyle(Qt.PenJoinStyle.BevelJoin)
+        pen.setCapStyle(Qt.PenCapStyle.FlatCap)
         return pen
 
 
@@ -92,7 +96,7 @@ def style_of(catalogue: Catalogue, feature: Feature, *, is_selected: bool) -> Fe
         is_dashed=is_candidate,
         is_shown=not is_rejected,
         has_vertices=is_selected,
-        halo_alpha=round(70 + 120 * confidence) if is_candidate else _HALO_ALPHA,
+        halo_px=_HALO_PX * (0.4 + 1.2 * confidence) if is_candidate else _HALO_PX,
         symbol=catalogue[feature.kind].symbol if feature.kind in catalogue else "",
     )
 

@@ -255,3 +255,20 @@ def test_closing_the_project_empties_the_view(hand: Hand) -> None:
     minimap: QWidget | None = hand.view.findChild(Minimap)
     assert minimap is not None
     assert not minimap.isVisible()
+
+
+def test_a_drive_shown_again_is_painted_again(hand: Hand, right_drive: Drive) -> None:
+    settings = hand.map.shared.view_settings
+    first = hand.view.grab().toImage()
+    settings.show_image(right_drive.id, ImageKind.TRAJECTORY_CENTER)
+    hand.view.grab()
+    viewport = hand.view.viewport
+    settings.show_image(hand.drive.id, ImageKind.TRAJECTORY_CENTER)
+    with hand.qtbot.waitSignal(hand.view.sharpened, raising=False, timeout=2_000):
+        hand.view.grab()
+    again = hand.view.grab().toImage()
+    assert again.size() == first.size()
+    assert hand.view.viewport.width == viewport.width
+    picture = hand.view.picture
+    assert picture is not None
+    assert picture.drive is hand.drive
