@@ -215,7 +215,8 @@ class _Road:
         """The records of the navigation system."""
         time = np.arange(-0.5, duration_s + 0.5, 0.005)
         xyz, angles = self.pose_at(time)
-        return Trajectory(start_time_s + time, xyz + START, angles % 360.0, has_attitude=True)
+        angles[:, 2] %= 360.0
+        return Trajectory(start_time_s + time, xyz + START, angles, has_attitude=True)
 
 
 class _Mounting:
