@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.kernels import kernel
+
 Floats = NDArray[np.float64]
 
 SLOWEST_HZ, FASTEST_HZ = 38.0, 310.0
@@ -107,9 +109,16 @@ def _candidate_rates(angle: Floats, points: PlanePoints) -> list[float]:
     angle, time, window = angle[::every], points.time[::every], points.window[::every]
     span = float(time.max() - time.min())
     step = 0.25 / span
-    positive = np.arange(SLOWEST_HZ, FASTEST_HZ, step)
-    rates = np.concatenate([-positive[::-1], positive])
-    strength = _strengths(rates, angle, time, window)
+    count = int((FASTEST_HZ - SLOWEST_HZ) / step) + 1
+    rates = np.concatenate(
+        [
+            first + step * np.arange(count)
+            for first in (-SLOWEST_HZ - step * (count - 1), SLOWEST_HZ)
+        ]
+    )
+    strength = np.concatenate(
+        [_strengths(half[0], step, count, (angle, time, window)) for half in np.split(rates, 2)]
+    )
     found: list[float] = []
     for at in np.argsort(strength)[::-1]:
         if all(abs(rates[at] - rate) > 6 * step for rate in found):
@@ -118,18 +127,45 @@ def _candidate_rates(angle: Floats, points: PlanePoints) -> list[float]:
             break
     refined = []
     for rate in found:
-        near = rate + np.linspace(-step, step, 21)
-        refined.append(float(near[np.argmax(_strengths(near, angle, time, window))]))
+        near = _strengths(rate - step, step / 10, 21, (angle, time, window))
+        refined.append(rate - step + step / 10 * int(np.argmax(near)))
     return refined
 
 
-def _strengths(rates: Floats, angle: Floats, time: Floats, window: NDArray[np.int64]) -> Floats:
-    strength = np.zeros(rates.size)
-    for number in range(int(window.max()) + 1):
-        mine = window == number
-        turned = np.exp(-2j * np.pi * np.outer(rates, time[mine]))
-        strength += np.abs(turned @ np.exp(1j * angle[mine]))
-    return strength / angle.size
+def _strengths(
+    first_hz: float, step_hz: float, count: int, sample: tuple[Floats, Floats, NDArray[np.int64]]
+) -> Floats:
+    """How well evenly spaced rates fit: mean length of the windows' summed phasors."""
+    angle, time, window = sample
+    sums = np.zeros((int(window.max()) + 1, count), np.complex128)
+    _sum_phasors_kernel(first_hz, step_hz, angle, time, window, sums)
+    strength: Floats = np.abs(sums).sum(axis=0) / angle.size
+    return strength
+
+
+@kernel
+def _sum_phasors_kernel(
+    first_hz: float,
+    step_hz: float,
+    angle: Floats,
+    time: Floats,
+    window: NDArray[np.int64],
+    sums: NDArray[np.complex128],
+) -> None:
+    # From one rate to the next a point's phasor turns by the same amount, so one product a rate
+    # does instead of one exponential.
+    for point in range(angle.size):
+        phasor = np.exp(1j * (angle[point] - 2 * np.pi * first_hz * time[point]))
+        turn = np.exp(-2j * np.pi * step_hz * time[point])
+        own = sums[window[point]]
+        for rate in range(own.size):
+            own[rate] += phasor
+            phasor *= turn
+
+
+def warm_up() -> None:
+    """Compile the kernels."""
+    _strengths(50.0, 1.0, 2, (np.zeros(2), np.zeros(2), np.zeros(2, np.int64)))
 
 
 def _refined(points: PlanePoints, rate_hz: float, start: Floats, *, moves: bool) -> RotationFit:
