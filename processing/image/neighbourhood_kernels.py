@@ -243,17 +243,22 @@ def _nearest_in_row(
     # Neighbouring rows miss about the same pulses, so the place in the row is a good guess.
     guess = start + point - rows.row_starts[row]
     best = _start_of_search(rows, guess, other, column + rows.origins[other])
-    best_distance = _distance(rows, point, best)
+    sx, sy, sz = rows.scale[0], rows.scale[1], rows.scale[2]
+    px, py, pz = float(rows.xyz[point, 0]), float(rows.xyz[point, 1]), float(rows.xyz[point, 2])
+    best_square = _distance(rows, point, best) ** 2
     for side in (1, -1):
         candidate, misses = best + side, 0
         while misses < _MISSES and start <= candidate < stop:
-            distance = _distance(rows, point, candidate)
-            if distance < best_distance:
-                best, best_distance, misses = candidate, distance, 0
+            dx = (rows.xyz[candidate, 0] - px) * sx
+            dy = (rows.xyz[candidate, 1] - py) * sy
+            dz = (rows.xyz[candidate, 2] - pz) * sz
+            square = dx * dx + dy * dy + dz * dz
+            if square < best_square:
+                best, best_square, misses = candidate, square, 0
             else:
                 misses += 1
             candidate += side
-    return best, best_distance
+    return best, math.sqrt(best_square)
 
 
 @kernel

@@ -244,10 +244,12 @@ class PointCloudImage:
 
 def warm_up() -> None:
     """Compile the kernels."""
-    image = PointCloudImage(ImageKind.TOP_VIEW, np.array([0, 1, 1, 5]), 4)
+    coordinates = Coordinates(np.zeros((4, 3), np.int32), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0))
+    image = PointCloudImage(ImageKind.TOP_VIEW, np.array([0, 1, 1, 5]), 4, coordinates=coordinates)
     image.raster(range(2), range(4))
     image.points_at(0, 1)
     image.columns_of(0, 4)
+    image.pyramid.prepare()
 
 
 def _read_only(values: _Integers) -> _Integers:

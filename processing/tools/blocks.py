@@ -144,5 +144,13 @@ def results_of(tool: Tool, row_starts: NDArray[np.int64]) -> JoinedResults:
     return JoinedResults(tool.outputs, row_starts)
 
 
+def warm_up() -> None:
+    """Compile the kernels."""
+    joined = _JoinedComponents(2)
+    joined.add(np.zeros(2, np.int32), 0, 2)
+    joined.add(np.zeros(1, np.int32), 1, 2)
+    joined.finished()
+
+
 def _ends(rows: range) -> tuple[int, int]:
     return rows.start, rows.stop
