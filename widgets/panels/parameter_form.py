@@ -1,0 +1,98 @@
+"""ParameterForm: a form made from any tool's parameters; nothing about a tool is drawn by hand."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QFormLayout, QLabel, QWidget
+
+from processing.text import Language
+from processing.tools.parameters import Parameter, Value, filled_in, parameters_of
+from widgets.panels.parameter_row import ParameterRow
+
+
+class ParameterForm(QWidget):
+    """One line for each parameter: name, field with unit and limits, and a way back to the default.
+
+    Parameters
+    ----------
+    parameters : type
+        A tool's frozen dataclass of fields from :mod:`processing.tools.parameters`.
+    language : Language
+
+    Signals
+    -------
+    changed()
+        The user set a value.
+    """
+
+    changed = Signal()
+
+    def __init__(
+        self,
+        parameters: type[Any],  # each tool has a dataclass of its own
+        language: Language,
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self._parameters = parameters
+        self._rows: dict[str, ParameterRow] = {}
+        layout = QFormLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setHorizontalSpacing(8)
+        layout.setVerticalSpacing(4)
+        layout.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
+        layout.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
+        for parameter in parameters_of(parameters):
+            row = ParameterRow(parameter, language, self)
+            row.changed.connect(self.changed)
+            name = QLabel(parameter.name.spoken(language), self)
+            name.setToolTip(self._explanation(parameter, language))
+            name.setBuddy(row.field)
+            row.field.setToolTip(name.toolTip())
+            layout.addRow(name, row)
+            self._rows[parameter.id] = row
+        if not self._rows:
+            layout.addRow(QLabel(self.tr("This tool needs no settings."), self))
+
+    def value(self) -> Any:  # an object of the class given
+        """The parameters as they are set, checked once more.
+
+        Raises
+        ------
+        OutOfRange
+            A value isn't allowed; the fields don't let that happen by typing.
+        """
+        return filled_in(self._parameters, {id_: row.value for id_, row in self._rows.items()})
+
+    def set_values(self, values: Mapping[str, Value]) -> None:
+        """Set some fields; what is outside its limits is refused as a whole.
+
+        Raises
+        ------
+        OutOfRange
+            For a name that there isn't, or a value that isn't allowed; nothing is set.
+        """
+        checked = filled_in(self._parameters, values)
+        for id_ in values:
+            self._rows[id_].set_value(getattr(checked, id_))
+
+    def restore_defaults(self) -> None:
+        """Set every field to its default."""
+        for row in self._rows.values():
+            row.restore()
+
+    def field(self, id_: str) -> QWidget:
+        """The widget in which a parameter is typed."""
+        return self._rows[id_].field
+
+    def _explanation(self, parameter: Parameter, language: Language) -> str:
+        parts = [parameter.explanation.spoken(language)]
+        if parameter.kind in ("number", "count"):
+            limits = self.tr("{low} to {high} {unit}").format(
+                low=f"{parameter.low:g}", high=f"{parameter.high:g}", unit=parameter.unit
+            )
+            parts.append(limits.strip())
+        return "\n".join(part for part in parts if part)

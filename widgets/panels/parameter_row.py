@@ -1,0 +1,159 @@
+"""ParameterRow: the field of one parameter and the button that restores its default."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from PySide6.QtCore import QSignalBlocker, Signal
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QFileDialog,
+    QHBoxLayout,
+    QLineEdit,
+    QToolButton,
+    QWidget,
+)
+
+from processing.text import Language
+from processing.tools.parameters import Parameter, Value
+from widgets.parts.number_field import NumberField, decimals_for
+
+
+class ParameterRow(QWidget):
+    """One parameter.
+
+    Parameters
+    ----------
+    parameter : Parameter
+    language : Language
+
+    Attributes
+    ----------
+    field : QWidget
+        Number field, combo box, check box or line, by the parameter's kind.
+
+    Signals
+    -------
+    changed()
+        The user set another value.
+    """
+
+    changed = Signal()
+
+    def __init__(self, parameter: Parameter, language: Language, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._parameter = parameter
+        self._layout = QHBoxLayout(self)
+        self._layout.setContentsMargins(0, 0, 0, 0)
+        self._layout.setSpacing(4)
+        self._get: Callable[[], Value]
+        self._set: Callable[[Value], None]
+        self.field: QWidget
+        make = {
+            "number": self._make_number,
+            "count": self._make_number,
+            "choice": self._make_choice,
+            "switch": self._make_switch,
+            "file": self._make_file,
+        }
+        make[parameter.kind](language)
+        self._restore = QToolButton(self)
+        self._restore.setText("↺")
+        self._restore.setAutoRaise(True)
+        self._restore.setToolTip(self.tr("Back to the default"))
+        self._restore.clicked.connect(self._on_restore_clicked)
+        self._layout.addWidget(self._restore)
+        self.restore()
+
+    @property
+    def value(self) -> Value:
+        """What is set."""
+        return self._get()
+
+    def set_value(self, value: Value) -> None:
+        """Set it; tells nobody."""
+        with QSignalBlocker(self.field):
+            self._set(value)
+        self._mark()
+
+    def restore(self) -> None:
+        """Set the default; tells nobody."""
+        self.set_value(self._parameter.default)
+
+    def _make_number(self, language: Language) -> None:  # noqa: ARG002 - as the others are called
+        parameter = self._parameter
+        is_count = parameter.kind == "count"
+        default = float(parameter.default)
+        decimals = 0 if is_count else decimals_for(default, parameter.low, parameter.high)
+        field = NumberField(
+            parameter.low, parameter.high, unit=parameter.unit, decimals=decimals, parent=self
+        )
+        field.valueChanged.connect(self._on_field_changed)
+
+        def get() -> Value:
+            return round(field.value()) if is_count else field.value()
+
+        def put(value: Value) -> None:
+            field.setValue(float(value))
+
+        self._take(field, get, put)
+
+    def _make_choice(self, language: Language) -> None:
+        field = QComboBox(self)
+        for option in self._parameter.choices:
+            field.addItem(option.name.spoken(language), option.value)
+        field.currentIndexChanged.connect(self._on_field_changed)
+
+        def get() -> Value:
+            return str(field.currentData())
+
+        def put(value: Value) -> None:
+            field.setCurrentIndex(field.findData(value))
+
+        self._take(field, get, put)
+
+    def _make_switch(self, language: Language) -> None:  # noqa: ARG002 - as the others are called
+        field = QCheckBox(self)
+        field.toggled.connect(self._on_field_changed)
+
+        def put(value: Value) -> None:
+            field.setChecked(bool(value))
+
+        self._take(field, field.isChecked, put)
+
+    def _make_file(self, language: Language) -> None:
+        field = QLineEdit(self)
+        field.setPlaceholderText(self.tr("None"))
+        field.textChanged.connect(self._on_field_changed)
+
+        def put(value: Value) -> None:
+            field.setText(str(value))
+
+        def choose() -> None:
+            path, _ = QFileDialog.getOpenFileName(self, self._parameter.name.spoken(language))
+            if path:
+                field.setText(path)
+
+        self._take(field, field.text, put)
+        browse = QToolButton(self)
+        browse.setText("…")
+        browse.setToolTip(self.tr("Choose a file"))
+        browse.clicked.connect(choose)
+        self._layout.addWidget(browse)
+
+    def _take(self, field: QWidget, get: Callable[[], Value], put: Callable[[Value], None]) -> None:
+        self.field, self._get, self._set = field, get, put
+        field.setObjectName(self._parameter.id)
+        self._layout.addWidget(field, 1)
+
+    def _mark(self) -> None:
+        self._restore.setEnabled(self._get() != self._parameter.default)
+
+    def _on_field_changed(self) -> None:
+        self._mark()
+        self.changed.emit()
+
+    def _on_restore_clicked(self) -> None:
+        self.restore()
+        self.changed.emit()

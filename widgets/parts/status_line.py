@@ -1,0 +1,112 @@
+"""StatusLine: where the mouse is, in which reference system, what was just done, what runs."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QFont
+from PySide6.QtWidgets import QLabel, QProgressBar, QStatusBar, QWidget
+
+from processing.text import Language, Text
+from widgets.panels.jobs_panel import JobView, time_left
+from widgets.parts.number_field import coordinate
+from widgets.shared.cursor import Place
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+
+_MESSAGE_MS = 12_000
+_STEPS = 1000
+
+
+class StatusLine(QStatusBar):
+    """The window's last line.
+
+    Parameters
+    ----------
+    source : MapSource
+    shared : SharedState
+    language : Language
+    """
+
+    def __init__(
+        self,
+        source: MapSource,
+        shared: SharedState,
+        language: Language,
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self._source = source
+        self._cursor = shared.cursor
+        self._language = language
+        self._job: JobView | None = None
+        self._progress = QProgressBar(self)
+        self._progress.setRange(0, _STEPS)
+        self._progress.setTextVisible(False)
+        self._progress.setFixedSize(88, 8)
+        self._job_words = QLabel(self)
+        self._place = QLabel(self)
+        self._place.setFont(_digits_of(self))
+        self._place.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self._crs = QLabel(self)
+        self.addPermanentWidget(self._progress)
+        self.addPermanentWidget(self._job_words)
+        self.addPermanentWidget(self._place)
+        self.addPermanentWidget(self._crs)
+        shared.cursor.moved.connect(self._on_cursor_changed)
+        shared.cursor.hovered.connect(self._on_cursor_changed)
+        shared.map_changes.drives_changed.connect(self._on_drives_changed)
+        self.show_job(None)
+        self._on_drives_changed()
+
+    @property
+    def place_text(self) -> str:
+        """The coordinates that are shown; empty where there are none."""
+        return self._place.text()
+
+    @property
+    def job_text(self) -> str:
+        """What is said of the job that runs; empty when none does."""
+        return self._job_words.text()
+
+    def show_message(self, text: Text) -> None:
+        """Say something for a while."""
+        self.showMessage(text.spoken(self._language), _MESSAGE_MS)
+
+    def show_job(self, job: JobView | None) -> None:
+        """Show how far the job is; None when none runs."""
+        self._job = job
+        self._progress.setVisible(job is not None)
+        self._job_words.setVisible(job is not None)
+        if job is None:
+            self._job_words.clear()
+            return
+        self._progress.setValue(round(job.fraction * _STEPS))
+        left = time_left(job.seconds_left)
+        words = (
+            self.tr("{title} {percent} %, {left} left") if left else self.tr("{title} {percent} %")
+        )
+        self._job_words.setText(
+            words.format(title=job.title, percent=int(job.fraction * 100), left=left)
+        )
+        self._job_words.setToolTip(job.text)
+
+    def _on_cursor_changed(self) -> None:
+        place: Place | None = self._cursor.hover or self._cursor.place
+        if place is None:
+            self._place.clear()
+            return
+        easting, northing, height = (coordinate(value) for value in place.xyz)
+        self._place.setText(f"E {easting}  N {northing}  H {height}")
+
+    def _on_drives_changed(self) -> None:
+        has_drives = bool(self._source.drives())
+        unknown = self.tr("reference system unknown") if has_drives else ""
+        self._crs.setText(self._source.crs() or unknown)
+        self._on_cursor_changed()
+
+
+def _digits_of(widget: QWidget) -> QFont:
+    """A font whose digits are equally wide, so that numbers don't tremble."""
+    font = widget.font()
+    font.setFeature(QFont.Tag("tnum"), 1)
+    return font
