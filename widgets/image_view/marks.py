@@ -14,7 +14,8 @@ from widgets.shared.symbol_pictures import SYMBOL_PX, SymbolPictures
 Floats = NDArray[np.float64]
 
 _VERTEX_PX = 7.0
-_SYMBOL_PX = 9.0
+_DISC_PX = 9.0
+_RING_PX = 28.0
 _FILL_ALPHA = 34
 _TRAIL_PX = 72.0
 
@@ -67,9 +68,9 @@ class MarkPainter:
             if symbol is not None:
                 _paint_picture(painter, x, y, symbol, style)
             elif is_point:
-                _paint_disc(painter, _box(x, y, _SYMBOL_PX), style)
+                _paint_disc(painter, _box(x, y, _DISC_PX), style)
             if style.has_vertices:
-                side = _SYMBOL_PX + 6 if is_point else _VERTEX_PX
+                side = _RING_PX - 4 if is_point else _VERTEX_PX
                 _paint_square(painter, _box(x, y, side), style, is_open=is_point)
         painter.setBrush(Qt.BrushStyle.NoBrush)
 
@@ -93,7 +94,7 @@ def _paint_picture(
     painter.drawImage(QPointF(x - SYMBOL_PX / 2, y - SYMBOL_PX / 2), symbol)
     if style.is_dashed:
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        ring = _box(x, y, SYMBOL_PX)
+        ring = _box(x, y, _RING_PX)
         for pen in (QPen(style.halo_pen().color(), 1.0 + 2 * style.halo_px), style.pen()):
             painter.setPen(pen)
             painter.drawEllipse(ring)

@@ -52,7 +52,9 @@ class TileImages(QObject):
     """
 
     changed = Signal()
-    _arrived = Signal(object, object)  # TileRequest, TilePixels; sent by a loader's thread
+    # Sent by a loader's thread:
+    _arrived = Signal(object, object)  # TileRequest, TilePixels
+    _refused = Signal()
 
     def __init__(self, tiles: TileCache, *, limit_bytes: int = MOST_BYTES) -> None:
         super().__init__()
@@ -67,6 +69,7 @@ class TileImages(QObject):
         self._is_complete = False
         self._version = 0
         self._arrived.connect(self._on_arrived, Qt.ConnectionType.QueuedConnection)
+        self._refused.connect(self.changed, Qt.ConnectionType.QueuedConnection)
 
     @property
     def refusal(self) -> UserError | None:
@@ -134,7 +137,7 @@ class TileImages(QObject):
         self._is_complete = not missing
         self._tiles.keep_only(self._tell, frozenset(missing))
         for request in reversed(missing):  # the loader serves the newest first
-            self._tiles.request(request, self._tell)
+            self._tiles.request(request, self._tell, self._tell_refusal)
         return found
 
     def available(self, key: TileKey) -> QImage | None:
@@ -150,6 +153,10 @@ class TileImages(QObject):
 
     def _tell(self, request: TileRequest, pixels: TilePixels) -> None:
         self._arrived.emit(request, pixels)
+
+    def _tell_refusal(self, request: TileRequest, refusal: UserError) -> None:  # noqa: ARG002
+        # What was refused is asked for when it is painted.
+        self._refused.emit()
 
     def _on_arrived(self, request: TileRequest, pixels: TilePixels) -> None:
         picture = self._picture

@@ -8,8 +8,8 @@ from PySide6.QtSvg import QSvgRenderer
 
 from resources import UnknownResource, path_of
 
-SYMBOL_PX = 26
-"""Side of a symbol's picture; the symbol itself fills about two thirds of it."""
+SYMBOL_PX = 36
+"""Side of a symbol's picture; the symbol itself fills about a third to two thirds of it."""
 
 _HALO = "#0b0d10"
 _LINE_WIDTH = 'stroke-width="0.1"'

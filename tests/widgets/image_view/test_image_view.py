@@ -257,6 +257,29 @@ def test_closing_the_project_empties_the_view(hand: Hand) -> None:
     assert not minimap.isVisible()
 
 
+def test_an_attribute_that_the_points_lack_is_refused_in_words(hand: Hand) -> None:
+    with hand.qtbot.waitSignal(hand.view._images.changed):
+        hand.map.shared.view_settings.change_look(attribute="segment")
+        hand.view.repaint()
+    assert hand.view._images.refusal is not None
+    hand.view.grab()
+    with hand.qtbot.waitSignal(hand.view.sharpened):
+        hand.map.shared.view_settings.change_look(attribute="height")
+    assert hand.view._images.refusal is None
+
+
+def test_chosen_points_are_tinted(hand: Hand) -> None:
+    (point,) = hand.points_across(1)
+    with hand.qtbot.waitSignal(hand.view.sharpened, raising=False, timeout=2_000):
+        hand.view.repaint()
+    before = QColor(hand.view.grab().toImage().pixel(hand.spot(point)))
+    hand.map.shared.selection.choose_points({hand.drive.id: np.array([point])})
+    after = QColor(hand.view.grab().toImage().pixel(hand.spot(point)))
+    assert after.blue() - after.red() > before.blue() - before.red() + 40
+    hand.map.shared.selection.choose_points({})
+    assert QColor(hand.view.grab().toImage().pixel(hand.spot(point))) == before
+
+
 def test_a_drive_shown_again_is_painted_again(hand: Hand, right_drive: Drive) -> None:
     settings = hand.map.shared.view_settings
     first = hand.view.grab().toImage()
