@@ -161,6 +161,16 @@ def _neighbour_row(segments: NDArray[np.int32], row: int, away: int) -> int:
 
 
 @kernel
+def _continued(rows: RowPoints, row: int) -> tuple[int, int]:
+    """A row with those before and after it: the scan line goes on where a row ends."""
+    before = _neighbour_row(rows.segments, row, -1)
+    behind = _neighbour_row(rows.segments, row, 1)
+    start = rows.row_starts[before] if before >= 0 else rows.row_starts[row]
+    stop = rows.row_starts[behind + 1] if behind >= 0 else rows.row_starts[row + 1]
+    return start, stop
+
+
+@kernel
 def _difference(rows: RowPoints, one: int, other: int, axis: int) -> float:
     return float((float(rows.xyz[one, axis]) - rows.xyz[other, axis]) * rows.scale[axis])
 
@@ -177,15 +187,16 @@ def _distance(rows: RowPoints, one: int, other: int) -> float:
 def _step_along(rows: RowPoints, point: int, row: int) -> float:
     """Distance to the nearer of the two next pixels in the row."""
     step, clock = _FAR, rows.clocks[point]
+    start, stop = _continued(rows, row)
     other = point + 1
-    while other < rows.row_starts[row + 1] and rows.clocks[other] == clock:
+    while other < stop and rows.clocks[other] == clock:
         other += 1
-    if other < rows.row_starts[row + 1]:
+    if other < stop:
         step = _distance(rows, point, other)
     other = point - 1
-    while other >= rows.row_starts[row] and rows.clocks[other] == clock:
+    while other >= start and rows.clocks[other] == clock:
         other -= 1
-    if other >= rows.row_starts[row]:
+    if other >= start:
         step = min(step, _distance(rows, point, other))
     return step
 
@@ -237,11 +248,11 @@ def _nearest_in_row(
     rows: RowPoints, point: int, row: int, other: int, column: int
 ) -> tuple[int, float]:
     """The point of another row nearest in space: downhill from a column, over small bumps."""
-    start, stop = rows.row_starts[other], rows.row_starts[other + 1]
-    if start == stop:
+    if rows.row_starts[other] == rows.row_starts[other + 1]:
         return -1, _FAR
+    start, stop = _continued(rows, other)
     # Neighbouring rows miss about the same pulses, so the place in the row is a good guess.
-    guess = start + point - rows.row_starts[row]
+    guess = rows.row_starts[other] + point - rows.row_starts[row]
     best = _start_of_search(rows, guess, other, column + rows.origins[other])
     sx, sy, sz = rows.scale[0], rows.scale[1], rows.scale[2]
     px, py, pz = float(rows.xyz[point, 0]), float(rows.xyz[point, 1]), float(rows.xyz[point, 2])
@@ -253,7 +264,7 @@ def _nearest_in_row(
             dy = (rows.xyz[candidate, 1] - py) * sy
             dz = (rows.xyz[candidate, 2] - pz) * sz
             square = dx * dx + dy * dy + dz * dz
-            if square < best_square:
+            if candidate != point and square < best_square:
                 best, best_square, misses = candidate, square, 0
             else:
                 misses += 1
@@ -274,7 +285,7 @@ def _add_row(
     along: _Floats,
 ) -> int:
     """Take in a row's middle, unless it is the point, and points within reach on its both sides."""
-    start, stop = rows.row_starts[row], rows.row_starts[row + 1]
+    start, stop = _continued(rows, row)
     px, py, pz = float(rows.xyz[point, 0]), float(rows.xyz[point, 1]), float(rows.xyz[point, 2])
     sx, sy, sz = rows.scale[0], rows.scale[1], rows.scale[2]
     # Sums in variables, not in the array: the compiler can keep those in registers.

@@ -22,7 +22,7 @@ VOTING_ROWS = 8
 
 _POINTS_AT_ONCE = 65_536
 
-OVERLAP_ROWS = VOTING_ROWS + MOST_ROWS_ASIDE
+OVERLAP_ROWS = VOTING_ROWS + MOST_ROWS_ASIDE + 1
 """Rows beyond its own that a block needs to give the same normals as the whole recording."""
 
 

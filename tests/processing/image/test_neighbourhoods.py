@@ -86,6 +86,20 @@ def test_walls_on_both_sides_of_a_street_face_the_street(tmp_path: Path) -> None
     assert np.median(found.normals[is_road & is_known, 2]) > 0.99
 
 
+def test_a_road_is_flat_across_the_ends_of_rows() -> None:
+    # Rows begin in the middle of straight scan lines, as rows of a street begin below the vehicle.
+    turns, per_turn = 60, 100
+    xyz = plane(turns, per_turn, [0.02, 0, 0], [0, 0.1, 0])
+    starts = np.concatenate([[0], np.arange(50, turns * per_turn, per_turn), [turns * per_turn]])
+    counts = np.diff(starts)
+    columns = np.concatenate([np.arange(count) for count in counts]).astype(np.int32)
+    columns[:50] += 50
+    grid = PixelGrid(starts.astype(np.int64), columns, np.zeros(counts.size, np.int32), per_turn)
+    shapes = oriented_surface_shapes(xyz, grid, RADIUS_M).shapes.reshape(turns, per_turn, 3)
+    at_fold, elsewhere = shapes[10:-10, 45:55], shapes[10:-10, 25:35]
+    np.testing.assert_allclose(at_fold.mean(axis=(0, 1)), elsewhere.mean(axis=(0, 1)), atol=0.05)
+
+
 def test_a_wire_is_linear_and_has_no_normal() -> None:
     columns = 41
     xyz = plane(1, columns, [0.02, 0.0, 0.0], [0.0, 0.0, 0.0])
