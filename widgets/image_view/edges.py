@@ -31,21 +31,25 @@ class Edges:
         self.ruler = Ruler(view)
         self.minimap = Minimap(tiles, view)
         self.empty = EmptyPage(view)
+        self._has_strip = True
 
     def lay_out(self, viewport: Viewport) -> Viewport:
         """Stand at the edges of the view; the viewport gets what is left."""
         width, height = self._view.width(), self._view.height()
+        strip = _MINIMAP_PX if self._has_strip else 0
         self.ruler.setGeometry(0, 0, width, _RULER_PX)
-        self.minimap.setGeometry(0, height - _MINIMAP_PX, width, _MINIMAP_PX)
+        self.minimap.setGeometry(0, height - strip, width, strip)
         self.empty.setGeometry(0, 0, width, height)
-        return viewport.sized(width, height - _RULER_PX - _MINIMAP_PX, _RULER_PX)
+        return viewport.sized(width, height - _RULER_PX - strip, _RULER_PX)
 
     def show_picture(self, picture: Picture | None, look: PointLook, *, is_refused: bool) -> None:
         """Belong to a picture, or say that there is none."""
         self.minimap.show_picture(picture, look)
         self.empty.setVisible(picture is None and not is_refused)
         self.ruler.setVisible(picture is not None)
-        self.minimap.setVisible(picture is not None)
+        # A strip is no map of what is seen from above.
+        self._has_strip = picture is None or picture.rows_go_right
+        self.minimap.setVisible(picture is not None and self._has_strip)
 
     def show_part(self, picture: Picture | None, viewport: Viewport) -> None:
         """Tell which part of the picture is shown."""

@@ -334,6 +334,8 @@ class ImageView(QWidget):
         self._cursor.move_to(picture, self._shared.cursor.place)
         self._cursor.forget_trail()
         self._show_mouse()
+        if self._viewport.width > 1:  # shown before
+            self._viewport = self._edges.lay_out(self._viewport)
         if picture is not None:
             self._look_through(viewport_on(picture, before, self._viewport))
         self._search_if_needed()
