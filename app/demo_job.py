@@ -24,7 +24,7 @@ from processing.image.attributes import available
 from processing.image.kinds import ImageKind
 from processing.points.drive import Drive
 from processing.project.dropped_files import request_of_files
-from processing.project.feature import PointReference
+from processing.project.feature import Feature, PointReference
 from processing.text import Text
 from processing.tools.registry import TOOLS
 from resources import path_of
@@ -119,15 +119,18 @@ class _DemoJob:
         self.made.append(f"{drawn} features drawn on the image")
 
     def step_back_and_forth(self) -> None:
-        before = tuple(self._document.features())
+        before = self._by_id()
         while self._document.undo():
             pass
         taken_back = sum(1 for _ in self._document.features()) == 0
         while self._document.redo():
             pass
-        if not taken_back or set(before) != set(self._document.features()):
+        if not taken_back or before != self._by_id():
             message = "undo and redo did not give the drawing back"
             raise RuntimeError(message)
+
+    def _by_id(self) -> dict[str, Feature]:
+        return {feature.id: feature for feature in self._document.features()}
 
     def run_tools(self) -> None:
         for drive in self._document.drives():

@@ -71,6 +71,7 @@ class Document(QObject):
         self.undo_stack = UndoStack(self)
         self._jobs = jobs
         self.tiles = TileCache()
+        self.tiles.use(self.drive)
         self._project: Project | None = None
         self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
         self._adoptions: dict[str, _Adoption] = {}
