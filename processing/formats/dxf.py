@@ -1,0 +1,315 @@
+"""DXF for CAD: the map in metres, a layer for each kind, symbols as blocks, names as texts.
+
+R2018 is UTF-8 by definition; R2000 has a code page, which is cp932 here, as the CAD programs of
+Japanese offices expect.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from processing.errors import OutOfRange, Unsuitable
+from processing.formats.dxf_symbols import add_symbol_block
+from processing.formats.dxf_text import dxf_strings, dxf_text, label_text
+from processing.formats.safe_write import written_safely
+from processing.monitor import Monitor, SilentMonitor
+from processing.project.catalogue import LINE_TYPES, Catalogue, FeatureKind, Geometry
+from processing.project.feature import AttributeValue, Feature, Position, Status
+from processing.text import Text
+
+DxfVersion = Literal["R2000", "R2018"]
+
+APP_ID = "ZUKA"
+"""Application id of the extended data: id, kind, status, confidence, then the attributes."""
+
+CANDIDATE_SUFFIX = "_候補"
+LABEL_SUFFIX = "_文字"
+
+_ENCODINGS: Mapping[str, str] = {"R2000": "cp932", "R2018": "utf-8"}
+_STYLE, _FONT, _FONT_FAMILY = "JAPANESE", "msgothic.ttc", "MS Gothic"
+_LABEL_HEIGHT_M = 1.0  # 2 mm on paper at 1:500
+_LABEL_GAP_M = 0.6
+_DIRECTIONS = ("direction_deg", "facing_deg")
+_LABELS = ("name", "number")
+_INT32 = 1 << 31
+_MOST_XDATA_BYTES = 16_000
+_CHECK_EVERY = 64
+
+
+def write_dxf(
+    path: Path,
+    features: Iterable[Feature],
+    catalogue: Catalogue,
+    *,
+    version: DxfVersion = "R2018",
+    encoding: str = "utf-8",
+    crs: str = "",
+    monitor: Monitor | None = None,
+    never: Iterable[Path] = (),
+) -> None:
+    r"""Draw features: 3D polylines, closed ones for areas, points with their symbol.
+
+    Parameters
+    ----------
+    features : iterable of Feature
+        Rejected ones are left out; candidates are drawn on a layer of their own.
+    version : {"R2000", "R2018"}
+        AC1015 or AC1032.
+    encoding : {"utf-8", "cp932"}
+        What was asked for; the version decides: R2018 is UTF-8, R2000 is cp932. What cp932 lacks
+        is written as ``\U+XXXX``, which CAD programs read.
+    crs : str
+        ``EPSG:n`` or empty; written to the drawing's properties, or that it is not known.
+    never : iterable of Path
+        Files that must not be overwritten.
+
+    Raises
+    ------
+    OutOfRange
+        There is no such version or encoding.
+    Unsuitable
+        A feature's kind is not in the catalogue, or its attributes are longer than DXF holds.
+    UserError
+        What :func:`processing.formats.safe_write.written_safely` raises; `Cancelled`.
+    """
+    _check_one_of(version, _ENCODINGS)
+    _check_one_of(encoding, _ENCODINGS.values())
+    monitor = monitor or SilentMonitor()
+    drawing = _Drawing(catalogue, version, crs)
+    for number, feature in enumerate(features):
+        if number % _CHECK_EVERY == 0:
+            monitor.check()
+        if feature.status is not Status.REJECTED:
+            drawing.add(feature)
+    drawing.finish()
+    monitor.check()
+    with written_safely(path, never=never) as temporary:
+        drawing.doc.saveas(temporary)
+
+
+@dataclass(frozen=True)
+class _Looks:
+    """Where a feature is drawn and how: what its entities have in common."""
+
+    layer: str
+    own: Mapping[str, Any]  # attributes of DXF in which the kind differs from its layer
+
+
+class _Drawing:
+    """A drawing being filled."""
+
+    def __init__(self, catalogue: Catalogue, version: DxfVersion, crs: str) -> None:
+        from ezdxf import units
+        from ezdxf.filemanagement import new
+
+        self._catalogue = catalogue
+        self._is_r2000 = version == "R2000"
+        self._encoding = _ENCODINGS[version]
+        self.doc = new(version)
+        self.doc.encoding = "cp932"  # the code page that even UTF-8 files name
+        self.doc.units = units.M
+        self._lowest = [math.inf] * 3
+        self._highest = [-math.inf] * 3
+        self._set_header(crs)
+        style = self.doc.styles.add(_STYLE, font=_FONT)
+        style.set_extended_font_data(_FONT_FAMILY)
+        self.doc.appids.add(APP_ID)
+        for name, pattern in LINE_TYPES.items():
+            if pattern:
+                total = sum(abs(length) for length in pattern)
+                self.doc.linetypes.add(name.upper(), pattern=[total, *pattern], description=name)
+        self._space = self.doc.modelspace()
+
+    def _set_header(self, crs: str) -> None:
+        header = self.doc.header
+        header["$MEASUREMENT"] = 1
+        header["$LTSCALE"] = 1.0
+        header["$LUNITS"] = 2
+        header["$LUPREC"] = 3
+        header.custom_vars.append("CRS", crs or "unknown")
+
+    def add(self, feature: Feature) -> None:
+        """Draw a feature."""
+        if feature.kind not in self._catalogue:
+            raise _refusal(
+                feature,
+                Text("The catalogue has no such kind.", "カタログにない種別です。"),
+                Text(
+                    "Add the kind to the catalogue, or give the feature another one.",
+                    "カタログに種別を追加するか、地物の種別を変更してください。",
+                ),
+            )
+        kind = self._catalogue[feature.kind]
+        looks = self._looks(kind, feature)
+        positions = [vertex.xyz for vertex in feature.vertices]
+        data = self._extended_data(feature)
+        for entity in self._entities(kind, feature, positions, looks):
+            entity.set_xdata(APP_ID, data)
+        self._add_label(kind, feature, positions, looks)
+        for axis in range(3):
+            values = [position[axis] for position in positions]
+            self._lowest[axis] = min(self._lowest[axis], *values)
+            self._highest[axis] = max(self._highest[axis], *values)
+
+    def _entities(
+        self, kind: FeatureKind, feature: Feature, positions: list[Position], looks: _Looks
+    ) -> list[Any]:
+        attributes = {"layer": looks.layer, **looks.own}
+        match feature.geometry:
+            case Geometry.POINT:
+                entities: list[Any] = [self._space.add_point(positions[0], dxfattribs=attributes)]
+                if kind.symbol:
+                    block = add_symbol_block(self.doc, kind.symbol)
+                    turned = {**attributes, "rotation": _rotation_deg(feature)}
+                    entities.append(
+                        self._space.add_blockref(block, positions[0], dxfattribs=turned)
+                    )
+                return entities
+            case Geometry.LINE:
+                return [self._space.add_polyline3d(positions, dxfattribs=attributes)]
+            case Geometry.AREA:
+                return [self._space.add_polyline3d(positions, close=True, dxfattribs=attributes)]
+
+    def _looks(self, kind: FeatureKind, feature: Feature) -> _Looks:
+        layer = kind.layer
+        if feature.status is Status.CANDIDATE:
+            layer += CANDIDATE_SUFFIX
+        self._need_layer(layer, kind)
+        # Kinds may share a layer: it looks like the first of them, the others say how they differ.
+        first = self._catalogue.of_layer(kind.layer)[0]
+        own: dict[str, Any] = {}
+        if (kind.aci, kind.colour) != (first.aci, first.colour):
+            own["color"] = kind.aci
+            if not self._is_r2000:
+                own["true_color"] = int(kind.colour[1:], 16)
+        if kind.line_type != first.line_type:
+            own["linetype"] = kind.line_type.upper()
+        return _Looks(layer, own)
+
+    def _need_layer(self, layer: str, kind: FeatureKind) -> None:
+        if layer in self.doc.layers:
+            return
+        self._check_encodable(layer)
+        first = self._catalogue.of_layer(kind.layer)[0]
+        looks: dict[str, Any] = {"color": first.aci, "linetype": first.line_type.upper()}
+        if not self._is_r2000:
+            looks["true_color"] = int(first.colour[1:], 16)
+        self.doc.layers.add(layer, **looks)
+
+    def _check_encodable(self, layer: str) -> None:
+        try:
+            layer.encode(self._encoding)
+        except UnicodeEncodeError as error:
+            raise Unsuitable(
+                Text(
+                    "The layer's name has characters that Shift_JIS (cp932) lacks.",
+                    "画層名にShift_JIS（cp932）で表せない文字があります。",
+                ),
+                Text.same(layer),
+                Text(
+                    "Export as DXF 2018, or change the layer in the catalogue.",
+                    "DXF 2018で書き出すか、カタログの画層名を変更してください。",
+                ),
+            ) from error
+
+    def _add_label(
+        self, kind: FeatureKind, feature: Feature, positions: list[Position], looks: _Looks
+    ) -> None:
+        words = label_text(_label(kind, feature), self._encoding)
+        if not words:
+            return
+        layer = looks.layer + LABEL_SUFFIX
+        self._need_layer(layer, kind)
+        x, y, z = positions[len(positions) // 2]
+        attributes = {
+            "layer": layer,
+            "style": _STYLE,
+            "height": _LABEL_HEIGHT_M,
+            "insert": (x + _LABEL_GAP_M, y - _LABEL_HEIGHT_M / 2, z),
+            **{key: value for key, value in looks.own.items() if key != "linetype"},
+        }
+        self._space.add_text(words, dxfattribs=attributes)
+
+    def _extended_data(self, feature: Feature) -> list[tuple[int, Any]]:
+        encoding = self._encoding
+        data: list[tuple[int, Any]] = [
+            (1000, dxf_text(feature.id, encoding)),
+            (1000, feature.kind),
+            (1000, feature.status.value),
+            (1040, float(feature.provenance.confidence)),
+        ]
+        for name, value in feature.attributes.items():
+            if value is not None:
+                named = [(1000, piece) for piece in dxf_strings(name, encoding)[:1]]
+                data += [(1002, "{"), *named, *_tags(value, encoding), (1002, "}")]
+        size = sum(len(str(value).encode(encoding)) + 3 for _, value in data)
+        if size > _MOST_XDATA_BYTES:
+            raise _refusal(
+                feature,
+                Text(
+                    "The attributes are longer than a DXF entity can hold (16 kB).",
+                    "属性がDXFの要素に入る長さ（16 kB）を超えています。",
+                ),
+                Text("Shorten the texts.", "文字列を短くしてください。"),
+            )
+        return data
+
+    def finish(self) -> None:
+        """Set the extent and what is seen when the file is opened."""
+        if math.inf in self._lowest:
+            return
+        lowest, highest = tuple(self._lowest), tuple(self._highest)
+        self._space.reset_extents(lowest, highest)
+        self.doc.header["$EXTMIN"] = lowest
+        self.doc.header["$EXTMAX"] = highest
+        width, depth = (highest[axis] - lowest[axis] for axis in (0, 1))
+        middle = tuple((highest[axis] + lowest[axis]) / 2 for axis in (0, 1))
+        # Windows are about twice as wide as high.
+        self.doc.set_modelspace_vport(max(depth, width / 2, 10.0) * 1.1, middle)
+
+
+def _rotation_deg(feature: Feature) -> float:
+    """Counter-clockwise from the symbol's own direction, north."""
+    for name in _DIRECTIONS:
+        direction = feature.attributes.get(name)
+        if isinstance(direction, (int, float)) and math.isfinite(direction):
+            return -float(direction) % 360.0
+    return 0.0
+
+
+def _label(kind: FeatureKind, feature: Feature) -> str:
+    if kind.symbol == "spot_height":
+        return f"{feature.vertices[0].xyz[2]:.1f}"
+    values = (feature.attributes.get(name) for name in _LABELS)
+    return next((str(value) for value in values if value not in (None, "")), "")
+
+
+def _tags(value: AttributeValue, encoding: str) -> list[tuple[int, Any]]:
+    """A value as extended data: bool 1070, whole number 1071, number 1040, text 1000 in pieces."""
+    if isinstance(value, bool):
+        return [(1070, int(value))]
+    if isinstance(value, int) and -_INT32 <= value < _INT32:
+        return [(1071, value)]
+    if isinstance(value, float) and math.isfinite(value):
+        return [(1040, value)]
+    return [(1000, piece) for piece in dxf_strings(str(value), encoding)]
+
+
+def _check_one_of(value: str, allowed: Iterable[str]) -> None:
+    if value not in allowed:
+        raise OutOfRange(
+            Text("DXF files are not written like this.", "このようなDXFは書き出せません。"),
+            Text.same(value),
+            Text("Use one of: {words}.", "次のいずれかを指定してください: {words}").filled(
+                words=", ".join(allowed)
+            ),
+        )
+
+
+def _refusal(feature: Feature, what: Text, remedy: Text) -> Unsuitable:
+    where = Text(f"{feature.kind}, feature {feature.id}", f"{feature.kind}、地物 {feature.id}")
+    return Unsuitable(what, where, remedy)
