@@ -4,18 +4,11 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from platformdirs import user_documents_path
 from PySide6.QtCore import Qt, QTimer, QTranslator
 from PySide6.QtWidgets import QApplication
-from widgets.panels.attribute_panel import AttributePanel
-from widgets.panels.jobs_panel import JobsPanel
-from widgets.panels.layers_panel import LayersPanel
-from widgets.panels.processing_panel import ProcessingPanel
-from widgets.panels.project_tree import ProjectTree
-from widgets.parts.start_page import StartPage
-from widgets.parts.status_line import StatusLine
-from widgets.scene_view.view import SceneView
 
 from app.actions.draw import draw_actions
 from app.actions.edit import edit_actions
@@ -40,8 +33,16 @@ from widgets.mouse_tools.draw_point import DrawPoint
 from widgets.mouse_tools.edit_vertices import EditVertices
 from widgets.mouse_tools.select import Select
 from widgets.mouse_tools.toolbox import MouseToolbox
+from widgets.panels.attribute_panel import AttributePanel
+from widgets.panels.jobs_panel import JobsPanel
+from widgets.panels.layers_panel import LayersPanel
+from widgets.panels.processing_panel import ProcessingPanel
+from widgets.panels.project_tree import ProjectTree
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
+from widgets.parts.start_page import StartPage
+from widgets.parts.status_line import StatusLine
+from widgets.scene_view.view import SceneView
 
 _LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
 _RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
@@ -50,14 +51,22 @@ _RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
 def run_window(wish: WindowWish) -> int:
     """Show the window with what is wished; gives the exit status when it is closed."""
     application = make_application()
+    if wish.headless_out is not None:
+        return _do_demo_job(wish.headless_out)
     parts = build_window(Settings(), user_documents_path() / "Zuka")
     parts.window.show()
-    if wish.headless_out is not None:
-        from app.demo_job import do_demo_job
-
-        return do_demo_job(parts, wish.headless_out)
     QTimer.singleShot(0, lambda: _fulfil(wish, parts))
     return int(application.exec())
+
+
+def _do_demo_job(out: Path) -> int:
+    """The demo by itself, in a window that knows nothing of its user's habits."""
+    from app.demo_job import do_demo_job
+
+    with TemporaryDirectory(prefix="zuka-") as folder:
+        parts = build_window(Settings(Path(folder) / "settings.ini"), Path(folder))
+        parts.window.show()
+        return do_demo_job(parts, out)
 
 
 def make_application() -> QApplication:
@@ -107,6 +116,7 @@ def _make_parts(settings: Settings) -> WindowParts:
     image_bar = ImageBar(document, shared, language)
     message_bar = MessageBar(language)
     start_page = StartPage()
+    status_line = StatusLine(document, shared, language)
     toolbox = MouseToolbox(
         {
             "select": Select(document, shared),
@@ -123,6 +133,7 @@ def _make_parts(settings: Settings) -> WindowParts:
         views=(image_view, scene_view),
         header=image_bar,
         message=message_bar,
+        status=status_line,
     )
     return WindowParts(
         language=language,
@@ -135,7 +146,7 @@ def _make_parts(settings: Settings) -> WindowParts:
         image_bar=image_bar,
         message_bar=message_bar,
         start_page=start_page,
-        status_line=StatusLine(document, shared, language),
+        status_line=status_line,
         project_tree=ProjectTree(document, shared, language),
         layers_panel=LayersPanel(document, shared, language),
         processing_panel=ProcessingPanel(language),
@@ -161,16 +172,20 @@ def _add_actions(parts: WindowParts, files: FileActions) -> None:
     parts.start_page.open_requested.connect(files.choose_project)
     parts.start_page.import_requested.connect(files.choose_import)
     parts.start_page.demo_requested.connect(files.open_demo)
+    parts.image_view.open_requested.connect(files.choose_project)
+    parts.image_view.import_requested.connect(files.choose_import)
     parts.start_page.recent_chosen.connect(parts.document.open)
 
 
 def _panels(parts: WindowParts) -> tuple[Panel, ...]:
     return (
-        Panel("project", Text("Project", "プロジェクト"), parts.project_tree, _LEFT),
-        Panel("layers", Text("Layers", "レイヤ"), parts.layers_panel, _LEFT),
-        Panel("processing", Text("Processing", "処理"), parts.processing_panel, _RIGHT),
-        Panel("attributes", Text("Attributes", "属性"), parts.attribute_panel, _RIGHT),
-        Panel("jobs", Text("Jobs", "ジョブ"), parts.jobs_panel, _RIGHT),
+        Panel("project", Text("Project", "プロジェクト"), parts.project_tree, _LEFT, 230, 200),
+        Panel("layers", Text("Layers", "レイヤ"), parts.layers_panel, _LEFT, 230, 600),
+        Panel("processing", Text("Processing", "処理"), parts.processing_panel, _RIGHT, 290, 420),
+        Panel("attributes", Text("Attributes", "属性"), parts.attribute_panel, _RIGHT, 290, 380),
+        Panel(
+            "jobs", Text("Jobs", "ジョブ"), parts.jobs_panel, _RIGHT, 290, 380, behind="attributes"
+        ),
     )
 
 

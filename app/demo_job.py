@@ -9,8 +9,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from processing.project.export import FORMATS, ExportRequest
-from processing.project.project import is_project
 from PySide6.QtCore import QEvent, QEventLoop, QPointF, Qt, QTimer
 from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QApplication, QWidget
@@ -24,7 +22,9 @@ from processing.image.attributes import available
 from processing.image.kinds import ImageKind
 from processing.points.drive import Drive
 from processing.project.dropped_files import request_of_files
+from processing.project.export import FORMATS, ExportRequest
 from processing.project.feature import Feature, PointReference
+from processing.project.project import is_project
 from processing.text import Text
 from processing.tools.registry import TOOLS
 from resources import path_of

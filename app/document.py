@@ -9,8 +9,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from processing.project.export import ExportRequest, export
-from processing.project.project import Project
 from PySide6.QtCore import QObject, Signal
 
 from app.jobs import JobQueue
@@ -22,8 +20,10 @@ from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.change import Change
+from processing.project.export import ExportRequest, export
 from processing.project.feature import Feature
 from processing.project.importing import ImportRequest, import_drives
+from processing.project.project import Project
 from processing.runner import RunRequest, run
 from processing.text import Text
 from processing.tools.registry import TOOLS

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import qtawesome
-from PySide6.QtCore import QByteArray, Qt, Signal
+from PySide6.QtCore import QByteArray, QSize, Qt, Signal
 from PySide6.QtGui import (
     QAction,
     QActionGroup,
@@ -23,6 +23,7 @@ from PySide6.QtWidgets import (
     QMenu,
     QSplitter,
     QStackedWidget,
+    QStatusBar,
     QToolBar,
     QVBoxLayout,
     QWidget,
@@ -31,6 +32,8 @@ from typing_extensions import override
 
 from app.actions.action import MENUS, Action
 from processing.text import Language, Text
+
+_ICON_PX = 20
 
 
 @dataclass(frozen=True)
@@ -41,12 +44,19 @@ class Panel:
     ----------
     area : Qt.DockWidgetArea
         Where it is at first.
+    width, height : int
+        Its share there, in pixels of a usual window.
+    behind : str
+        Id of the panel with which it shares a place, as a tab; empty for a place of its own.
     """
 
     id: str
     title: Text
     widget: QWidget
     area: Qt.DockWidgetArea
+    width: int
+    height: int
+    behind: str = ""
 
 
 class MainWindow(QMainWindow):
@@ -62,6 +72,8 @@ class MainWindow(QMainWindow):
         The line above the views.
     message : QWidget
         The line above everything.
+    status : QStatusBar
+        The last line.
     """
 
     files_dropped = Signal(object)  # tuple[Path, ...]
@@ -75,6 +87,7 @@ class MainWindow(QMainWindow):
         views: Sequence[QWidget],
         header: QWidget,
         message: QWidget,
+        status: QStatusBar,
     ) -> None:
         super().__init__()
         self._language = language
@@ -82,6 +95,7 @@ class MainWindow(QMainWindow):
         self._menus: dict[str, QMenu] = {}
         self._toolbar = QToolBar(self.tr("Tools"), self)
         self._toolbar.setObjectName("toolbar")
+        self._toolbar.setIconSize(QSize(_ICON_PX, _ICON_PX))
         self.addToolBar(self._toolbar)
         self.setAcceptDrops(True)
         self.setDockNestingEnabled(True)
@@ -104,6 +118,7 @@ class MainWindow(QMainWindow):
         whole.addWidget(message)
         whole.addWidget(self._pages, 1)
         self.setCentralWidget(centre)
+        self.setStatusBar(status)
         self.resize(1600, 1000)
         self.show_title("")
 
@@ -133,12 +148,23 @@ class MainWindow(QMainWindow):
 
     def add_panels(self, panels: Sequence[Panel]) -> None:
         """Put panels into docks; docks of one area stand above each other."""
+        docks: dict[str, QDockWidget] = {}
+        self._menus["view"].addSeparator()
         for panel in panels:
             dock = QDockWidget(panel.title.spoken(self._language), self)
             dock.setObjectName(panel.id)
             dock.setWidget(panel.widget)
             self.addDockWidget(panel.area, dock)
+            if panel.behind:
+                self.tabifyDockWidget(docks[panel.behind], dock)
+                docks[panel.behind].raise_()
             self._menus["view"].addAction(dock.toggleViewAction())
+            docks[panel.id] = dock
+        placed = [panel for panel in panels if not panel.behind]
+        own = [docks[panel.id] for panel in placed]
+        across, down = Qt.Orientation.Horizontal, Qt.Orientation.Vertical
+        self.resizeDocks(own, [panel.width for panel in placed], across)
+        self.resizeDocks(own, [panel.height for panel in placed], down)
 
     def show_work(self, *, is_open: bool) -> None:
         """Show the views, or the start page; docks belong to the views."""

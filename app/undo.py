@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from processing.project.project import Project
 from PySide6.QtCore import QObject, Signal
 
 from processing.project.change import Change
+from processing.project.project import Project
 from processing.text import Text
 
 

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from processing.image.attributes import ATTRIBUTES
-
 from app.actions.action import Action
 from app.window_parts import WindowParts
+from processing.image.attributes import ATTRIBUTES
 from processing.image.kinds import ImageKind
 from processing.text import Text
 
 
 def view_actions(parts: WindowParts) -> tuple[Action, ...]:
     """The view menu, from top to bottom; panels follow."""
-    settings = parts.document.shared.view_settings
 
     def show_everything() -> None:
         parts.image_view.show_everything()
@@ -25,6 +23,28 @@ def view_actions(parts: WindowParts) -> tuple[Action, ...]:
     def toggle_beside() -> None:
         action = parts.window.actions_by_id["side-by-side"]
         parts.window.stand_side_by_side(beside=action.isChecked())
+
+    whole = Text("Show everything", "全体を表示")
+    middle = Text("Centre on the selection", "選択位置を中央に表示")
+    beside = Text("Views side by side", "ビューを左右に並べる")
+    above, along = (
+        Text("3D from above", "3Dを真上から表示"),
+        Text("3D along the drive", "3Dを走行方向に表示"),
+    )
+    scene = parts.scene_view
+    return (
+        Action("everything", whole, show_everything, "view", ("Home",), "mdi6.fit-to-page-outline"),
+        Action("center", middle, center, "view", ("F",)),
+        Action("side-by-side", beside, toggle_beside, "view", is_checkable=True),
+        Action("top-view", above, scene.look_from_above, "view", ("Ctrl+T",)),
+        Action("along-view", along, scene.look_along_drive, "view", ("Ctrl+L",)),
+        *_looks(parts),
+    )
+
+
+def _looks(parts: WindowParts) -> tuple[Action, ...]:
+    """What points and images show: by name in the palette, in no menu."""
+    settings = parts.document.shared.view_settings
 
     def shown_as(attribute: str) -> Action:
         def show() -> None:
@@ -43,43 +63,4 @@ def view_actions(parts: WindowParts) -> tuple[Action, ...]:
         text = Text("Kind of image: {title}", "画像の種類: {title}").filled(title=kind.title)
         return Action(f"image-{kind.value}", text, show)
 
-    return (
-        Action(
-            "everything",
-            Text("Show everything", "全体を表示"),
-            show_everything,
-            "view",
-            ("Home",),
-            "mdi6.fit-to-page-outline",
-        ),
-        Action(
-            "center",
-            Text("Centre on the selection", "選択位置を中央に表示"),
-            center,
-            "view",
-            ("F",),
-        ),
-        Action(
-            "side-by-side",
-            Text("Views side by side", "ビューを左右に並べる"),
-            toggle_beside,
-            "view",
-            is_checkable=True,
-        ),
-        Action(
-            "top-view",
-            Text("3D from above", "3Dを真上から表示"),
-            parts.scene_view.look_from_above,
-            "view",
-            ("Ctrl+T",),
-        ),
-        Action(
-            "along-view",
-            Text("3D along the drive", "3Dを走行方向に表示"),
-            parts.scene_view.look_along_drive,
-            "view",
-            ("Ctrl+L",),
-        ),
-        *(shown_as(attribute) for attribute in ATTRIBUTES),
-        *(image_as(kind) for kind in ImageKind),
-    )
+    return (*map(shown_as, ATTRIBUTES), *map(image_as, ImageKind))

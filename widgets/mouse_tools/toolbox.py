@@ -80,7 +80,7 @@ class MouseToolbox(QObject):
         if kind != self._kind:
             self._kind = kind
             for tool in self._tools.values():
-                if isinstance(tool, DrawingTool):
+                if isinstance(tool, DrawingTool) and tool.geometry is kind.geometry:
                     tool.set_kind(kind.id)
             self.kind_chosen.emit(kind)
         self.choose(_TOOL_OF_GEOMETRY[kind.geometry])
