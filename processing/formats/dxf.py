@@ -10,9 +10,10 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, TextIO
 
 from processing.errors import OutOfRange, Unsuitable
+from processing.formats.dxf_labels import LABEL_HEIGHT_M, label_of
 from processing.formats.dxf_symbols import add_symbol_block
 from processing.formats.dxf_text import dxf_strings, dxf_text, label_text
 from processing.formats.safe_write import written_safely
@@ -31,13 +32,11 @@ LABEL_SUFFIX = "_文字"
 
 _ENCODINGS: Mapping[str, str] = {"R2000": "cp932", "R2018": "utf-8"}
 _STYLE, _FONT, _FONT_FAMILY = "JAPANESE", "msgothic.ttc", "MS Gothic"
-_LABEL_HEIGHT_M = 1.0  # 2 mm on paper at 1:500
-_LABEL_GAP_M = 0.6
 _DIRECTIONS = ("direction_deg", "facing_deg")
-_LABELS = ("name", "number")
 _INT32 = 1 << 31
 _MOST_XDATA_BYTES = 16_000
-_CHECK_EVERY = 64
+_CHECK_EVERY = 16  # features
+_CHECK_WRITES = 4096
 
 
 def write_dxf(
@@ -63,7 +62,8 @@ def write_dxf(
         What was asked for; the version decides: R2018 is UTF-8, R2000 is cp932. What cp932 lacks
         is written as ``\U+XXXX``, which CAD programs read.
     crs : str
-        ``EPSG:n`` or empty; written to the drawing's properties, or that it is not known.
+        ``EPSG:n`` or empty; written, or that it is not known, to the drawing's properties (R2018)
+        and to the extended data of layer 0.
     never : iterable of Path
         Files that must not be overwritten.
 
@@ -86,9 +86,8 @@ def write_dxf(
         if feature.status is not Status.REJECTED:
             drawing.add(feature)
     drawing.finish()
-    monitor.check()
     with written_safely(path, never=never) as temporary:
-        drawing.doc.saveas(temporary)
+        drawing.write(temporary, monitor)
 
 
 @dataclass(frozen=True)
@@ -114,10 +113,10 @@ class _Drawing:
         self.doc.units = units.M
         self._lowest = [math.inf] * 3
         self._highest = [-math.inf] * 3
-        self._set_header(crs)
         style = self.doc.styles.add(_STYLE, font=_FONT)
         style.set_extended_font_data(_FONT_FAMILY)
         self.doc.appids.add(APP_ID)
+        self._set_header(crs or "unknown")
         for name, pattern in LINE_TYPES.items():
             if pattern:
                 total = sum(abs(length) for length in pattern)
@@ -130,7 +129,9 @@ class _Drawing:
         header["$LTSCALE"] = 1.0
         header["$LUNITS"] = 2
         header["$LUPREC"] = 3
-        header.custom_vars.append("CRS", crs or "unknown")
+        header.custom_vars.append("CRS", crs)
+        # R2000 has no properties of its own.
+        self.doc.layers.get("0").set_xdata(APP_ID, [(1000, "CRS"), (1000, crs)])
 
     def add(self, feature: Feature) -> None:
         """Draw a feature."""
@@ -149,7 +150,7 @@ class _Drawing:
         data = self._extended_data(feature)
         for entity in self._entities(kind, feature, positions, looks):
             entity.set_xdata(APP_ID, data)
-        self._add_label(kind, feature, positions, looks)
+        self._add_label(kind, feature, looks)
         for axis in range(3):
             values = [position[axis] for position in positions]
             self._lowest[axis] = min(self._lowest[axis], *values)
@@ -216,23 +217,24 @@ class _Drawing:
                 ),
             ) from error
 
-    def _add_label(
-        self, kind: FeatureKind, feature: Feature, positions: list[Position], looks: _Looks
-    ) -> None:
-        words = label_text(_label(kind, feature), self._encoding)
-        if not words:
+    def _add_label(self, kind: FeatureKind, feature: Feature, looks: _Looks) -> None:
+        from ezdxf.enums import TextEntityAlignment
+
+        label = label_of(kind, feature)
+        words = label_text(label.words, self._encoding) if label else ""
+        if label is None or not words:
             return
         layer = looks.layer + LABEL_SUFFIX
         self._need_layer(layer, kind)
-        x, y, z = positions[len(positions) // 2]
         attributes = {
             "layer": layer,
             "style": _STYLE,
-            "height": _LABEL_HEIGHT_M,
-            "insert": (x + _LABEL_GAP_M, y - _LABEL_HEIGHT_M / 2, z),
+            "height": LABEL_HEIGHT_M,
+            "rotation": label.rotation_deg,
             **{key: value for key, value in looks.own.items() if key != "linetype"},
         }
-        self._space.add_text(words, dxfattribs=attributes)
+        text = self._space.add_text(words, dxfattribs=attributes)
+        text.set_placement(label.place, align=TextEntityAlignment[label.align])
 
     def _extended_data(self, feature: Feature) -> list[tuple[int, Any]]:
         encoding = self._encoding
@@ -271,6 +273,27 @@ class _Drawing:
         # Windows are about twice as wide as high.
         self.doc.set_modelspace_vport(max(depth, width / 2, 10.0) * 1.1, middle)
 
+    def write(self, path: Path, monitor: Monitor) -> None:
+        """Write the file with the line ends of Windows, where its readers are."""
+        with path.open("w", encoding=self._encoding, errors="dxfreplace", newline="\r\n") as file:
+            self.doc.write(_Watched(file, monitor))
+
+
+class _Watched:
+    """A file whose writing the user can stop."""
+
+    def __init__(self, file: TextIO, monitor: Monitor) -> None:
+        self._file = file
+        self._monitor = monitor
+        self._writes = 0
+
+    def write(self, text: str) -> int:
+        """Write, and now and then ask whether to go on."""
+        self._writes += 1
+        if self._writes % _CHECK_WRITES == 0:
+            self._monitor.check()
+        return self._file.write(text)
+
 
 def _rotation_deg(feature: Feature) -> float:
     """Counter-clockwise from the symbol's own direction, north."""
@@ -279,13 +302,6 @@ def _rotation_deg(feature: Feature) -> float:
         if isinstance(direction, (int, float)) and math.isfinite(direction):
             return -float(direction) % 360.0
     return 0.0
-
-
-def _label(kind: FeatureKind, feature: Feature) -> str:
-    if kind.symbol == "spot_height":
-        return f"{feature.vertices[0].xyz[2]:.1f}"
-    values = (feature.attributes.get(name) for name in _LABELS)
-    return next((str(value) for value in values if value not in (None, "")), "")
 
 
 def _tags(value: AttributeValue, encoding: str) -> list[tuple[int, Any]]:

@@ -14,8 +14,9 @@ from ezdxf.tools.text import caret_decode
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from processing.errors import OutOfRange, Unsuitable
+from processing.errors import Cancelled, OutOfRange, Unsuitable
 from processing.formats.dxf import APP_ID, DxfVersion, write_dxf
+from processing.monitor import SilentMonitor
 from processing.project.catalogue import LINE_TYPES, Catalogue, Geometry, read_catalogue
 from processing.project.catalogue_file import symbol_names
 from processing.project.feature import Feature, Position, Status, Vertex
@@ -198,6 +199,8 @@ def test_the_drawing_says_its_extent_and_its_reference_system(
     assert doc.header.custom_vars.properties == [("CRS", "EPSG:6677")]
     write_dxf(tmp_path / "b.dxf", [_tree()], catalogue)
     unknown = ezdxf.filemanagement.readfile(tmp_path / "b.dxf")
+    for one, named in ((doc, "EPSG:6677"), (unknown, "unknown")):
+        assert [tag.value for tag in one.layers.get("0").get_xdata(APP_ID)] == ["CRS", named]
     assert unknown.header.custom_vars.properties == [("CRS", "unknown")]
 
 
@@ -227,7 +230,23 @@ def test_names_and_heights_are_written_beside_their_feature(
     assert set(texts) == {"欅 並木", "25.7"}
     assert all(text.dxf.style == "JAPANESE" for text in texts.values())
     assert texts["欅 並木"].dxf.layer == "2238_並木_文字"
-    assert texts["欅 並木"].dxf.insert.x > _FOOT[0]
+    assert texts["欅 並木"].dxf.align_point.x > _FOOT[0]
+
+
+def test_a_lines_name_lies_above_its_middle_and_is_never_upside_down(
+    tmp_path: Path, catalogue: Catalogue
+) -> None:
+    west = _feature("road_center", Geometry.LINE, (20.0, 0.0, 5.0), (0.0, 0.0, 5.0), name="市道")
+    text = _only(_drawn(tmp_path / "a.dxf", catalogue, west), "TEXT")
+    assert text.dxf.rotation == pytest.approx(0.0)
+    assert text.dxf.align_point.isclose((10.0, 0.4, 5.0))
+
+
+def test_an_areas_name_is_in_its_middle(tmp_path: Path, catalogue: Catalogue) -> None:
+    corners = ((0.0, 0.0, 1.0), (9.0, 0.0, 1.0), (9.0, 6.0, 1.0), (0.0, 6.0, 1.0))
+    house = _feature("building", Geometry.AREA, *corners, name="市役所")
+    text = _only(_drawn(tmp_path / "a.dxf", catalogue, house), "TEXT")
+    assert text.dxf.align_point.isclose((4.5, 3.0, 1.0))
 
 
 def test_a_label_never_becomes_a_control_code(tmp_path: Path, catalogue: Catalogue) -> None:
@@ -280,6 +299,28 @@ def test_attributes_too_long_for_an_entity_are_refused(
 def test_a_version_that_there_is_not_is_refused(tmp_path: Path, catalogue: Catalogue) -> None:
     with pytest.raises(OutOfRange):
         write_dxf(tmp_path / "a.dxf", [], catalogue, version="R1999")  # type: ignore[arg-type]
+
+
+def test_a_drawing_can_be_stopped_while_it_is_written(tmp_path: Path, catalogue: Catalogue) -> None:
+    class StopAtLast(SilentMonitor):
+        def __init__(self) -> None:
+            self.asked = 0
+
+        def check(self) -> None:
+            self.asked += 1
+            if self.asked == 3:  # one feature is one question, the others come with the writing
+                raise Cancelled
+
+    line = _feature("road_edge", Geometry.LINE, *(_LINE * 600))
+    with pytest.raises(Cancelled):
+        write_dxf(tmp_path / "a.dxf", [line], catalogue, monitor=StopAtLast())
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_lines_end_as_on_windows(tmp_path: Path, catalogue: Catalogue) -> None:
+    write_dxf(tmp_path / "a.dxf", [_tree()], catalogue)
+    data = (tmp_path / "a.dxf").read_bytes()
+    assert data.count(b"\r\n") == data.count(b"\n") == data.count(b"\r")
 
 
 def test_an_empty_map_is_a_valid_drawing(tmp_path: Path, catalogue: Catalogue) -> None:
