@@ -116,7 +116,8 @@ class _DemoJob:
         self._parts.toolbox.choose("select")
         self._raise_refusal()
         drawn = sum(1 for _ in self._document.features())
-        self.made.append(f"{drawn} features drawn on the image")
+        told = Text("{count} features drawn on the image", "画像上に{count}個の地物を作図しました")
+        self.made.append(told.filled(count=drawn).spoken(self._parts.language))
 
     def step_back_and_forth(self) -> None:
         before = self._by_id()

@@ -92,6 +92,7 @@ class MainWindow(QMainWindow):
         super().__init__()
         self._language = language
         self._actions: dict[str, QAction] = {}
+        self._in_front: list[QDockWidget] = []
         self._menus: dict[str, QMenu] = {}
         self._toolbar = QToolBar(self.tr("Tools"), self)
         self._toolbar.setObjectName("toolbar")
@@ -157,7 +158,7 @@ class MainWindow(QMainWindow):
             self.addDockWidget(panel.area, dock)
             if panel.behind:
                 self.tabifyDockWidget(docks[panel.behind], dock)
-                docks[panel.behind].raise_()
+                self._in_front.append(docks[panel.behind])
             self._menus["view"].addAction(dock.toggleViewAction())
             docks[panel.id] = dock
         placed = [panel for panel in panels if not panel.behind]
@@ -171,6 +172,8 @@ class MainWindow(QMainWindow):
         self._pages.setCurrentIndex(1 if is_open else 0)
         for dock in self.findChildren(QDockWidget):
             dock.setVisible(is_open)
+        for dock in self._in_front:
+            dock.raise_()
 
     def show_title(self, name: str) -> None:
         """Name the window after the project."""

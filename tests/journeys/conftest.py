@@ -54,6 +54,7 @@ class Surveyor:
         """Where a point is painted; the view goes there first."""
         view, place = self.parts.image_view, self.place_of(point)
         view.show_one_to_one()
+        view.zoom_by(4.0)
         view.center_on(place)
         return view.position_of(place).toPoint()
 
