@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from types import TracebackType
 from typing import Protocol, Self
@@ -47,11 +48,16 @@ class ArrayPulses:
 
 
 class FolderPulses:
-    """Writes pulses to the column ``pulse`` of a drive folder; closed at the end of a ``with``."""
+    """Writes pulses to the column ``pulse`` of a drive folder; closed at the end of a ``with``.
+
+    A thread of its own writes, since that takes as long as finding the next ones.
+    """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._writer = ColumnWriter(folder)
+        self._pool = ThreadPoolExecutor(max_workers=1)
+        self._written: Future[None] | None = None
 
     def append(self, pulses: NDArray[np.int64]) -> None:
         """Take the pulses of the next points.
@@ -59,13 +65,20 @@ class FolderPulses:
         Raises
         ------
         NoSpace
-            The disk is full or refuses the write.
+            The disk is full or refuses the write; of these or of the ones before.
         """
         if pulses.size:
-            self._writer.append({"pulse": pulses})
+            self._wait()
+            self._written = self._pool.submit(self._writer.append, {"pulse": pulses})
 
     def finish(self) -> None:
-        """All pulses were appended."""
+        """All pulses were appended.
+
+        Raises
+        ------
+        NoSpace
+        """
+        self._wait()
         self._writer.close()
 
     def stretch(self, start: int, stop: int) -> NDArray[np.int64]:
@@ -82,4 +95,10 @@ class FolderPulses:
         error: BaseException | None,
         traceback: TracebackType | None,
     ) -> None:
+        self._pool.shutdown()
         self._writer.close()
+
+    def _wait(self) -> None:
+        if self._written is not None:
+            self._written.result()
+            self._written = None

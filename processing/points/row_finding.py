@@ -18,7 +18,7 @@ from processing.points.turn_tracking import TurnPhase, track_turns
 
 Floats = NDArray[np.float64]
 
-READ_POINTS = 2_000_000
+READ_POINTS = 500_000
 """Points read at a time."""
 
 _TRACKED_PER_TURN = 64

@@ -78,15 +78,17 @@ def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple
     """
     delivery = read_delivery(request.inputs, request.crs, monitor)
     files = tuple(file.info for group in delivery.recordings for file in group)
-    trajectories = read_trajectories(request.trajectories, delivery.crs)
     images = _images_of(request.images)
     with told_as_user_error(into):
         into.mkdir(parents=True, exist_ok=True)
     try:
         with ThreadPoolExecutor(max_workers=1) as pool:
+            ways = pool.submit(read_trajectories, request.trajectories, delivery.crs)
             checksums = [pool.submit(_checksum, info.path) for info in files]
             reading = PartMonitor(monitor, 0.0, _READING)
-            writers = _read_all(delivery, files, into, reading, angles=not trajectories)
+            keeps_angles = not request.trajectories
+            writers = _read_all(delivery, files, into, reading, angles=keeps_angles)
+            trajectories = ways.result()
             sources = tuple(
                 _source_file(info, checksum)
                 for info, checksum in zip(files, checksums, strict=True)

@@ -180,13 +180,16 @@ def warm_up() -> None:
 def _widen_kernel(
     integers: NDArray[np.int32], lowest: NDArray[np.int64], highest: NDArray[np.int64]
 ) -> None:
-    for axis in range(3):
-        low, high = lowest[axis], highest[axis]
-        for point in range(integers.shape[0]):
-            value = integers[point, axis]
-            low = min(low, value)
-            high = max(high, value)
-        lowest[axis], highest[axis] = low, high
+    low_x, low_y, low_z = integers[0]
+    high_x, high_y, high_z = integers[0]
+    for point in range(1, integers.shape[0]):
+        x, y, z = integers[point, 0], integers[point, 1], integers[point, 2]
+        low_x, high_x = min(low_x, x), max(high_x, x)
+        low_y, high_y = min(low_y, y), max(high_y, y)
+        low_z, high_z = min(low_z, z), max(high_z, z)
+    lowest[0], highest[0] = min(lowest[0], low_x), max(highest[0], high_x)
+    lowest[1], highest[1] = min(lowest[1], low_y), max(highest[1], high_y)
+    lowest[2], highest[2] = min(lowest[2], low_z), max(highest[2], high_z)
 
 
 @kernel
