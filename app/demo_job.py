@@ -208,10 +208,16 @@ class _DemoJob:
         """Start a job and let the window live until it has ended."""
         loop = QEventLoop()
         jobs = self._parts.jobs
+        wanted = ""
+
+        def leave(job: str) -> None:
+            if job == wanted:
+                loop.quit()
+
         for ending in (jobs.finished, jobs.failed, jobs.cancelled):
-            ending.connect(loop.quit)
+            ending.connect(leave)
         QTimer.singleShot(_LONGEST_WAIT_MS, loop.quit)
-        start()
+        wanted = start()
         loop.exec()
         self._raise_refusal()
 

@@ -36,6 +36,9 @@ from widgets.shared.shared_state import SharedState
 from widgets.shared.sketch import Sketch
 from widgets.shared.view_settings import ViewSettings
 
+_MOST_PREPARED = 50_000_000
+"""Points of a drive whose surfaces are found unasked: half a gigabyte of results at most."""
+
 
 @dataclass(frozen=True)
 class _Adoption:
@@ -178,7 +181,9 @@ class Document(QObject):
         title = Text("Import {names}", "{names} のインポート").filled(names=names)
         return self._start(title, work, self._adopt_drives)
 
-    def start_run(self, tool: str, drive_id: str, parameters: object) -> str:
+    def start_run(
+        self, tool: str, drive_id: str, parameters: object, *, is_preparation: bool = False
+    ) -> str:
         """Run a tool on a drive in the background; gives the job's id."""
         drive = self.drive(drive_id)
         request = RunRequest(tool, drive, parameters)
@@ -192,7 +197,7 @@ class Document(QObject):
         title = Text("{tool}: {name}", "{tool}: {name}").filled(
             tool=TOOLS[tool].name, name=drive.info.name
         )
-        return self._start(title, work, take)
+        return self._start(title, work, take, is_preparation=is_preparation)
 
     def export(self, request: ExportRequest) -> str:
         """Write the map to files in the background; gives the job's id."""
@@ -220,9 +225,14 @@ class Document(QObject):
         return self._project
 
     def _start(
-        self, title: Text, work: Callable[[Monitor], object], take: Callable[[Any], None]
+        self,
+        title: Text,
+        work: Callable[[Monitor], object],
+        take: Callable[[Any], None],
+        *,
+        is_preparation: bool = False,
     ) -> str:
-        job = self._jobs.start(title, work)
+        job = self._jobs.start(title, work, is_preparation=is_preparation)
         self._adoptions[job] = _Adoption(self._needed(), take)
         return job
 
@@ -247,12 +257,22 @@ class Document(QObject):
         drives = [project.adopt_drive(folder) for folder in folders]
         self._show_first_image()
         self.shared.map_changes.drives_changed.emit()
+        self._prepare_drives()
         points = sum(drive.count for drive in drives)
         self.told.emit(
             Text("Imported {points:,} points", "{points:,}点をインポートしました").filled(
                 points=points
             )
         )
+
+    def _prepare_drives(self) -> None:
+        """Find in the background what attributes show, so that switching to them is quick."""
+        for drive in self.drives():
+            if drive.count > _MOST_PREPARED:
+                continue
+            for tool in TOOLS.values():
+                if not all(drive.columns.has(column.name) for column in tool.outputs):
+                    self.start_run(tool.id, drive.id, tool.parameters(), is_preparation=True)
 
     def _store_columns(self, drive: Drive, result: PointResult) -> None:
         for name, values in result.columns.items():
@@ -287,6 +307,7 @@ class Document(QObject):
         self.opened.emit()
         self.shared.map_changes.drives_changed.emit()
         self.shared.map_changes.features_changed.emit(tuple(f.id for f in self.features()))
+        self._prepare_drives()
         return True
 
     def _show_first_image(self) -> None:

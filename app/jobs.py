@@ -1,4 +1,4 @@
-"""Jobs: long work in the background, one at a time, with progress, time left and a way out."""
+"""Jobs: long work in the background, with progress, time left and a way out."""
 
 from __future__ import annotations
 
@@ -61,11 +61,10 @@ class _Task:
 
 
 class JobQueue(QObject):
-    """Runs jobs one after the other in a thread of its own.
+    """Runs what the user asked for in one thread, what the program prepares in another.
 
-    One at a time, since kernels that use all cores may be entered by one thread only. Every job
-    ends with exactly one of ``finished``, ``failed``, ``cancelled``, on the queue's own thread,
-    which is the window's.
+    In each thread one job after the other. Every job ends with exactly one of ``finished``,
+    ``failed``, ``cancelled``, on the queue's own thread, which is the window's.
     """
 
     changed = Signal(object)  # JobStatus
@@ -82,13 +81,18 @@ class JobQueue(QObject):
         self._statuses: dict[str, JobStatus] = {}
         self._stops: dict[str, threading.Event] = {}
         self._started_at: dict[str, float] = {}
-        self._tasks: SimpleQueue[_Task | None] = SimpleQueue()
+        self._asked: SimpleQueue[_Task | None] = SimpleQueue()
+        self._prepared: SimpleQueue[_Task | None] = SimpleQueue()
         queued = Qt.ConnectionType.QueuedConnection
         self._progressed.connect(self._on_worker_progressed, queued)
         self._started.connect(self._on_worker_started, queued)
         self._ended.connect(self._on_worker_ended, queued)
-        self._thread = threading.Thread(target=self._run_tasks, name="jobs", daemon=True)
-        self._thread.start()
+        self._threads = [
+            threading.Thread(target=self._run_tasks, args=(tasks,), name="jobs", daemon=True)
+            for tasks in (self._asked, self._prepared)
+        ]
+        for thread in self._threads:
+            thread.start()
 
     @property
     def statuses(self) -> tuple[JobStatus, ...]:
@@ -100,18 +104,20 @@ class JobQueue(QObject):
         """Whether a job is running or waiting."""
         return bool(self._stops)
 
-    def start(self, title: Text, work: Work) -> str:
+    def start(self, title: Text, work: Work, *, is_preparation: bool = False) -> str:
         """Queue a job; gives its id.
 
         Parameters
         ----------
         work : callable
-            Called in the worker thread with a monitor; touches no widget and no project.
+            Called in a worker thread with a monitor; touches no widget and no project.
+        is_preparation : bool
+            Nobody waits for it: it doesn't hold up what the user asks for.
         """
         task = _Task(uuid4().hex, work, threading.Event())
         self._stops[task.id] = task.stop
         self._tell(JobStatus(task.id, title))
-        self._tasks.put(task)
+        (self._prepared if is_preparation else self._asked).put(task)
         return task.id
 
     def cancel(self, job: str) -> None:
@@ -120,14 +126,16 @@ class JobQueue(QObject):
             self._stops[job].set()
 
     def close(self) -> None:
-        """Stop everything and wait for the worker."""
+        """Stop everything and wait for the workers."""
         for stop in self._stops.values():
             stop.set()
-        self._tasks.put(None)
-        self._thread.join()
+        self._asked.put(None)
+        self._prepared.put(None)
+        for thread in self._threads:
+            thread.join()
 
-    def _run_tasks(self) -> None:
-        while (task := self._tasks.get()) is not None:
+    def _run_tasks(self, tasks: SimpleQueue[_Task | None]) -> None:
+        while (task := tasks.get()) is not None:
             self._started.emit(task.id)
             monitor = _JobMonitor(self._progressed, task)
             result: object = None

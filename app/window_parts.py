@@ -4,15 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from widgets.panels.attribute_panel import AttributePanel
-from widgets.panels.jobs_panel import JobsPanel
-from widgets.panels.layers_panel import LayersPanel
-from widgets.panels.processing_panel import ProcessingPanel
-from widgets.panels.project_tree import ProjectTree
-from widgets.parts.start_page import StartPage
-from widgets.parts.status_line import StatusLine
-from widgets.scene_view.view import SceneView
-
 from app.document import Document
 from app.jobs import JobQueue
 from app.main_window import MainWindow
@@ -20,8 +11,16 @@ from app.settings import Settings
 from processing.text import Language
 from widgets.image_view.view import ImageView
 from widgets.mouse_tools.toolbox import MouseToolbox
+from widgets.panels.attribute_panel import AttributePanel
+from widgets.panels.jobs_panel import JobsPanel
+from widgets.panels.layers_panel import LayersPanel
+from widgets.panels.processing_panel import ProcessingPanel
+from widgets.panels.project_tree import ProjectTree
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
+from widgets.parts.start_page import StartPage
+from widgets.parts.status_line import StatusLine
+from widgets.scene_view.view import SceneView
 
 
 @dataclass(frozen=True)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QObject
-from widgets.panels.jobs_panel import JobView
 
 from app.jobs import JobState, JobStatus
 from app.window_parts import WindowParts, take_down
 from processing.errors import Unsuitable
 from processing.runner import check_needs, tool_of
 from processing.text import Text
+from widgets.panels.jobs_panel import JobView
 
 
 def connect_parts(parts: WindowParts) -> None:

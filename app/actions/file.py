@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from processing.project.export import FORMATS, ExportRequest
-from processing.project.project import is_project
 from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QFileDialog
 
@@ -13,6 +11,8 @@ from app.actions.action import Action
 from app.window_parts import WindowParts
 from processing.errors import UserError
 from processing.project.dropped_files import request_of_files
+from processing.project.export import FORMATS, ExportRequest
+from processing.project.project import is_project
 from processing.text import Text
 from resources import path_of
 from widgets.dialogs.export_map import ExportForm, ExportWish

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from processing.tools.registry import TOOLS
-
 from app.actions.action import Action
 from app.window_parts import WindowParts
 from processing.text import Text
+from processing.tools.registry import TOOLS
 
 
 def process_actions(parts: WindowParts) -> tuple[Action, ...]:

@@ -6,13 +6,12 @@ import argparse
 from collections.abc import Callable, Mapping
 from dataclasses import asdict
 
-from processing.bench.image_cases import measure_image, measure_switch
-from processing.bench.start_case import measure_start
-
 from app.cli.output import print_json, print_lines
 from app.language import system_language
 from processing.bench.case import Measurement
+from processing.bench.image_cases import measure_image, measure_switch
 from processing.bench.import_cases import measure_import, measure_import_memory
+from processing.bench.start_case import measure_start
 from processing.errors import OutOfRange
 from processing.text import Text
 

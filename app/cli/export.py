@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import argparse
 
-from processing.project.export import FORMATS, ExportRequest, export
-from processing.project.project import Project
-
 from app.cli.opened import terminal_monitor
 from app.cli.output import print_lines
 from app.language import system_language
 from processing.errors import OutOfRange
+from processing.project.export import FORMATS, ExportRequest, export
+from processing.project.project import Project
 from processing.text import Text
 
 

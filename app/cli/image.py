@@ -6,12 +6,11 @@ import argparse
 from pathlib import Path
 from typing import TypeVar
 
-from processing.formats.png import write_png
-from processing.image.attributes import ATTRIBUTES, colours
-
 from app.cli.opened import opened_drives, terminal_monitor
 from app.cli.output import print_lines
 from processing.errors import OutOfRange
+from processing.formats.png import write_png
+from processing.image.attributes import ATTRIBUTES, colours
 from processing.image.kinds import ImageKind
 from processing.points.drive import Drive
 from processing.text import Text

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import argparse
 
-from processing.project.project import Project, is_project
-
 from app.cli.opened import request_of, terminal_monitor
 from app.cli.output import print_lines
 from app.language import system_language
 from processing.points.drive import Drive
 from processing.project.importing import import_drives
+from processing.project.project import Project, is_project
 from processing.text import Text
 
 _ROWS = Text(

@@ -6,13 +6,13 @@ import argparse
 from pathlib import Path
 
 import numpy as np
-from processing.formats.point_files import read_info, read_sample
-from processing.project.project import Project, is_project
 
 from app.cli.import_drives import describe_drive
 from app.cli.output import print_json, print_lines
 from app.language import system_language
+from processing.formats.point_files import read_info, read_sample
 from processing.points.drive import Drive
+from processing.project.project import Project, is_project
 
 _SAMPLE_POINTS = 2_000
 

@@ -8,13 +8,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from processing.project.project import Project, is_project
-
 from app.language import system_language
 from processing.errors import MissingInput
 from processing.monitor import Monitor, TerminalMonitor
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
+from processing.project.project import Project, is_project
 from processing.text import Text
 
 

@@ -76,6 +76,16 @@ def test_a_waiting_job_can_be_cancelled_before_it_starts(qtbot, jobs):
     assert not started
 
 
+def test_what_is_prepared_does_not_hold_up_what_is_asked_for(qtbot, jobs):
+    gate = threading.Event()
+    jobs.start(TITLE, lambda monitor: gate.wait(10), is_preparation=True)
+    with qtbot.waitSignal(jobs.finished) as told:
+        asked = jobs.start(TITLE, lambda monitor: "asked")
+    assert told.args == [asked, "asked"]
+    with qtbot.waitSignal(jobs.finished):
+        gate.set()
+
+
 def test_what_the_user_can_mend_is_told_in_its_three_parts(qtbot, jobs):
     error = BadFile(Text.same("what"), Text.same("where"), Text.same("remedy"))
 

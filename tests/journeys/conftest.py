@@ -68,8 +68,13 @@ class Surveyor:
         self.bot.keyClick(self.parts.image_view, key, modifier)
 
     def wait_for_job(self, start) -> None:
-        with self.bot.waitSignal(self.parts.jobs.finished, timeout=WAIT_MS):
-            start()
+        started = []
+
+        def is_it(job, *_):
+            return job in started
+
+        with self.bot.waitSignal(self.parts.jobs.finished, timeout=WAIT_MS, check_params_cb=is_it):
+            started.append(start())
 
     def import_sample_street(self, project: Path) -> None:
         assert self.document.create(project, "")
