@@ -56,7 +56,7 @@ class AttributeEditor(QObject):
                 pattern = QRegularExpression(_PATTERNS[field.type])
                 self._line.setValidator(QRegularExpressionValidator(pattern, self._line))
             if field.type == "date":
-                self._line.setPlaceholderText("YYYY-MM-DD")
+                self._line.setPlaceholderText(self.tr("YYYY-MM-DD"))
             elif field.unit:
                 self._line.setPlaceholderText(field.unit)
             self._line.editingFinished.connect(self._on_line_editing_finished)

@@ -113,6 +113,9 @@ class Stage:
         self.tiles.close()
         self.features.clear()
         self._set_pass(None)
+        # A pass that isn't in use is not released with the window.
+        self._window.MakeCurrent()
+        self._shading.ReleaseGraphicsResources(self._window)
         for layer in self._layers[1:]:
             self._window.RemoveRenderer(layer)
         self.widget.close()

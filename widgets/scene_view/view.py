@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPoint, QPointF, QTimer
+from PySide6.QtCore import QPoint, QPointF, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QColor, QPainter, QPaintEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QMenu, QWidget
 from typing_extensions import override
@@ -48,7 +48,14 @@ class SceneView(QWidget):
     source : MapSource
     shared : SharedState
     tiles : TileCache
+
+    Signals
+    -------
+    sharpened()
+        The camera rests, and all points that it sees are in the picture.
     """
+
+    sharpened = Signal()
 
     def __init__(
         self,
@@ -93,7 +100,7 @@ class SceneView(QWidget):
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
         shared.view_settings.hidden_kinds_changed.connect(self._map_refresh.start)
         shared.sketch.changed.connect(self._on_sketch_changed)
-        hand.camera_moved.connect(self._look_from)
+        hand.camera_moved.connect(self.look_from)
         hand.acted.connect(self._paint_overlay)
         hand.menu_requested.connect(self._on_hand_menu_requested)
         hand.everything_requested.connect(self.show_everything)
@@ -131,41 +138,53 @@ class SceneView(QWidget):
         """Look along the drive from its beginning; over clouds without trajectory, at all."""
         camera = self._drives.overview()
         if camera is not None:
-            self._look_from(camera)
+            self.look_from(camera)
 
     def look_along_drive(self) -> None:
         """Look at what is in the middle from behind and above, along the drive."""
         camera = self._drives.along(self._looked_at())
         if camera is not None:
-            self._look_from(camera)
+            self.look_from(camera)
 
     def look_from_above(self) -> None:
         """Look straight down on what is in the middle, north up."""
         camera = self.camera.centred_on(self._looked_at())
-        self._look_from(camera.from_above(max(camera.distance_m, 30.0)))
+        self.look_from(camera.from_above(max(camera.distance_m, 30.0)))
 
     def center_on(self, place: Place) -> None:
         """Put a place in the middle, seen from the same side."""
         distance_m = min(self.camera.distance_m, _FARTHEST_M)
-        self._look_from(self.camera.centred_on(self._local(place), distance_m))
+        self.look_from(self.camera.centred_on(self._local(place), distance_m))
 
     def center_on_selection(self) -> None:
         """Put the chosen features in the middle, or the cursor when none is chosen."""
         places = self._map.places_of(self._shared.selection.features)
         if places is not None:
-            self._look_from(overviews.holding(places, self.camera))
+            self.look_from(overviews.holding(places, self.camera))
         elif self._shared.cursor.place is not None:
             self.center_on(self._shared.cursor.place)
 
     def zoom_by(self, factor: float) -> None:
         """Zoom about what is in the middle."""
-        self._look_from(self.camera.zoomed(self._looked_at(), factor))
+        self.look_from(self.camera.zoomed(self._looked_at(), factor))
 
     def position_of(self, place: Place) -> QPointF | None:
         """Where a place is in this widget; None when it is behind the camera."""
         pixels, _ = self._hits.projection.to_screen(self._local(place)[None])
         x, y = pixels[0].tolist()
         return QPointF(x, y) if np.isfinite(x) else None
+
+    def look_from(self, camera: Camera) -> None:
+        """Look from here."""
+        width, height = max(self.width(), 1), max(self.height(), 1)
+        self._hits.projection = Projection(camera, width, height)
+        if self._stage is not None and self._cloud is not None:
+            scale = self._stage.scale
+            size_px = round(width * scale), round(height * scale)
+            self._cloud.look_from(camera.for_tiles(self._drives.origin, *size_px))
+            self._stage.look(camera)
+            self._size_points()
+        self._paint_overlay()
 
     def set_shading(self, *, is_on: bool) -> None:
         """Turn eye-dome lighting on or off."""
@@ -196,7 +215,7 @@ class SceneView(QWidget):
         self._overlay.setGeometry(self.rect())
         if self._stage is not None:
             self._stage.widget.setGeometry(self.rect())
-        self._look_from(self.camera)
+        self.look_from(self.camera)
 
     @override
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -220,13 +239,14 @@ class SceneView(QWidget):
         self.setFocusProxy(picture)
         self._hand.is_enabled = True
         self._cloud.changed.connect(self._on_cloud_changed)
+        self._cloud.settled.connect(self.sharpened)
         self._cloud.use(self._drives.with_kinds, self._drives.origin)
         self._cloud.colour(self._shared.view_settings.look)
         self._cloud.mark(self._shared.selection.points)
         picture.show()
         self._overlay.raise_()
         self._on_map_refresh_timeout()
-        self._look_from(self.camera)
+        self.look_from(self.camera)
 
     def _on_stage_frame(self, seconds: float) -> None:
         if self._cloud is not None:
@@ -311,17 +331,6 @@ class SceneView(QWidget):
         self.set_shading(is_on=is_on)
 
     # What is done in more than one place.
-
-    def _look_from(self, camera: Camera) -> None:
-        width, height = max(self.width(), 1), max(self.height(), 1)
-        self._hits.projection = Projection(camera, width, height)
-        if self._stage is not None and self._cloud is not None:
-            scale = self._stage.scale
-            size_px = round(width * scale), round(height * scale)
-            self._cloud.look_from(camera.for_tiles(self._drives.origin, *size_px))
-            self._stage.look(camera)
-            self._size_points()
-        self._paint_overlay()
 
     def _size_points(self) -> None:
         if self._stage is not None:

@@ -38,9 +38,12 @@ class Cloud(QObject):
     -------
     changed()
         Other points are in the scene, or the shading is another.
+    settled()
+        The camera rests, and all that it sees is in the scene in its sharpest form.
     """
 
     changed = Signal()
+    settled = Signal()
 
     def __init__(self, stage: Stage, tiles: TileCache, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -62,6 +65,7 @@ class Cloud(QObject):
         self._is_shading_wanted = True
         self._was_changed = True
         self._is_chosen = False
+        self._was_settled = False
         self._rest = QTimer(self, singleShot=True, interval=REST_MS)
         self._rest.timeout.connect(self._on_rest_timeout)
         self._portions = QTimer(self, singleShot=True, interval=0)
@@ -247,6 +251,9 @@ class Cloud(QObject):
     def _tell(self) -> None:
         self._was_changed = True
         self.changed.emit()
+        was_settled, self._was_settled = self._was_settled, self.is_settled
+        if self._was_settled and not was_settled:
+            self.settled.emit()
 
 
 def _colours_only(look: PointLook) -> PointLook:

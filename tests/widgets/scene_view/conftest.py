@@ -1,0 +1,143 @@
+"""The 3D view on a shown window, sharp, with a map behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
+from PySide6.QtGui import QMouseEvent, QWheelEvent
+from PySide6.QtWidgets import QApplication, QWidget
+from pytestqt.qtbot import QtBot
+
+from processing.image.tile_cache import TileCache
+from processing.points.drive import Drive
+from tests.widgets.builders import OpenMap
+from widgets.mouse_tools.mouse_tool import MouseTool
+from widgets.scene_view.camera import Camera
+from widgets.scene_view.view import SceneView
+from widgets.shared.cursor import Place
+
+LEFT = Qt.MouseButton.LeftButton
+RIGHT = Qt.MouseButton.RightButton
+NO_KEYS = Qt.KeyboardModifier.NoModifier
+
+
+@dataclass
+class Hand:
+    """A view and the hand at its mouse and keyboard."""
+
+    qtbot: QtBot
+    map: OpenMap
+    view: SceneView
+    drive: Drive
+
+    @property
+    def picture(self) -> QWidget:
+        """The widget that gets the mouse."""
+        picture = self.view.picture
+        assert picture is not None
+        return picture
+
+    def sharpen(self) -> None:
+        self.qtbot.waitUntil(lambda: self.view.is_settled, timeout=20_000)
+
+    def look_at(self, place: Place, distance_m: float = 4.0, pitch_deg: float = -50.0) -> None:
+        """Look at a place from near, so that its pixel shows no other point."""
+        camera = Camera((0.0, 0.0, 0.0), heading_deg=20.0, pitch_deg=pitch_deg)
+        self.view.look_from(camera.centred_on(self.local(place), distance_m))
+        self.sharpen()
+
+    def local(self, place: Place) -> NDArray[np.float64]:
+        return np.array(place.xyz) - self.map.origin()
+
+    def spot(self, place: Place) -> QPoint:
+        position = self.view.position_of(place)
+        assert position is not None
+        return position.toPoint()
+
+    def take(self, tool: MouseTool) -> MouseTool:
+        self.map.listen_to(tool)
+        self.view.set_mouse_tool(tool)
+        return tool
+
+    def click(self, spot: QPoint, keys: Qt.KeyboardModifier = NO_KEYS, button=LEFT) -> None:
+        self.qtbot.mouseClick(self.picture, button, keys, spot)
+
+    def move(self, spot: QPoint, buttons: Qt.MouseButton = Qt.MouseButton.NoButton) -> None:
+        """Move by an event of our own: the pointer of the test machine stays where it is."""
+        event = QMouseEvent(
+            QEvent.Type.MouseMove,
+            QPointF(spot),
+            QPointF(self.picture.mapToGlobal(spot)),
+            Qt.MouseButton.NoButton,
+            buttons,
+            NO_KEYS,
+        )
+        QApplication.sendEvent(self.picture, event)
+
+    def drag(
+        self, start: QPoint, end: QPoint, keys: Qt.KeyboardModifier = NO_KEYS, button=LEFT
+    ) -> None:
+        self.qtbot.mousePress(self.picture, button, keys, start)
+        self.move((start + end) / 2, button)
+        self.move(end, button)
+        self.qtbot.mouseRelease(self.picture, button, keys, end)
+
+    def wheel(self, spot: QPoint, notches: int, keys: Qt.KeyboardModifier = NO_KEYS) -> None:
+        event = QWheelEvent(
+            QPointF(spot),
+            QPointF(self.picture.mapToGlobal(spot)),
+            QPoint(),
+            QPoint(0, 120 * notches),
+            Qt.MouseButton.NoButton,
+            keys,
+            Qt.ScrollPhase.NoScrollPhase,
+            False,
+        )
+        QApplication.sendEvent(self.picture, event)
+
+    def key(self, key: Qt.Key) -> None:
+        self.qtbot.keyClick(self.picture, key)
+
+    def road_points(self, count: int) -> list[int]:
+        """Points on the road some metres apart along the drive, with nothing above them."""
+        way = self.drive.trajectory
+        assert way is not None
+        all_points = np.arange(self.drive.count)
+        xyz = self.drive.xyz(slice(None))
+        low = xyz[:, 2] < np.percentile(xyz[:, 2], 30)
+        inside = (way.xyz[:, 1] > xyz[:, 1].min() + 3) & (way.xyz[:, 1] < xyz[:, 1].max() - 3)
+        stops = way.xyz[inside][:: max(1, int(inside.sum()) // count)][:count]
+        road = all_points[low]
+        return [
+            int(road[np.hypot(*(xyz[road, :2] - stop[:2] - [0.4, 0.0]).T).argmin()])
+            for stop in stops
+        ]
+
+
+@pytest.fixture
+def tiles(open_map: OpenMap) -> Iterator[TileCache]:
+    cache = TileCache()
+    cache.use(open_map.drive)
+    yield cache
+    cache.close()
+
+
+@pytest.fixture
+def open_map(left_drive: Drive, right_drive: Drive) -> OpenMap:
+    return OpenMap((left_drive, right_drive))
+
+
+@pytest.fixture
+def hand(qtbot: QtBot, open_map: OpenMap, tiles: TileCache, left_drive: Drive) -> Iterator[Hand]:
+    view = SceneView(open_map, open_map.shared, tiles)
+    qtbot.addWidget(view)
+    view.resize(800, 600)
+    with qtbot.waitSignal(view.sharpened, timeout=60_000):
+        view.show()
+    yield Hand(qtbot, open_map, view, left_drive)
+    view.close()

@@ -1,0 +1,89 @@
+"""The camera and its projection: what stays in place, stays to the pixel."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from widgets.scene_view.camera import Camera
+from widgets.scene_view.projection import Projection
+
+CAMERA = Camera((3.0, -20.0, 8.0), heading_deg=15.0, pitch_deg=-25.0, distance_m=25.0)
+PLACE = np.array([6.0, 2.0, 1.0])
+
+
+def pixel(camera: Camera, place: np.ndarray) -> np.ndarray:
+    return Projection(camera, 800, 600).to_screen(place[None])[0][0]
+
+
+def test_what_it_looks_at_is_in_the_middle() -> None:
+    assert pixel(CAMERA, CAMERA.focal_point) == pytest.approx([400, 300])
+
+
+def test_a_camera_to_the_north_has_the_east_on_its_right() -> None:
+    camera = Camera((0.0, 0.0, 0.0), heading_deg=0.0, pitch_deg=0.0)
+    x, y = pixel(camera, np.array([1.0, 10.0, 2.0]))
+    assert x > 400
+    assert y < 300
+
+
+@given(st.floats(-170, 170), st.floats(-60, 60))
+def test_orbiting_keeps_the_pivot_at_its_pixel(right_deg: float, up_deg: float) -> None:
+    turned = CAMERA.orbited(PLACE, right_deg, up_deg)
+    assert pixel(turned, PLACE) == pytest.approx(pixel(CAMERA, PLACE), abs=1e-6)
+
+
+@given(st.floats(0.2, 5.0))
+def test_zooming_keeps_the_pivot_at_its_pixel(factor: float) -> None:
+    zoomed = CAMERA.zoomed(PLACE, factor)
+    assert pixel(zoomed, PLACE) == pytest.approx(pixel(CAMERA, PLACE), abs=1e-6)
+
+
+def test_zooming_in_never_passes_the_pivot() -> None:
+    camera = CAMERA
+    for _ in range(100):
+        camera = camera.zoomed(PLACE, 1.5)
+    assert Projection(camera, 800, 600).in_view(PLACE[None])[0, 2] > 0
+
+
+def test_orbiting_stops_at_straight_down() -> None:
+    assert CAMERA.orbited(PLACE, 0.0, -300.0).pitch_deg == -90.0
+
+
+def test_a_place_put_in_the_middle_is_seen_from_the_same_side() -> None:
+    moved = CAMERA.centred_on(PLACE, 12.0)
+    assert pixel(moved, PLACE) == pytest.approx([400, 300])
+    assert (moved.heading_deg, moved.pitch_deg) == (CAMERA.heading_deg, CAMERA.pitch_deg)
+    assert np.linalg.norm(np.array(moved.position) - PLACE) == pytest.approx(12.0)
+
+
+def test_a_pixel_and_a_depth_lead_back_to_the_place() -> None:
+    projection = Projection(CAMERA, 800, 600)
+    pixels, depth = projection.to_screen(PLACE[None])
+    x, y = pixels[0].tolist()
+    assert projection.place_at(x, y, float(depth[0])) == pytest.approx(PLACE)
+
+
+def test_a_place_behind_the_camera_has_no_pixel() -> None:
+    behind = np.array(CAMERA.position) - CAMERA.axes[2]
+    assert np.isnan(pixel(CAMERA, behind)).all()
+
+
+def test_a_segment_that_leads_behind_the_camera_is_cut_off_in_front_of_it() -> None:
+    projection = Projection(CAMERA, 800, 600)
+    forward, right = CAMERA.axes[2], CAMERA.axes[0]
+    start = np.array(CAMERA.position) + 10 * forward
+    end = np.array(CAMERA.position) - 10 * forward + 4 * right
+    (line,) = projection.segments_on_screen(np.stack([start, end]), np.array([[0, 1]]))
+    assert line[0] == pytest.approx([400, 300])
+    assert np.isfinite(line[1]).all()
+    assert line[1, 0] > 400
+
+
+def test_a_segment_behind_the_camera_is_not_seen() -> None:
+    projection = Projection(CAMERA, 800, 600)
+    behind = np.array(CAMERA.position) - np.array([[1.0], [5.0]]) * CAMERA.axes[2]
+    (line,) = projection.segments_on_screen(behind, np.array([[0, 1]]))
+    assert np.isnan(line).all()

@@ -1,0 +1,160 @@
+"""Which tiles stand in for others, how large a budget grows, and what a feed tells."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from pytestqt.qtbot import QtBot
+
+from processing.image.kinds import ImageKind
+from processing.image.tile_cache import TileCache
+from processing.image.tiles import TileKey
+from processing.points.drive import Drive
+from widgets.scene_view.camera import Camera
+from widgets.scene_view.points.budget import FrameBudget
+from widgets.scene_view.points.scene_tile import TileId, shown_tiles
+from widgets.scene_view.points.tile_feed import TileFeed, Wish
+from widgets.shared.view_settings import PointLook
+
+KIND = ImageKind.TRAJECTORY_CENTER
+
+
+def tile(level: int, row: int, column: int, drive: str = "a") -> TileId:
+    return TileId(drive, KIND, TileKey(level, row, column))
+
+
+PARENT = tile(1, 0, 0)
+CHILDREN = [tile(0, row, column) for row in (0, 1) for column in (0, 1)]
+
+
+def test_tiles_that_are_there_are_shown_as_wanted() -> None:
+    assert shown_tiles(CHILDREN, [*CHILDREN, PARENT]) == set(CHILDREN)
+
+
+def test_a_parent_stays_until_all_its_children_are_there() -> None:
+    assert shown_tiles(CHILDREN, [PARENT, *CHILDREN[:3]]) == {PARENT}
+
+
+def test_children_stay_until_their_parent_is_there() -> None:
+    assert shown_tiles([PARENT], CHILDREN) == set(CHILDREN)
+
+
+def test_the_nearest_coarser_tile_stands_in() -> None:
+    grand = tile(2, 0, 0)
+    assert shown_tiles([CHILDREN[0]], [grand, PARENT]) == {PARENT}
+    assert shown_tiles([CHILDREN[0]], [grand]) == {grand}
+
+
+def test_tiles_of_another_drive_never_stand_in() -> None:
+    assert shown_tiles([PARENT], [tile(0, 0, 0, "b")]) == frozenset()
+
+
+def test_nothing_is_shown_of_what_is_no_longer_wanted() -> None:
+    assert shown_tiles([tile(0, 5, 5)], [tile(0, 5, 5), PARENT]) == {tile(0, 5, 5)}
+
+
+def test_slow_frames_make_the_budget_smaller_and_fast_ones_larger() -> None:
+    slow, fast = FrameBudget(), FrameBudget()
+    for _ in range(20):
+        slow.record_moving(slow.moving_points, 0.3)
+        fast.record_moving(fast.moving_points, 0.01)
+    assert slow.moving_points < 50_000
+    assert fast.moving_points > 1_000_000
+    assert fast.is_fast
+    assert not slow.is_fast
+
+
+def test_a_frame_with_few_points_does_not_raise_the_budget() -> None:
+    budget = FrameBudget()
+    before = budget.moving_points
+    budget.record_moving(before // 10, 0.001)
+    assert budget.moving_points == before
+
+
+def test_frames_about_as_long_as_wanted_leave_the_budget() -> None:
+    budget = FrameBudget()
+    before = budget.moving_points
+    budget.record_moving(before, 0.076)
+    assert budget.moving_points == before
+
+
+def test_a_picture_at_rest_has_never_fewer_points_than_a_moving_one() -> None:
+    budget = FrameBudget()
+    for _ in range(40):
+        budget.record_still(budget.still_points, 5.0)
+        budget.record_moving(budget.moving_points, 0.001)
+    assert budget.still_points >= budget.moving_points
+
+
+@pytest.fixture
+def wish(left_drive: Drive) -> Wish:
+    origin = np.array(left_drive.info.lowest)
+    middle = (np.array(left_drive.info.highest) - origin) / 2
+    camera = Camera((0.0, 0.0, 0.0)).centred_on(middle, 60.0)
+    return Wish(
+        drives=((left_drive, KIND),),
+        origin=origin,
+        age=7,
+        camera=camera.for_tiles(origin, 800, 600),
+        look=PointLook(),
+        budget_points=1_000_000,
+        is_still=True,
+        kept=frozenset(),
+        known=frozenset(),
+    )
+
+
+def test_a_feed_gives_the_points_of_the_tiles_that_it_chose(
+    qtbot: QtBot, left_drive: Drive, wish: Wish
+) -> None:
+    tiles = TileCache()
+    tiles.use({left_drive.id: left_drive}.__getitem__)
+    feed = TileFeed(tiles)
+    arrived: dict[TileId, object] = {}
+    feed.arrived.connect(
+        lambda one: arrived.update({one.id: one}), Qt.ConnectionType.QueuedConnection
+    )
+    with qtbot.waitSignal(feed.chosen, timeout=20_000) as chosen:
+        feed.wish(wish)
+    assert chosen.args is not None
+    choice = chosen.args[0]
+    qtbot.waitUntil(lambda: arrived.keys() >= set(choice.tiles), timeout=20_000)
+    for one in arrived.values():
+        assert one.age == 7
+        assert one.local_xyz.dtype == np.float32
+        exact = left_drive.xyz(one.points) - wish.origin
+        assert one.local_xyz == pytest.approx(exact, abs=1e-4)
+        assert one.colours.shape == (one.points.size, 3)
+    feed.close()
+    tiles.close()
+
+
+def test_a_feed_asks_for_nothing_that_is_known(qtbot: QtBot, left_drive: Drive, wish: Wish) -> None:
+    from dataclasses import replace
+
+    tiles = TileCache()
+    tiles.use({left_drive.id: left_drive}.__getitem__)
+    feed = TileFeed(tiles)
+    with qtbot.waitSignal(feed.chosen, timeout=20_000) as chosen:
+        feed.wish(wish)
+    assert chosen.args is not None
+    known = frozenset((one, PointLook()) for one in chosen.args[0].tiles)
+    qtbot.waitUntil(lambda: tiles.held_bytes > 0, timeout=20_000)
+    arrived: list[object] = []
+    with qtbot.waitSignal(feed.chosen, timeout=20_000):
+        feed.wish(replace(wish, known=known))
+    feed.arrived.connect(arrived.append)
+    feed.close()
+    assert arrived == []
+    tiles.close()
+
+
+def test_a_closed_feed_tells_nothing(qtbot: QtBot, left_drive: Drive, wish: Wish) -> None:
+    tiles = TileCache()
+    tiles.use({left_drive.id: left_drive}.__getitem__)
+    feed = TileFeed(tiles)
+    feed.close()
+    with qtbot.assertNotEmitted(feed.chosen, wait=50):
+        feed.wish(wish)
+    tiles.close()
