@@ -92,7 +92,7 @@ def chunks_of(file: FloatFile, chunk_points: int) -> Iterator[PointChunk]:
 
     Coordinates become integers of 0.1 mm (1 mm where the points lie more than 200 km apart) from
     an offset of whole metres. Intensities that are whole numbers of 16 bits stay; others are
-    mapped linearly, from the file's lowest to its highest, to 0 to 65535.
+    mapped linearly to 0 to 65535 from the customary range they lie in.
 
     Raises
     ------
@@ -149,10 +149,23 @@ def _intensity(values: Block, summary: _Summary) -> NDArray[np.uint16]:
     low, high = summary.intensity_low, summary.intensity_high
     if summary.is_intensity_integral and low >= 0 and high <= _FULL:
         return _bounded(given, 0, _FULL).astype(np.uint16)
+    low, high = _intensity_range(low, high)
     if not high > low:
         return np.zeros(given.size, dtype=np.uint16)
     share = (given.astype(np.float64) - low) / (high - low)
     return np.rint(_bounded(share, 0, 1) * _FULL).astype(np.uint16)
+
+
+def _intensity_range(low: float, high: float) -> tuple[float, float]:
+    """The customary range in which a file's intensities lie; its own where they lie in none.
+
+    The files of one drive must come to one brightness, so their own extremes won't do: shares,
+    bytes, 16 bits, decibels.
+    """
+    for least, most in ((0.0, 1.0), (0.0, 255.0), (0.0, float(_FULL)), (-100.0, 100.0)):
+        if least <= low and high <= most:
+            return least, most
+    return low, high
 
 
 def _bounded(values: NDArray[np.generic], low: float, high: float) -> NDArray[np.float64]:
