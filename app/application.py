@@ -7,7 +7,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from platformdirs import user_documents_path
-from PySide6.QtCore import Qt, QTimer, QTranslator
+from PySide6.QtCore import QLibraryInfo, Qt, QTimer, QTranslator
 from PySide6.QtWidgets import QApplication
 
 from app.actions.draw import draw_actions
@@ -96,14 +96,16 @@ def build_window(settings: Settings, projects_folder: Path) -> WindowParts:
 
 
 def _install_translation(language: str) -> None:
-    """Translations of the window's words; English is what the sources say."""
+    """Translations of our words and of Qt's own; English is what the sources say."""
     application = QApplication.instance()
-    translator = QTranslator(application)
-    if (
-        translator.load(f"zuka_{language}", str(path_of("translations")))
-        and application is not None
-    ):
-        application.installTranslator(translator)
+    if application is None:
+        return
+    own = str(path_of("translations"))
+    qt = QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)
+    for name, folder in ((f"qtbase_{language}", qt), (f"zuka_{language}", own)):
+        translator = QTranslator(application)
+        if translator.load(name, folder):
+            application.installTranslator(translator)
 
 
 def _make_parts(settings: Settings) -> WindowParts:

@@ -78,6 +78,7 @@ class Document(QObject):
         self._project: Project | None = None
         self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
         self._adoptions: dict[str, _Adoption] = {}
+        self._new_projects: dict[str, Project] = {}
         jobs.finished.connect(self._on_jobs_finished)
         jobs.failed.connect(self._on_jobs_failed)
         jobs.cancelled.connect(self._on_jobs_cancelled)
@@ -169,6 +170,20 @@ class Document(QObject):
 
     # Long work.
 
+    def import_into_new(self, folder: Path, request: ImportRequest) -> str:
+        """Import delivered files into a new project, which goes again if nothing comes of it.
+
+        Returns
+        -------
+        str
+            The job's id; empty when the project can't be made.
+        """
+        if not self.create(folder, request.crs):
+            return ""
+        job = self.import_files(request)
+        self._new_projects[job] = self._needed()
+        return job
+
     def import_files(self, request: ImportRequest) -> str:
         """Import delivered files in the background; gives the job's id."""
         project = self._needed()
@@ -243,14 +258,27 @@ class Document(QObject):
         try:
             adoption.take(result)
         except UserError as error:
+            self._drop_new_project(job)
             self.refused.emit(error)
+        self._new_projects.pop(job, None)
 
     def _on_jobs_failed(self, job: str, error: UserError) -> None:
         if self._adoptions.pop(job, None) is not None:
+            self._drop_new_project(job)
             self.refused.emit(error)
 
     def _on_jobs_cancelled(self, job: str) -> None:
         self._adoptions.pop(job, None)
+        self._drop_new_project(job)
+
+    def _drop_new_project(self, job: str) -> None:
+        """Leave no empty project behind an import that failed."""
+        project = self._new_projects.pop(job, None)
+        if project is None or project is not self._project:
+            return
+        if not project.drives and len(project.features) == 0:
+            self.close()
+            Project.remove_new(project.folder)
 
     def _adopt_drives(self, folders: tuple[Path, ...]) -> None:
         project = self._needed()

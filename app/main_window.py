@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import qtawesome
-from PySide6.QtCore import QByteArray, QSize, Qt, Signal
+from PySide6.QtCore import QByteArray, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import (
     QAction,
     QActionGroup,
@@ -172,6 +172,10 @@ class MainWindow(QMainWindow):
         self._pages.setCurrentIndex(1 if is_open else 0)
         for dock in self.findChildren(QDockWidget):
             dock.setVisible(is_open)
+        # Only docks that are laid out can come to the front.
+        QTimer.singleShot(0, self._bring_forward)
+
+    def _bring_forward(self) -> None:
         for dock in self._in_front:
             dock.raise_()
 

@@ -32,6 +32,8 @@ def _connect_document(parts: WindowParts, wiring: _Wiring) -> None:
     document.closed.connect(wiring.on_document_closed)
     document.refused.connect(parts.message_bar.show_error)
     document.told.connect(parts.status_line.show_message)
+    document.told.connect(parts.message_bar.hide)
+    document.undo_stack.changed.connect(parts.message_bar.hide)
     document.undo_stack.changed.connect(wiring.on_undo_stack_changed)
     parts.jobs.changed.connect(wiring.on_jobs_changed)
     document.shared.view_settings.image_changed.connect(parts.processing_panel.refresh)

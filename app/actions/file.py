@@ -109,11 +109,10 @@ class FileActions:
             self._parts.message_bar.show_error(error)
             return
         document = self._parts.document
-        if document.project is None and not document.create(
-            self._new_project_for(request.inputs), ""
-        ):
-            return
-        document.import_files(request)
+        if document.project is None:
+            document.import_into_new(self._new_project_for(request.inputs), request)
+        else:
+            document.import_files(request)
 
     def open_demo(self) -> None:
         """Open the sample street; the first time it is imported."""
@@ -122,8 +121,7 @@ class FileActions:
             self._parts.document.open(folder)
             return
         street = path_of("sample_street")
-        if self._parts.document.create(folder, ""):
-            self._parts.document.import_files(request_of_files((street,), ""))
+        self._parts.document.import_into_new(folder, request_of_files((street,), ""))
 
     def _new_project_for(self, files: tuple[Path, ...]) -> Path:
         """A project folder that does not exist yet, named after the first file's folder."""
@@ -139,17 +137,15 @@ class FileActions:
     def _on_form_import_requested(self, wish: ImportWish) -> None:
         document = self._parts.document
         is_open = document.project is not None and document.project.folder == wish.project.resolve()
-        if not is_open:
-            exists = is_project(wish.project)
-            opened = (
-                document.open(wish.project) if exists else document.create(wish.project, wish.crs)
-            )
-            if not opened:
-                return
         try:
-            document.import_files(request_of_files(wish.files, wish.crs))
+            request = request_of_files(wish.files, wish.crs)
         except UserError as error:
             self._parts.message_bar.show_error(error)
+            return
+        if not is_open and not is_project(wish.project):
+            document.import_into_new(wish.project, request)
+        elif is_open or document.open(wish.project):
+            document.import_files(request)
 
     def _on_form_export_requested(self, wish: ExportWish) -> None:
         self._parts.document.export(
