@@ -93,6 +93,10 @@ class MainWindow(QMainWindow):
         self._language = language
         self._actions: dict[str, QAction] = {}
         self._in_front: list[QDockWidget] = []
+        # Only docks that are laid out can come to the front.
+        self._when_laid_out = QTimer(self)
+        self._when_laid_out.setSingleShot(True)
+        self._when_laid_out.timeout.connect(self._bring_forward)
         self._menus: dict[str, QMenu] = {}
         self._toolbar = QToolBar(self.tr("Tools"), self)
         self._toolbar.setObjectName("toolbar")
@@ -172,8 +176,8 @@ class MainWindow(QMainWindow):
         self._pages.setCurrentIndex(1 if is_open else 0)
         for dock in self.findChildren(QDockWidget):
             dock.setVisible(is_open)
-        # Only docks that are laid out can come to the front.
-        QTimer.singleShot(0, self._bring_forward)
+        if is_open:
+            self._when_laid_out.start()
 
     def _bring_forward(self) -> None:
         for dock in self._in_front:
