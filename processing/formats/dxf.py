@@ -9,8 +9,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from io import TextIOWrapper
 from pathlib import Path
-from typing import Any, Literal, TextIO
+from typing import Any, Literal
+
+from typing_extensions import override
 
 from processing.errors import OutOfRange, Unsuitable
 from processing.formats.dxf_labels import LABEL_HEIGHT_M, label_of
@@ -275,24 +278,27 @@ class _Drawing:
 
     def write(self, path: Path, monitor: Monitor) -> None:
         """Write the file with the line ends of Windows, where its readers are."""
-        with path.open("w", encoding=self._encoding, errors="dxfreplace", newline="\r\n") as file:
-            self.doc.write(_Watched(file, monitor))
+        with (
+            path.open("wb") as file,
+            _Watched(file, self._encoding, "dxfreplace", "\r\n") as text,
+        ):
+            text.monitor = monitor
+            self.doc.write(text)
 
 
-class _Watched:
-    """A file whose writing the user can stop."""
+class _Watched(TextIOWrapper):
+    """A text file whose writing the user can stop."""
 
-    def __init__(self, file: TextIO, monitor: Monitor) -> None:
-        self._file = file
-        self._monitor = monitor
-        self._writes = 0
+    monitor: Monitor = SilentMonitor()
+    _writes = 0
 
-    def write(self, text: str) -> int:
+    @override
+    def write(self, text: str, /) -> int:
         """Write, and now and then ask whether to go on."""
         self._writes += 1
         if self._writes % _CHECK_WRITES == 0:
-            self._monitor.check()
-        return self._file.write(text)
+            self.monitor.check()
+        return super().write(text)
 
 
 def _rotation_deg(feature: Feature) -> float:
