@@ -128,12 +128,14 @@ def test_what_cannot_be_written_is_a_sentence_and_leaves_nothing(
     assert list(tmp_path.iterdir()) == [path]
 
 
+_METRES = st.floats(-1e7, 1e7)
+_TEXTS = st.characters(exclude_categories=["Cs"])
+
+
 @settings(max_examples=25)
 @given(
-    x=st.floats(-1e7, 1e7),
-    y=st.floats(-1e7, 1e7),
-    z=st.floats(-1e4, 1e4),
-    name=st.text(st.characters(exclude_categories=["Cs"]), max_size=8),
+    place=st.tuples(_METRES, _METRES, _METRES),
+    name=st.text(_TEXTS, max_size=8),
     value=st.one_of(
         st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0")),
         st.integers(-(1 << 63), (1 << 63) - 1),
@@ -141,16 +143,11 @@ def test_what_cannot_be_written_is_a_sentence_and_leaves_nothing(
     ),
 )
 def test_any_place_and_any_value_is_kept(
-    tmp_path_factory: pytest.TempPathFactory,
-    x: float,
-    y: float,
-    z: float,
-    name: str,
-    value: str | float,
+    tmp_path_factory: pytest.TempPathFactory, place: Position, name: str, value: str | float
 ) -> None:
     path = tmp_path_factory.getbasetemp() / "any.gpkg"
-    feature = _placed("a", "post", Geometry.POINT, ((x, y, z),), **{name: value})
+    feature = _placed("a", "post", Geometry.POINT, (place,), **{name: value})
     write_geopackage(path, [feature], Catalogue(()), crs="EPSG:6677")
     (point,), columns = _layer(path, "post")
-    assert shapely.get_coordinates(point, include_z=True).tolist() == [[x, y, z]]
+    assert [tuple(one) for one in shapely.get_coordinates(point, include_z=True)] == [place]
     assert list(columns.values())[5] == [value]

@@ -288,7 +288,6 @@ except UserError as error:
 """
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="a limit on the size of files needs POSIX")
 @pytest.mark.parametrize("format_", _ALL)
 def test_a_disk_that_takes_no_more_is_told_and_nothing_is_half_written(
     tmp_path: Path, format_: str
