@@ -166,22 +166,24 @@ def _distinct(headers: Sequence[str]) -> list[str]:
 class _Table:
     """A file being written, row by row."""
 
-    def __init__(self, path: Path, file: TextIO, style: TableStyle) -> None:
-        self._path = path
+    def __init__(self, file: TextIO, style: TableStyle) -> None:
         self._style = style
+        self._headers: Sequence[str] = ()
         self._writer = csv.writer(file, lineterminator="\r\n")
 
     def write(self, cells: Sequence[str], feature: str) -> None:
-        """Write a row; ``feature`` is named when a character can't be written."""
+        """Write a row, the headers first; ``feature`` is named with what can't be written."""
         if self._style.encoding == "cp932":
             cells = [cell.translate(_CP932_TWINS) for cell in cells]
-        try:
-            "".join(cells).encode(self._style.encoding)
-        except UnicodeEncodeError as error:
-            raise self._lacking(error, feature) from error
+        self._headers = self._headers or cells
+        for column, cell in zip(self._headers, cells, strict=True):
+            try:
+                cell.encode(self._style.encoding)
+            except UnicodeEncodeError as error:
+                raise self._lacking(error, feature, column) from error
         self._writer.writerow(cells)
 
-    def _lacking(self, error: UnicodeEncodeError, feature: str) -> OutOfRange:
+    def _lacking(self, error: UnicodeEncodeError, feature: str, column: str) -> OutOfRange:
         character = error.object[error.start]
         code = f"U+{ord(character):04X}"
         shown = character if character.isprintable() else ""
@@ -191,12 +193,9 @@ class _Table:
                 f"{name} has no character “{shown}” ({code}).",
                 f"{name}では文字「{shown}」（{code}）を表せません。",
             ),
-            Text(
-                f"{self._path.name}, feature {feature}"
-                if feature
-                else f"{self._path.name}, header",
-                f"{self._path.name}、地物 {feature}" if feature else f"{self._path.name}、見出し",
-            ),
+            Text(f"feature {feature}, {column}", f"地物 {feature}、{column}")
+            if feature
+            else Text(f"header {column}", f"見出し {column}"),
             Text(
                 "Replace the character, or export as UTF-8; nothing was written.",
                 "その文字を置き換えるか、UTF-8で書き出してください。何も書き込まれていません。",
@@ -211,4 +210,4 @@ def _opened(path: Path, style: TableStyle, never: Iterable[Path]) -> Iterator[_T
         written_safely(path, never=never) as temporary,
         temporary.open("w", encoding=encoding, newline="") as file,
     ):
-        yield _Table(path, file, style)
+        yield _Table(file, style)

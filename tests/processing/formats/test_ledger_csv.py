@@ -135,7 +135,7 @@ def test_cp932_is_written_and_a_character_it_lacks_is_named(
         write_ledger(path, [_tree(species="𠮷")], kind, style)
     assert "𠮷" in refusal.value.what.ja
     assert "U+20BB7" in refusal.value.what.en
-    assert "t1" in refusal.value.where.en
+    assert refusal.value.where.ja == "地物 t1、樹種"
     assert path.read_bytes() == before
     assert list(tmp_path.iterdir()) == [path]
 
