@@ -63,14 +63,27 @@ class AttributeEditor(QObject):
             self.widget = self._line
         self.widget.setObjectName(field.id)
 
+    def show_value(self, value: AttributeValue) -> None:
+        """Show another value; tells nobody."""
+        if value == self._value:
+            return
+        self._value = value
+        if self._field.type == "choice":
+            self._choose(value)
+        else:
+            self._line.setText(_written(value))
+
     def _fill(self, language: Language) -> None:
         self._box.addItem("", None)
         for choice in self._field.choices:
             self._box.addItem(self._field.name_of_choice(choice).spoken(language), choice)
-        index = self._box.findData(self._value)
-        if self._value is not None and index < 0:
+        self._choose(self._value)
+
+    def _choose(self, value: AttributeValue) -> None:
+        index = self._box.findData(value)
+        if value is not None and index < 0:
             # A value that the catalogue no longer has: shown as it is.
-            self._box.addItem(str(self._value), self._value)
+            self._box.addItem(str(value), value)
             index = self._box.count() - 1
         self._box.setCurrentIndex(max(index, 0))
 

@@ -59,6 +59,8 @@ class AttributePanel(QWidget):
         self._selection = shared.selection
         self._language = language
         self._shown: tuple[Feature, ...] | None = None
+        self._editors: dict[str, AttributeEditor] = {}
+        self._fact_labels: list[QLabel] = []
         self._page = QWidget()
         self._scroll = QScrollArea(self)
         self._scroll.setWidgetResizable(True)
@@ -84,9 +86,11 @@ class AttributePanel(QWidget):
     def _show(self) -> None:
         chosen = [self._source.feature(id_) for id_ in sorted(self._selection.features)]
         features = tuple(feature for feature in chosen if feature is not None)
-        if features == self._shown:
+        before, self._shown = self._shown, features
+        if features == before or self._update(before, features):
             return
-        self._shown = features
+        self._editors.clear()
+        self._fact_labels.clear()
         page = QWidget()
         form = QFormLayout(page)
         form.setContentsMargins(8, 8, 8, 8)
@@ -100,8 +104,31 @@ class AttributePanel(QWidget):
             self._add_one(form, features[0])
         else:
             self._add_several(form, features)
+        # The old form may be in the middle of telling of an edit, so it goes a little later.
+        old = self._scroll.takeWidget()
+        if old is not None:
+            old.deleteLater()
         self._page = page
         self._scroll.setWidget(page)
+
+    def _update(self, before: tuple[Feature, ...] | None, features: tuple[Feature, ...]) -> bool:
+        """Take over new values in place, so that who types keeps the field; says whether it did."""
+        if before is None or len(before) != 1 or len(features) != 1:
+            return False
+        (feature,) = features
+        if self._frame_of(before[0]) != self._frame_of(feature):
+            return False
+        for id_, editor in self._editors.items():
+            editor.show_value(feature.attributes.get(id_))
+        for label, (_, words) in zip(self._fact_labels, facts_of(feature), strict=True):
+            label.setText(words)
+        return True
+
+    def _frame_of(self, feature: Feature) -> tuple[object, ...]:
+        """All that is shown of a feature but for values of fields and facts."""
+        others = {id_: v for id_, v in feature.attributes.items() if id_ not in self._editors}
+        confidence = feature.provenance.confidence
+        return (feature.id, feature.kind, feature.geometry, feature.status, confidence, others)
 
     def _add_empty(self, form: QFormLayout) -> None:
         words = QLabel(self.tr("Choose a feature to see what is known about it."))
@@ -122,10 +149,12 @@ class AttributePanel(QWidget):
             editor = AttributeEditor(field, feature.attributes.get(field.id), self._language)
             editor.edited.connect(self._on_editor_edited)
             form.addRow(field.name.spoken(self._language), editor.widget)
-            editor.setParent(editor.widget)
+            self._editors[field.id] = editor
         self._add_others(form, feature, {f.id for f in kind.attributes} if kind else set())
         for title, words in facts_of(feature):
-            form.addRow(title.spoken(self._language), QLabel(words))
+            label = QLabel(words)
+            self._fact_labels.append(label)
+            form.addRow(title.spoken(self._language), label)
 
     def _add_others(self, form: QFormLayout, feature: Feature, known: set[str]) -> None:
         """Attributes that the catalogue doesn't know: shown as they are."""

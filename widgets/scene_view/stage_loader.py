@@ -42,9 +42,12 @@ class StageLoader(QObject):
             self._thread.join()
 
     def _load(self) -> None:
-        importlib.import_module("widgets.scene_view.points.cloud")
-        if not self._is_closed:
-            self.ready.emit()
+        try:
+            importlib.import_module("widgets.scene_view.points.cloud")
+        finally:
+            # Where this failed, the view imports again on its own thread, and the error is told.
+            if not self._is_closed:
+                self.ready.emit()
 
 
 def reserve_graphics(parent: QWidget) -> QOpenGLWidget:
