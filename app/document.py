@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -219,6 +219,9 @@ class Document(QObject):
         project = self._needed()
         features = tuple(project.features.all())
         catalogue, crs = project.catalogue, project.crs
+        request = replace(
+            request, never=tuple(path for drive in project.drives for path in drive.delivered_files)
+        )
 
         def work(monitor: Monitor) -> tuple[Path, ...]:
             return export(features, catalogue, crs, request, monitor)

@@ -24,6 +24,7 @@ def command(arguments: argparse.Namespace) -> int:
                     names=", ".join(FORMATS)
                 ),
             )
+    project = Project.open(arguments.project, writing=False)
     request = ExportRequest(
         formats=tuple(dict.fromkeys(arguments.format)),
         folder=arguments.out,
@@ -31,8 +32,8 @@ def command(arguments: argparse.Namespace) -> int:
         dxf_version=arguments.dxf_version,
         encoding=arguments.encoding,
         candidates=arguments.candidates,
+        never=tuple(path for drive in project.drives for path in drive.delivered_files),
     )
-    project = Project.open(arguments.project, writing=False)
     try:
         features = tuple(project.features.all())
         paths = export(features, project.catalogue, project.crs, request, terminal_monitor())

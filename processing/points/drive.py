@@ -76,6 +76,11 @@ class Drive:
         return self._folder
 
     @property
+    def delivered_files(self) -> tuple[Path, ...]:
+        """The files it was imported from, which nothing may ever write."""
+        return tuple(Path(source.path) for source in self.info.sources)
+
+    @property
     def trajectory(self) -> Trajectory | None:
         """Where the vehicle was; None when the drive has no trajectory."""
         path = self._folder / "trajectory.npy"

@@ -8,7 +8,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from processing.errors import OutOfRange, Unsuitable, UserError
+from processing.errors import OutOfRange, Unsuitable
 from processing.formats.dxf import DxfVersion, write_dxf
 from processing.formats.geojson import write_geojson
 from processing.formats.geopackage import write_geopackage
@@ -91,6 +91,8 @@ def export(
 ) -> tuple[Path, ...]:
     """Write the map's accepted features in each format that is asked for.
 
+    A map without features gives files without features: a script's next step finds them.
+
     Every file is written under a temporary name; they take their own names when the last one is
     whole, so that an error, a cancel or a full disk leaves the folder as it was.
 
@@ -112,7 +114,7 @@ def export(
         A format, version, encoding, number of digits or reference system that there is not; a
         coordinate that is no number; a character that the encoding lacks.
     Unsuitable
-        Nothing to hand in; a feature with too few vertices or of a kind the catalogue lacks.
+        A feature with too few vertices or of a kind the catalogue lacks.
     InUse, NoSpace, MissingInput, BadFile
         What stands against writing.
     Cancelled
@@ -121,8 +123,6 @@ def export(
     monitor = monitor or SilentMonitor()
     _check_request(request, crs)
     wanted = tuple(feature for feature in features if _is_wanted(feature, request))
-    if not wanted:
-        raise _nothing_to_export(request)
     for feature in wanted:
         _check_feature(feature, catalogue)
     job = _Job(wanted, catalogue, crs, request)
@@ -245,19 +245,6 @@ def _check_crs(crs: str) -> None:
                 "プロジェクトの座標参照系を設定してください（例: EPSG:6677）。",
             ),
         ) from error
-
-
-def _nothing_to_export(request: ExportRequest) -> UserError:
-    return Unsuitable(
-        Text("There is no feature to export.", "書き出す地物がありません。"),
-        Text.same(str(request.folder)),
-        Text("Draw something first.", "先に作図してください。")
-        if request.candidates
-        else Text(
-            "Accept candidates or draw something first, or export candidates as well.",
-            "候補を採用するか作図してください。候補のまま書き出すこともできます。",
-        ),
-    )
 
 
 def _check_feature(feature: Feature, catalogue: Catalogue) -> None:

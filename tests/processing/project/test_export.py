@@ -205,15 +205,14 @@ def test_a_feature_that_is_none_is_named_and_nothing_is_written(
     assert not (tmp_path / "out").exists()
 
 
-def test_nothing_to_hand_in_is_said_with_what_to_do(
-    tmp_path: Path, catalogue: Catalogue, street: tuple[Feature, ...]
+def test_an_empty_map_gives_whole_files_without_features(
+    tmp_path: Path, catalogue: Catalogue
 ) -> None:
-    with pytest.raises(Unsuitable) as refusal:
-        export(street[2:], catalogue, "EPSG:6677", _request(tmp_path))
-    assert "candidates" in refusal.value.remedy.en
-    with pytest.raises(Unsuitable):
-        export((), catalogue, "EPSG:6677", replace(_request(tmp_path), candidates=True))
-    assert list(tmp_path.iterdir()) == []
+    paths = export((), catalogue, "EPSG:6677", _request(tmp_path))
+    assert {path.suffix for path in paths} == {".dxf", ".csv", ".gpkg", ".geojson"}
+    assert not len(ezdxf.filemanagement.readfile(tmp_path / "features.dxf").modelspace())
+    assert json.loads((tmp_path / "features.geojson").read_text("utf-8"))["features"] == []
+    assert len((tmp_path / "features.csv").read_text("utf-8-sig").splitlines()) == 1
 
 
 def test_a_late_failure_leaves_the_files_of_the_last_export_as_they_were(
