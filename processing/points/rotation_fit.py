@@ -21,6 +21,7 @@ SLOWEST_HZ, FASTEST_HZ = 38.0, 310.0
 _ROUNDS = 12
 _CLEAR_ANGLE_RAD = 0.6
 _MOST_SEARCHED = 1_500
+_MOST_COMPARED = 4_000
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,10 @@ class PlanePoints:
         """Number of windows."""
         return int(self.window.max()) + 1
 
+    def thinned(self, every: int) -> PlanePoints:
+        """Every so many of the points."""
+        return PlanePoints(self.place[::every], self.time[::every], self.window[::every])
+
 
 def fit_rotation(
     points: PlanePoints, starts: list[Floats], *, moves: bool, rates_hz: list[float] | None = None
@@ -91,12 +96,15 @@ def fit_rotation(
     RotationFit
         The most coherent one; whether that is good enough is for the caller to say.
     """
+    # Some of the points tell the right candidate; all of them are for it alone.
+    some = points.thinned(max(1, points.time.size // _MOST_COMPARED))
     fits: list[RotationFit] = []
     for start in starts:
         angle = _angles(points.place - start)
         candidates = rates_hz or _candidate_rates(angle, points)
-        fits.extend(_refined(points, rate, start, moves=moves) for rate in candidates)
-    return max(fits, key=lambda fit: fit.coherence)
+        fits.extend(_refined(some, rate, start, moves=moves) for rate in candidates)
+    best = max(fits, key=lambda fit: fit.coherence)
+    return _refined(points, best.rate_hz, best.centre, moves=moves)
 
 
 def _angles(place: Floats) -> Floats:
