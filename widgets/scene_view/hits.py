@@ -38,7 +38,7 @@ class SceneHits:
 
     def exact_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
         """What is under a pixel, among all measured points."""
-        found = self._finder.exact(self.projection, position.x(), position.y())
+        found = self._finder.exact(self.drawn, self.projection, position.x(), position.y())
         return self._hit(found, position, modifiers)
 
     def quick_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:

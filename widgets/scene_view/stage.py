@@ -91,13 +91,16 @@ class Stage:
         sizes = PointSizes(
             least_px * self.scale, _MOST_TIMES_LEAST * least_px * self.scale, focal_px * self.scale
         )
-        self.tiles.set_sizes(sizes)
+        if self.tiles.set_sizes(sizes):
+            self.redraw()
 
-    def shade(self, *, is_on: bool) -> None:
-        """Draw the cloud with eye-dome lighting, or plain."""
-        if is_on != self._is_shaded:
-            self._is_shaded = is_on
-            self._set_pass(self._shading if is_on else None)
+    def shade(self, *, is_on: bool) -> bool:
+        """Draw the cloud with eye-dome lighting, or plain; says whether that is new."""
+        if is_on == self._is_shaded:
+            return False
+        self._is_shaded = is_on
+        self._set_pass(self._shading if is_on else None)
+        return True
 
     def redraw(self) -> None:
         """Draw a frame soon."""

@@ -183,6 +183,7 @@ class SceneView(QWidget):
             size_px = round(width * scale), round(height * scale)
             self._cloud.look_from(camera.for_tiles(self._drives.origin, *size_px))
             self._stage.look(camera)
+            self._stage.redraw()
             self._size_points()
         self._paint_overlay()
 
@@ -336,7 +337,6 @@ class SceneView(QWidget):
         if self._stage is not None:
             size_px = self._shared.view_settings.look.point_size_px
             self._stage.size_points(size_px, self._hits.projection.focal_px)
-            self._stage.redraw()
 
     def _use_drives(self) -> None:
         drives = self._drives

@@ -101,6 +101,7 @@ def wish(left_drive: Drive) -> Wish:
         budget_points=1_000_000,
         is_still=True,
         kept=frozenset(),
+        there={},
         known=frozenset(),
     )
 
@@ -113,7 +114,8 @@ def test_a_feed_gives_the_points_of_the_tiles_that_it_chose(
     feed = TileFeed(tiles)
     arrived: dict[TileId, object] = {}
     feed.arrived.connect(
-        lambda one: arrived.update({one.id: one}), Qt.ConnectionType.QueuedConnection
+        lambda tiles: arrived.update({one.id: one for one in tiles}),
+        Qt.ConnectionType.QueuedConnection,
     )
     with qtbot.waitSignal(feed.chosen, timeout=20_000) as chosen:
         feed.wish(wish)

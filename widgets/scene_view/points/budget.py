@@ -4,7 +4,7 @@ from __future__ import annotations
 
 FIRST_POINTS = 150_000
 _MOVING_S = 0.075
-_STILL_S = 0.25
+_STILL_S = 0.18
 _LEAST, _MOST_MOVING, _MOST_STILL = 30_000, 3_000_000, 6_000_000
 _FAST_ENOUGH = 600_000
 
@@ -13,12 +13,12 @@ class FrameBudget:
     """Points per frame while the camera moves, and more once it rests.
 
     A moving frame is to take 75 ms, so that ten a second remain with all else that a window does;
-    a frame at rest may take 250 ms, as nothing waits for it.
+    a frame at rest may take 180 ms, as nothing waits for it.
     """
 
     def __init__(self) -> None:
         self._moving = float(FIRST_POINTS)
-        self._still = 4.0 * FIRST_POINTS
+        self._still = 3.0 * FIRST_POINTS
 
     @property
     def moving_points(self) -> int:

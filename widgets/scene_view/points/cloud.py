@@ -119,8 +119,8 @@ class Cloud(QObject):
         look = _colours_only(look)
         if look != self._look:
             self._look = look
+            # No frame now: it would hold up the worker that colours what is there.
             self._wish_again()
-        self._tell()
 
     def mark(self, points: Mapping[str, NDArray[np.int64]]) -> None:
         """Mark chosen points: drive id to sorted indices."""
@@ -165,6 +165,7 @@ class Cloud(QObject):
 
     def _wish_again(self) -> None:
         self._is_chosen = False
+        self._tell_if_settled()
         if self._is_moving:
             self._rest.start()
         self._wish()
@@ -184,6 +185,7 @@ class Cloud(QObject):
                 budget_points=budget,
                 is_still=is_still,
                 kept=self._chosen[not is_still] & self._stage.tiles.tiles.keys(),
+                there=self._stage.tiles.tiles,
                 known=frozenset(self._looks.items()),
             )
         )
@@ -191,9 +193,8 @@ class Cloud(QObject):
     def _on_rest_timeout(self) -> None:
         self._is_moving = False
         self._is_chosen = False
-        self._shade()
+        self._tell_if_settled()
         self._wish()
-        self._tell()
 
     def _on_feed_chosen(self, choice: Choice) -> None:
         wish = choice.wish
@@ -204,40 +205,46 @@ class Cloud(QObject):
         self._is_chosen = wish.camera == self._camera
         self._show()
 
-    def _on_feed_arrived(self, tile: SceneTile) -> None:
-        self._arrived.append(tile)
+    def _on_feed_arrived(self, tiles: tuple[SceneTile, ...]) -> None:
+        self._arrived += tiles
         self._portions.start()
 
     def _on_portions_timeout(self) -> None:
         wanted = self._chosen[False] | self._chosen[True]
-        points = 0
+        there = self._stage.tiles.tiles
+        drawn = {one.tile.id for one in self.drawn}
+        points, is_new = 0, False
         while self._arrived and points < _POINTS_PER_PORTION:
             tile = self._arrived.pop(0)
-            look = tile.look
-            if tile.age != self._age or tile.id not in wanted or look != self._look:
+            if tile.age != self._age or tile.id not in wanted or tile.look != self._look:
                 continue
             self._stage.tiles.put(tile, self._colours_of(tile))
-            self._looks[tile.id] = look
-            points += tile.points.size
+            self._looks[tile.id] = tile.look
+            is_new |= tile.id in drawn
+            # Colours alone cost the graphics little: what was seen changes at once.
+            points += 0 if tile.id in there else tile.points.size
         if self._arrived:
             self._portions.start()
-        self._show()
+        self._show(is_new=is_new)
 
-    def _show(self) -> None:
+    def _show(self, *, is_new: bool = False) -> None:
+        """Draw what is wanted and there; a frame costs too much to draw one without need."""
         actors = self._stage.tiles
-        shown = shown_tiles(self._chosen[not self._is_moving], self._looks)
-        actors.show(shown)
+        shown = shown_tiles(self._chosen[not self._is_moving], actors.tiles)
+        is_new |= actors.show(shown)
         self._keep(shown | self._chosen[False] | self._chosen[True])
-        self._shade()
-        self._tell()
+        is_new |= self._shade()
+        if is_new:
+            self._tell()
+        self._tell_if_settled()
 
     def _keep(self, tiles: Collection[TileId]) -> None:
         self._stage.tiles.keep_only(tiles)
         self._looks = {tile: look for tile, look in self._looks.items() if tile in tiles}
 
-    def _shade(self) -> None:
+    def _shade(self) -> bool:
         has_time = not self._is_moving or self.budget.is_fast
-        self._stage.shade(is_on=self._is_shading_wanted and has_time)
+        return self._stage.shade(is_on=self._is_shading_wanted and has_time)
 
     def _colours_of(self, tile: SceneTile) -> NDArray[np.uint8]:
         marked = self._marked.get(tile.id.drive_id)
@@ -251,6 +258,8 @@ class Cloud(QObject):
     def _tell(self) -> None:
         self._was_changed = True
         self.changed.emit()
+
+    def _tell_if_settled(self) -> None:
         was_settled, self._was_settled = self._was_settled, self.is_settled
         if self._was_settled and not was_settled:
             self.settled.emit()

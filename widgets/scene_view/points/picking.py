@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from widgets.scene_view.projection import NEAR_M, Projection
+from widgets.scene_view.projection import Projection
 
 Floats = NDArray[np.float64]
 TOLERANCE_PX = 6.0
@@ -125,17 +125,13 @@ class _Found:
         self._hits: list[tuple[str, NDArray[np.int64], Floats, Floats]] = []
 
     def search(self, tile: TilePoints, projection: Projection, x: float, y: float) -> None:
-        seen = projection.in_view(tile.local_xyz)
-        depth = seen[:, 2]
-        # Without a division: |pixel − centre| ≤ tolerance, multiplied by the depth.
-        across = (x - projection.width_px / 2) / projection.focal_px
-        upwards = (projection.height_px / 2 - y) / projection.focal_px
-        off = np.hypot(seen[:, 0] - across * depth, seen[:, 1] - upwards * depth)
-        offset = off * projection.focal_px
-        near = np.flatnonzero((offset <= TOLERANCE_PX * depth) & (depth > NEAR_M))
-        if not near.size:
+        near = _near_ray(tile.local_xyz, projection, x, y)
+        pixels, depth = projection.to_screen(tile.local_xyz[near])
+        offset = np.hypot(*(pixels - [x, y]).T)
+        hit = np.flatnonzero(offset <= TOLERANCE_PX)  # NaN, behind the camera, isn't
+        if not hit.size:
             return
-        offset, depth = offset[near] / depth[near], depth[near]
+        near, offset, depth = near[hit], offset[hit], depth[hit]
         self._hits.append((tile.drive_id, tile.points[near], depth, offset))
         close = depth[offset <= _CLOSE_PX]
         if close.size:
@@ -159,6 +155,23 @@ class _Found:
             float(depth[chosen]),
             float(offset[chosen]),
         )
+
+
+def _near_ray(
+    local_xyz: NDArray[np.float32], projection: Projection, x: float, y: float
+) -> NDArray[np.int64]:
+    """Points that may be within reach: float32 and no roots, since a tile has many points."""
+    right, up, forward = projection.camera.axes
+    across = (x - projection.width_px / 2) / projection.focal_px
+    upwards = (projection.height_px / 2 - y) / projection.focal_px
+    # Distances from the ray's two planes, measured square to the forward axis.
+    axes = np.stack([right - across * forward, up - upwards * forward, forward])
+    seen = (
+        axes.astype(np.float32)
+        @ (local_xyz - np.array(projection.camera.position, dtype=np.float32)).T
+    )
+    reach = np.float32(1.05 * TOLERANCE_PX / projection.focal_px) * seen[2] + np.float32(1e-3)
+    return np.flatnonzero((np.abs(seen[0]) <= reach) & (np.abs(seen[1]) <= reach))
 
 
 def _behind(depth_m: float) -> float:

@@ -52,8 +52,17 @@ class PointFinder:
         self._origin = origin
         self._searched.clear()
 
-    def exact(self, projection: Projection, x: float, y: float) -> FoundPoint | None:
-        """The front-most of all measured points under a pixel."""
+    def exact(
+        self, shown: Sequence[DrawnTile], projection: Projection, x: float, y: float
+    ) -> FoundPoint | None:
+        """The front-most of all measured points under a pixel.
+
+        Parameters
+        ----------
+        shown : sequence of DrawnTile
+            What is drawn: the finest tiles among them need not be read again.
+        """
+        finest = {one.tile.id: one.tile for one in shown if one.tile.id.key.level == 0}
         layers = [
             _Layer(drive, kind, pyramid)
             for drive, kind in self._drives.values()
@@ -65,7 +74,12 @@ class PointFinder:
 
         def points_of(number: int) -> TilePoints:
             of_layer = int(np.searchsorted(firsts, number, side="right")) - 1
-            return self._points_of(layers[of_layer], number - int(firsts[of_layer]))
+            layer = layers[of_layer]
+            id_ = layer.id_of(number - int(firsts[of_layer]))
+            drawn = finest.get(id_)
+            if drawn is not None:
+                return TilePoints(id_.drive_id, drawn.points, drawn.local_xyz)
+            return self._points_of(layer, id_)
 
         low = np.concatenate([layer.bounds[0] for layer in layers]) - self._origin
         high = np.concatenate([layer.bounds[1] for layer in layers]) - self._origin
@@ -100,8 +114,7 @@ class PointFinder:
         place = Place((easting, northing, height), PointReference(drive.id, picked.point))
         return FoundPoint(place, picked.depth_m)
 
-    def _points_of(self, layer: _Layer, number: int) -> TilePoints:
-        id_ = layer.id_of(number)
+    def _points_of(self, layer: _Layer, id_: TileId) -> TilePoints:
         there = self._searched.pop(id_, None)
         if there is None:
             points = layer.pyramid.points(id_.key).ravel()

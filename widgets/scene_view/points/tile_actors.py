@@ -101,13 +101,16 @@ class TileActors:
         self._actors[tile.id] = actor
         self._renderer.AddActor(actor.actor)
 
-    def show(self, tiles: Collection[TileId]) -> None:
-        """Draw exactly these of the tiles that are there."""
+    def show(self, tiles: Collection[TileId]) -> bool:
+        """Draw exactly these of the tiles that are there; says whether others were drawn."""
         shown = frozenset(tile for tile in tiles if tile in self._actors)
+        if shown == self._shown:
+            return False
         for tile in self._shown ^ shown:
             if tile in self._actors:
                 self._actors[tile].actor.SetVisibility(tile in shown)
         self._shown = shown
+        return True
 
     def keep_only(self, tiles: Collection[TileId]) -> None:
         """Remove all others."""
@@ -121,12 +124,14 @@ class TileActors:
             self._renderer.RemoveActor(actor.actor)
             self._shown -= {id_}
 
-    def set_sizes(self, sizes: PointSizes) -> None:
-        """Draw points so large."""
-        if sizes != self._sizes:
-            self._sizes = sizes
-            for actor in self._actors.values():
-                actor.set_sizes(sizes)
+    def set_sizes(self, sizes: PointSizes) -> bool:
+        """Draw points so large; says whether they were of another size before."""
+        if sizes == self._sizes:
+            return False
+        self._sizes = sizes
+        for actor in self._actors.values():
+            actor.set_sizes(sizes)
+        return True
 
     def close(self) -> None:
         """Remove all tiles and let go of the renderer."""

@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import threading
-from dataclasses import dataclass
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from processing.errors import UserError
+from processing.image.attributes import colours
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.tile_choice import Camera3D, tiles_in_view
 from processing.points.drive import Drive
 from widgets.scene_view.points.scene_tile import SceneTile, TileId
 from widgets.shared.view_settings import PointLook
+
+_TOGETHER_S = 0.15
+"""Tiles that were coloured within this time are told together, since each telling is a frame."""
 
 
 @dataclass(frozen=True)
@@ -37,8 +43,10 @@ class Wish:
         Whether the camera rests; told back with the choice.
     kept : frozenset of TileId
         Tiles outside the choice that need the look as well.
+    there : mapping of TileId to SceneTile
+        What the view has.
     known : frozenset of (TileId, PointLook)
-        What the view has already.
+        What of it has the right colours.
     """
 
     drives: tuple[tuple[Drive, ImageKind], ...]
@@ -49,6 +57,7 @@ class Wish:
     budget_points: int
     is_still: bool
     kept: frozenset[TileId]
+    there: Mapping[TileId, SceneTile]
     known: frozenset[tuple[TileId, PointLook]]
 
 
@@ -67,7 +76,7 @@ class TileFeed(QObject):
 
     Signals
     -------
-    chosen(choice: Choice), arrived(tile: SceneTile)
+    chosen(choice: Choice), arrived(tiles: tuple[SceneTile, ...])
         Sent from other threads, so received through the window's event queue.
     """
 
@@ -127,15 +136,40 @@ class TileFeed(QObject):
         )
         self._emit_chosen(Choice(wish, chosen))
         wanted = [*chosen, *sorted(wish.kept - set(chosen), key=lambda tile: tile.key.level)]
-        requests = [
-            _request_of(tile, wish.look) for tile in wanted if (tile, wish.look) not in wish.known
-        ]
+        lacking = [tile for tile in wanted if (tile, wish.look) not in wish.known]
+        self._recolour([wish.there[tile] for tile in lacking if tile in wish.there], wish)
+        requests = [_request_of(tile, wish.look) for tile in lacking if tile not in wish.there]
         self._tiles.keep_only(self._on_tiles_done, set(requests))
         # The cache serves the newest request first, and coarse tiles are to come first.
         for request in reversed(requests):
             if self._is_outdated(wish):
                 return
             self._tiles.request(request, self._on_tiles_done)
+
+    def _recolour(self, tiles: Sequence[SceneTile], wish: Wish) -> None:
+        """Give tiles that are there other colours: their points need not be looked up again."""
+        drives = {drive.id: drive for drive, _ in wish.drives}
+        look, done, began_at = wish.look, [], time.monotonic()
+        for tile in tiles:
+            drive = drives.get(tile.id.drive_id)
+            if drive is None or self._is_outdated(wish):
+                break
+            try:
+                shown = colours(
+                    drive, tile.points, look.attribute, look.low_percent, look.high_percent
+                )
+            except UserError:
+                continue  # the image view says why; the points keep the colours they have
+            request = _request_of(tile.id, look)
+            done.append(replace(tile, request=request, colours=shown, age=wish.age))
+            if time.monotonic() - began_at > _TOGETHER_S:
+                self._emit_arrived(done)
+                done, began_at = [], time.monotonic()
+        self._emit_arrived(done)
+
+    def _emit_arrived(self, tiles: Sequence[SceneTile]) -> None:
+        if tiles and not self._is_closed:
+            self.arrived.emit(tuple(tiles))
 
     def _is_outdated(self, wish: Wish) -> bool:
         with self._changed:
@@ -163,8 +197,7 @@ class TileFeed(QObject):
             spacing_m=drive.image(request.kind).pyramid.spacing_m(request.key),
             age=wish.age,
         )
-        if not self._is_closed:
-            self.arrived.emit(tile)
+        self._emit_arrived((tile,))
 
 
 def _request_of(tile: TileId, look: PointLook) -> TileRequest:
