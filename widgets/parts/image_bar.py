@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from processing.image.attributes import ATTRIBUTES, available
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QLabel, QSpinBox, QToolButton, QWidget
 
+from processing.image.attributes import ATTRIBUTES, available
 from processing.image.kinds import ImageKind
 from processing.text import Language
 from widgets.shared.map_source import MapSource
