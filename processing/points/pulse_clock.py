@@ -165,26 +165,30 @@ def _common_step(steps: Floats) -> float:
 
 def _refined(stretches: list[Floats], step: float) -> float:
     for size in _STAGES:
-        slopes: list[float] = []
-        for times in stretches:
-            starts = range(0, times.size - size + 1, max(size, times.size // 60))
-            slopes.extend(_slope(times[start : start + size], step) for start in starts)
+        slopes = [
+            _slopes(times, starts, size, step)
+            for times in stretches
+            if (starts := np.arange(0, times.size - size + 1, max(size, times.size // 60))).size
+        ]
         if slopes:
-            step = float(np.median(slopes))
+            step = float(np.median(np.concatenate(slopes)))
     return step
 
 
-def _slope(times: Floats, step: float) -> float:
-    numbers = np.cumsum(np.rint(np.diff(times, prepend=times[0]) / step))
-    # Numbers from the start, not summed steps, once the step is good enough to count that far.
-    along = times - times[0]
-    near = np.rint(along / step)
-    offset = along - near * step
-    turned = np.angle(np.mean(np.exp(2j * np.pi * offset / step))) / (2 * np.pi)
-    near = np.rint(along / step - turned)
-    centred = near - near.mean()
-    spread = float(centred @ centred)
-    return float(centred @ times) / spread if spread > 0 and numbers[-1] > 0 else step
+def _slopes(times: Floats, starts: NDArray[np.int64], size: int, step: float) -> Floats:
+    """The step of the lattice on which each of some pieces of a stretch lies best."""
+    pieces = np.lib.stride_tricks.sliding_window_view(times, size)[starts]
+    along = pieces - pieces[:, :1]
+    offset = along - np.rint(along / step) * step
+    turned = np.angle(np.exp((2j * np.pi / step) * offset).mean(axis=1)) / (2 * np.pi)
+    near = np.rint(along / step - turned[:, None])
+    centred = near - near.mean(axis=1, keepdims=True)
+    spread = (centred**2).sum(axis=1)
+    # A piece without a step, all its pulses at one time, says nothing.
+    has_steps = (spread > 0) & (along[:, -1] > 0)
+    slopes = np.full(starts.size, step)
+    np.divide((centred * along).sum(axis=1), spread, out=slopes, where=has_steps)
+    return slopes
 
 
 def _coherence(stretches: list[Floats], step: float) -> float:
