@@ -19,6 +19,7 @@ from processing.formats.ply import MAGIC as PLY_MAGIC
 from processing.formats.ply import open_ply
 from processing.formats.point_chunk import PointChunk, PointFileInfo
 from processing.formats.ptx import is_ptx, open_ptx
+from processing.formats.pulse_folder import is_pulse_folder, open_pulse_folder
 from processing.formats.text_points import open_text_points
 from processing.text import Text
 
@@ -116,6 +117,8 @@ def _ends_of(chunks: Iterator[PointChunk], points: int) -> list[PointChunk]:
 
 def _opener(path: Path) -> Callable[[Path], FloatFile] | None:
     """What opens the file; None for LAS, which needs no turning into integers."""
+    if path.is_dir() and is_pulse_folder(path):
+        return open_pulse_folder
     with told_as_user_error(path), path.open("rb") as file:
         start = file.read(_LOOKED_AT)
     if not start:

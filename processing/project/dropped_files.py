@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from processing.errors import MissingInput, told_as_user_error
+from processing.formats.pulse_folder import is_pulse_folder
 from processing.project.importing import ImportRequest
 from processing.text import Text
 
@@ -45,7 +46,9 @@ def _unfolded(files: tuple[Path, ...]) -> list[Path]:
     found: list[Path] = []
     for path in files:
         with told_as_user_error(path):
-            if path.is_dir():
+            if is_pulse_folder(path):
+                found.append(path)
+            elif path.is_dir():
                 known = _POINT_ENDINGS | _OTHER_ENDINGS
                 found += sorted(p for p in path.iterdir() if p.suffix.lower() in known)
             else:
@@ -54,7 +57,7 @@ def _unfolded(files: tuple[Path, ...]) -> list[Path]:
 
 
 def _content(path: Path) -> str:
-    if path.suffix.lower() in _POINT_ENDINGS:
+    if path.suffix.lower() in _POINT_ENDINGS or path.is_dir():
         return "points"
     with told_as_user_error(path):
         size = path.stat().st_size

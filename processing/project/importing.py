@@ -33,6 +33,7 @@ from processing.text import Text
 
 _CHUNK_POINTS = 500_000
 _READING = 0.7
+_HASHED_BYTES = 1 << 20
 
 
 @dataclass(frozen=True)
@@ -224,8 +225,15 @@ def _shared_sources(writers: list[RecordingWriter]) -> frozenset[int]:
 
 
 def _checksum(path: Path) -> str:
-    with told_as_user_error(path), path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+    """Of a file, or of all files of a folder in the order of their names."""
+    files = sorted(file for file in path.rglob("*") if file.is_file()) if path.is_dir() else [path]
+    digest = hashlib.sha256()
+    with told_as_user_error(path):
+        for name in files:
+            with name.open("rb") as file:
+                while block := file.read(_HASHED_BYTES):
+                    digest.update(block)
+    return digest.hexdigest()
 
 
 def _source_file(info: PointFileInfo, checksum: Future[str]) -> SourceFile:
