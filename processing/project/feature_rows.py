@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
+from functools import lru_cache
 from typing import Any
 
 from processing.project.catalogue import Geometry
@@ -18,24 +18,33 @@ from processing.project.feature import (
 )
 from processing.project.geometry_blob import blob_of, places_of
 
-COLUMNS = ("geom", "id", "kind", "status", "confidence", "attributes", "provenance", "measured")
+COLUMNS = (
+    "geom", "id", "kind", "layer", "status", "confidence", "attributes", "provenance", "measured",
+)  # fmt: skip
 """Columns of the table ``features``, in the order of rows."""
 
-Row = tuple[bytes, str, str, str, float, str, str, str]
+Row = tuple[bytes, str, str, str, str, float, str, str, str]
 
 
-def row_of(feature: Feature, srs_id: int) -> Row:
-    """A feature as a row of the table ``features``."""
+def row_of(feature: Feature, layer: str, srs_id: int) -> Row:
+    """A feature as a row of the table ``features``.
+
+    Raises
+    ------
+    ValueError
+        A value can't be stored: a coordinate that is not finite, too few vertices.
+    """
     places = tuple(vertex.xyz for vertex in feature.vertices)
     return (
         blob_of(feature.geometry, places, srs_id),
         feature.id,
         feature.kind,
+        layer,
         feature.status.value,
         feature.provenance.confidence,
         _json(dict(feature.attributes)),
-        _json(dataclasses.asdict(feature.provenance)),
-        _json([_reference(vertex) for vertex in feature.vertices]),
+        _json(_plain_provenance(feature.provenance)),
+        _json(_references(feature.vertices)),
     )
 
 
@@ -46,21 +55,18 @@ def feature_of(row: tuple[Any, ...]) -> Feature:
     Raises
     ------
     ValueError, KeyError, TypeError
-        The row was not written by :func:`row_of`.
+        The row is damaged.
     """
-    blob, id_, kind, status, _, attributes, provenance, measured = row
+    blob, id_, kind, _, status, _, attributes, provenance, measured = row
     geometry, places = places_of(blob)
-    references = json.loads(measured)
     return Feature(
         id=id_,
         kind=kind,
         geometry=geometry,
-        vertices=tuple(
-            _vertex(place, reference) for place, reference in zip(places, references, strict=True)
-        ),
-        attributes=json.loads(attributes),
+        vertices=_vertices(places, {} if measured == "{}" else _mapping(json.loads(measured))),
+        attributes={} if attributes == "{}" else _mapping(json.loads(attributes)),
         status=Status(status),
-        provenance=Provenance(**json.loads(provenance)),
+        provenance=_provenance(provenance),
     )
 
 
@@ -76,7 +82,13 @@ def change_to_json(change: Change) -> str:
 
 
 def change_from_json(text: str) -> Change:
-    """The change of :func:`change_to_json`."""
+    """The change of :func:`change_to_json`.
+
+    Raises
+    ------
+    ValueError, KeyError, TypeError, IndexError
+        The text is damaged.
+    """
     stored = json.loads(text)
     return Change(
         added=tuple(_from_plain(one) for one in stored["added"]),
@@ -91,36 +103,76 @@ def _plain(feature: Feature) -> dict[str, object]:
         "kind": feature.kind,
         "geometry": feature.geometry.value,
         "places": [vertex.xyz for vertex in feature.vertices],
-        "measured": [_reference(vertex) for vertex in feature.vertices],
+        "measured": _references(feature.vertices),
         "attributes": dict(feature.attributes),
         "status": feature.status.value,
-        "provenance": dataclasses.asdict(feature.provenance),
+        "provenance": _plain_provenance(feature.provenance),
     }
 
 
 # What comes out of JSON has no types of its own.
 def _from_plain(plain: dict[str, Any]) -> Feature:
-    pairs = zip(plain["places"], plain["measured"], strict=True)
+    places = tuple((place[0], place[1], place[2]) for place in plain["places"])
     return Feature(
         id=plain["id"],
         kind=plain["kind"],
         geometry=Geometry(plain["geometry"]),
-        vertices=tuple(_vertex((p[0], p[1], p[2]), reference) for p, reference in pairs),
-        attributes=plain["attributes"],
+        vertices=_vertices(places, plain["measured"]),
+        attributes=_mapping(plain["attributes"]),
         status=Status(plain["status"]),
         provenance=Provenance(**plain["provenance"]),
     )
 
 
-def _reference(vertex: Vertex) -> list[str | int] | None:
-    measured = vertex.measured
-    return None if measured is None else [measured.drive, measured.point]
+def _plain_provenance(provenance: Provenance) -> dict[str, object]:
+    return {
+        "tool": provenance.tool,
+        "version": provenance.version,
+        "parameters": dict(provenance.parameters),
+        "confidence": provenance.confidence,
+        "run": provenance.run,
+    }
 
 
-def _vertex(place: Position, reference: list[Any] | None) -> Vertex:
-    measured = None if reference is None else PointReference(reference[0], reference[1])
-    return Vertex(place, measured)
+@lru_cache(maxsize=4096)
+def _provenance(text: str) -> Provenance:
+    """Candidates of a run share theirs; a value that nobody changes may be shared."""
+    return Provenance(**json.loads(text))
+
+
+def _references(vertices: tuple[Vertex, ...]) -> dict[str, list[int | None]]:
+    """For each drive, the measured point of each vertex; None where it has none of that drive."""
+    references: dict[str, list[int | None]] = {}
+    for number, vertex in enumerate(vertices):
+        if vertex.measured is not None:
+            points = references.setdefault(vertex.measured.drive, [None] * len(vertices))
+            points[number] = int(vertex.measured.point)
+    return references
+
+
+def _vertices(
+    places: tuple[Position, ...], references: dict[str, list[int | None]]
+) -> tuple[Vertex, ...]:
+    # Where a GIS program added or removed vertices, nobody knows what they rest on.
+    fitting = {drive: points for drive, points in references.items() if len(points) == len(places)}
+    if len(fitting) == 1:  # nearly always, and then quickly
+        ((drive, points),) = fitting.items()
+        pairs = zip(places, points, strict=True)
+        return tuple([Vertex(p, None if n is None else PointReference(drive, n)) for p, n in pairs])
+    vertices = [Vertex(place) for place in places]
+    for drive, points in fitting.items():
+        for number, point in enumerate(points):
+            if point is not None:
+                vertices[number] = Vertex(places[number], PointReference(drive, point))
+    return tuple(vertices)
+
+
+def _mapping(value: Any) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        message = f"attributes that are none: {value}"
+        raise TypeError(message)
+    return value
 
 
 def _json(value: object) -> str:
-    return json.dumps(value, ensure_ascii=False, separators=(",", ":"))
+    return json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import gc
 import sqlite3
 from collections.abc import Iterator
+from contextlib import contextmanager
 
-from processing.errors import BadFile
+from processing.project.catalogue import Catalogue
 from processing.project.change import Change
 from processing.project.database import Database
+from processing.project.database_errors import changed_elsewhere, damaged
 from processing.project.feature import Feature
 from processing.project.feature_rows import COLUMNS, feature_of, row_of
 from processing.project.history import History
+from processing.project.map_extent import Bounds, extent_after, extent_of
+from processing.project.runs import Run, write_run
 from processing.text import Text
 
 _NAMES = ", ".join(COLUMNS)
@@ -20,10 +25,9 @@ _UPDATE = f"UPDATE features SET {', '.join(f'{name} = ?' for name in COLUMNS)} W
 _SELECT = f"SELECT {_NAMES} FROM features ORDER BY fid"  # noqa: S608 - constants only
 _EXTENT = (
     "UPDATE gpkg_contents SET last_change = strftime('%Y-%m-%dT%H:%M:%fZ','now'),"
-    " min_x = min(coalesce(min_x, ?1), ?1), min_y = min(coalesce(min_y, ?2), ?2),"
-    " max_x = max(coalesce(max_x, ?3), ?3), max_y = max(coalesce(max_y, ?4), ?4)"
-    " WHERE table_name = 'features'"
+    " min_x = ?, min_y = ?, max_x = ?, max_y = ? WHERE table_name = 'features'"
 )
+_MOST_IDS_TOLD = 3
 
 
 class FeatureStore:
@@ -35,24 +39,15 @@ class FeatureStore:
         A stored feature can't be read.
     """
 
-    def __init__(self, database: Database, history: History, srs_id: int) -> None:
+    def __init__(
+        self, database: Database, history: History, catalogue: Catalogue, srs_id: int
+    ) -> None:
         self._database = database
         self._history = history
+        self._catalogue = catalogue
         self._srs_id = srs_id
-        self._features: dict[str, Feature] = {}
-        for row in database.rows(_SELECT):
-            try:
-                feature = feature_of(row)
-            except (ValueError, KeyError, TypeError) as error:
-                raise BadFile(
-                    Text("A stored feature can't be read.", "保存された地物を読み込めません。"),
-                    Text.same(f"{database.path}, features.id {row[1]}: {error}"),
-                    Text(
-                        "Undo what another program changed there, or take a backup.",
-                        "他のプログラムによる変更を元に戻すか、バックアップから復元してください。",
-                    ),
-                ) from error
-            self._features[feature.id] = feature
+        self._features = self._stored()
+        self._extent = self._stored_extent()
 
     def __len__(self) -> int:
         return len(self._features)
@@ -65,8 +60,13 @@ class FeatureStore:
         """One feature, or None."""
         return self._features.get(id)
 
-    def apply(self, label: Text, change: Change) -> Change:
+    def apply(self, label: Text, change: Change, *, run: Run | None = None) -> Change:
         """Do a change and remember it in the history, in one transaction.
+
+        Parameters
+        ----------
+        run : Run or None
+            The run that the change comes from, stored with it.
 
         Returns
         -------
@@ -76,71 +76,97 @@ class FeatureStore:
         Raises
         ------
         ValueError
-            What it replaces or removes is not what is stored: a defect of the caller.
-        NoSpace, InUse
-            Nothing was changed.
+            What it replaces or removes is not what is stored, or a value can't be stored: a
+            defect of the caller. Nothing was changed.
+        NoSpace, InUse, BadFile
+            The disk is full; a program is reading; one has changed the map. Nothing was changed.
         """
-        self._check(change)
-        with self._database.transaction() as connection:
-            self._write(connection, change)
-            self._history.append(connection, label, change)
-        self._history.appended(label)
-        self._take_over(change)
+        misfits = self._misfits(change)
+        if misfits:
+            message = f"the change does not fit the stored features {misfits}"
+            raise ValueError(message)
+        with self._written(change) as connection:
+            if run is not None:
+                write_run(connection, run)
+            standing = self._history.append(connection, label, change)
+        self._history.stands(standing)
         return change.inverse()
 
     def undo(self) -> Change | None:
-        """Take the last change back; gives the change that did it, None when there is none."""
+        """Take the last change back; gives the change that did it, None when there is none.
+
+        Raises
+        ------
+        NoSpace, InUse, BadFile
+            Nothing was changed. ``BadFile`` too where another program has changed the features.
+        """
         last = self._history.last()
         return None if last is None else self._step(last.inverse(), -1)
 
     def redo(self) -> Change | None:
-        """Do the next change again; gives it, None when there is none."""
+        """Do the next change again; gives it, None when there is none.
+
+        Raises
+        ------
+        NoSpace, InUse, BadFile
+            As :meth:`undo`.
+        """
         coming = self._history.coming()
         return None if coming is None else self._step(coming, 1)
 
     def rewrite_srs(self, connection: sqlite3.Connection, srs_id: int) -> None:
         """Write all geometries with another reference system's number, in a transaction."""
-        self._srs_id = srs_id
-        rows = [(row_of(feature, srs_id)[0], feature.id) for feature in self._features.values()]
+        rows = [(self._row(one, srs_id)[0], one.id) for one in self._features.values()]
         connection.executemany("UPDATE features SET geom = ? WHERE id = ?", rows)
 
-    def _step(self, change: Change, step: int) -> Change:
-        self._check(change)
-        position = self._history.position + step
-        with self._database.transaction() as connection:
-            self._write(connection, change)
-            self._history.write_position(connection, position)
-        self._history.moved_to(position)
-        self._take_over(change)
+    def took_srs(self, srs_id: int) -> None:
+        """The transaction of :meth:`rewrite_srs` is through."""
+        self._srs_id = srs_id
+
+    def _step(self, change: Change, by: int) -> Change:
+        misfits = self._misfits(change)
+        if misfits:
+            # The history was made from what was stored then; only somebody else can differ.
+            raise changed_elsewhere(self._database.path, ", ".join(misfits[:_MOST_IDS_TOLD]))
+        with self._written(change) as connection:
+            standing = self._history.step(connection, by)
+        self._history.stands(standing)
         return change
 
-    def _check(self, change: Change) -> None:
+    def _misfits(self, change: Change) -> list[str]:
+        """Ids that the change names twice or takes for something else than is stored."""
         ids = change.feature_ids
-        expected = {
-            **{feature.id: feature for feature in change.removed},
-            **{pair.before.id: pair.before for pair in change.replaced},
-            **{feature.id: None for feature in change.added},
-        }
-        is_sound = len(set(ids)) == len(ids) and all(
-            pair.before.id == pair.after.id for pair in change.replaced
-        )
-        if not is_sound or any(self._features.get(id_) != f for id_, f in expected.items()):
-            message = f"the change does not fit the stored features {ids}"
-            raise ValueError(message)
+        if len(set(ids)) != len(ids):
+            return sorted(id_ for id_ in set(ids) if ids.count(id_) > 1)
+        expected: dict[str, Feature | None] = dict.fromkeys(ids)
+        expected.update((feature.id, feature) for feature in change.removed)
+        expected.update((pair.before.id, pair.before) for pair in change.replaced)
+        return [
+            *(pair.before.id for pair in change.replaced if pair.before.id != pair.after.id),
+            *(id_ for id_, feature in expected.items() if self._features.get(id_) != feature),
+        ]
+
+    @contextmanager
+    def _written(self, change: Change) -> Iterator[sqlite3.Connection]:
+        """A transaction that writes the change and the body; memory follows when it is through."""
+        extent = extent_after(change, self._features, self._extent)
+        with self._database.transaction() as connection:
+            if self._database.was_changed_elsewhere():
+                self._compare()
+                self._database.accept_changes()
+            self._write(connection, change)
+            connection.execute(_EXTENT, extent or (None, None, None, None))
+            yield connection
+        self._extent = extent
+        self._take_over(change)
 
     def _write(self, connection: sqlite3.Connection, change: Change) -> None:
         connection.executemany(
             "DELETE FROM features WHERE id = ?", [(feature.id,) for feature in change.removed]
         )
-        connection.executemany(_INSERT, [row_of(f, self._srs_id) for f in change.added])
-        updates = [(*row_of(p.after, self._srs_id), p.after.id) for p in change.replaced]
-        connection.executemany(_UPDATE, updates)
-        new = [*change.added, *(pair.after for pair in change.replaced)]
-        places = [vertex.xyz for feature in new for vertex in feature.vertices]
-        if places:
-            eastings, northings, _ = zip(*places, strict=True)
-            extent = (min(eastings), min(northings), max(eastings), max(northings))
-            connection.execute(_EXTENT, extent)
+        connection.executemany(_INSERT, [self._row(f, self._srs_id) for f in change.added])
+        afters = [pair.after for pair in change.replaced]
+        connection.executemany(_UPDATE, [(*self._row(f, self._srs_id), f.id) for f in afters])
 
     def _take_over(self, change: Change) -> None:
         for feature in change.removed:
@@ -149,3 +175,54 @@ class FeatureStore:
             self._features[pair.after.id] = pair.after
         for feature in change.added:
             self._features[feature.id] = feature
+
+    def _row(self, feature: Feature, srs_id: int) -> tuple[object, ...]:
+        kinds = self._catalogue
+        layer = kinds[feature.kind].layer if feature.kind in kinds else ""
+        return row_of(feature, layer, srs_id)
+
+    def _stored(self) -> dict[str, Feature]:
+        features: dict[str, Feature] = {}
+        with _without_collection():
+            for row in self._database.rows(_SELECT):
+                try:
+                    feature = feature_of(row)
+                except (ValueError, KeyError, TypeError) as error:
+                    reason = f"features.id {row[1]}: {error}"
+                    raise damaged(self._database.path, reason) from error
+                features[feature.id] = feature
+        return features
+
+    def _stored_extent(self) -> Bounds | None:
+        query = "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'features'"
+        for low_x, low_y, high_x, high_y in self._database.rows(query):
+            if (
+                isinstance(low_x, float)
+                and isinstance(low_y, float)
+                and isinstance(high_x, float)
+                and isinstance(high_y, float)
+            ):
+                return low_x, low_y, high_x, high_y
+        return extent_of(self._features.values())
+
+    def _compare(self) -> None:
+        stored = self._stored()
+        if stored != self._features:
+            ids = [
+                id_
+                for id_ in {**self._features, **stored}
+                if stored.get(id_) != self._features.get(id_)
+            ]
+            raise changed_elsewhere(self._database.path, ", ".join(ids[:_MOST_IDS_TOLD]))
+
+
+@contextmanager
+def _without_collection() -> Iterator[None]:
+    """A map is a million objects without a cycle: looking for cycles takes half of the time."""
+    was_enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was_enabled:
+            gc.enable()

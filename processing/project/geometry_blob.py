@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import math
 import struct
+from collections.abc import Callable
 
 from processing.project.catalogue import Geometry
 from processing.project.feature import Position
 
 _HEADER = struct.Struct("<2sBBi")
 _LITTLE_ENDIAN_NO_ENVELOPE = 1
+_ENVELOPE_BYTES = (0, 32, 48, 48, 64)
 _WKB_TYPES = {Geometry.POINT: 1001, Geometry.LINE: 1002, Geometry.AREA: 1003}
 _GEOMETRIES = {code: geometry for geometry, code in _WKB_TYPES.items()}
+_FEWEST = {Geometry.POINT: 1, Geometry.LINE: 2, Geometry.AREA: 3}
 
 
 def blob_of(geometry: Geometry, places: tuple[Position, ...], srs_id: int) -> bytes:
@@ -21,14 +25,26 @@ def blob_of(geometry: Geometry, places: tuple[Position, ...], srs_id: int) -> by
     places : tuple of Position
         One for a point; a ring without its first place repeated for an area.
 
+    Raises
+    ------
+    ValueError
+        Too few places, several for a point, or one that is not finite.
+
     References
     ----------
     OGC 12-128r18, clause 2.1.3.
     """
+    is_enough = len(places) >= _FEWEST[geometry]
+    if not is_enough or (geometry is Geometry.POINT and len(places) > 1):
+        message = f"{len(places)} vertices for a {geometry.value}"
+        raise ValueError(message)
     ring = (*places, places[0]) if geometry is Geometry.AREA else places
+    numbers = [number for place in ring for number in place]
+    if not all(map(math.isfinite, numbers)):
+        message = f"a coordinate that is not finite: {places}"
+        raise ValueError(message)
     head = _HEADER.pack(b"GP", 0, _LITTLE_ENDIAN_NO_ENVELOPE, srs_id)
     kind = struct.pack("<BI", 1, _WKB_TYPES[geometry])
-    numbers = [number for place in ring for number in place]
     body = struct.pack(f"<{len(numbers)}d", *numbers)
     if geometry is Geometry.POINT:
         return head + kind + body
@@ -37,28 +53,76 @@ def blob_of(geometry: Geometry, places: tuple[Position, ...], srs_id: int) -> by
 
 
 def places_of(blob: bytes) -> tuple[Geometry, tuple[Position, ...]]:
-    """The geometry in a blob that :func:`blob_of` made.
+    """The geometry in a blob of :func:`blob_of`, or of a GIS program that moved it.
 
     Raises
     ------
     ValueError
-        It is another one's: an envelope, several rings, no heights.
+        It is no point, line or single ring with heights, or not little-endian.
     """
     try:
         magic, _, flags, _ = _HEADER.unpack_from(blob)
-        order, code = struct.unpack_from("<BI", blob, _HEADER.size)
-        geometry = _GEOMETRIES.get(code)
-        if (magic, flags, order) != (b"GP", 1, 1) or geometry is None:
-            message = "a geometry that Zuka did not write"
+        envelope = (flags >> 1) & 7
+        if magic != b"GP" or flags & ~0b1110 != 1 or envelope >= len(_ENVELOPE_BYTES):
+            message = "a geometry in a form that Zuka does not write"
             raise ValueError(message)
-        at = _HEADER.size + 5 + (4 if geometry is Geometry.AREA else 0)
-        count = 1
-        if geometry is not Geometry.POINT:
-            (count,) = struct.unpack_from("<I", blob, at)
-            at += 4
-        numbers = struct.unpack_from(f"<{3 * count}d", blob, at)
+        at = _HEADER.size + _ENVELOPE_BYTES[envelope]
+        order, code = struct.unpack_from("<BI", blob, at)
+        geometry = _GEOMETRIES.get(code)
+        if order != 1 or geometry is None:
+            message = f"a geometry of the type {code}"
+            raise ValueError(message)
+        places = _read_places(blob, at + 5, geometry)
     except struct.error as error:
         message = "a geometry that is cut off"
         raise ValueError(message) from error
-    places = tuple((numbers[i], numbers[i + 1], numbers[i + 2]) for i in range(0, 3 * count, 3))
-    return geometry, places[:-1] if geometry is Geometry.AREA else places
+    return geometry, places
+
+
+def _read_places(blob: bytes, at: int, geometry: Geometry) -> tuple[Position, ...]:
+    if geometry is Geometry.POINT:
+        return (struct.unpack_from("<3d", blob, at),)
+    if geometry is Geometry.AREA:
+        (rings,) = struct.unpack_from("<I", blob, at)
+        if rings != 1:
+            message = f"an area of {rings} rings"
+            raise ValueError(message)
+        at += 4
+    (count,) = struct.unpack_from("<I", blob, at)
+    body = blob[at + 4 :]
+    if len(body) != 24 * count or count < _FEWEST[geometry]:
+        message = f"a {geometry.value} of {count} vertices in {len(body)} bytes"
+        raise ValueError(message)
+    places = tuple(struct.iter_unpack("<3d", body))
+    return places[:-1] if geometry is Geometry.AREA else places
+
+
+def _lowest(axis: int) -> Callable[[bytes], float | None]:
+    def lowest(blob: bytes) -> float | None:
+        return None if blob is None else min(place[axis] for place in places_of(blob)[1])
+
+    return lowest
+
+
+def _highest(axis: int) -> Callable[[bytes], float | None]:
+    def highest(blob: bytes) -> float | None:
+        return None if blob is None else max(place[axis] for place in places_of(blob)[1])
+
+    return highest
+
+
+def _is_empty(blob: bytes) -> int | None:
+    return None if blob is None else 0
+
+
+SQL_FUNCTIONS: tuple[tuple[str, int, Callable[[bytes], float | int | None]], ...] = (
+    ("ST_MinX", 1, _lowest(0)),
+    ("ST_MaxX", 1, _highest(0)),
+    ("ST_MinY", 1, _lowest(1)),
+    ("ST_MaxY", 1, _highest(1)),
+    ("ST_IsEmpty", 1, _is_empty),
+)
+"""What the triggers of a spatial index ask, should a GIS program have added one.
+
+Name, number of arguments, function of a geometry blob.
+"""

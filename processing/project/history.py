@@ -3,89 +3,135 @@
 from __future__ import annotations
 
 import sqlite3
+from dataclasses import dataclass
 
 from processing.project.change import Change
 from processing.project.database import Database
+from processing.project.database_errors import damaged
 from processing.project.feature_rows import change_from_json, change_to_json
+from processing.project.project_settings import ProjectSettings, write_setting
 from processing.text import Text
 
 _POSITION = "history_position"
+_LABEL = "SELECT label_en, label_ja FROM zuka_history WHERE place = ?"
+
+
+@dataclass(frozen=True)
+class Standing:
+    """Where the history stands: how many changes are done, and the labels on both sides."""
+
+    position: int
+    undo_label: Text | None
+    redo_label: Text | None
 
 
 class History:
     """What was done and can be taken back, and what was taken back and can be done again.
 
-    Attributes
-    ----------
-    position : int
-        Number of changes that are done; those behind it were taken back.
+    :class:`processing.project.feature_store.FeatureStore` applies it.
+
+    Raises
+    ------
+    BadFile
+        What is stored is damaged.
     """
 
-    def __init__(self, database: Database) -> None:
+    def __init__(self, database: Database, settings: ProjectSettings) -> None:
         self._database = database
-        rows = database.rows("SELECT value FROM zuka_settings WHERE key = ?", (_POSITION,))
-        self.position = int(str(rows[0][0])) if rows else 0
-        self._labels = {
-            int(str(place)): Text(str(en), str(ja))
-            for place, en, ja in database.rows("SELECT place, label_en, label_ja FROM zuka_history")
-        }
+        position = settings.whole(_POSITION)
+        with database.snapshot() as connection:
+            self._standing = _standing_at(connection, position)
+
+    @property
+    def position(self) -> int:
+        """Number of changes that are done; those behind it were taken back."""
+        return self._standing.position
 
     @property
     def can_undo(self) -> bool:
         """Whether there is something to take back."""
-        return self.position > 0
+        return self.undo_label is not None
 
     @property
     def can_redo(self) -> bool:
         """Whether something was taken back."""
-        return self.position + 1 in self._labels
+        return self.redo_label is not None
 
     @property
     def undo_label(self) -> Text | None:
         """What undo would take back."""
-        return self._labels.get(self.position)
+        return self._standing.undo_label
 
     @property
     def redo_label(self) -> Text | None:
         """What redo would do again."""
-        return self._labels.get(self.position + 1)
+        return self._standing.redo_label
 
     def last(self) -> Change | None:
-        """The change that undo would take back."""
+        """The change that undo would take back.
+
+        Raises
+        ------
+        BadFile
+            It is damaged.
+        """
         return self._change(self.position)
 
     def coming(self) -> Change | None:
-        """The change that redo would do again."""
+        """The change that redo would do again.
+
+        Raises
+        ------
+        BadFile
+            It is damaged.
+        """
         return self._change(self.position + 1)
 
-    def append(self, connection: sqlite3.Connection, label: Text, change: Change) -> None:
-        """Write a change behind the last one, in the caller's transaction; redo is gone."""
+    def append(self, connection: sqlite3.Connection, label: Text, change: Change) -> Standing:
+        """Write a change behind the last one, in the caller's transaction; redo is gone.
+
+        Returns
+        -------
+        Standing
+            For :meth:`stands` once the transaction is through.
+        """
         place = self.position + 1
         connection.execute("DELETE FROM zuka_history WHERE place >= ?", (place,))
         connection.execute(
             "INSERT INTO zuka_history VALUES (?, ?, ?, ?)",
             (place, label.en, label.ja, change_to_json(change)),
         )
-        self.write_position(connection, place)
+        write_setting(connection, _POSITION, place)
+        return Standing(place, label, None)
 
-    def write_position(self, connection: sqlite3.Connection, position: int) -> None:
-        """Write how many changes are done, in the caller's transaction."""
-        connection.execute(
-            "INSERT OR REPLACE INTO zuka_settings VALUES (?, ?)", (_POSITION, str(position))
-        )
+    def step(self, connection: sqlite3.Connection, by: int) -> Standing:
+        """Write that a change was taken back (−1) or done again (1), in the caller's transaction.
 
-    def appended(self, label: Text) -> None:
-        """The transaction of :meth:`append` is through."""
-        self.position += 1
-        self._labels = {
-            place: kept for place, kept in self._labels.items() if place < self.position
-        }
-        self._labels[self.position] = label
+        Returns
+        -------
+        Standing
+            For :meth:`stands` once the transaction is through.
+        """
+        position = self.position + by
+        write_setting(connection, _POSITION, position)
+        return _standing_at(connection, position)
 
-    def moved_to(self, position: int) -> None:
-        """The transaction of :meth:`write_position` is through."""
-        self.position = position
+    def stands(self, standing: Standing) -> None:
+        """The transaction that gave this is through."""
+        self._standing = standing
 
     def _change(self, place: int) -> Change | None:
         rows = self._database.rows("SELECT change FROM zuka_history WHERE place = ?", (place,))
-        return change_from_json(str(rows[0][0])) if rows else None
+        try:
+            return change_from_json(str(rows[0][0])) if rows else None
+        except (ValueError, KeyError, TypeError, IndexError) as error:
+            raise damaged(self._database.path, f"zuka_history.place {place}: {error}") from error
+
+
+def _standing_at(connection: sqlite3.Connection, position: int) -> Standing:
+    return Standing(position, _label_at(connection, position), _label_at(connection, position + 1))
+
+
+def _label_at(connection: sqlite3.Connection, place: int) -> Text | None:
+    found = connection.execute(_LABEL, (place,)).fetchone()
+    return None if found is None else Text(str(found[0]), str(found[1]))

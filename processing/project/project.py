@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-import json
+import math
 import shutil
+import sqlite3
+from contextlib import ExitStack, suppress
 from pathlib import Path
-from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,17 +15,26 @@ from processing.errors import UNCHANGED, InUse, MissingInput, OutOfRange, told_a
 from processing.points.drive import Drive
 from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.database import Database
+from processing.project.database_errors import damaged
+from processing.project.drive_folders import DRIVES, TEMPORARY, DriveFolders
 from processing.project.feature_store import FeatureStore
 from processing.project.history import History
-from processing.project.project_lock import ProjectLock
-from processing.project.reference_system import reference_system
+from processing.project.project_lock import LOCK_FILES, ProjectLock
+from processing.project.project_settings import ProjectSettings, write_setting
+from processing.project.reference_system import (
+    reference_system,
+    srs_number,
+    write_reference_system,
+)
+from processing.project.runs import Runs
 from processing.text import Text
 from resources import path_of
 
 _DATABASE = "project.gpkg"
 _CATALOGUE = "catalogue.toml"
-_DRIVES, _TEMPORARY = "drives", "tmp"
+_UNFINISHED = "unfinished.gpkg"
 _ORIGIN_STEP_M = 100.0
+_CRS, _ORIGIN = "crs", "origin"
 
 
 def is_project(path: Path) -> bool:
@@ -36,25 +46,34 @@ class Project:
     """The folder and all it holds; made by :meth:`create` and :meth:`open`.
 
     Used by one thread; long work gets drives and values, never the project.
+
+    Attributes
+    ----------
+    settings : ProjectSettings
+        What else is remembered with the project, by name.
     """
 
     def __init__(self, folder: Path, *, writing: bool) -> None:
         self.folder = folder
-        self._lock = ProjectLock(folder) if writing else None
-        try:
-            self._database = Database(folder / _DATABASE, writing=writing)
-            self._settings = self._read_settings()
-            self.history = History(self._database)
-            self.features = FeatureStore(self._database, self.history, self._srs_id())
-            self.catalogue = self._read_catalogue()
-            rows = self._database.rows("SELECT id FROM zuka_drives ORDER BY place")
-            ids = [str(id_) for (id_,) in rows]
+        with ExitStack() as stack:
             if writing:
-                self._remove_leftovers(frozenset(ids))
-            self._drives = {id_: Drive(folder / _DRIVES / id_) for id_ in ids}
-        except BaseException:
-            self.close()
-            raise
+                stack.callback(ProjectLock(folder).release)
+            self._database = Database(folder / _DATABASE, writing=writing)
+            stack.callback(self._database.close)
+            self.catalogue: Catalogue = self._read_catalogue()
+            with self._database.snapshot():
+                self.settings = ProjectSettings(self._database)
+                self.history = History(self._database, self.settings)
+                self.features = FeatureStore(
+                    self._database, self.history, self.catalogue, self._srs_number()
+                )
+                self.runs = Runs(self._database)
+                self._folders = DriveFolders(folder, self._database, self.settings)
+                self._origin = self._stored_origin()
+            self._drives = {id_: Drive(self._folders.path_of(id_)) for id_ in self._folders.ids}
+            if writing:
+                self._folders.remove_leftovers()
+            self._closing = stack.pop_all()
 
     @staticmethod
     def create(folder: Path, crs: str) -> Project:
@@ -78,28 +97,18 @@ class Project:
         folder = folder.absolute()
         system = reference_system(crs) if crs else ""
         with told_as_user_error(folder):
-            if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-                raise InUse(
-                    Text(
-                        "There is something else in this place.", "この場所には別のものがあります。"
-                    ),
-                    Text.same(str(folder)),
-                    Text(
-                        "Choose another name for the project.",
-                        "別のプロジェクト名を選んでください。",
-                    ),
-                )
-            is_new = not folder.exists()
+            _refuse_occupied(folder)
             folder.mkdir(parents=True, exist_ok=True)
+        lock = ProjectLock(folder)
         try:
-            project = Project(folder, writing=True)
+            # The database takes its name when it is whole: until then there is no project.
+            _make_database(folder / _UNFINISHED, folder / _DATABASE, system)
         except BaseException:
-            if is_new:
-                shutil.rmtree(folder, ignore_errors=True)
+            lock.release()
+            Project.remove_new(folder)
             raise
-        if system:
-            project.set_crs(system)
-        return project
+        lock.release()
+        return Project(folder, writing=True)
 
     @staticmethod
     def open(folder: Path, *, writing: bool = True) -> Project:
@@ -108,7 +117,7 @@ class Project:
         Parameters
         ----------
         writing : bool
-            False: for reading only, possible while a window has it open.
+            False: for reading only, possible while a window has it open; not a byte is written.
 
         Raises
         ------
@@ -128,8 +137,17 @@ class Project:
 
     @staticmethod
     def remove_new(folder: Path) -> None:
-        """Remove a closed project that was made for an import that failed."""
-        shutil.rmtree(folder, ignore_errors=True)
+        """Remove a closed project that was made for something that failed.
+
+        Only what the program makes is removed; the folder too when nothing else is in it.
+        """
+        for name in (DRIVES, TEMPORARY):
+            shutil.rmtree(folder / name, ignore_errors=True)
+        for name in (*_database_files(_DATABASE), *_database_files(_UNFINISHED), *LOCK_FILES):
+            with suppress(OSError):
+                (folder / name).unlink(missing_ok=True)
+        with suppress(OSError):
+            folder.rmdir()
 
     @property
     def name(self) -> str:
@@ -139,7 +157,7 @@ class Project:
     @property
     def crs(self) -> str:
         """``EPSG:n``, or empty when unknown."""
-        return self._settings.get("crs", "")
+        return self.settings.text(_CRS)
 
     @property
     def drives(self) -> tuple[Drive, ...]:
@@ -148,20 +166,35 @@ class Project:
 
     @property
     def origin(self) -> NDArray[np.float64]:
-        """The (3,) local origin of drawing: near the first drive, to whole 100 m."""
-        if not self._drives:
-            return np.zeros(3)
-        info = self.drives[0].info
-        middle = (np.array(info.lowest) + np.array(info.highest)) / 2
-        return np.asarray(np.rint(middle / _ORIGIN_STEP_M) * _ORIGIN_STEP_M)
+        """The (3,) local origin of drawing: near the first drive, to whole 100 m; a copy."""
+        return self._origin.copy()
 
     def drive(self, id: str) -> Drive:  # noqa: A002 - the word of the trade
         """One drive; KeyError when there is none of that id."""
         return self._drives[id]
 
+    def source_notes(self) -> tuple[Text, ...]:
+        """What is to be said of delivered files that are gone or changed; drives do without."""
+        notes = []
+        for drive in self.drives:
+            for source in drive.info.sources:
+                path = Path(source.path)
+                try:
+                    is_as_delivered = path.stat().st_size == source.size
+                except OSError:
+                    is_as_delivered = False
+                if source.points and not is_as_delivered:
+                    notes.append(
+                        Text(
+                            "{drive}: the delivered file {path} is missing or has changed.",
+                            "{drive}: 納品ファイル {path} が見つからないか、変更されています。",
+                        ).filled(drive=drive.info.name, path=path)
+                    )
+        return tuple(notes)
+
     def temporary_folder(self) -> Path:
         """A new name for a folder of an import; what is left there goes at the next opening."""
-        return self.folder / _TEMPORARY / uuid4().hex
+        return self._folders.temporary()
 
     def adopt_drive(self, folder: Path) -> Drive:
         """Make a finished temporary drive folder part of the project.
@@ -170,39 +203,40 @@ class Project:
         ------
         OutOfRange
             Its reference system is not the project's.
-        NoSpace
-            The project is as it was.
+        NoSpace, InUse
+            The project and the folder are as they were.
         """
-        drive = Drive(folder)
-        crs = drive.info.crs
-        if crs and self.crs and crs != self.crs:
-            raise OutOfRange(
-                Text(
-                    "The drive's reference system {theirs} is not the project's {ours}.",
-                    "ドライブの座標参照系 {theirs} がプロジェクトの {ours} と異なります。",
-                ).filled(theirs=crs, ours=self.crs),
-                Text.same(drive.info.name),
-                Text(
-                    "Import it into a project of its own. {unchanged}",
-                    "別のプロジェクトにインポートしてください。{unchanged}",
-                ).filled(unchanged=UNCHANGED),
-            )
-        final = self.folder / _DRIVES / drive.id
-        with told_as_user_error(final):
-            final.parent.mkdir(exist_ok=True)
-            folder.rename(final)
-        try:
-            with self._database.transaction() as connection:
-                connection.execute(
-                    "INSERT INTO zuka_drives VALUES (?, ?)", (drive.id, len(self._drives))
-                )
-        except BaseException:
-            shutil.rmtree(final, ignore_errors=True)
-            raise
-        if crs and not self.crs:
-            self.set_crs(crs)
-        self._drives[drive.id] = Drive(final)
-        return self._drives[drive.id]
+        return self.adopt_drives((folder,))[0]
+
+    def adopt_drives(self, folders: tuple[Path, ...]) -> tuple[Drive, ...]:
+        """Make finished temporary drive folders part of the project, all of them or none.
+
+        Raises
+        ------
+        BadFile
+            One is damaged.
+        OutOfRange
+            Their reference systems are not one, or not the project's.
+        NoSpace, InUse
+            The project and the folders are as they were.
+        """
+        new = [Drive(folder) for folder in folders]
+        if not new:
+            return ()
+        crs = self._crs_with(new)
+        origin = self._origin if self._drives else _origin_of(new[0])
+        arriving = {drive.id: folder for drive, folder in zip(new, folders, strict=True)}
+        with self._folders.adopting(arriving) as connection:
+            write_setting(connection, _ORIGIN, origin.tolist())
+            if crs != self.crs:
+                self._write_crs(connection, crs)
+        self._origin = origin
+        self.settings.took(_ORIGIN, origin.tolist())
+        if crs != self.crs:
+            self._took_crs(crs)
+        for drive in new:
+            self._drives[drive.id] = Drive(self._folders.path_of(drive.id))
+        return tuple(self._drives[drive.id] for drive in new)
 
     def set_crs(self, crs: str) -> None:
         """Say what reference system all coordinates of the project are in.
@@ -210,49 +244,111 @@ class Project:
         Raises
         ------
         OutOfRange
-            There is no such system.
+            There is no such system, or a drive was delivered in another.
+        NoSpace, InUse
+            The project is as it was.
         """
         code = reference_system(crs)
-        number = int(code.partition(":")[2])
-        from pyproj import CRS
-
-        system = CRS.from_user_input(code)
+        for drive in self.drives:
+            if drive.info.crs not in ("", code):
+                raise _other_system(drive, drive.info.crs, code)
         with self._database.transaction() as connection:
-            connection.execute(
-                "INSERT OR REPLACE INTO gpkg_spatial_ref_sys VALUES (?, ?, 'EPSG', ?, ?, NULL)",
-                (system.name, number, number, system.to_wkt("WKT1_GDAL")),
-            )
-            for table in ("gpkg_contents", "gpkg_geometry_columns"):
-                connection.execute(f"UPDATE {table} SET srs_id = ?", (number,))  # noqa: S608 - constants
-            connection.execute(
-                "INSERT OR REPLACE INTO zuka_settings VALUES ('crs', ?)", (json.dumps(code),)
-            )
-            self.features.rewrite_srs(connection, number)
-        self._settings["crs"] = code
+            self._write_crs(connection, code)
+        self._took_crs(code)
 
     def close(self) -> None:
         """Close the database and let others have the project; may be called again."""
-        if hasattr(self, "_database"):
-            self._database.close()
-        if self._lock is not None:
-            self._lock.release()
+        self._closing.close()
 
-    def _remove_leftovers(self, ids: frozenset[str]) -> None:
-        """What an import that was killed left behind: it was never part of the project."""
-        shutil.rmtree(self.folder / _TEMPORARY, ignore_errors=True)
-        drives = self.folder / _DRIVES
-        if drives.is_dir():
-            for folder in drives.iterdir():
-                if folder.name not in ids:
-                    shutil.rmtree(folder, ignore_errors=True)
+    def _crs_with(self, new: list[Drive]) -> str:
+        """The project's reference system once drives are in it."""
+        crs = self.crs
+        for drive in new:
+            theirs = drive.info.crs
+            if theirs and crs and theirs != crs:
+                raise _other_system(drive, theirs, crs)
+            crs = crs or (reference_system(theirs) if theirs else "")
+        return crs
 
-    def _read_settings(self) -> dict[str, str]:
-        rows = self._database.rows("SELECT value FROM zuka_settings WHERE key = 'crs'")
-        return {"crs": str(json.loads(str(rows[0][0])))} if rows else {}
+    def _write_crs(self, connection: sqlite3.Connection, crs: str) -> None:
+        write_reference_system(connection, crs)
+        write_setting(connection, _CRS, crs)
+        self.features.rewrite_srs(connection, srs_number(crs))
 
-    def _srs_id(self) -> int:
-        return int(self.crs.partition(":")[2]) if self.crs else -1
+    def _took_crs(self, crs: str) -> None:
+        self.settings.took(_CRS, crs)
+        self.features.took_srs(srs_number(crs))
+
+    def _srs_number(self) -> int:
+        try:
+            return srs_number(self.crs)
+        except ValueError as error:
+            raise damaged(self._database.path, f"zuka_settings.crs: {error}") from error
+
+    def _stored_origin(self) -> NDArray[np.float64]:
+        stored = self.settings.get(_ORIGIN)
+        if stored is None:
+            return np.zeros(3)
+        if isinstance(stored, list) and len(stored) == 3:
+            numbers = [float(one) for one in stored if isinstance(one, (int, float))]
+            if len(numbers) == 3 and all(map(math.isfinite, numbers)):
+                return np.array(numbers)
+        raise damaged(self._database.path, f"zuka_settings.origin: {stored}")
 
     def _read_catalogue(self) -> Catalogue:
         own = self.folder / _CATALOGUE
         return read_catalogue(own if own.is_file() else path_of("catalogue/level500.toml"))
+
+
+def _make_database(unfinished: Path, path: Path, crs: str) -> None:
+    Database.create(unfinished)
+    if crs:
+        database = Database(unfinished, writing=True)
+        try:
+            with database.transaction() as connection:
+                write_reference_system(connection, crs)
+                write_setting(connection, _CRS, crs)
+        finally:
+            database.close()
+    with told_as_user_error(path):
+        unfinished.rename(path)
+
+
+def _refuse_occupied(folder: Path) -> None:
+    """Refuse a folder with anything but what a killed :meth:`Project.create` left there."""
+    leftovers = {*_database_files(_UNFINISHED), *LOCK_FILES}
+    if folder.is_dir() and {one.name for one in folder.iterdir()} <= leftovers:
+        for name in _database_files(_UNFINISHED):
+            (folder / name).unlink(missing_ok=True)
+    elif folder.exists():
+        raise InUse(
+            Text("There is something else in this place.", "この場所には別のものがあります。"),
+            Text.same(str(folder)),
+            Text(
+                "Choose another name for the project.",
+                "別のプロジェクト名を選んでください。",
+            ),
+        )
+
+
+def _database_files(name: str) -> tuple[str, ...]:
+    return name, f"{name}-journal", f"{name}-wal", f"{name}-shm"
+
+
+def _origin_of(drive: Drive) -> NDArray[np.float64]:
+    middle = (np.array(drive.info.lowest) + np.array(drive.info.highest)) / 2
+    return np.asarray(np.rint(middle / _ORIGIN_STEP_M) * _ORIGIN_STEP_M, dtype=np.float64)
+
+
+def _other_system(drive: Drive, theirs: str, ours: str) -> OutOfRange:
+    return OutOfRange(
+        Text(
+            "The drive's reference system {theirs} is not the project's {ours}.",
+            "ドライブの座標参照系 {theirs} がプロジェクトの {ours} と異なります。",
+        ).filled(theirs=theirs, ours=ours),
+        Text.same(drive.info.name),
+        Text(
+            "Import it into a project of its own. {unchanged}",
+            "別のプロジェクトにインポートしてください。{unchanged}",
+        ).filled(unchanged=UNCHANGED),
+    )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import platform
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -13,7 +14,8 @@ from filelock import FileLock, Timeout
 from processing.errors import InUse, told_as_user_error
 from processing.text import Text
 
-_LOCK, _OWNER = "lock", "lock-owner.json"
+LOCK_FILES = ("lock", "lock-owner.json")
+_LOCK, _OWNER = LOCK_FILES
 
 
 class ProjectLock:
@@ -31,7 +33,7 @@ class ProjectLock:
         self._owner_path = folder / _OWNER
         # Not a singleton: a second window of the same process must be refused too.
         self._lock = FileLock(folder / _LOCK, timeout=0)
-        with told_as_user_error(folder):
+        with told_as_user_error(folder / _LOCK):
             try:
                 self._lock.acquire()
             except Timeout as error:
@@ -41,29 +43,36 @@ class ProjectLock:
             "process": os.getpid(),
             "since": datetime.now(UTC).astimezone().strftime("%Y-%m-%d %H:%M"),
         }
-        with told_as_user_error(self._owner_path):
+        # On a full disk the project can still be looked at; who has it is a courtesy.
+        with suppress(OSError):
             self._owner_path.write_text(json.dumps(owner), encoding="utf-8")
 
     def release(self) -> None:
         """Let others have the project; may be called again."""
+        if self._lock.is_locked:
+            with suppress(OSError):
+                self._owner_path.unlink(missing_ok=True)
         self._lock.release()
 
-    def _owner(self) -> str:
+    def _owner(self) -> Text:
         try:
             owner = json.loads(self._owner_path.read_text(encoding="utf-8"))
-            return f"{owner['host']}, process {owner['process']}, {owner['since']}"
+            return Text(
+                "on {host} by process {process} since {since}",
+                "{host}、プロセス {process}、{since} から",
+            ).filled(host=owner["host"], process=owner["process"], since=owner["since"])
         except (OSError, ValueError, KeyError, TypeError):
-            # Who it is is a courtesy; that it is locked is the fact.
-            return "?"
+            # That it is locked is the fact; who it is may not be written down.
+            return Text("by another program", "別のプログラム")
 
 
-def _in_use(folder: Path, owner: str) -> InUse:
+def _in_use(folder: Path, owner: Text) -> InUse:
     return InUse(
         Text(
-            "The project is open in another window.",
-            "プロジェクトは別のウィンドウで開かれています。",
-        ),
-        Text.same(f"{folder} ({owner})"),
+            "The project is open in another window ({owner}).",
+            "プロジェクトは別のウィンドウで開かれています（{owner}）。",
+        ).filled(owner=owner),
+        Text.same(str(folder)),
         Text(
             "Close it there, or work there.",
             "そのウィンドウで作業するか、閉じてから開いてください。",

@@ -1,0 +1,112 @@
+"""DriveFolders: the recordings of a project on disk; a kill leaves all or nothing of an import."""
+
+from __future__ import annotations
+
+import shutil
+import sqlite3
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+from uuid import uuid4
+
+from processing.errors import UserError, told_as_user_error
+from processing.project.database import Database
+from processing.project.project_settings import ProjectSettings, write_setting
+
+DRIVES, TEMPORARY = "drives", "tmp"
+_ARRIVING = "arriving_drives"
+
+
+class DriveFolders:
+    """Which drives a project has is said by its database alone.
+
+    Before folders are moved in, the database notes which: what a killed program moved in without
+    recording it is known by that note, and no other folder is ever removed.
+    """
+
+    def __init__(self, folder: Path, database: Database, settings: ProjectSettings) -> None:
+        self._folder = folder
+        self._database = database
+        self._settings = settings
+        self.ids = tuple(
+            str(id_) for (id_,) in database.rows("SELECT id FROM zuka_drives ORDER BY place")
+        )
+
+    def path_of(self, id: str) -> Path:  # noqa: A002 - the word of the trade
+        """A drive's folder."""
+        return self._folder / DRIVES / id
+
+    def temporary(self) -> Path:
+        """A new name for a folder of an import; what is left there goes at the next opening."""
+        return self._folder / TEMPORARY / uuid4().hex
+
+    @contextmanager
+    def adopting(self, folders: Mapping[str, Path]) -> Iterator[sqlite3.Connection]:
+        """Move folders in and record them, in one transaction with the body.
+
+        Parameters
+        ----------
+        folders : mapping of str to Path
+            Finished temporary folders by drive id.
+
+        Raises
+        ------
+        ValueError
+            The project has a drive of that id.
+        NoSpace, InUse
+            The folders are where they were.
+        """
+        known = [id_ for id_ in folders if id_ in self.ids or self.path_of(id_).exists()]
+        if known:
+            message = f"the project has these drives: {known}"
+            raise ValueError(message)
+        self._settings.put(_ARRIVING, list(folders))
+        moved: list[tuple[Path, Path]] = []
+        try:
+            for id_, folder in folders.items():
+                target = self.path_of(id_)
+                with told_as_user_error(target):
+                    target.parent.mkdir(exist_ok=True)
+                    folder.rename(target)
+                moved.append((folder, target))
+            with self._database.transaction() as connection:
+                places = range(len(self.ids), len(self.ids) + len(folders))
+                connection.executemany(
+                    "INSERT INTO zuka_drives VALUES (?, ?)", zip(folders, places, strict=True)
+                )
+                write_setting(connection, _ARRIVING, [])
+                yield connection
+        except BaseException:
+            self._move_back(moved)
+            raise
+        self._settings.took(_ARRIVING, [])
+        self.ids = (*self.ids, *folders)
+        for folder in folders.values():
+            # The import's own folder, once the last drive is gone from it.
+            with suppress(OSError):
+                folder.parent.rmdir()
+
+    def remove_leftovers(self) -> None:
+        """Remove what an import that was killed left behind: it was never part of the project."""
+        shutil.rmtree(self._folder / TEMPORARY, ignore_errors=True)
+        arriving = self._settings.get(_ARRIVING)
+        if not arriving or not isinstance(arriving, list):
+            return
+        for id_ in arriving:
+            if isinstance(id_, str) and _is_name(id_) and id_ not in self.ids:
+                shutil.rmtree(self.path_of(id_), ignore_errors=True)
+        # On a full disk the note stays until the next time.
+        with suppress(UserError):
+            self._settings.put(_ARRIVING, [])
+
+    def _move_back(self, moved: Sequence[tuple[Path, Path]]) -> None:
+        for folder, target in reversed(moved):
+            with suppress(OSError):
+                target.rename(folder)
+        with suppress(UserError):
+            self._settings.put(_ARRIVING, [])
+
+
+def _is_name(id_: str) -> bool:
+    """Whether an id is one folder's name, and can't lead out of the project."""
+    return Path(id_).name == id_ and id_ not in ("", ".", "..")
