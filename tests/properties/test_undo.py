@@ -1,0 +1,74 @@
+"""Undo and redo, for any sequence of changes, in memory, on disk and across a restart."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from processing.project.catalogue import Geometry
+from processing.project.change import Change, Replacement
+from processing.project.feature import Feature, PointReference, Status, Vertex
+from processing.project.project import Project
+from processing.text import Text
+
+LABEL = Text("Step", "操作")
+NUMBERS = st.floats(-1e7, 1e7)
+VERTICES = st.builds(
+    Vertex,
+    st.tuples(NUMBERS, NUMBERS, NUMBERS),
+    st.none() | st.builds(PointReference, st.text(max_size=5), st.integers(0, 2**40)),
+)
+ATTRIBUTES = st.dictionaries(
+    st.text(max_size=5), st.text(max_size=5) | NUMBERS | st.integers(-9, 9) | st.booleans()
+)
+STEPS = st.lists(
+    st.tuples(
+        st.sampled_from(["add", "replace", "remove", "undo", "redo", "reopen"]),
+        st.lists(VERTICES, min_size=3, max_size=4),
+        ATTRIBUTES,
+    ),
+    max_size=12,
+)
+
+
+def _change(wish, vertices, attributes, number, features) -> Change:
+    if wish == "add" or not features:
+        geometry = list(Geometry)[number % 3]
+        kept = tuple(vertices[:1] if geometry is Geometry.POINT else vertices)
+        return Change(added=(Feature(f"f{number}", "kind", geometry, kept, attributes),))
+    chosen = features[number % len(features)]
+    if wish == "remove":
+        return Change(removed=(chosen,))
+    moved = chosen.with_vertices(tuple(vertices[: len(chosen.vertices)]))
+    after = Feature(moved.id, "other", moved.geometry, moved.vertices, attributes, Status.CANDIDATE)
+    return Change(replaced=(Replacement(chosen, after),))
+
+
+@settings(max_examples=40)
+@given(STEPS)
+def test_undo_and_redo_give_every_state_back_also_across_a_restart(steps):
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "街路.zuka"
+        project = Project.create(path, "EPSG:6677")
+        states, place = [{}], 0
+        for number, (wish, vertices, attributes) in enumerate(steps):
+            if wish == "reopen":
+                project.close()
+                project = Project.open(path)
+            elif wish == "undo":
+                assert (project.features.undo() is not None) == (place > 0)
+                place = max(0, place - 1)
+            elif wish == "redo":
+                assert (project.features.redo() is not None) == (place + 1 < len(states))
+                place = min(len(states) - 1, place + 1)
+            else:
+                features = tuple(project.features.all())
+                change = _change(wish, vertices, attributes, number, features)
+                project.features.apply(LABEL, change)
+                states = [*states[: place + 1], {f.id: f for f in project.features.all()}]
+                place += 1
+            assert {f.id: f for f in project.features.all()} == states[place]
+        project.close()
