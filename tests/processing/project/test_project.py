@@ -60,7 +60,7 @@ def test_a_second_window_is_refused_and_told_who_has_it_but_reading_goes_on(fold
     project = Project.open(folder)
     with pytest.raises(InUse) as refusal:
         Project.open(folder)
-    assert "process" in refusal.value.where.en
+    assert "process" in refusal.value.line("en")
     reading = Project.open(folder, writing=False)
     assert len(reading.features) == 1
     reading.close()
