@@ -69,10 +69,10 @@ class ProjectLock:
 def _in_use(folder: Path, owner: Text) -> InUse:
     return InUse(
         Text(
-            "The project is open in another window ({owner}).",
-            "プロジェクトは別のウィンドウで開かれています（{owner}）。",
-        ).filled(owner=owner),
-        Text.same(str(folder)),
+            "The project is open in another window.",
+            "プロジェクトは別のウィンドウで開かれています。",
+        ),
+        Text("{folder}: {owner}", "{folder}: {owner}").filled(folder=folder, owner=owner),
         Text(
             "Close it there, or work there.",
             "そのウィンドウで作業するか、閉じてから開いてください。",

@@ -50,7 +50,7 @@ CREATE TABLE features (
   measured TEXT NOT NULL);
 INSERT INTO gpkg_contents (table_name, data_type, identifier, description, srs_id)
   VALUES ('features', 'features', 'features', 'The map', -1);
-INSERT INTO gpkg_geometry_columns VALUES ('features', 'geom', 'GEOMETRY', -1, 1, 0);
+INSERT INTO gpkg_geometry_columns VALUES ('features', 'geom', 'GEOMETRY', -1, 2, 0);
 CREATE TABLE zuka_runs (
   fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, id TEXT NOT NULL UNIQUE, tool TEXT NOT NULL,
   version INTEGER NOT NULL, parameters TEXT NOT NULL, drives TEXT NOT NULL,
