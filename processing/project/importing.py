@@ -28,7 +28,7 @@ from processing.project.delivery import DeliveredFile, Delivery, read_delivery
 from processing.project.drive_building import BuildPlan, build_drive
 from processing.project.lattice import Lattice
 from processing.project.recording_writer import RecordingWriter
-from processing.project.trajectory_choice import read_trajectories
+from processing.project.trajectory_choice import NamedTrajectory, read_trajectories
 from processing.text import Text
 
 _CHUNK_POINTS = 500_000
@@ -86,7 +86,7 @@ def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple
         with ThreadPoolExecutor(max_workers=1) as pool:
             ways = pool.submit(read_trajectories, request.trajectories, delivery.crs)
             checksums = [pool.submit(_checksum, info.path) for info in files]
-            reading = PartMonitor(monitor, 0.0, _READING)
+            reading = _AlsoWatching(PartMonitor(monitor, 0.0, _READING), ways)
             keeps_angles = not request.trajectories
             writers = _read_all(delivery, files, into, reading, angles=keeps_angles)
             trajectories = ways.result()
@@ -122,6 +122,22 @@ class _ReadPlan:
     source: int
     folder_stem: Path
     keeps_angles: bool
+
+
+class _AlsoWatching:
+    """A monitor that stops the reading of points when what is read beside them can't be read."""
+
+    def __init__(self, monitor: Monitor, beside: Future[tuple[NamedTrajectory, ...]]) -> None:
+        self._monitor = monitor
+        self._beside = beside
+
+    def report(self, fraction: float, text: Text | None = None) -> None:
+        self._monitor.report(fraction, text)
+
+    def check(self) -> None:
+        self._monitor.check()
+        if self._beside.done():
+            self._beside.result()
 
 
 def _read_all(
