@@ -168,6 +168,16 @@ class Document(QObject):
         """Do the step again that was undone; says whether there was one."""
         return self._changed(self.undo_stack.redo)
 
+    def set_reference_system(self, crs: str) -> bool:
+        """Say what reference system the coordinates are in; says whether it could."""
+        try:
+            self._needed().set_crs(crs)
+        except UserError as error:
+            self.refused.emit(error)
+            return False
+        self.shared.map_changes.drives_changed.emit()
+        return True
+
     # Long work.
 
     def import_into_new(self, folder: Path, request: ImportRequest) -> str:
@@ -190,7 +200,10 @@ class Document(QObject):
         into = project.temporary_folder()
 
         def work(monitor: Monitor) -> tuple[Path, ...]:
-            return import_drives(request, into, monitor)
+            folders = import_drives(request, into, monitor)
+            for folder in folders:
+                _prepare_tiles(folder)
+            return folders
 
         names = ", ".join(path.name for path in request.inputs[:3])
         title = Text("Import {names}", "{names} のインポート").filled(names=names)
@@ -290,11 +303,13 @@ class Document(QObject):
         self.shared.map_changes.drives_changed.emit()
         self._prepare_drives()
         points = sum(drive.count for drive in drives)
-        self.told.emit(
-            Text("Imported {points:,} points", "{points:,}点をインポートしました").filled(
-                points=points
+        told = Text("Imported {points:,} points", "{points:,}点をインポートしました")
+        if not project.crs:
+            told = Text(
+                "Imported {points:,} points; no file names their reference system (Ctrl+R)",
+                "{points:,}点をインポートしました。座標参照系の記載がありません（Ctrl+R）",
             )
-        )
+        self.told.emit(told.filled(points=points))
 
     def _prepare_drives(self) -> None:
         """Find in the background what attributes show, so that switching to them is quick."""
@@ -347,6 +362,13 @@ class Document(QObject):
         if not drives or settings.drive_id in {drive.id for drive in drives}:
             return
         settings.show_image(drives[0].id, _best_kind(drives[0], settings.image_kind))
+
+
+def _prepare_tiles(folder: Path) -> None:
+    """Note where the tiles of the first image are, so that the window need not look for them."""
+    drive = Drive(folder)
+    if drive.count:
+        drive.image(drive.image_kinds[0]).pyramid.prepare()
 
 
 def _best_kind(drive: Drive, wanted: ImageKind) -> ImageKind:

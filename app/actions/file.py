@@ -17,6 +17,7 @@ from processing.text import Text
 from resources import path_of
 from widgets.dialogs.export_map import ExportForm, ExportWish
 from widgets.dialogs.import_drive import ImportForm, ImportWish
+from widgets.dialogs.reference_systems import ReferenceSystemForm
 
 
 class FileActions:
@@ -55,6 +56,13 @@ class FileActions:
                 ("Ctrl+E",),
                 "mdi6.tray-arrow-up",
                 1,
+            ),
+            Action(
+                "reference-system",
+                Text("Reference system…", "座標参照系…"),
+                self.choose_reference_system,
+                "file",
+                ("Ctrl+R",),
             ),
             Action(
                 "demo", Text("Open the sample street", "サンプル街路を開く"), self.open_demo, "file"
@@ -96,6 +104,14 @@ class FileActions:
             project.folder.parent / f"{project.name}-export", formats, self._parts.window
         )
         form.export_requested.connect(self._on_form_export_requested)
+        form.show()
+
+    def choose_reference_system(self) -> None:
+        """Ask what reference system the coordinates of the project are in."""
+        if self._parts.document.project is None:
+            return
+        form = ReferenceSystemForm(self._parts.document.crs(), self._parts.window)
+        form.system_chosen.connect(self._parts.document.set_reference_system)
         form.show()
 
     def open_files(self, paths: tuple[Path, ...]) -> None:

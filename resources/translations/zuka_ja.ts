@@ -350,6 +350,17 @@
     </message>
 </context>
 <context>
+    <name>ReferenceSystemForm</name>
+    <message>
+        <source>Reference system</source>
+        <translation>座標参照系</translation>
+    </message>
+    <message>
+        <source>Give a code such as EPSG:6677.</source>
+        <translation>EPSG:6677 のようなコードを指定してください。</translation>
+    </message>
+</context>
+<context>
     <name>ScenePainter</name>
     <message>
         <source>1 px = {metres:.3f} m</source>

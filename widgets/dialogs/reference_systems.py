@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-from PySide6.QtWidgets import QComboBox, QWidget
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QLabel, QVBoxLayout, QWidget
 
 _ZONES = (
     "I",
@@ -53,3 +54,38 @@ class ReferenceSystemBox(QComboBox):
         if found:
             return f"EPSG:{found.group(1)}"
         return "" if not typed else None
+
+
+class ReferenceSystemForm(QDialog):
+    """Asks for the reference system of a project."""
+
+    system_chosen = Signal(str)
+
+    def __init__(self, code: str, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(self.tr("Reference system"))
+        self._box = ReferenceSystemBox(self)
+        self._box.removeItem(0)
+        found = self._box.findData(code)
+        if found >= 0:
+            self._box.setCurrentIndex(found)
+        else:
+            self._box.setEditText(code)
+        self._trouble = QLabel(self)
+        kinds = QDialogButtonBox.StandardButton
+        buttons = QDialogButtonBox(kinds.Ok | kinds.Cancel, self)
+        buttons.accepted.connect(self._on_buttons_accepted)
+        buttons.rejected.connect(self.close)
+        layout = QVBoxLayout(self)
+        layout.addWidget(self._box)
+        layout.addWidget(self._trouble)
+        layout.addWidget(buttons)
+        self.resize(460, 110)
+
+    def _on_buttons_accepted(self) -> None:
+        code = self._box.code
+        if not code:
+            self._trouble.setText(self.tr("Give a code such as EPSG:6677."))
+            return
+        self.system_chosen.emit(code)
+        self.close()
