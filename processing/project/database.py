@@ -8,7 +8,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from processing.project.database_errors import told_of_database
+from processing.errors import told_as_user_error
+from processing.project.database_errors import damaged, told_of_database
 from processing.project.geometry_blob import SQL_FUNCTIONS
 from processing.project.reading_connection import connect, connect_for_reading
 from processing.project.schema import (
@@ -51,6 +52,7 @@ class Database:
                 stack.callback(clean_up)
             stack.callback(self._connection.close)
             self._prepare(writing=writing)
+            self._check_length()
             version = stored_version(self._connection, path)
             refuse_newer(version, len(steps), path)
             if not writing:
@@ -148,6 +150,19 @@ class Database:
             with contextlib.suppress(sqlite3.OperationalError):
                 if self._connection.execute("PRAGMA journal_mode").fetchone()[0] == "wal":
                     self._connection.execute("PRAGMA journal_mode = DELETE").fetchone()
+
+    def _check_length(self) -> None:
+        """Refuse a file that was cut off, even where nothing is read from its end."""
+        with self.snapshot() as connection:
+            (pages,) = connection.execute("PRAGMA page_count").fetchone()
+            (page_size,) = connection.execute("PRAGMA page_size").fetchone()
+            (journal,) = connection.execute("PRAGMA journal_mode").fetchone()
+            (_, _, name) = connection.execute("PRAGMA database_list").fetchone()
+            with told_as_user_error(self.path):
+                size = Path(name).stat().st_size
+        # The newest pages of a write-ahead log are not in the file yet.
+        if journal != "wal" and size < pages * page_size:
+            raise damaged(self.path, f"{size} of {pages * page_size} bytes")
 
     def _data_version(self) -> int:
         (version,) = self._connection.execute("PRAGMA data_version").fetchone()

@@ -32,7 +32,7 @@ def told_of_database(path: Path) -> Iterator[None]:
     Raises
     ------
     InUse, NoSpace, BadFile
-        In place of the ``sqlite3.Error`` of the body; defects of the program pass.
+        In place of what SQLite raises in the body; defects of the program pass.
     """
     try:
         yield
@@ -40,6 +40,9 @@ def told_of_database(path: Path) -> Iterator[None]:
         raise
     except sqlite3.Error as error:
         raise _from_sqlite(error, path) from error
+    except UnicodeDecodeError as error:
+        # SQLite tells of a damaged table in the table's own words.
+        raise damaged(path, error) from error
 
 
 def damaged(path: Path, reason: object) -> BadFile:

@@ -71,7 +71,7 @@ def connect_for_reading(path: Path) -> tuple[sqlite3.Connection, Callable[[], No
             connection = connect(path, "ro")
             try:
                 connection.execute("SELECT count(*) FROM sqlite_master").fetchone()
-            except sqlite3.Error as error:
+            except BaseException as error:
                 connection.close()
                 if getattr(error, "sqlite_errorcode", 0) not in _NEED_A_COPY:
                     raise
