@@ -298,7 +298,7 @@ class Document(QObject):
 
     def _adopt_drives(self, folders: tuple[Path, ...]) -> None:
         project = self._needed()
-        drives = [project.adopt_drive(folder) for folder in folders]
+        drives = project.adopt_drives(folders)
         self._show_first_image()
         self.shared.map_changes.drives_changed.emit()
         self._prepare_drives()

@@ -30,7 +30,7 @@ def command(arguments: argparse.Namespace) -> int:
         folders = import_drives(
             request_of(arguments), project.temporary_folder(), terminal_monitor()
         )
-        drives = [project.adopt_drive(folder) for folder in folders]
+        drives = project.adopt_drives(folders)
         finished = True
     finally:
         project.close()

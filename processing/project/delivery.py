@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from processing.errors import UNCHANGED, MissingInput, OutOfRange
 from processing.formats.point_files import PointFileInfo, read_info, read_sample
 from processing.monitor import Monitor
+from processing.project.reference_system import reference_system
 from processing.text import Text
 
 _SAMPLE_POINTS = 2_000
@@ -82,7 +83,7 @@ def read_delivery(inputs: tuple[Path, ...], crs: str, monitor: Monitor) -> Deliv
     for path in inputs:
         monitor.check()
         files.append(_looked_at(path))
-    return Delivery(_grouped(files), crs or _common_crs(files))
+    return Delivery(_grouped(files), _plane_system(crs or _common_crs(files), files))
 
 
 def _looked_at(path: Path) -> DeliveredFile:
@@ -128,6 +129,18 @@ def _common_crs(files: list[DeliveredFile]) -> str:
             ).filled(unchanged=UNCHANGED),
         )
     return next(iter(named), "")
+
+
+def _plane_system(crs: str, files: list[DeliveredFile]) -> str:
+    """The system if a drawing can be made in it; said before anything is read."""
+    if not crs:
+        return ""
+    try:
+        return reference_system(crs)
+    except OutOfRange as error:
+        names = ", ".join(file.info.path.name for file in files if file.info.crs == crs)
+        where = Text.same(f"{names}: {crs}" if names else crs)
+        raise OutOfRange(error.what, where, error.remedy) from error
 
 
 def _grouped(files: list[DeliveredFile]) -> tuple[tuple[DeliveredFile, ...], ...]:
