@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import signal
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from types import FrameType
 
 from platformdirs import user_documents_path
 from PySide6.QtCore import QLibraryInfo, Qt, QTimer, QTranslator
@@ -46,6 +48,7 @@ from widgets.scene_view.view import SceneView
 
 _LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
 _RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
+_SIGNALS_SEEN_MS = 250
 
 
 def run_window(wish: WindowWish) -> int:
@@ -55,8 +58,23 @@ def run_window(wish: WindowWish) -> int:
         return _do_demo_job(wish.headless_out)
     parts = build_window(Settings(), user_documents_path() / "Zuka")
     parts.window.show()
+    _close_on_signals(parts.window)
     QTimer.singleShot(0, lambda: _fulfil(wish, parts))
     return int(application.exec())
+
+
+def _close_on_signals(window: MainWindow) -> None:
+    """Let the system's request to end close the window as its button does."""
+
+    def close(_signal: int, _frame: FrameType | None) -> None:
+        window.close()
+
+    for number in (signal.SIGTERM, signal.SIGINT):
+        signal.signal(number, close)
+    # Python sees signals only between its own instructions, and Qt's loop runs none by itself.
+    pulse = QTimer(window)
+    pulse.timeout.connect(lambda: None)
+    pulse.start(_SIGNALS_SEEN_MS)
 
 
 def _do_demo_job(out: Path) -> int:
