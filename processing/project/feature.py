@@ -40,10 +40,14 @@ class Vertex:
         Easting, northing, height in metres, project CRS; the measured point's own coordinate where
         ``measured`` names one.
     measured : PointReference or None
+    is_occluded : bool
+        No measured point is at this place: its height comes from its neighbours or from a working
+        plane. Views show it hollow, the table lists it.
     """
 
     xyz: Position
     measured: PointReference | None = None
+    is_occluded: bool = False
 
 
 @dataclass(frozen=True)

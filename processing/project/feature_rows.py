@@ -20,10 +20,11 @@ from processing.project.geometry_blob import blob_of, places_of
 
 COLUMNS = (
     "geom", "id", "kind", "layer", "status", "confidence", "attributes", "provenance", "measured",
+    "occluded",
 )  # fmt: skip
 """Columns of the table ``features``, in the order of rows."""
 
-Row = tuple[bytes, str, str, str, str, float, str, str, str]
+Row = tuple[bytes, str, str, str, str, float, str, str, str, str]
 
 
 def row_of(feature: Feature, layer: str, srs_id: int) -> Row:
@@ -45,6 +46,7 @@ def row_of(feature: Feature, layer: str, srs_id: int) -> Row:
         _json(dict(feature.attributes)),
         _json(_plain_provenance(feature.provenance)),
         _json(_references(feature.vertices)),
+        _json(_occluded(feature.vertices)),
     )
 
 
@@ -57,13 +59,17 @@ def feature_of(row: tuple[Any, ...]) -> Feature:
     ValueError, KeyError, TypeError
         The row is damaged.
     """
-    blob, id_, kind, _, status, _, attributes, provenance, measured = row
+    blob, id_, kind, _, status, _, attributes, provenance, measured, occluded = row
     geometry, places = places_of(blob)
     return Feature(
         id=id_,
         kind=kind,
         geometry=geometry,
-        vertices=_vertices(places, {} if measured == "{}" else _mapping(json.loads(measured))),
+        vertices=_vertices(
+            places,
+            {} if measured == "{}" else _mapping(json.loads(measured)),
+            [] if occluded == "[]" else json.loads(occluded),
+        ),
         attributes={} if attributes == "{}" else _mapping(json.loads(attributes)),
         status=Status(status),
         provenance=_provenance(provenance),
@@ -104,6 +110,7 @@ def _plain(feature: Feature) -> dict[str, object]:
         "geometry": feature.geometry.value,
         "places": [vertex.xyz for vertex in feature.vertices],
         "measured": _references(feature.vertices),
+        "occluded": _occluded(feature.vertices),
         "attributes": dict(feature.attributes),
         "status": feature.status.value,
         "provenance": _plain_provenance(feature.provenance),
@@ -117,7 +124,8 @@ def _from_plain(plain: dict[str, Any]) -> Feature:
         id=plain["id"],
         kind=plain["kind"],
         geometry=Geometry(plain["geometry"]),
-        vertices=_vertices(places, plain["measured"]),
+        # Histories of the first schema say nothing of occluded vertices.
+        vertices=_vertices(places, plain["measured"], plain.get("occluded", [])),
         attributes=_mapping(plain["attributes"]),
         status=Status(plain["status"]),
         provenance=Provenance(**plain["provenance"]),
@@ -150,7 +158,25 @@ def _references(vertices: tuple[Vertex, ...]) -> dict[str, list[int | None]]:
     return references
 
 
+def _occluded(vertices: tuple[Vertex, ...]) -> list[int]:
+    """Numbers of the vertices without a measured point."""
+    return [number for number, vertex in enumerate(vertices) if vertex.is_occluded]
+
+
 def _vertices(
+    places: tuple[Position, ...], references: dict[str, list[int | None]], occluded: list[int]
+) -> tuple[Vertex, ...]:
+    vertices = _resting(places, references)
+    if not occluded:
+        return vertices
+    hidden = set(occluded)
+    return tuple(
+        Vertex(one.xyz, one.measured, is_occluded=number in hidden)
+        for number, one in enumerate(vertices)
+    )
+
+
+def _resting(
     places: tuple[Position, ...], references: dict[str, list[int | None]]
 ) -> tuple[Vertex, ...]:
     # Where a GIS program added or removed vertices, nobody knows what they rest on.

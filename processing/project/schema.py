@@ -70,6 +70,11 @@ INSERT INTO gpkg_extensions VALUES
 """
 
 
+def _add_occluded(connection: sqlite3.Connection) -> None:
+    """Which vertices of a feature rest on no measured point: a JSON list of their numbers."""
+    connection.execute("ALTER TABLE features ADD COLUMN occluded TEXT NOT NULL DEFAULT '[]'")
+
+
 def _make_first_tables(connection: sqlite3.Connection) -> None:
     for statement in (_GEOPACKAGE + _FIRST_TABLES).split(";\n"):
         if statement.strip():
@@ -78,7 +83,7 @@ def _make_first_tables(connection: sqlite3.Connection) -> None:
     connection.execute(f"PRAGMA user_version = {GEOPACKAGE_VERSION}")
 
 
-MIGRATIONS: tuple[Step, ...] = (_make_first_tables,)
+MIGRATIONS: tuple[Step, ...] = (_make_first_tables, _add_occluded)
 """The step from each schema version to the next, from an empty file on."""
 
 
