@@ -20,7 +20,7 @@ from processing.project.clip_kinds import (
     read_descriptions,
 )
 from processing.project.clip_members import OURS, features_of, member_of
-from processing.project.feature import Feature
+from processing.project.feature import Feature, Vertex
 from processing.project.geojson_shapes import (
     MOST_CHARACTERS,
     WHERE,
@@ -185,9 +185,15 @@ def _moved(
         raise _one_unknown(source, target)
     transform = reference_transform(source, target)
     places = np.array([vertex.xyz for one in features for vertex in one.vertices])
+    # Each feature takes from the rows as many as it has vertices.
     rows = iter(transform.apply(places).tolist())
     moved = [
-        one.with_vertices(tuple(replace(vertex, xyz=tuple(next(rows))) for vertex in one.vertices))
+        one.with_vertices(
+            tuple(
+                Vertex((x, y, height), vertex.measured, is_occluded=vertex.is_occluded)
+                for vertex, (x, y, height) in zip(one.vertices, rows, strict=False)
+            )
+        )
         for one in features
     ]
     return moved, (transform.note,)
@@ -222,7 +228,7 @@ def _grounded(feature: Feature, drives: Collection[str]) -> Feature:
     vertices = tuple(
         vertex
         if vertex.measured is None or vertex.measured.drive in drives
-        else replace(vertex, measured=None)
+        else Vertex(vertex.xyz, is_occluded=vertex.is_occluded)
         for vertex in feature.vertices
     )
     is_at_home = any(vertex.measured is not None for vertex in vertices)

@@ -123,6 +123,35 @@ class FeatureStore:
         """The transaction of :meth:`rewrite_srs` is through."""
         self._srs_id = srs_id
 
+    def layers_fit(self) -> bool:
+        """Whether the stored layers are those of the catalogue.
+
+        They are not when a catalogue was written by hand, or by a program that was killed then.
+        """
+        stored = self._database.rows("SELECT DISTINCT kind, layer FROM features")
+        return all(layer == _layer_of(self._catalogue, str(kind)) for kind, layer in stored)
+
+    def rewrite_layers(self, connection: sqlite3.Connection, catalogue: Catalogue) -> None:
+        """Write the layers that a catalogue gives to all features, in a transaction.
+
+        Raises
+        ------
+        BadFile
+            Another program has changed the features.
+        """
+        if self._database.was_changed_elsewhere():
+            self._compare()
+            self._database.accept_changes()
+        kinds = [str(kind) for (kind,) in connection.execute("SELECT DISTINCT kind FROM features")]
+        rows = [(_layer_of(catalogue, kind), kind) for kind in kinds]
+        connection.executemany(
+            "UPDATE features SET layer = ?1 WHERE kind = ?2 AND layer <> ?1", rows
+        )
+
+    def took_catalogue(self, catalogue: Catalogue) -> None:
+        """The transaction of :meth:`rewrite_layers` is through."""
+        self._catalogue = catalogue
+
     def _step(self, change: Change, by: int) -> Change:
         misfits = self._misfits(change)
         if misfits:
@@ -177,9 +206,7 @@ class FeatureStore:
             self._features[feature.id] = feature
 
     def _row(self, feature: Feature, srs_id: int) -> tuple[object, ...]:
-        kinds = self._catalogue
-        layer = kinds[feature.kind].layer if feature.kind in kinds else ""
-        return row_of(feature, layer, srs_id)
+        return row_of(feature, _layer_of(self._catalogue, feature.kind), srs_id)
 
     def _stored(self) -> dict[str, Feature]:
         features: dict[str, Feature] = {}
@@ -214,6 +241,11 @@ class FeatureStore:
                 if stored.get(id_) != self._features.get(id_)
             ]
             raise changed_elsewhere(self._database.path, ", ".join(ids[:_MOST_IDS_TOLD]))
+
+
+def _layer_of(catalogue: Catalogue, kind: str) -> str:
+    """Empty for a kind that the catalogue doesn't know."""
+    return catalogue[kind].layer if kind in catalogue else ""
 
 
 @contextmanager

@@ -81,7 +81,7 @@ def read_collection(text: str) -> tuple[JsonObject, list[JsonObject]]:
         )
     try:
         whole = json.loads(words, parse_constant=_refuse_constant)
-        if "\\ud" in words.lower():
+        if "\\ud" in words or "\\uD" in words:
             # Half of a character, which no file could hold, can only be written as an escape.
             json.dumps(whole, ensure_ascii=False).encode()
     except (ValueError, RecursionError) as error:

@@ -14,6 +14,9 @@ from numpy.typing import NDArray
 from processing.errors import UNCHANGED, InUse, MissingInput, OutOfRange, told_as_user_error
 from processing.points.drive import Drive
 from processing.project.catalogue import Catalogue, read_catalogue
+from processing.project.catalogue_adoption import CatalogueFile
+from processing.project.catalogue_change import CatalogueComparison, compare
+from processing.project.catalogue_writing import write_catalogue
 from processing.project.database import Database
 from processing.project.database_errors import damaged
 from processing.project.drive_folders import DRIVES, TEMPORARY, DriveFolders
@@ -31,7 +34,6 @@ from processing.text import Text
 from resources import path_of
 
 _DATABASE = "project.gpkg"
-_CATALOGUE = "catalogue.toml"
 _UNFINISHED = "unfinished.gpkg"
 _ORIGIN_STEP_M = 100.0
 _CRS, _ORIGIN = "crs", "origin"
@@ -60,7 +62,7 @@ class Project:
                 stack.callback(ProjectLock(folder).release)
             self._database = Database(folder / _DATABASE, writing=writing)
             stack.callback(self._database.close)
-            self.catalogue: Catalogue = self._read_catalogue()
+            self._catalogue = CatalogueFile(folder)
             with self._database.snapshot():
                 self.settings = ProjectSettings(self._database)
                 self.history = History(self._database, self.settings)
@@ -73,6 +75,7 @@ class Project:
             self._drives = {id_: Drive(self._folders.path_of(id_)) for id_ in self._folders.ids}
             if writing:
                 self._folders.remove_leftovers()
+                self._catalogue.correct_layers(self.features, self._database)
             self._closing = stack.pop_all()
 
     @staticmethod
@@ -158,6 +161,11 @@ class Project:
     def crs(self) -> str:
         """``EPSG:n``, or empty when unknown."""
         return self.settings.text(_CRS)
+
+    @property
+    def catalogue(self) -> Catalogue:
+        """The kinds it is drawn by: its own, or those that come with the program."""
+        return self._catalogue.current
 
     @property
     def drives(self) -> tuple[Drive, ...]:
@@ -256,6 +264,48 @@ class Project:
             self._write_crs(connection, code)
         self._took_crs(code)
 
+    def compare_catalogue(self, path: Path) -> CatalogueComparison:
+        """What :meth:`adopt_catalogue` would change.
+
+        Raises
+        ------
+        MissingInput, NoSpace, BadFile
+            The file can't be read, or is no catalogue; names the line.
+        """
+        return compare(self.catalogue, read_catalogue(path), self.features.all())
+
+    def adopt_catalogue(self, path: Path, *, keep_used: bool = False) -> CatalogueComparison:
+        """Take an office's catalogue: a copy in the project's folder, by which it draws from now.
+
+        Parameters
+        ----------
+        keep_used : bool
+            Whether kinds that the new one lacks and features use are kept in the copy.
+
+        Raises
+        ------
+        MissingInput, BadFile
+            As :meth:`compare_catalogue`.
+        Unsuitable
+            Features would lose their kind, or not fit it.
+        NoSpace, InUse
+            The project is as it was.
+        """
+        return self._catalogue.adopt(path, self.features, self._database, keep_used=keep_used)
+
+    def export_catalogue(self, path: Path) -> None:
+        """Write the project's catalogue to a file, for an office to start its own from.
+
+        Raises
+        ------
+        InUse
+            The path is a file of the project or the program, or a delivered one.
+        NoSpace, MissingInput
+        """
+        delivered = [file for drive in self.drives for file in drive.delivered_files]
+        ours = (self._catalogue.path, self._database.path, path_of("catalogue/level500.toml"))
+        write_catalogue(path, self.catalogue, never=(*ours, *delivered))
+
     def close(self) -> None:
         """Close the database and let others have the project; may be called again."""
         self._closing.close()
@@ -294,10 +344,6 @@ class Project:
             if len(numbers) == 3 and all(map(math.isfinite, numbers)):
                 return np.array(numbers)
         raise damaged(self._database.path, f"zuka_settings.origin: {stored}")
-
-    def _read_catalogue(self) -> Catalogue:
-        own = self.folder / _CATALOGUE
-        return read_catalogue(own if own.is_file() else path_of("catalogue/level500.toml"))
 
 
 def _make_database(unfinished: Path, path: Path, crs: str) -> None:
