@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
@@ -37,6 +38,38 @@ _CODES = {
     "wall": "6140",
     "road_area": "6522",
     "spot_height": "7312",
+}
+
+# All road codes of the standard at level 500 with the shapes it draws them in: point, line, area.
+# A circle (E3) is drawn as an area, a direction (E6) and a note (E7) as a point.
+_SHAPES_OF_CODES = {
+    "2101 2103 2213 2227 2231 2232 2233 2234 2237 2219": "l",
+    "2203 2226": "la",
+    "2211 2222 2235 2236": "a",
+    "2221 2238 2239 2241 2242 2243 2244 2246 2247 2253 2255 2256 2262": "p",
+    "2261 4101 4111 4121 4131 4141 4151 4161": "pa",
+    "2505": "l",
+    "3001 3002 3003 3004": "a",
+    "4119 4132 4142 4211 4215 4216 4221 4222 4237 4238": "p",
+    "6101 6110 6111 6112 6113 6131 6132 6133 6134 6136 6140 6141 6142 6201 6301 6522": "l",
+    "1104 1106 7101 7102": "l",
+    "7304 7305 7306 7311 7312 8115 8121 8173 8181": "p",
+}
+# What the ledgers of trees, signs and fixtures ask of each.
+_LEDGERS = {
+    "street_tree planting tree_broadleaf tree_conifer": (
+        "number route species tree_class height_m crown_m girth_m survey_date note"
+    ),
+    "sign sign_guide sign_warning sign_regulation info_board": (
+        "number route station bound side sign_class sign_number shape size_m plates height_m post"
+        " facing_deg photo installed keeper"
+    ),
+    "street_light security_light": "type lamps height_m number route keeper",
+    "guard_rail guard_pipe guard_cable": "start_station end_station length_m number route",
+    "manhole manhole_area manhole_water manhole_water_area": "number route diameter_m keeper",
+    "pole wired_pole phone_pole power_pole": "number type height_m wires_deg keeper",
+    "road_center": "number route name",
+    "width_line": "width_m side",
 }
 _NO_CODE = {"curb_lower", "sign", "pole", "marking_line", "crosswalk", "building_corner"}
 
@@ -77,6 +110,43 @@ def test_a_kind_of_the_standard_has_its_code_in_its_layer(
 ) -> None:
     assert bundled[kind].dm_code == code
     assert bundled[kind].layer.startswith(f"{code}_")
+
+
+@pytest.mark.parametrize(("codes", "shapes"), _SHAPES_OF_CODES.items())
+def test_every_road_code_of_the_standard_can_be_drawn_in_each_of_its_shapes(
+    bundled: Catalogue, codes: str, shapes: str
+) -> None:
+    names = {"p": Geometry.POINT, "l": Geometry.LINE, "a": Geometry.AREA}
+    drawn = {(kind.dm_code, kind.geometry) for kind in bundled}
+    assert not {(code, names[one]) for code in codes.split() for one in shapes} - drawn
+
+
+@pytest.mark.parametrize(("kinds", "attributes"), _LEDGERS.items())
+def test_a_kind_of_a_ledger_has_what_its_table_asks(
+    bundled: Catalogue, kinds: str, attributes: str
+) -> None:
+    for kind in kinds.split():
+        said = {one.id for one in bundled[kind].attributes}
+        assert set(attributes.split()) <= said
+
+
+def test_every_point_kind_has_a_symbol_of_lines_and_circles_within_its_frame(
+    bundled: Catalogue,
+) -> None:
+    for kind in bundled:
+        if kind.geometry is not Geometry.POINT:
+            continue
+        # The file comes with the program.
+        root = ET.parse(path_of(f"symbols/{kind.symbol}.svg")).getroot()  # noqa: S314
+        assert root.get("viewBox") == "-1 -1 2 2"
+        tags = {shape.tag.rpartition("}")[2] for shape in root}
+        assert tags <= {"title", "circle", "line", "polyline", "polygon"}
+        assert len(tags) > 1
+
+
+def test_kinds_of_one_layer_share_their_code(bundled: Catalogue) -> None:
+    for kind in bundled:
+        assert {one.dm_code for one in bundled.of_layer(kind.layer)} == {kind.dm_code}
 
 
 def test_a_kind_that_the_standard_lacks_has_no_invented_code(bundled: Catalogue) -> None:
@@ -165,3 +235,12 @@ def test_an_offices_catalogue_is_read_in_the_encodings_of_offices(
     assert side.name_of_choice("left").ja == "左"
     assert side.name_of_choice("其他").en == "其他"
     assert kind.attribute("none") is None
+
+
+def test_the_example_of_the_manual_is_a_catalogue(tmp_path: Path) -> None:
+    manual = Path(__file__).parents[3] / "docs" / "catalogue.md"
+    example = manual.read_text(encoding="utf-8").split("```toml\n")[1].split("```")[0]
+    path = tmp_path / "example.toml"
+    path.write_text(example, encoding="utf-8")
+    (kind,) = read_catalogue(path)
+    assert [one.id for one in kind.attributes] == ["height_m", "side"]
