@@ -7,14 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from processing.errors import MissingInput, OutOfRange, Unsuitable
 from processing.project.catalogue import Catalogue, FeatureKind, Geometry, read_catalogue
 from processing.project.feature import Feature, PointReference, Provenance, Status, Vertex
 from processing.project.feature_clips import clip_of, features_of_clip
-from processing.project.reference_transform import reference_transform
 from processing.text import Text
 from resources import path_of
 from tests.processing.project.drawn import curb, sign
@@ -105,23 +102,6 @@ def test_in_another_zone_places_are_transformed_and_said_and_heights_kept(
     assert "標高" in pasted.notes[0].ja
     back = features_of_clip(clip_of(pasted.features, _ZONE_8, bundled), _ZONE_9, bundled, ())
     assert np.allclose(back.features[0].vertices[0].xyz, (0, 0, 9.25), rtol=0, atol=1e-6)
-
-
-@given(
-    zones=st.tuples(st.integers(6669, 6687), st.integers(6669, 6687)),
-    easting=st.floats(-130_000, 130_000),
-    northing=st.floats(-200_000, 200_000),
-    height=st.floats(-100, 4000),
-)
-def test_there_and_back_between_plane_zones_is_exact_to_a_tenth_of_a_millimetre(
-    zones: tuple[int, int], easting: float, northing: float, height: float
-) -> None:
-    here, there = (f"EPSG:{zone}" for zone in zones)
-    place = np.array([[easting, northing, height]])
-    moved = reference_transform(here, there).apply(place)
-    back = reference_transform(there, here).apply(moved)
-    assert np.abs(back - place).max() < 1e-4
-    assert moved[0, 2] == height
 
 
 @pytest.mark.parametrize(
