@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from types import FrameType
 
 from platformdirs import user_documents_path
-from PySide6.QtCore import QLibraryInfo, Qt, QTimer, QTranslator
+from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import QApplication
 
 from app.actions.draw import draw_actions
@@ -21,13 +21,16 @@ from app.actions.view import view_actions
 from app.cli.window_wish import WindowWish
 from app.document import Document
 from app.jobs import JobQueue
-from app.main_window import MainWindow, Panel
+from app.main_window import MainWindow
 from app.settings import Settings
-from app.theme import apply_theme
-from app.window_parts import WindowParts
-from app.wiring import connect_parts
-from processing.text import Text
-from resources import path_of
+from app.shortcut_editing import give_keys
+from app.theme import Theme
+from app.translation import Translation
+from app.window_change import WindowChange
+from app.window_contents import Contents, Panel
+from app.window_parts import LastingParts, WindowParts
+from app.wiring import connect_lasting, connect_parts
+from processing.text import Language, Text
 from widgets.image_view.view import ImageView
 from widgets.mouse_tools.draw_area import DrawArea
 from widgets.mouse_tools.draw_line import DrawLine
@@ -92,7 +95,7 @@ def make_application() -> QApplication:
     running = QApplication.instance()
     application = running if isinstance(running, QApplication) else QApplication(sys.argv[:1])
     application.setApplicationName("Zuka")
-    apply_theme(application)
+    Theme.of(application)
     return application
 
 
@@ -104,39 +107,30 @@ def build_window(settings: Settings, projects_folder: Path) -> WindowParts:
     projects_folder : Path
         Where new projects are made unless the user says otherwise.
     """
-    _install_translation(settings.language)
-    parts = _make_parts(settings)
-    _add_actions(parts, FileActions(parts, projects_folder))
-    parts.window.add_panels(_panels(parts))
-    connect_parts(parts)
-    parts.window.show_work(is_open=False)
+    lasting = _make_lasting(settings)
+    translation = Translation(lasting.window)
+    translation.speak(settings.language)
+    parts = _make_parts(lasting, settings.language)
+    files = FileActions(parts, projects_folder)
+    connect_lasting(parts)
+    parts.window.files_dropped.connect(files.open_files)
+
+    def furnish() -> None:
+        _furnish(parts, files, change)
+
+    change = WindowChange(parts, translation, lambda new: _make_parts(lasting, new), furnish)
+    furnish()
+    if settings.layout is not None:
+        parts.window.restore_layout(settings.layout)
     return parts
 
 
-def _install_translation(language: str) -> None:
-    """Translations of our words and of Qt's own; English is what the sources say."""
-    application = QApplication.instance()
-    if application is None:
-        return
-    own = str(path_of("translations"))
-    qt = QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)
-    for name, folder in ((f"qtbase_{language}", qt), (f"zuka_{language}", own)):
-        translator = QTranslator(application)
-        if translator.load(name, folder):
-            application.installTranslator(translator)
-
-
-def _make_parts(settings: Settings) -> WindowParts:
-    language = settings.language
+def _make_lasting(settings: Settings) -> LastingParts:
+    theme = Theme.of(make_application())
+    theme.choose(settings.theme)
     jobs = JobQueue()
     document = Document(jobs)
-    shared, tiles = document.shared, document.tiles
-    image_view = ImageView(document, shared, tiles, language=language)
-    scene_view = SceneView(document, shared, tiles)
-    image_bar = ImageBar(document, shared, language)
-    message_bar = MessageBar(language)
-    start_page = StartPage()
-    status_line = StatusLine(document, shared, language)
+    shared = document.shared
     toolbox = MouseToolbox(
         {
             "select": Select(document, shared),
@@ -145,22 +139,34 @@ def _make_parts(settings: Settings) -> WindowParts:
             "area": DrawArea(shared),
             "edit": EditVertices(document, shared),
         },
-        (image_view, scene_view),
+        (),
     )
-    window = MainWindow(
-        language,
-        start_page=start_page,
-        views=(image_view, scene_view),
-        header=image_bar,
-        message=message_bar,
-        status=status_line,
-    )
-    return WindowParts(
-        language=language,
+    return LastingParts(
         settings=settings,
+        theme=theme,
         jobs=jobs,
         document=document,
         toolbox=toolbox,
+        window=MainWindow(),
+    )
+
+
+def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
+    document = lasting.document
+    shared, tiles = document.shared, document.tiles
+    image_view = ImageView(document, shared, tiles, language=language)
+    scene_view = SceneView(document, shared, tiles)
+    image_bar = ImageBar(document, shared, language)
+    message_bar = MessageBar(language)
+    start_page = StartPage(language)
+    status_line = StatusLine(document, shared, language)
+    return WindowParts(
+        language=language,
+        settings=lasting.settings,
+        theme=lasting.theme,
+        jobs=lasting.jobs,
+        document=document,
+        toolbox=lasting.toolbox,
         image_view=image_view,
         scene_view=scene_view,
         image_bar=image_bar,
@@ -172,29 +178,47 @@ def _make_parts(settings: Settings) -> WindowParts:
         processing_panel=ProcessingPanel(language),
         attribute_panel=AttributePanel(document, shared, language),
         jobs_panel=JobsPanel(language),
-        window=window,
+        window=lasting.window,
     )
 
 
-def _add_actions(parts: WindowParts, files: FileActions) -> None:
+def _furnish(parts: WindowParts, files: FileActions, change: WindowChange) -> None:
+    """Put the widgets into the window, with all that one can do with them."""
+    views = (parts.image_view, parts.scene_view)
+    parts.toolbox.use_views(views)
+    contents = Contents(
+        language=parts.language,
+        start_page=parts.start_page,
+        views=views,
+        headers=(parts.image_bar,),
+        message=parts.message_bar,
+        status=parts.status_line,
+    )
+    parts.window.hold(contents)
+    _add_actions(parts, files, change)
+    parts.window.add_panels(_panels(parts), parts.language)
+    give_keys(parts)
+    connect_parts(parts)
+    parts.window.show_work(is_open=parts.document.project is not None)
+
+
+def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -> None:
     help_ = HelpActions(parts)
     actions = (
         *files.actions(),
         *edit_actions(parts),
-        *view_actions(parts),
+        *view_actions(parts, change.speak),
         *draw_actions(parts),
         *process_actions(parts),
         *help_.actions(),
     )
     parts.window.add_actions(actions)
-    help_.list_in_palette(actions)
-    parts.window.files_dropped.connect(files.open_files)
+    parts.window.show_in_corner("language-en" if parts.language == "ja" else "language-ja")
     parts.start_page.open_requested.connect(files.choose_project)
     parts.start_page.import_requested.connect(files.choose_import)
     parts.start_page.demo_requested.connect(files.open_demo)
     parts.image_view.open_requested.connect(files.choose_project)
     parts.image_view.import_requested.connect(files.choose_import)
-    parts.start_page.recent_chosen.connect(parts.document.open)
 
 
 def _panels(parts: WindowParts) -> tuple[Panel, ...]:

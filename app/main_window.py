@@ -2,186 +2,162 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-import qtawesome
-from PySide6.QtCore import QByteArray, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import (
-    QAction,
-    QActionGroup,
-    QCloseEvent,
-    QDragEnterEvent,
-    QDropEvent,
-    QIcon,
-    QKeySequence,
-)
+from PySide6.QtCore import QByteArray, QEvent, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import QAction, QCloseEvent, QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
     QDockWidget,
     QMainWindow,
-    QMenu,
+    QMenuBar,
     QSplitter,
     QStackedWidget,
-    QStatusBar,
     QToolBar,
+    QToolButton,
     QVBoxLayout,
     QWidget,
 )
 from typing_extensions import override
 
-from app.actions.action import MENUS, Action
+from app.actions.action import Action
+from app.settings import WindowLayout
+from app.window_actions import WindowActions
+from app.window_contents import Contents, Panel
 from processing.text import Language, Text
 
 _ICON_PX = 20
-
-
-@dataclass(frozen=True)
-class Panel:
-    """A widget in a dock.
-
-    Attributes
-    ----------
-    area : Qt.DockWidgetArea
-        Where it is at first.
-    width, height : int
-        Its share there, in pixels of a usual window.
-    behind : str
-        Id of the panel with which it shares a place, as a tab; empty for a place of its own.
-    """
-
-    id: str
-    title: Text
-    widget: QWidget
-    area: Qt.DockWidgetArea
-    width: int
-    height: int
-    behind: str = ""
+_BESIDE = "side-by-side"
 
 
 class MainWindow(QMainWindow):
-    """The window; what it holds is handed over.
+    """The window; what it holds is handed over, and may be replaced while it is shown.
 
-    Parameters
-    ----------
-    start_page : QWidget
-        Shown while nothing is open.
-    views : sequence of QWidget
-        From top to bottom.
-    header : QWidget
-        The line above the views.
-    message : QWidget
-        The line above everything.
-    status : QStatusBar
-        The last line.
+    Signals
+    -------
+    files_dropped(paths: tuple[Path, ...])
+    closed()
     """
 
-    files_dropped = Signal(object)  # tuple[Path, ...]
+    files_dropped = Signal(object)
     closed = Signal()
 
-    def __init__(
-        self,
-        language: Language,
-        *,
-        start_page: QWidget,
-        views: Sequence[QWidget],
-        header: QWidget,
-        message: QWidget,
-        status: QStatusBar,
-    ) -> None:
+    def __init__(self) -> None:
         super().__init__()
-        self._language = language
-        self._actions: dict[str, QAction] = {}
+        self._actions: WindowActions | None = None
+        self._docks: dict[str, QDockWidget] = {}
         self._in_front: list[QDockWidget] = []
-        # Only docks that are laid out can come to the front.
-        self._when_laid_out = QTimer(self)
-        self._when_laid_out.setSingleShot(True)
-        self._when_laid_out.timeout.connect(self._bring_forward)
-        self._menus: dict[str, QMenu] = {}
-        self._toolbar = QToolBar(self.tr("Tools"), self)
-        self._toolbar.setObjectName("toolbar")
-        self._toolbar.setIconSize(QSize(_ICON_PX, _ICON_PX))
-        self.addToolBar(self._toolbar)
+        self._toolbar: QToolBar | None = None
+        self._splitter = QSplitter(Qt.Orientation.Vertical)
+        self._pages = QStackedWidget()
+        self._is_open = False
+        self._docks_when_open: QByteArray | None = None
+        # Docks take their sizes, and come to the front, only once they are laid out.
+        self._when_laid_out = QTimer(self, singleShot=True)
+        self._when_laid_out.timeout.connect(self._on_laid_out)
         self.setAcceptDrops(True)
         self.setDockNestingEnabled(True)
-        self._splitter = QSplitter(Qt.Orientation.Vertical, self)
-        for view in views:
-            self._splitter.addWidget(view)
-        work = QWidget(self)
-        column = QVBoxLayout(work)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(header)
-        column.addWidget(self._splitter, 1)
-        self._pages = QStackedWidget(self)
-        self._pages.addWidget(start_page)
-        self._pages.addWidget(work)
-        centre = QWidget(self)
-        whole = QVBoxLayout(centre)
-        whole.setContentsMargins(0, 0, 0, 0)
-        whole.setSpacing(0)
-        whole.addWidget(message)
-        whole.addWidget(self._pages, 1)
-        self.setCentralWidget(centre)
-        self.setStatusBar(status)
         self.resize(1600, 1000)
         self.show_title("")
 
     @property
     def actions_by_id(self) -> dict[str, QAction]:
         """All actions by their id; a copy."""
-        return dict(self._actions)
+        return {entry.action.id: entry.made for entry in self.actions_made.entries}
+
+    @property
+    def actions_made(self) -> WindowActions:
+        """The actions of what the window holds now.
+
+        Raises
+        ------
+        ValueError
+            Before it holds anything.
+        """
+        if self._actions is None:
+            message = "the window holds nothing yet"
+            raise ValueError(message)
+        return self._actions
+
+    @property
+    def are_views_beside(self) -> bool:
+        """Whether the views stand beside each other."""
+        return self._splitter.orientation() == Qt.Orientation.Horizontal
+
+    def hold(self, contents: Contents) -> None:
+        """Hold this in place of what there was, which is deleted, and stand as before.
+
+        Actions, panels and :meth:`show_work` follow.
+
+        What belongs to the contents and is no widget of theirs may have ``centralWidget()`` for
+        a parent, so that it goes with them.
+        """
+        views = self._splitter.saveState() if self._actions is not None else QByteArray()
+        self._let_go()
+        self._splitter = QSplitter(Qt.Orientation.Vertical)
+        for view in contents.views:
+            self._splitter.addWidget(view)
+        self._splitter.restoreState(views)
+        self._pages = QStackedWidget()
+        self._pages.addWidget(contents.start_page)
+        self._pages.addWidget(_stacked(*contents.headers, self._splitter))
+        # The old widget is deleted by Qt in each of these.
+        self.setCentralWidget(_stacked(contents.message, self._pages))
+        self.setMenuBar(QMenuBar(self))
+        self.setStatusBar(contents.status)
+        self._toolbar = QToolBar(self.tr("Tools"), self)
+        self._toolbar.setObjectName("toolbar")
+        self._toolbar.setIconSize(QSize(_ICON_PX, _ICON_PX))
+        self.addToolBar(self._toolbar)
+        self._actions = WindowActions(self, self._toolbar, contents.language)
 
     def add_actions(self, actions: Sequence[Action]) -> None:
         """Put actions into menus and toolbar, in their order."""
-        for id_, title in MENUS:
-            self._menus[id_] = self.menuBar().addMenu(title.spoken(self._language))
-        groups: dict[str, QActionGroup] = {}
-        toolbar_group = 0
-        for action in actions:
-            made = self._made(action)
-            if action.group:
-                group = groups.setdefault(action.group, QActionGroup(self))
-                group.addAction(made)
-            if action.menu:
-                self._menus[action.menu].addAction(made)
-            if action.toolbar:
-                if toolbar_group and action.toolbar != toolbar_group:
-                    self._toolbar.addSeparator()
-                toolbar_group = action.toolbar
-                self._toolbar.addAction(made)
+        self.actions_made.add(actions)
+        self.actions_made.know_project(is_open=self._is_open)
 
-    def add_panels(self, panels: Sequence[Panel]) -> None:
+    def show_in_corner(self, id_: str) -> None:
+        """Show an action at the end of the menu bar as well."""
+        button = QToolButton(self)
+        button.setAutoRaise(True)
+        button.setDefaultAction(self.actions_made[id_])
+        self.menuBar().setCornerWidget(button)
+
+    def add_panels(self, panels: Sequence[Panel], language: Language) -> None:
         """Put panels into docks; docks of one area stand above each other."""
-        docks: dict[str, QDockWidget] = {}
-        self._menus["view"].addSeparator()
+        self.actions_made.divide("view")
         for panel in panels:
-            dock = QDockWidget(panel.title.spoken(self._language), self)
+            dock = QDockWidget(panel.title.spoken(language), self)
             dock.setObjectName(panel.id)
             dock.setWidget(panel.widget)
             self.addDockWidget(panel.area, dock)
             if panel.behind:
-                self.tabifyDockWidget(docks[panel.behind], dock)
-                self._in_front.append(docks[panel.behind])
-            self._menus["view"].addAction(dock.toggleViewAction())
-            docks[panel.id] = dock
+                self.tabifyDockWidget(self._docks[panel.behind], dock)
+                self._in_front.append(self._docks[panel.behind])
+            self._docks[panel.id] = dock
+            self._adopt_toggle(panel, dock)
         placed = [panel for panel in panels if not panel.behind]
-        own = [docks[panel.id] for panel in placed]
+        own = [self._docks[panel.id] for panel in placed]
         across, down = Qt.Orientation.Horizontal, Qt.Orientation.Vertical
         self.resizeDocks(own, [panel.width for panel in placed], across)
         self.resizeDocks(own, [panel.height for panel in placed], down)
 
+    def give_keys(self, keys: Mapping[str, tuple[str, ...]]) -> None:
+        """Let actions be reached by these keys from now on."""
+        self.actions_made.give_keys(keys)
+
     def show_work(self, *, is_open: bool) -> None:
-        """Show the views, or the start page; docks belong to the views."""
+        """Show the views, or the start page; docks and most actions belong to the views."""
+        self._remember_docks()
+        was_open, self._is_open = self._is_open, is_open
+        self.actions_made.know_project(is_open=is_open)
         self._pages.setCurrentIndex(1 if is_open else 0)
-        for dock in self.findChildren(QDockWidget):
+        if is_open and was_open:
+            return
+        for dock in self._docks.values():
             dock.setVisible(is_open)
         if is_open:
-            self._when_laid_out.start()
-
-    def _bring_forward(self) -> None:
-        for dock in self._in_front:
-            dock.raise_()
+            self._restore_docks()
 
     def show_title(self, name: str) -> None:
         """Name the window after the project."""
@@ -192,14 +168,25 @@ class MainWindow(QMainWindow):
         turned = Qt.Orientation.Horizontal if beside else Qt.Orientation.Vertical
         self._splitter.setOrientation(turned)
 
-    def layout_to_keep(self) -> tuple[QByteArray, QByteArray]:
-        """Geometry and docks, to be given to :meth:`restore_layout`."""
-        return self.saveGeometry(), self.saveState()
+    def layout_to_keep(self) -> WindowLayout:
+        """How the window stands, to be given to :meth:`restore_layout`."""
+        self._remember_docks()
+        docks = self.saveState() if self._docks_when_open is None else self._docks_when_open
+        return WindowLayout(self.saveGeometry(), docks, self._splitter.saveState())
 
-    def restore_layout(self, layout: tuple[QByteArray, QByteArray]) -> None:
-        """Stand as it was left."""
-        self.restoreGeometry(layout[0])
-        self.restoreState(layout[1])
+    def restore_layout(self, layout: WindowLayout) -> None:
+        """Stand as it was left; called while no project is open."""
+        self.restoreGeometry(layout.geometry)
+        self._docks_when_open = layout.docks
+        self._splitter.restoreState(layout.views)
+        if _BESIDE in self.actions_made:
+            self.actions_made[_BESIDE].setChecked(self.are_views_beside)
+
+    @override
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and self._actions is not None:
+            self._actions.recolour()
 
     @override
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
@@ -217,34 +204,64 @@ class MainWindow(QMainWindow):
         self.closed.emit()
         super().closeEvent(event)
 
-    def _made(self, action: Action) -> QAction:
-        text = action.text.spoken(self._language)
-        made = QAction(text, self)
-        made.setObjectName(action.id)
-        made.setShortcuts([QKeySequence(keys) for keys in action.keys])
-        if action.icon:
-            made.setIcon(self._icon(action.icon))
-        if action.keys:
-            made.setToolTip(f"{text} ({action.keys[0]})")
-        made.setCheckable(action.is_checkable)
-        made.triggered.connect(_without_argument(action.run))
-        self._actions[action.id] = made
-        return made
+    def _let_go(self) -> None:
+        """Delete what is not deleted by being replaced."""
+        self._remember_docks()
+        self._is_open = False
+        self._in_front.clear()
+        # Children are found by their names when a layout is restored, so the old ones leave now.
+        old = (*self._docks.values(), self._toolbar, self.menuBar().cornerWidget())
+        for widget in old:
+            if widget is not None:
+                widget.setParent(None)
+                widget.deleteLater()
+        self._docks.clear()
+        if self._actions is not None:
+            self._actions.deleteLater()
 
-    def _icon(self, name: str) -> QIcon:
-        palette = self.palette()
-        icon: QIcon = qtawesome.icon(
-            name,
-            color=palette.windowText().color(),
-            color_disabled=palette.placeholderText().color(),
+    def _adopt_toggle(self, panel: Panel, dock: QDockWidget) -> None:
+        toggle = dock.toggleViewAction()
+        action = Action(
+            f"panel-{panel.id}",
+            Text("Panel: {title}", "パネル: {title}").filled(title=panel.title),
+            toggle.trigger,
+            "view",
+            needs_project=True,
         )
-        return icon
+        self.actions_made.adopt(action, toggle)
+
+    def _remember_docks(self) -> None:
+        """Keep how the docks stand, for the next time that a project is open."""
+        if self._is_open:
+            self._docks_when_open = self.saveState()
+
+    def _restore_docks(self) -> None:
+        """Put the docks where they were left; a window without any would look broken."""
+        if self._docks_when_open is not None:
+            self.restoreState(self._docks_when_open)
+            if all(dock.isHidden() for dock in self._docks.values()):
+                self._docks_when_open = None
+                for dock in self._docks.values():
+                    dock.show()
+        self._when_laid_out.start()
+
+    def _on_laid_out(self) -> None:
+        if not self._is_open:
+            return
+        if self._docks_when_open is not None:
+            self.restoreState(self._docks_when_open)
+            return
+        for dock in self._in_front:
+            dock.raise_()
 
 
-def _without_argument(run: Callable[[], object]) -> Callable[[], None]:
-    """Qt sends whether the action is checked; what is run doesn't ask for it."""
-
-    def called() -> None:
-        run()
-
-    return called
+def _stacked(*widgets: QWidget) -> QWidget:
+    """Lines above the last widget, which fills the rest."""
+    whole = QWidget()
+    column = QVBoxLayout(whole)
+    column.setContentsMargins(0, 0, 0, 0)
+    column.setSpacing(0)
+    for line in widgets[:-1]:
+        column.addWidget(line)
+    column.addWidget(widgets[-1], 1)
+    return whole

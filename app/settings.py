@@ -2,19 +2,47 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
 from pathlib import Path
 
 from platformdirs import user_config_path
 from PySide6.QtCore import QByteArray, QSettings
 
 from app.language import system_language
+from app.theme import ThemeChoice
 from processing.text import Language
+from widgets.parts.recent_project import RecentProject
 
 _MOST_RECENT = 10
+_MOST_USED = 30
+_RECENT, _OPENED_AT = "recent", "recent_opened_at"
+_KEYS = "shortcuts"
+_BETWEEN_KEYS = "\n"  # keys hold commas and blanks
+
+
+@dataclass(frozen=True)
+class WindowLayout:
+    """How a window stands, in Qt's own words.
+
+    Attributes
+    ----------
+    geometry : QByteArray
+        Its place on the screen.
+    docks : QByteArray
+        Docks and toolbar as they are while a project is open.
+    views : QByteArray
+        How the views share the middle; empty for their usual shares.
+    """
+
+    geometry: QByteArray
+    docks: QByteArray
+    views: QByteArray
 
 
 class Settings:
-    """Language, recent projects and the window's layout, kept in one file.
+    """Language, theme, keys, recent projects and the window's layout, kept in one file.
 
     Parameters
     ----------
@@ -33,30 +61,99 @@ class Settings:
         return chosen if chosen in ("en", "ja") else system_language()  # type: ignore[return-value]
 
     def choose_language(self, language: Language) -> None:
-        """Speak this language from the next start on."""
+        """Speak this language from now on."""
         self._store.setValue("language", language)
 
     @property
-    def recent_projects(self) -> tuple[Path, ...]:
-        """Projects opened last that still exist, newest first."""
-        stored = self._store.value("recent", [])
-        names = stored if isinstance(stored, list) else [stored] if stored else []
-        return tuple(Path(str(name)) for name in names if Path(str(name)).is_dir())
+    def theme(self) -> ThemeChoice:
+        """Light, dark, or as the system is."""
+        chosen = str(self._store.value("theme", ""))
+        known = {choice.value: choice for choice in ThemeChoice}
+        return known.get(chosen, ThemeChoice.SYSTEM)
 
-    def remember_project(self, folder: Path) -> None:
-        """Put a project first among the recent ones."""
-        others = [str(path) for path in self.recent_projects if path != folder]
-        self._store.setValue("recent", [str(folder), *others][:_MOST_RECENT])
+    def choose_theme(self, theme: ThemeChoice) -> None:
+        """Look like this from now on."""
+        self._store.setValue("theme", theme.value)
 
     @property
-    def layout(self) -> tuple[QByteArray, QByteArray] | None:
-        """The window's geometry and the state of its docks, as they were left."""
-        geometry, state = self._store.value("geometry"), self._store.value("state")
-        if isinstance(geometry, QByteArray) and isinstance(state, QByteArray):
-            return geometry, state
+    def shortcuts(self) -> dict[str, tuple[str, ...]]:
+        """Keys that the user chose, by action; no keys for one that is to have none."""
+        self._store.beginGroup(_KEYS)
+        ids = self._store.childKeys()
+        self._store.endGroup()
+        stored = {id_: str(self._store.value(f"{_KEYS}/{id_}", "")) for id_ in ids}
+        return {
+            id_: tuple(keys.split(_BETWEEN_KEYS)) if keys else () for id_, keys in stored.items()
+        }
+
+    def keep_shortcuts(self, shortcuts: Mapping[str, tuple[str, ...]]) -> None:
+        """Keep exactly these keys as the user's own."""
+        self._store.remove(_KEYS)
+        for id_, keys in shortcuts.items():
+            self._store.setValue(f"{_KEYS}/{id_}", _BETWEEN_KEYS.join(keys))
+
+    @property
+    def last_used(self) -> tuple[str, ...]:
+        """Ids of the actions last chosen by name, the newest first."""
+        return tuple(self._strings("last_used"))
+
+    def remember_use(self, action: str) -> None:
+        """Put an action first among those chosen by name."""
+        others = [id_ for id_ in self.last_used if id_ != action]
+        self._store.setValue("last_used", [action, *others][:_MOST_USED])
+
+    @property
+    def recent_projects(self) -> tuple[RecentProject, ...]:
+        """Projects opened last, newest first; those that are no longer there as well."""
+        names, times = self._strings(_RECENT), self._strings(_OPENED_AT)
+        times += [""] * (len(names) - len(times))
+        return tuple(
+            RecentProject(Path(name), _time_of(time), is_missing=not Path(name).is_dir())
+            for name, time in zip(names, times, strict=False)
+        )
+
+    def remember_project(self, folder: Path) -> None:
+        """Put a project first among the recent ones, as opened now."""
+        others = [project for project in self.recent_projects if project.folder != folder]
+        now = RecentProject(folder, datetime.now().astimezone(), is_missing=False)
+        self._keep_recent([now, *others][:_MOST_RECENT])
+
+    def forget_project(self, folder: Path) -> None:
+        """Take a project off the recent ones."""
+        self._keep_recent([one for one in self.recent_projects if one.folder != folder])
+
+    @property
+    def layout(self) -> WindowLayout | None:
+        """The window's layout as it was left; None before it was left once."""
+        geometry, docks = self._store.value("geometry"), self._store.value("state")
+        views = self._store.value("views")
+        if isinstance(geometry, QByteArray) and isinstance(docks, QByteArray):
+            return WindowLayout(
+                geometry, docks, views if isinstance(views, QByteArray) else QByteArray()
+            )
         return None
 
-    def remember_layout(self, geometry: QByteArray, state: QByteArray) -> None:
+    def remember_layout(self, layout: WindowLayout) -> None:
         """Keep the window's layout for the next start."""
-        self._store.setValue("geometry", geometry)
-        self._store.setValue("state", state)
+        self._store.setValue("geometry", layout.geometry)
+        self._store.setValue("state", layout.docks)
+        self._store.setValue("views", layout.views)
+
+    def _keep_recent(self, projects: list[RecentProject]) -> None:
+        self._store.setValue(_RECENT, [str(project.folder) for project in projects])
+        times = ["" if one.opened_at is None else one.opened_at.isoformat() for one in projects]
+        self._store.setValue(_OPENED_AT, times)
+
+    def _strings(self, name: str) -> list[str]:
+        stored = self._store.value(name, [])
+        if isinstance(stored, list):
+            return [str(one) for one in stored]
+        # A list of one comes back as its only string.
+        return [str(stored)] if stored else []
+
+
+def _time_of(text: str) -> datetime | None:
+    try:
+        return datetime.fromisoformat(text) if text else None
+    except ValueError:
+        return None

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 from app.document import Document
 from app.jobs import JobQueue
 from app.main_window import MainWindow
 from app.settings import Settings
+from app.theme import Theme
 from processing.text import Language
 from widgets.image_view.view import ImageView
 from widgets.mouse_tools.toolbox import MouseToolbox
@@ -24,11 +25,27 @@ from widgets.scene_view.view import SceneView
 
 
 @dataclass(frozen=True)
+class LastingParts:
+    """What stays when the widgets are made anew in another language."""
+
+    settings: Settings
+    theme: Theme
+    jobs: JobQueue
+    document: Document
+    toolbox: MouseToolbox
+    window: MainWindow
+
+
+@dataclass
 class WindowParts:
-    """The parts of a window; :mod:`app.wiring` connects them."""
+    """The parts of a window as it is now; :mod:`app.wiring` connects them.
+
+    Who keeps this finds the new widgets in it after a change of language.
+    """
 
     language: Language
     settings: Settings
+    theme: Theme
     jobs: JobQueue
     document: Document
     toolbox: MouseToolbox
@@ -44,6 +61,11 @@ class WindowParts:
     attribute_panel: AttributePanel
     jobs_panel: JobsPanel
     window: MainWindow
+
+    def replace_by(self, parts: WindowParts) -> None:
+        """Hold these parts from now on."""
+        for part in fields(WindowParts):
+            setattr(self, part.name, getattr(parts, part.name))
 
 
 def take_down(parts: WindowParts) -> None:

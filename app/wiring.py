@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from PySide6.QtCore import QObject
 
 from app.jobs import JobState, JobStatus
@@ -12,18 +14,24 @@ from processing.text import Text
 from widgets.panels.jobs_panel import JobView
 
 
+def connect_lasting(parts: WindowParts) -> None:
+    """Connect what stays through changes of language with each other, once."""
+    parts.toolbox.change_requested.connect(parts.document.apply)
+
+
 def connect_parts(parts: WindowParts) -> None:
-    """Connect the parts of a window, once."""
+    """Connect the widgets of a window with what stays; again for new ones."""
     wiring = _Wiring(parts)
     _connect_document(parts, wiring)
     _connect_intentions(parts, wiring)
     parts.window.closed.connect(wiring.on_window_closed)
     wiring.on_undo_stack_changed()
     wiring.on_toolbox_tool_chosen(parts.toolbox.name)
-    parts.start_page.show_recent(parts.settings.recent_projects)
-    layout = parts.settings.layout
-    if layout is not None:
-        parts.window.restore_layout(layout)
+    if parts.toolbox.kind is not None:
+        parts.layers_panel.mark_kind(parts.toolbox.kind)
+    for status in parts.jobs.statuses:
+        wiring.on_jobs_changed(status)
+    wiring.show_recent()
 
 
 def _connect_document(parts: WindowParts, wiring: _Wiring) -> None:
@@ -43,7 +51,6 @@ def _connect_document(parts: WindowParts, wiring: _Wiring) -> None:
 
 def _connect_intentions(parts: WindowParts, wiring: _Wiring) -> None:
     document, toolbox = parts.document, parts.toolbox
-    toolbox.change_requested.connect(document.apply)
     toolbox.told.connect(parts.status_line.show_message)
     toolbox.tool_chosen.connect(wiring.on_toolbox_tool_chosen)
     toolbox.kind_chosen.connect(parts.layers_panel.mark_kind)
@@ -53,6 +60,8 @@ def _connect_intentions(parts: WindowParts, wiring: _Wiring) -> None:
     parts.processing_panel.run_requested.connect(wiring.on_processing_run_requested)
     parts.jobs_panel.cancel_requested.connect(parts.jobs.cancel)
     parts.image_bar.everything_requested.connect(parts.image_view.show_everything)
+    parts.start_page.recent_chosen.connect(document.open)
+    parts.start_page.forget_requested.connect(wiring.on_start_page_forget_requested)
     parts.image_bar.one_to_one_requested.connect(parts.image_view.show_one_to_one)
 
 
@@ -60,7 +69,7 @@ class _Wiring(QObject):
     """The few connections that have to translate between what is sent and what is asked."""
 
     def __init__(self, parts: WindowParts) -> None:
-        super().__init__(parts.window)
+        super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
 
     def reason_against_tool(self, tool: str) -> Text | None:
@@ -84,6 +93,13 @@ class _Wiring(QObject):
     def on_document_closed(self) -> None:
         self._parts.window.show_work(is_open=False)
         self._parts.window.show_title("")
+        self.show_recent()
+
+    def on_start_page_forget_requested(self, folder: Path) -> None:
+        self._parts.settings.forget_project(folder)
+        self.show_recent()
+
+    def show_recent(self) -> None:
         self._parts.start_page.show_recent(self._parts.settings.recent_projects)
 
     def on_undo_stack_changed(self) -> None:
@@ -133,5 +149,5 @@ class _Wiring(QObject):
         self._parts.status_line.show_job(view if running else None)
 
     def on_window_closed(self) -> None:
-        self._parts.settings.remember_layout(*self._parts.window.layout_to_keep())
+        self._parts.settings.remember_layout(self._parts.window.layout_to_keep())
         take_down(self._parts)

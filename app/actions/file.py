@@ -29,6 +29,9 @@ class FileActions:
 
     def actions(self) -> tuple[Action, ...]:
         """The file menu, from top to bottom."""
+        return (*self._of_files(), *self._of_the_project())
+
+    def _of_files(self) -> tuple[Action, ...]:
         return (
             Action(
                 "open",
@@ -38,6 +41,10 @@ class FileActions:
                 ("Ctrl+O",),
                 "mdi6.folder-open-outline",
                 1,
+                hint=Text(
+                    "Opens a folder NAME.zuka in place of what is open.",
+                    "フォルダ「名前.zuka」を、開いているものに代えて開きます。",
+                ),
             ),
             Action(
                 "import",
@@ -47,6 +54,10 @@ class FileActions:
                 ("Ctrl+I",),
                 "mdi6.tray-arrow-down",
                 1,
+                hint=Text(
+                    "Reads point clouds with trajectory and images; the files stay as they are.",
+                    "点群を軌跡・画像とともに読み込みます。元のファイルは変更しません。",
+                ),
             ),
             Action(
                 "export",
@@ -56,16 +67,36 @@ class FileActions:
                 ("Ctrl+E",),
                 "mdi6.tray-arrow-up",
                 1,
+                hint=Text(
+                    "Writes the map as DXF, CSV and other files.",
+                    "図面をDXFやCSVなどのファイルに書き出します。",
+                ),
+                needs_project=True,
             ),
+        )
+
+    def _of_the_project(self) -> tuple[Action, ...]:
+        return (
             Action(
                 "reference-system",
                 Text("Reference system…", "座標参照系…"),
                 self.choose_reference_system,
                 "file",
                 ("Ctrl+R",),
+                hint=Text(
+                    "Says what the coordinates refer to; no coordinate is changed.",
+                    "座標が何に基づくかを指定します。座標値は変わりません。",
+                ),
+                needs_project=True,
             ),
             Action(
-                "demo", Text("Open the sample street", "サンプル街路を開く"), self.open_demo, "file"
+                "demo",
+                Text("Open the sample street", "サンプル街路を開く"),
+                self.open_demo,
+                "file",
+                hint=Text(
+                    "A short street to try everything on.", "操作を試せる短い街路データです。"
+                ),
             ),
             Action(
                 "close",
@@ -73,6 +104,11 @@ class FileActions:
                 self._parts.document.close,
                 "file",
                 ("Ctrl+W",),
+                hint=Text(
+                    "Nothing has to be saved: every step was, when it was done.",
+                    "操作のたびに保存されているため、保存の必要はありません。",
+                ),
+                needs_project=True,
             ),
             Action("quit", Text("Quit", "終了"), self._parts.window.close, "file", ("Ctrl+Q",)),
         )

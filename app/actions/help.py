@@ -1,16 +1,15 @@
-"""Help actions: the manual, every command by name, the language, the log."""
+"""Help actions: the manual, every command by name, the keys, the log."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices
 
 from app.actions.action import Action
 from app.error_log import log_path
+from app.shortcut_editing import edit_shortcuts
 from app.window_parts import WindowParts
-from processing.text import Language, Text
+from processing.text import Text
 from resources import path_of
 from widgets.parts.command_palette import CommandPalette, NamedAction
 
@@ -20,43 +19,71 @@ class HelpActions:
 
     def __init__(self, parts: WindowParts) -> None:
         self._parts = parts
-        self._named: tuple[Action, ...] = ()
 
     def actions(self) -> tuple[Action, ...]:
         """The help menu, from top to bottom."""
         return (
-            Action("manual", Text("Manual", "マニュアル"), self.show_manual, "help", ("F1",)),
+            Action(
+                "manual",
+                Text("Manual", "マニュアル"),
+                self.show_manual,
+                "help",
+                ("F1",),
+                hint=Text("Opens the manual in the browser.", "マニュアルをブラウザで開きます。"),
+            ),
             Action(
                 "palette",
                 Text("All commands…", "すべてのコマンド…"),
                 self.show_palette,
                 "help",
                 ("Ctrl+Shift+P",),
+                hint=Text(
+                    "Finds any command by a part of its name, in either language.",
+                    "名前の一部（日本語・英語）からコマンドを探して実行します。",
+                ),
             ),
             Action(
-                "japanese",
-                Text("日本語 (from the next start)", "日本語（次回の起動から）"),
-                self._speaking("ja"),
+                "shortcuts",
+                Text("Keyboard shortcuts…", "キーボードショートカット…"),
+                self.show_shortcuts,
                 "help",
+                ("Ctrl+F1",),
+                hint=Text(
+                    "Lists all keys and changes those of commands.",
+                    "すべてのキーを一覧し、コマンドのキーを変更します。",
+                ),
             ),
             Action(
-                "english",
-                Text("English (from the next start)", "English（次回の起動から）"),
-                self._speaking("en"),
+                "log",
+                Text("Show the log", "ログを表示"),
+                self.show_log,
                 "help",
+                hint=Text(
+                    "Opens the folder of the log, to be sent with a report of a defect.",
+                    "不具合の報告に添えるログのフォルダを開きます。",
+                ),
             ),
-            Action("log", Text("Show the log", "ログを表示"), self.show_log, "help"),
         )
 
-    def list_in_palette(self, actions: tuple[Action, ...]) -> None:
-        """Tell which actions the palette offers."""
-        self._named = actions
-
     def show_palette(self) -> None:
-        """Show every action by name."""
-        made = self._parts.window.actions_by_id
-        named = [NamedAction(action.text, made[action.id]) for action in self._named]
-        CommandPalette(named, self._parts.language, self._parts.window).show()
+        """Show every action by name, those used last first."""
+        parts = self._parts
+        made = parts.window.actions_made
+        named = [
+            NamedAction(entry.action.id, entry.action.name, entry.made, made.why_disabled(entry))
+            for entry in made.entries
+            if entry.action.id != "palette"
+        ]
+        # A child of the window's contents goes when the language changes.
+        palette = CommandPalette(
+            named, parts.language, parts.window.centralWidget(), used=parts.settings.last_used
+        )
+        palette.chosen.connect(parts.settings.remember_use)
+        palette.show()
+
+    def show_shortcuts(self) -> None:
+        """Show all keys, to be changed."""
+        edit_shortcuts(self._parts)
 
     def show_manual(self) -> None:
         """Open the manual's first page in the user's language."""
@@ -66,9 +93,3 @@ class HelpActions:
     def show_log(self) -> None:
         """Open the folder of the log."""
         QDesktopServices.openUrl(QUrl.fromLocalFile(str(log_path().parent)))
-
-    def _speaking(self, language: Language) -> Callable[[], None]:
-        def speak() -> None:
-            self._parts.settings.choose_language(language)
-
-        return speak

@@ -15,7 +15,14 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
         def show() -> None:
             parts.processing_panel.show_tool(tool)
 
-        return Action(f"process-{tool}", TOOLS[tool].name, show, "process")
+        return Action(
+            f"process-{tool}",
+            TOOLS[tool].name,
+            show,
+            "process",
+            hint=TOOLS[tool].explanation,
+            needs_project=True,
+        )
 
     def cancel_all() -> None:
         for status in parts.jobs.statuses:

@@ -2,16 +2,41 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from app.actions.action import Action
+from app.theme import ThemeChoice
 from app.window_parts import WindowParts
 from processing.image.attributes import ATTRIBUTES
 from processing.image.kinds import ImageKind
-from processing.text import Text
+from processing.text import Language, Text
+
+_THEMES = {
+    ThemeChoice.SYSTEM: Text("As the system is", "システムに合わせる"),
+    ThemeChoice.LIGHT: Text("Light", "ライト"),
+    ThemeChoice.DARK: Text("Dark", "ダーク"),
+}
+_LANGUAGES: dict[Language, Text] = {"ja": Text.same("日本語"), "en": Text.same("English")}
 
 
-def view_actions(parts: WindowParts) -> tuple[Action, ...]:
-    """The view menu, from top to bottom; panels follow."""
+def view_actions(parts: WindowParts, speak: Callable[[Language], None]) -> tuple[Action, ...]:
+    """The view menu, from top to bottom; panels follow.
 
+    Parameters
+    ----------
+    speak : callable
+        Changes the language of the window.
+    """
+    return (
+        *_places(parts),
+        *_standings(parts),
+        *_themes(parts),
+        *_languages(parts, speak),
+        *_looks(parts),
+    )
+
+
+def _places(parts: WindowParts) -> tuple[Action, ...]:
     def show_everything() -> None:
         parts.image_view.show_everything()
         parts.scene_view.show_everything()
@@ -20,26 +45,120 @@ def view_actions(parts: WindowParts) -> tuple[Action, ...]:
         parts.image_view.center_on_selection()
         parts.scene_view.center_on_selection()
 
+    return (
+        Action(
+            "everything",
+            Text("Show everything", "全体を表示"),
+            show_everything,
+            "view",
+            ("Home",),
+            "mdi6.fit-to-page-outline",
+            hint=Text(
+                "The whole recording in the image and in 3D.",
+                "画像と3Dに走行データの全体を表示します。",
+            ),
+            needs_project=True,
+        ),
+        Action(
+            "center",
+            Text("Centre on the selection", "選択位置を中央に表示"),
+            center,
+            "view",
+            ("F",),
+            hint=Text(
+                "Brings what is chosen, or else the cursor, into the middle of every view.",
+                "選択した地物（なければカーソル）を各ビューの中央に表示します。",
+            ),
+            needs_project=True,
+        ),
+    )
+
+
+def _standings(parts: WindowParts) -> tuple[Action, ...]:
+    """How the views stand to each other, and from where 3D looks."""
+
     def toggle_beside() -> None:
         action = parts.window.actions_by_id["side-by-side"]
         parts.window.stand_side_by_side(beside=action.isChecked())
 
-    whole = Text("Show everything", "全体を表示")
-    middle = Text("Centre on the selection", "選択位置を中央に表示")
-    beside = Text("Views side by side", "ビューを左右に並べる")
-    above, along = (
-        Text("3D from above", "3Dを真上から表示"),
-        Text("3D along the drive", "3Dを走行方向に表示"),
-    )
-    scene = parts.scene_view
     return (
-        Action("everything", whole, show_everything, "view", ("Home",), "mdi6.fit-to-page-outline"),
-        Action("center", middle, center, "view", ("F",)),
-        Action("side-by-side", beside, toggle_beside, "view", is_checkable=True),
-        Action("top-view", above, scene.look_from_above, "view", ("Ctrl+T",)),
-        Action("along-view", along, scene.look_along_drive, "view", ("Ctrl+L",)),
-        *_looks(parts),
+        Action(
+            "side-by-side",
+            Text("Views side by side", "ビューを左右に並べる"),
+            toggle_beside,
+            "view",
+            is_checkable=True,
+            is_checked=parts.window.are_views_beside,
+            hint=Text(
+                "The image and 3D beside each other instead of one above the other.",
+                "画像と3Dを上下ではなく左右に並べます。",
+            ),
+            needs_project=True,
+        ),
+        Action(
+            "top-view",
+            Text("3D from above", "3Dを真上から表示"),
+            parts.scene_view.look_from_above,
+            "view",
+            ("Ctrl+T",),
+            hint=Text("Looks straight down, north up.", "北を上にして真上から見ます。"),
+            needs_project=True,
+        ),
+        Action(
+            "along-view",
+            Text("3D along the drive", "3Dを走行方向に表示"),
+            parts.scene_view.look_along_drive,
+            "view",
+            ("Ctrl+L",),
+            hint=Text(
+                "Looks from behind and above, as the vehicle drove.",
+                "車両の進行方向に、後方の上から見ます。",
+            ),
+            needs_project=True,
+        ),
     )
+
+
+def _themes(parts: WindowParts) -> tuple[Action, ...]:
+    """Light, dark, or as the system is; the views of points stay dark in each."""
+
+    def looking(choice: ThemeChoice) -> Action:
+        def choose() -> None:
+            parts.settings.choose_theme(choice)
+            parts.theme.choose(choice)
+
+        return Action(
+            f"theme-{choice.value}",
+            _THEMES[choice],
+            choose,
+            "view/theme",
+            is_checkable=True,
+            is_checked=parts.settings.theme is choice,
+            group="theme",
+        )
+
+    return tuple(looking(choice) for choice in ThemeChoice)
+
+
+def _languages(parts: WindowParts, speak: Callable[[Language], None]) -> tuple[Action, ...]:
+    def speaking(language: Language) -> Action:
+        def choose() -> None:
+            speak(language)
+
+        return Action(
+            f"language-{language}",
+            _LANGUAGES[language],
+            choose,
+            "view/language",
+            is_checkable=True,
+            is_checked=parts.language == language,
+            group="language",
+            hint=Text(
+                "The window speaks this language at once.", "画面の言語をすぐに切り替えます。"
+            ),
+        )
+
+    return tuple(speaking(language) for language in _LANGUAGES)
 
 
 def _looks(parts: WindowParts) -> tuple[Action, ...]:
@@ -52,7 +171,7 @@ def _looks(parts: WindowParts) -> tuple[Action, ...]:
 
         title = ATTRIBUTES[attribute].title
         text = Text("Colour points by: {title}", "点の表示: {title}").filled(title=title)
-        return Action(f"show-{attribute}", text, show)
+        return Action(f"show-{attribute}", text, show, needs_project=True)
 
     def image_as(kind: ImageKind) -> Action:
         def show() -> None:
@@ -61,6 +180,6 @@ def _looks(parts: WindowParts) -> tuple[Action, ...]:
                 settings.show_image(drive_id, kind)
 
         text = Text("Kind of image: {title}", "画像の種類: {title}").filled(title=kind.title)
-        return Action(f"image-{kind.value}", text, show)
+        return Action(f"image-{kind.value}", text, show, needs_project=True)
 
     return (*map(shown_as, ATTRIBUTES), *map(image_as, ImageKind))

@@ -81,6 +81,7 @@ class TileCache:
         self._loading: dict[TileRequest, _Listeners] = {}
         self._refusals: dict[tuple[str, str], UserError] = {}
         self._ages: dict[str, int] = {}
+        self._busy = 0
         self._is_closed = False
         self._loaders = [
             threading.Thread(target=self._load_all, name=f"tiles-{number}", daemon=True)
@@ -148,6 +149,17 @@ class TileCache:
                     if not listeners:
                         del self._waiting[request]
 
+    def tell_nobody(self) -> None:
+        """Give up all that was asked for; who asked is told nothing after this and may go.
+
+        Waits for the tiles that are being made just now.
+        """
+        with self._changed:
+            self._waiting.clear()
+            for listeners in self._loading.values():
+                listeners.clear()
+            self._changed.wait_for(lambda: self._busy == 0)
+
     def refusal(self, drive_id: str, attribute: str) -> UserError | None:
         """Why a drive can't be shown by an attribute, once a loader has found out."""
         with self._changed:
@@ -177,7 +189,7 @@ class TileCache:
         if listeners is None:
             listeners = self._waiting.setdefault(request, {})
             self._waiting.move_to_end(request)
-            self._changed.notify()
+            self._changed.notify_all()
         listeners.update(more)
 
     def _load_all(self) -> None:
@@ -188,10 +200,15 @@ class TileCache:
                 drive_of = self._drive_of
                 if self._is_closed or drive_of is None:
                     return
-                request, listeners = self._waiting.popitem()
-                self._loading[request] = listeners
+                request, self._loading[request] = self._waiting.popitem()
                 age = self._ages.get(request.drive_id, 0)
-            self._load(request, age, drive_of)
+                self._busy += 1
+            try:
+                self._load(request, age, drive_of)
+            finally:
+                with self._changed:
+                    self._busy -= 1
+                    self._changed.notify_all()
 
     def _load(self, request: TileRequest, age: int, drive_of: Callable[[str], Drive]) -> None:
         made: TilePixels | UserError | None = None

@@ -137,6 +137,10 @@ class ImageView(QWidget):
         self._gesture.tool = tool
         self.update()
 
+    def look_through(self, viewport: Viewport) -> None:
+        """Show this part of the picture, as large."""
+        self._look_through(viewport)
+
     def show_everything(self) -> None:
         """Show the whole drive."""
         if self._picture is not None:

@@ -66,6 +66,13 @@ class MouseToolbox(QObject):
         """The kind that is drawn; None before one was chosen."""
         return self._kind
 
+    def use_views(self, views: tuple[ToolUser, ...]) -> None:
+        """Serve these views from now on; what is being drawn goes on in them."""
+        for view in self._views:
+            view.set_mouse_tool(None)
+        self._views = views
+        self._hand_out()
+
     def choose(self, name: str) -> None:
         """Take a tool; what the one before was drawing is dropped."""
         if name == self._name:

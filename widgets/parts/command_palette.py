@@ -5,78 +5,166 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from PySide6.QtCore import QEvent, QObject, Qt
-from PySide6.QtGui import QAction, QKeyEvent
-from PySide6.QtWidgets import QDialog, QLineEdit, QListWidget, QListWidgetItem, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, QObject, Qt, Signal
+from PySide6.QtGui import QAction, QKeyEvent, QKeySequence
+from PySide6.QtWidgets import (
+    QDialog,
+    QHeaderView,
+    QLineEdit,
+    QTreeWidget,
+    QTreeWidgetItem,
+    QVBoxLayout,
+    QWidget,
+)
 from typing_extensions import override
 
 from processing.text import Language, Text
+from widgets.parts.name_match import match_rank
+
+_NAME, _OTHER, _KEY = range(3)
+_ROW = Qt.ItemDataRole.UserRole
+_NATIVE = QKeySequence.SequenceFormat.NativeText
+_STEPS = {
+    Qt.Key.Key_Down: 1,
+    Qt.Key.Key_Up: -1,
+    Qt.Key.Key_PageDown: 10,
+    Qt.Key.Key_PageUp: -10,
+}
 
 
 @dataclass(frozen=True)
 class NamedAction:
-    """An action and its name in both languages."""
+    """An action and its name in both languages.
 
+    Attributes
+    ----------
+    why_disabled : Text
+        Why it can't be done now; empty when it can, or when nobody knows.
+    """
+
+    id: str
     name: Text
     action: QAction
+    why_disabled: Text = Text("", "")
 
 
 class CommandPalette(QDialog):
-    """A list that is narrowed by typing; Enter does the chosen action, Escape leaves."""
+    """A list that is narrowed by typing; Enter does the chosen action, Escape leaves.
+
+    Parameters
+    ----------
+    used : sequence of str
+        Ids of the actions chosen last, the newest first; they come before others that fit as well.
+
+    Signals
+    -------
+    chosen(id: str)
+        An action is about to be done.
+    """
+
+    chosen = Signal(str)
 
     def __init__(
-        self, actions: Sequence[NamedAction], language: Language, parent: QWidget | None = None
+        self,
+        actions: Sequence[NamedAction],
+        language: Language,
+        parent: QWidget | None = None,
+        *,
+        used: Sequence[str] = (),
     ) -> None:
         super().__init__(parent)
         self.setWindowTitle(self.tr("Commands"))
-        self._actions = tuple(actions)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        order = {id_: place for place, id_ in enumerate(used)}
+        # Sorting keeps the order of those that are alike: the order of the menus.
+        self._actions = sorted(actions, key=lambda named: order.get(named.id, len(order)))
         self._language = language
         self._words = QLineEdit(self)
         self._words.setPlaceholderText(self.tr("Type part of a name"))
-        self._list = QListWidget(self)
+        self._list = QTreeWidget(self)
+        self._list.setColumnCount(3)
+        self._list.setHeaderHidden(True)
+        self._list.setRootIsDecorated(False)
+        self._list.setUniformRowHeights(True)
+        self._list.setAllColumnsShowFocus(True)
+        self._list.setFocusPolicy(Qt.FocusPolicy.NoFocus)  # the keys go to the words
+        header = self._list.header()
+        header.setStretchLastSection(False)
+        header.setSectionResizeMode(_NAME, QHeaderView.ResizeMode.ResizeToContents)
+        header.setSectionResizeMode(_OTHER, QHeaderView.ResizeMode.Stretch)
+        header.setSectionResizeMode(_KEY, QHeaderView.ResizeMode.ResizeToContents)
         layout = QVBoxLayout(self)
+        layout.setContentsMargins(8, 8, 8, 8)
         layout.addWidget(self._words)
         layout.addWidget(self._list)
-        self.resize(520, 400)
+        self.resize(620, 420)
         self._words.textChanged.connect(self._on_words_text_changed)
         self._words.returnPressed.connect(self._on_words_return_pressed)
-        self._list.itemActivated.connect(self._on_words_return_pressed)
+        self._list.itemClicked.connect(self._on_words_return_pressed)
         self._words.installEventFilter(self)
         self._on_words_text_changed("")
 
     @override
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
-            step = {Qt.Key.Key_Down: 1, Qt.Key.Key_Up: -1}.get(Qt.Key(event.key()))
-            if step is not None and self._list.count():
-                self._list.setCurrentRow((self._list.currentRow() + step) % self._list.count())
+            step = _STEPS.get(Qt.Key(event.key()))
+            count = self._list.topLevelItemCount()
+            if step is not None and count:
+                place = self._list.currentIndex().row() + step
+                # One step goes round, a page stops at the end.
+                self._choose(place % count if abs(step) == 1 else min(max(place, 0), count - 1))
                 return True
         return super().eventFilter(watched, event)
 
+    def _choose(self, place: int) -> None:
+        item = self._list.topLevelItem(place)
+        if item is not None:
+            self._list.setCurrentItem(item)
+
     def _on_words_text_changed(self, words: str) -> None:
         self._list.clear()
-        wanted = words.lower().split()
-        for named in self._actions:
-            names = f"{named.name.en} {named.name.ja}".lower()
-            if all(word in names for word in wanted):
-                self._list.addItem(self._item(named))
-        self._list.setCurrentRow(0)
+        ranked = [(self._rank(words, named), named) for named in self._actions]
+        fitting = [(rank, named) for rank, named in ranked if rank is not None]
+        for _, named in sorted(fitting, key=lambda pair: pair[0]):
+            self._list.addTopLevelItem(self._item(named))
+        self._choose(0)
 
-    def _item(self, named: NamedAction) -> QListWidgetItem:
-        other = named.name.en if self._language == "ja" else named.name.ja
-        keys = named.action.shortcut().toString()
-        text = f"{named.name.spoken(self._language)}   {other}   {keys}"
-        item = QListWidgetItem(named.action.icon(), text)
-        item.setData(Qt.ItemDataRole.UserRole, named)
-        if not named.action.isEnabled():
-            item.setFlags(item.flags() & ~Qt.ItemFlag.ItemIsEnabled)
+    @staticmethod
+    def _rank(words: str, named: NamedAction) -> int | None:
+        ranks = [match_rank(words, name) for name in (named.name.en, named.name.ja)]
+        return min((rank for rank in ranks if rank is not None), default=None)
+
+    def _item(self, named: NamedAction) -> QTreeWidgetItem:
+        name, other = named.name.spoken(self._language), _other(named.name, self._language)
+        is_enabled = named.action.isEnabled()
+        reason = named.why_disabled.spoken(self._language)
+        beside = other if other != name else ""
+        item = QTreeWidgetItem(
+            [
+                name,
+                beside if is_enabled or not reason else reason,
+                named.action.shortcut().toString(_NATIVE),
+            ]
+        )
+        item.setIcon(_NAME, named.action.icon())
+        item.setData(_NAME, _ROW, named)
+        item.setTextAlignment(_KEY, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        item.setToolTip(_NAME, named.action.toolTip())
+        grey = self.palette().placeholderText()
+        for column in (_NAME, _OTHER, _KEY) if not is_enabled else (_OTHER, _KEY):
+            item.setForeground(column, grey)
         return item
 
     def _on_words_return_pressed(self) -> None:
         item = self._list.currentItem()
         if item is None:
             return
-        named: NamedAction = item.data(Qt.ItemDataRole.UserRole)
+        named: NamedAction = item.data(_NAME, _ROW)
         if named.action.isEnabled():
-            self.accept()
+            self.chosen.emit(named.id)
+            self.close()
             named.action.trigger()
+
+
+def _other(text: Text, language: Language) -> str:
+    return text.en if language == "ja" else text.ja

@@ -15,6 +15,7 @@ class MessageBar(QFrame):
     def __init__(self, language: Language, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._language = language
+        self._error: UserError | None = None
         self.setObjectName("messageBar")
         self.setStyleSheet(
             "#messageBar { background: #7a2e16; } #messageBar QLabel { color: #ffffff; }"
@@ -47,8 +48,14 @@ class MessageBar(QFrame):
         """What it says; empty while hidden."""
         return "" if self.isHidden() else f"{self._what.text()} {self._rest.text()}"
 
+    @property
+    def error(self) -> UserError | None:
+        """What is wrong; None while hidden."""
+        return None if self.isHidden() else self._error
+
     def show_error(self, error: UserError) -> None:
         """Say what is wrong until it is closed or something else is wrong."""
+        self._error = error
         self._what.setText(error.what.spoken(self._language))
         where, remedy = (part.spoken(self._language) for part in (error.where, error.remedy))
         self._rest.setText(f"{where}\n{remedy}")

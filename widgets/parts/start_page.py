@@ -3,25 +3,39 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from datetime import datetime
 from pathlib import Path
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QDate, QEvent, QLocale, QObject, Qt, Signal
+from PySide6.QtGui import QAction, QKeyEvent, QShowEvent
 from PySide6.QtWidgets import (
     QHBoxLayout,
+    QHeaderView,
     QLabel,
-    QListWidget,
-    QListWidgetItem,
     QPushButton,
+    QToolButton,
+    QTreeWidget,
+    QTreeWidgetItem,
     QVBoxLayout,
     QWidget,
 )
+from typing_extensions import override
 
-_WIDTH = 560
-_PATH = Qt.ItemDataRole.UserRole
+from processing.text import Language
+from widgets.parts.recent_project import RecentProject
+
+_WIDTH = 760
+_NAME, _FOLDER, _OPENED, _REMOVE = range(4)
+_PROJECT = Qt.ItemDataRole.UserRole
 
 
 class StartPage(QWidget):
     """Recent projects, and the three ways to begin.
+
+    Parameters
+    ----------
+    language : Language
+        By which dates are written.
 
     Signals
     -------
@@ -29,15 +43,19 @@ class StartPage(QWidget):
         The buttons.
     recent_chosen(folder: Path)
         A project of the list.
+    forget_requested(folder: Path)
+        A project is to be taken off the list.
     """
 
     open_requested = Signal()
     import_requested = Signal()
     demo_requested = Signal()
     recent_chosen = Signal(object)
+    forget_requested = Signal(object)
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self, language: Language = "en", parent: QWidget | None = None) -> None:
         super().__init__(parent)
+        self._locale = QLocale(language)
         column = QWidget(self)
         column.setMaximumWidth(_WIDTH)
         layout = QVBoxLayout(column)
@@ -45,10 +63,7 @@ class StartPage(QWidget):
         layout.addWidget(self._title())
         layout.addLayout(self._buttons())
         self._heading = QLabel(self.tr("Recent projects"), self)
-        self._list = QListWidget(self)
-        self._list.setAlternatingRowColors(True)
-        self._list.itemActivated.connect(self._on_list_item_chosen)
-        self._list.itemClicked.connect(self._on_list_item_chosen)
+        self._list = self._recent_list()
         layout.addWidget(self._heading)
         layout.addWidget(self._list, 1)
         hint = QLabel(
@@ -59,8 +74,9 @@ class StartPage(QWidget):
             self,
         )
         hint.setWordWrap(True)
-        hint.setEnabled(False)
+        hint.setForegroundRole(self.palette().ColorRole.PlaceholderText)
         layout.addWidget(hint)
+        layout.addStretch(0)
         whole = QHBoxLayout(self)
         whole.setContentsMargins(24, 24, 24, 24)
         whole.addStretch(1)
@@ -68,19 +84,82 @@ class StartPage(QWidget):
         whole.addStretch(1)
         self.show_recent(())
 
-    def show_recent(self, folders: Iterable[Path]) -> None:
+    def show_recent(self, projects: Iterable[RecentProject]) -> None:
         """List these projects, the newest first."""
         self._list.clear()
-        for folder in folders:
-            item = QListWidgetItem(f"{folder.stem}\n{folder.parent}")
-            item.setData(_PATH, str(folder))
-            item.setToolTip(str(folder))
-            self._list.addItem(item)
-        has_some = self._list.count() > 0
+        for project in projects:
+            self._add(project)
+        first = self._list.topLevelItem(0)
         self._heading.setText(
-            self.tr("Recent projects") if has_some else self.tr("No project was opened yet.")
+            self.tr("No project was opened yet.") if first is None else self.tr("Recent projects")
         )
-        self._list.setVisible(has_some)
+        self._list.setVisible(first is not None)
+        if first is not None:
+            self._list.setCurrentItem(first)
+
+    @override
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        (self._list if self._list.topLevelItemCount() else self._first_button).setFocus()
+
+    @override
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
+            item = self._list.currentItem()
+            if event.key() == Qt.Key.Key_Delete and item is not None:
+                self._forget(item)
+                return True
+        return super().eventFilter(watched, event)
+
+    def _recent_list(self) -> QTreeWidget:
+        recent = QTreeWidget(self)
+        recent.setColumnCount(4)
+        recent.setHeaderHidden(True)
+        recent.setRootIsDecorated(False)
+        recent.setUniformRowHeights(True)
+        recent.setAllColumnsShowFocus(True)
+        recent.setTextElideMode(Qt.TextElideMode.ElideMiddle)
+        header = recent.header()
+        header.setStretchLastSection(False)
+        header.setMinimumSectionSize(1)
+        for column in (_NAME, _OPENED, _REMOVE):
+            header.setSectionResizeMode(column, QHeaderView.ResizeMode.ResizeToContents)
+        header.setSectionResizeMode(_FOLDER, QHeaderView.ResizeMode.Stretch)
+        remove = QAction(self.tr("Remove from the list"), recent)
+        remove.triggered.connect(self._on_remove_triggered)
+        recent.addAction(remove)
+        recent.setContextMenuPolicy(Qt.ContextMenuPolicy.ActionsContextMenu)
+        recent.itemActivated.connect(self._on_list_item_chosen)
+        recent.itemClicked.connect(self._on_list_item_chosen)
+        recent.installEventFilter(self)
+        return recent
+
+    def _add(self, project: RecentProject) -> None:
+        opened_at = project.opened_at
+        opened = "" if opened_at is None else self._date(opened_at)
+        item = QTreeWidgetItem(
+            self._list,
+            [
+                project.folder.stem,
+                str(project.folder.parent),
+                self.tr("not found") if project.is_missing else opened,
+            ],
+        )
+        item.setData(_NAME, _PROJECT, project)
+        for column in range(4):
+            item.setToolTip(column, str(project.folder))
+            if project.is_missing or column in (_FOLDER, _OPENED):
+                item.setForeground(column, self.palette().placeholderText())
+        if project.is_missing:
+            remove = QToolButton(self._list)
+            remove.setText(self.tr("Remove from the list"))
+            remove.setAutoRaise(True)
+            remove.clicked.connect(_without_argument(lambda: self._forget(item)))
+            self._list.setItemWidget(item, _REMOVE, remove)
+
+    def _date(self, day: datetime) -> str:
+        date = QDate(day.year, day.month, day.day)
+        return self._locale.toString(date, QLocale.FormatType.ShortFormat)
 
     def _title(self) -> QLabel:
         title = QLabel(self.tr("Zuka"), self)
@@ -95,17 +174,32 @@ class StartPage(QWidget):
         wishes = (
             (self.tr("Import a delivery…"), self.import_requested),
             (self.tr("Open a project…"), self.open_requested),
-            (self.tr("Demo street"), self.demo_requested),
+            (self.tr("Sample street"), self.demo_requested),
         )
+        buttons = []
         for words, wish in wishes:
             button = QPushButton(words, self)
+            button.setAutoDefault(True)  # Enter presses it, as Space does
             button.clicked.connect(_without_argument(wish.emit))
             row.addWidget(button)
+            buttons.append(button)
+        self._first_button = buttons[0]
         row.addStretch(1)
         return row
 
-    def _on_list_item_chosen(self, item: QListWidgetItem) -> None:
-        self.recent_chosen.emit(Path(str(item.data(_PATH))))
+    def _forget(self, item: QTreeWidgetItem) -> None:
+        project: RecentProject = item.data(_NAME, _PROJECT)
+        self.forget_requested.emit(project.folder)
+
+    def _on_remove_triggered(self) -> None:
+        item = self._list.currentItem()
+        if item is not None:
+            self._forget(item)
+
+    def _on_list_item_chosen(self, item: QTreeWidgetItem) -> None:
+        project: RecentProject = item.data(_NAME, _PROJECT)
+        if not project.is_missing:
+            self.recent_chosen.emit(Path(project.folder))
 
 
 def _without_argument(emit: Callable[[], None]) -> Callable[[], None]:

@@ -1,12 +1,10 @@
-"""Coordinates, messages, progress and the start page."""
+"""Coordinates, messages and progress."""
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QLabel, QListWidget, QPushButton
+from PySide6.QtWidgets import QLabel
 from pytestqt.qtbot import QtBot
 
 from processing.points.drive import Drive
@@ -14,7 +12,6 @@ from processing.text import Text
 from tests.widgets.builders import OpenMap
 from widgets.panels.jobs_panel import JobView
 from widgets.parts.number_field import NumberField, coordinate, decimals_for
-from widgets.parts.start_page import StartPage
 from widgets.parts.status_line import StatusLine
 from widgets.shared.cursor import Place
 
@@ -87,39 +84,3 @@ def test_the_wheel_over_a_form_changes_no_number(qtbot: QtBot) -> None:
     field = NumberField(0.0, 10.0)
     qtbot.addWidget(field)
     assert field.focusPolicy() == Qt.FocusPolicy.StrongFocus
-
-
-@pytest.mark.parametrize("wish", ["open", "import", "demo"])
-def test_the_start_page_has_three_ways_to_begin(qtbot: QtBot, wish: str) -> None:
-    page = StartPage()
-    qtbot.addWidget(page)
-    page.show()
-    order = ["import", "open", "demo"]
-    button = page.findChildren(QPushButton)[order.index(wish)]
-    with qtbot.waitSignal(getattr(page, f"{wish}_requested")):
-        qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
-
-
-def test_a_click_on_a_recent_project_opens_it_once(qtbot: QtBot, tmp_path: Path) -> None:
-    page = StartPage()
-    qtbot.addWidget(page)
-    page.show_recent((tmp_path / "国道.zuka", tmp_path / "Street.zuka"))
-    page.show()
-    recent = page.findChild(QListWidget)
-    assert recent is not None
-    chosen: list[Path] = []
-    page.recent_chosen.connect(chosen.append)
-    spot = recent.visualItemRect(recent.item(0)).center()
-    qtbot.mouseClick(
-        recent.viewport(), Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier, spot
-    )
-    assert chosen == [tmp_path / "国道.zuka"]
-
-
-def test_without_recent_projects_there_is_no_empty_list(qtbot: QtBot) -> None:
-    page = StartPage()
-    qtbot.addWidget(page)
-    page.show()
-    recent = page.findChild(QListWidget)
-    assert recent is not None
-    assert not recent.isVisible()

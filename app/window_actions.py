@@ -1,0 +1,160 @@
+"""WindowActions: the menus, the toolbar and the keys of a window, made from actions as data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import qtawesome
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QAction, QActionGroup, QIcon, QKeySequence, QPalette
+from PySide6.QtWidgets import QMainWindow, QMenu, QToolBar
+
+from app.actions.action import MENUS, NEEDS_PROJECT, NOTHING, SUBMENUS, Action
+from processing.text import Language, Text
+
+_NATIVE = QKeySequence.SequenceFormat.NativeText
+
+
+@dataclass(frozen=True)
+class Entry:
+    """An action and the ``QAction`` that was made of it."""
+
+    action: Action
+    made: QAction
+
+
+class WindowActions(QObject):
+    """All actions of a window in one language; they go when it goes.
+
+    Parameters
+    ----------
+    window : QMainWindow
+        Whose menu bar gets the menus, and where the keys work.
+    toolbar : QToolBar
+    language : Language
+    """
+
+    def __init__(self, window: QMainWindow, toolbar: QToolBar, language: Language) -> None:
+        super().__init__(window)
+        self._window = window
+        self._toolbar = toolbar
+        self._language = language
+        self._entries: dict[str, Entry] = {}
+        self._groups: dict[str, QActionGroup] = {}
+        self._toolbar_group = 0
+        self._has_project = False
+        self._menus: dict[str, QMenu] = {
+            id_: window.menuBar().addMenu(title.spoken(language)) for id_, title in MENUS
+        }
+
+    @property
+    def entries(self) -> tuple[Entry, ...]:
+        """All actions, in the order in which they were added."""
+        return tuple(self._entries.values())
+
+    def __getitem__(self, id_: str) -> QAction:
+        return self._entries[id_].made
+
+    def __contains__(self, id_: str) -> bool:
+        return id_ in self._entries
+
+    def why_disabled(self, entry: Entry) -> Text:
+        """Why an action can't be done now; empty when it can, or when that isn't known."""
+        if entry.made.isEnabled():
+            return NOTHING
+        needs = entry.action.needs_project and not self._has_project
+        return NEEDS_PROJECT if needs else entry.action.why_disabled
+
+    def add(self, actions: Sequence[Action]) -> None:
+        """Put actions into menus and toolbar, in their order."""
+        for action in actions:
+            made = QAction(action.text.spoken(self._language), self)
+            made.setObjectName(action.id)
+            made.setCheckable(action.is_checkable)
+            made.setChecked(action.is_checked)
+            if action.group:
+                self._group(action.group).addAction(made)
+            made.triggered.connect(_without_argument(action.run))
+            if action.toolbar:
+                if self._toolbar_group and action.toolbar != self._toolbar_group:
+                    self._toolbar.addSeparator()
+                self._toolbar_group = action.toolbar
+                self._toolbar.addAction(made)
+            self.adopt(action, made)
+
+    def adopt(self, action: Action, made: QAction) -> None:
+        """Take in an action that a widget has made itself."""
+        self._entries[action.id] = Entry(action, made)
+        if action.menu:
+            self._menu(action.menu).addAction(made)
+        self._window.addAction(made)  # its key works though no menu may show it
+        self._give_keys(action.id, action.keys)
+        self._colour(self._entries[action.id])
+        self._enable(self._entries[action.id])
+
+    def divide(self, menu: str) -> None:
+        """Draw a line below what a menu holds now."""
+        self._menu(menu).addSeparator()
+
+    def give_keys(self, keys: Mapping[str, tuple[str, ...]]) -> None:
+        """Let these actions be reached by these keys from now on."""
+        for id_, sequences in keys.items():
+            if id_ in self._entries:
+                self._give_keys(id_, sequences)
+
+    def know_project(self, *, is_open: bool) -> None:
+        """Enable what needs a project while one is open, disable it while none is."""
+        self._has_project = is_open
+        for entry in self._entries.values():
+            self._enable(entry)
+
+    def recolour(self) -> None:
+        """Draw the icons in the colours of the window's palette."""
+        for entry in self._entries.values():
+            self._colour(entry)
+
+    def _group(self, name: str) -> QActionGroup:
+        return self._groups.setdefault(name, QActionGroup(self))
+
+    def _menu(self, id_: str) -> QMenu:
+        if id_ not in self._menus:
+            above = self._menus[id_.partition("/")[0]]
+            self._menus[id_] = above.addMenu(SUBMENUS[id_].spoken(self._language))
+        return self._menus[id_]
+
+    def _give_keys(self, id_: str, keys: tuple[str, ...]) -> None:
+        action, made = self._entries[id_].action, self._entries[id_].made
+        made.setShortcuts([QKeySequence(key) for key in keys])
+        name = action.name.spoken(self._language)
+        native = [QKeySequence(key).toString(_NATIVE) for key in keys]
+        first = f"{name} ({native[0]})" if native else name
+        hint = action.hint.spoken(self._language)
+        made.setToolTip(f"{first}\n{hint}" if hint else first)
+
+    def _enable(self, entry: Entry) -> None:
+        if entry.action.needs_project:
+            entry.made.setEnabled(self._has_project)
+
+    def _colour(self, entry: Entry) -> None:
+        if entry.action.icon:
+            entry.made.setIcon(icon_of(entry.action.icon, self._window.palette()))
+
+
+def icon_of(name: str, palette: QPalette) -> QIcon:
+    """An icon of the set in the colours of text."""
+    icon: QIcon = qtawesome.icon(
+        name,
+        color=palette.color(QPalette.ColorGroup.Active, QPalette.ColorRole.WindowText),
+        color_disabled=palette.color(QPalette.ColorGroup.Disabled, QPalette.ColorRole.WindowText),
+    )
+    return icon
+
+
+def _without_argument(run: Callable[[], object]) -> Callable[[], None]:
+    """Qt sends whether the action is checked; what is run doesn't ask for it."""
+
+    def called() -> None:
+        run()
+
+    return called

@@ -1,0 +1,125 @@
+"""WindowChange: another language while the program runs. New widgets round the same document.
+
+Project, jobs, the tool in the hand and what it is drawing go on; what was looked at is looked at
+again.
+"""
+
+from __future__ import annotations
+
+import gc
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from PySide6.QtCore import QObject, QTimer
+from PySide6.QtWidgets import QApplication
+
+from app.translation import Translation
+from app.window_parts import WindowParts
+from processing.errors import UserError
+from processing.text import Language
+from widgets.image_view.viewport import Viewport
+from widgets.scene_view.camera import Camera
+
+_LAID_OUT_MS = 50
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """What a window shows that its document doesn't know."""
+
+    viewport: Viewport | None
+    camera: Camera
+    tool: str
+    parameters: object
+    error: UserError | None
+    has_focus: bool
+
+    @staticmethod
+    def of(parts: WindowParts) -> _Seen:
+        image, panel = parts.image_view, parts.processing_panel
+        form = panel.form
+        focused = QApplication.focusWidget()
+        return _Seen(
+            viewport=None if image.picture is None else image.viewport,
+            camera=parts.scene_view.camera,
+            tool=panel.tool,
+            parameters=None if form is None else form.value(),
+            error=parts.message_bar.error,
+            has_focus=focused in (image, parts.scene_view.picture),
+        )
+
+    def show_again(self, parts: WindowParts) -> None:
+        if self.viewport is not None:
+            parts.image_view.look_through(self.viewport)
+            parts.scene_view.look_from(self.camera)
+        panel = parts.processing_panel
+        if self.tool:
+            panel.show_tool(self.tool)
+        if panel.form is not None and self.parameters is not None:
+            panel.form.set_values(vars(self.parameters))
+        if self.error is not None:
+            parts.message_bar.show_error(self.error)
+        if self.has_focus:
+            parts.image_view.setFocus()
+
+
+class WindowChange(QObject):
+    """Builds the window anew in another language.
+
+    Parameters
+    ----------
+    parts : WindowParts
+        The parts of the window; new ones are put into it.
+    translation : Translation
+    make : callable
+        Makes the new parts in the language that is translated into then.
+    furnish : callable
+        Puts the parts into their window and connects them.
+    """
+
+    def __init__(
+        self,
+        parts: WindowParts,
+        translation: Translation,
+        make: Callable[[Language], WindowParts],
+        furnish: Callable[[], None],
+    ) -> None:
+        super().__init__(parts.window)
+        self._parts = parts
+        self._translation = translation
+        self._make = make
+        self._furnish = furnish
+        self._wanted = parts.language
+        # What was clicked to get here is deleted too, so it must have returned before.
+        self._change = QTimer(self, singleShot=True)
+        self._change.timeout.connect(self._on_change_timeout)
+        self._tidy = QTimer(self, singleShot=True, interval=_LAID_OUT_MS)
+        self._tidy.timeout.connect(self._on_tidy_timeout)
+
+    def speak(self, language: Language) -> None:
+        """Change to a language, as soon as what is going on now is done, and keep it so."""
+        self._wanted = language
+        self._parts.settings.choose_language(language)
+        self._change.start()
+
+    def _on_change_timeout(self) -> None:
+        parts = self._parts
+        if self._wanted == parts.language:
+            return
+        seen = _Seen.of(parts)
+        parts.window.setUpdatesEnabled(False)
+        parts.toolbox.use_views(())
+        parts.scene_view.close()
+        # Loaders hold on to the old views until they have told them of their tiles.
+        parts.document.tiles.tell_nobody()
+        self._translation.speak(self._wanted)
+        parts.replace_by(self._make(self._wanted))
+        self._furnish()
+        seen.show_again(parts)
+        self._tidy.start()
+
+    def _on_tidy_timeout(self) -> None:
+        self._parts.window.setUpdatesEnabled(True)  # all stands where it stood
+        # The old views hold pictures of many megabytes in circles of references. They are let go
+        # here, since a collection in another thread would delete Qt's objects from there.
+        gc.collect()

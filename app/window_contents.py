@@ -1,0 +1,60 @@
+"""What a window is given to hold: the widgets in its middle, and the panels around them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QStatusBar, QWidget
+
+from processing.text import Language, Text
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A widget in a dock.
+
+    Attributes
+    ----------
+    area : Qt.DockWidgetArea
+        Where it is at first.
+    width, height : int
+        Its share there, in pixels of a usual window.
+    behind : str
+        Id of the panel with which it shares a place, as a tab; empty for a place of its own.
+    """
+
+    id: str
+    title: Text
+    widget: QWidget
+    area: Qt.DockWidgetArea
+    width: int
+    height: int
+    behind: str = ""
+
+
+@dataclass(frozen=True)
+class Contents:
+    """What a window holds, in one language.
+
+    Attributes
+    ----------
+    start_page : QWidget
+        Shown while nothing is open.
+    views : sequence of QWidget
+        From top to bottom.
+    headers : sequence of QWidget
+        The lines above the views.
+    message : QWidget
+        The line above everything.
+    status : QStatusBar
+        The last line.
+    """
+
+    language: Language
+    start_page: QWidget
+    views: Sequence[QWidget]
+    headers: Sequence[QWidget]
+    message: QWidget
+    status: QStatusBar
