@@ -1,0 +1,1 @@
+"""Drawing: constructions, edits and measures of lines as plain arithmetic on values."""

@@ -1,0 +1,240 @@
+"""Where lines meet in plan: with themselves, with one another, and near the cursor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from processing.drafting.plan_sides import (
+    crossing_fractions,
+    first_meeting,
+    meeting_pairs,
+    nearest_fractions,
+)
+from processing.drafting.polyline import SAME_PLACE_M, Polyline, end_direction, position_of
+from processing.project.feature import Position
+
+Floats = NDArray[np.float64]
+What = Literal["vertex", "line", "intersection", "extension", "perpendicular"]
+
+EXTENSION_M = 5.0
+"""How far a line is thought to go on beyond its ends."""
+
+LEVEL_M = 0.5
+"""Places that lie further above or below the cursor belong to another level."""
+
+
+@dataclass(frozen=True)
+class LinePlace:
+    """A place on drawn lines that the cursor may snap to.
+
+    Attributes
+    ----------
+    xyz : Position
+        m, project CRS; the height is the line's.
+    what : {"vertex", "line", "intersection", "extension", "perpendicular"}
+    distance_m : float
+        From the cursor, in plan.
+    """
+
+    xyz: Position
+    what: What
+    distance_m: float
+
+
+def crosses_itself(positions: Sequence[Position], *, is_closed: bool) -> tuple[float, float] | None:
+    """Where a line or ring first meets itself in plan; None where it doesn't.
+
+    Sides that are neighbours meet at their common place, which doesn't count; nor does it where
+    an open line ends on itself.
+
+    Returns
+    -------
+    easting, northing : float
+        m, project CRS.
+    """
+    line = Polyline.of(positions, is_closed=is_closed)
+    sides = line.plan_sides
+    sides = sides[(sides[:, 0] != sides[:, 1]).any(axis=1)]
+    if len(sides) < 3:
+        return None
+    found = first_meeting(sides, is_closed=is_closed)
+    if found is None:
+        return None
+    one, other = sides[found[0]], sides[found[1]]
+    fractions, _ = crossing_fractions(one[None], other[None])
+    if np.isnan(fractions[0]):
+        # They lie on one another: the first place that both have.
+        shared = shapely.get_coordinates(
+            shapely.intersection(shapely.LineString(one), shapely.LineString(other))
+        )
+        place = shared[0]
+    else:
+        place = one[0] + fractions[0].clip(0, 1) * (one[1] - one[0])
+    east, north = (place + line.origin[:2]).tolist()
+    return float(east), float(north)
+
+
+def line_places(
+    near: Position,
+    lines: Sequence[Sequence[Position]],
+    reach_m: float,
+    *,
+    from_: Position | None = None,
+) -> tuple[LinePlace, ...]:
+    """The places on drawn lines that a cursor may snap to.
+
+    Vertices; the nearest place on each line; crossings of lines in plan; straight continuations
+    of open lines for 5 m beyond their ends and where those cross; the feet of perpendiculars.
+
+    Parameters
+    ----------
+    near : Position
+        The cursor, m, project CRS.
+    lines : sequence of sequences of Position
+        A ring repeats its first place at the end; a point is a line of one place.
+    reach_m : float
+        Most distance from the cursor in plan. Places more than 0.5 m above or below the cursor
+        are no candidates.
+    from_ : Position, optional
+        Where perpendiculars start: the last place drawn.
+
+    Returns
+    -------
+    tuple of LinePlace
+        The nearest first; of places of different sorts within a millimetre of each other only a
+        vertex, then an intersection, is given.
+    """
+    # About the cursor, so that distances are lengths.
+    drawn = [Polyline.of(line, origin=near) for line in lines if len(line)]
+    if not drawn:
+        return ()
+    nearby = _Nearby.of(drawn, reach_m)
+    found: list[tuple[Floats, What]] = [
+        *((place, "vertex") for place in _vertices(drawn)),
+        *((place, "intersection") for place in nearby.crossings()),
+        *((place, "perpendicular") for place in nearby.feet(from_, near)),
+        *((place, "line") for place in nearby.nearest_of_lines()),
+        *((place, "extension") for place in nearby.nearest_of_extensions()),
+    ]
+    kept: list[tuple[Floats, What]] = []
+    for place, what in found:
+        is_near = np.hypot(place[0], place[1]) <= reach_m and abs(place[2]) <= LEVEL_M
+        if is_near and not any(_is_shown(place, what, other) for other in kept):
+            kept.append((place, what))
+    origin = np.array(near)
+    places = [
+        LinePlace(position_of(place + origin), what, float(np.hypot(place[0], place[1])))
+        for place, what in kept
+    ]
+    return tuple(sorted(places, key=lambda one: one.distance_m))
+
+
+def _is_shown(place: Floats, what: What, other: tuple[Floats, What]) -> bool:
+    """Whether another place already stands for this one."""
+    if what == "vertex":
+        # Vertices of two lines in one place are one target only where their heights agree.
+        return other[1] == "vertex" and bool(np.abs(place - other[0]).max() < SAME_PLACE_M)
+    return float(np.hypot(*(place - other[0])[:2])) < SAME_PLACE_M
+
+
+def _vertices(drawn: Sequence[Polyline]) -> Floats:
+    return np.concatenate([line.xyz for line in drawn])
+
+
+@dataclass(frozen=True)
+class _Nearby:
+    """The sides within reach of the cursor and the continuations, which are sides as well.
+
+    Attributes
+    ----------
+    sides : (m, 2, 3) float64
+        About the cursor.
+    owner : (m,) int64
+        The line of each side.
+    is_extension : (m,) bool
+    """
+
+    sides: Floats
+    owner: NDArray[np.int64]
+    is_extension: NDArray[np.bool_]
+
+    @staticmethod
+    def of(drawn: Sequence[Polyline], reach_m: float) -> _Nearby:
+        """Collect what comes within reach in plan."""
+        parts: list[Floats] = []
+        owners: list[int] = []
+        extends: list[bool] = []
+        for number, line in enumerate(drawn):
+            own = np.stack([line.starts, line.ends], axis=1)
+            beyond = list(_extensions(line))
+            for sides, is_extension in ((own, False), *((side, True) for side in beyond)):
+                _, distances = nearest_fractions(sides[:, :, :2], np.zeros(2))
+                near = sides[distances <= reach_m]
+                parts.append(near)
+                owners += [number] * len(near)
+                extends += [is_extension] * len(near)
+        return _Nearby(
+            np.concatenate(parts), np.array(owners, np.int64), np.array(extends, np.bool_)
+        )
+
+    def nearest_of_lines(self) -> Iterator[Floats]:
+        """The place nearest to the cursor on each line."""
+        chosen = np.flatnonzero(~self.is_extension)
+        fractions, distances = nearest_fractions(self.sides[chosen, :, :2], np.zeros(2))
+        for owner in np.unique(self.owner[chosen]):
+            own = np.flatnonzero(self.owner[chosen] == owner)
+            best = own[distances[own].argmin()]
+            yield self._at(int(chosen[best]), float(fractions[best]))
+
+    def nearest_of_extensions(self) -> Iterator[Floats]:
+        """The place nearest to the cursor on each continuation."""
+        fractions, _ = nearest_fractions(self.sides[:, :, :2], np.zeros(2))
+        for side in np.flatnonzero(self.is_extension):
+            yield self._at(int(side), float(fractions[side]))
+
+    def crossings(self) -> Iterator[Floats]:
+        """Where sides cross in plan; the height is that of the one nearer to the cursor's."""
+        if not len(self.sides):
+            return
+        one, other = meeting_pairs(self.sides[:, :, :2], self.sides[:, :, :2])
+        chosen = one < other
+        one, other = one[chosen], other[chosen]
+        on_one, on_other = crossing_fractions(self.sides[one, :, :2], self.sides[other, :, :2])
+        for i, j, s, t in zip(one, other, on_one, on_other, strict=True):
+            is_corner = self.owner[i] == self.owner[j] and s in (0.0, 1.0) and t in (0.0, 1.0)
+            if np.isnan(s) or is_corner:
+                continue
+            heights = self._at(i, s), self._at(j, t)
+            yield min(heights, key=lambda place: abs(float(place[2])))
+
+    def feet(self, start: Position | None, near: Position) -> Iterator[Floats]:
+        """The feet of perpendiculars from a start, where they fall inside a side."""
+        if start is None or not len(self.sides):
+            return
+        plan = self.sides[:, :, :2]
+        fractions, _ = nearest_fractions(plan, (np.array(start) - np.array(near))[:2])
+        for side in np.flatnonzero((fractions > 0) & (fractions < 1)):
+            yield self._at(int(side), float(fractions[side]))
+
+    def _at(self, side: int, fraction: float) -> Floats:
+        start, end = self.sides[side]
+        place: Floats = start + fraction * (end - start)
+        return place
+
+
+def _extensions(line: Polyline) -> Iterator[Floats]:
+    """The continuations of an open line beyond both ends: (1, 2, 3) each."""
+    if len(line.xyz) < 2 or bool((line.xyz[0] == line.xyz[-1]).all()):
+        return
+    for xyz in (line.xyz[::-1], line.xyz):
+        beyond = end_direction(Polyline(line.origin, xyz))
+        if beyond is not None:
+            direction, slope = beyond
+            end = xyz[-1] + EXTENSION_M * np.append(direction, slope)
+            yield np.stack([xyz[-1], end])[None]

@@ -1,0 +1,41 @@
+"""What edits ask of the features they are given."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from processing.drafting.polyline import said_place
+from processing.errors import Unsuitable
+from processing.project.catalogue import Geometry
+from processing.project.feature import Feature, Vertex
+from processing.text import Text
+
+
+def check_line(feature: Feature) -> None:
+    """Raise `Unsuitable` for what is no line with at least one side."""
+    if feature.geometry is not Geometry.LINE or len(feature.vertices) < 2:
+        raise Unsuitable(
+            Text("Only lines can be edited like this.", "この編集は線にのみ行えます。"),
+            said_feature(feature),
+            Text("Choose a line.", "線を選んでください。"),
+        )
+
+
+def check_area(feature: Feature) -> None:
+    """Raise `Unsuitable` for what is no area."""
+    if feature.geometry is not Geometry.AREA:
+        raise Unsuitable(
+            Text("Only areas can be edited like this.", "この編集は面にのみ行えます。"),
+            said_feature(feature),
+            Text("Choose an area.", "面を選んでください。"),
+        )
+
+
+def gap_m(one: Vertex, other: Vertex) -> float:
+    """Distance of two vertices in space, m."""
+    return float(np.linalg.norm(np.subtract(one.xyz, other.xyz)))
+
+
+def said_feature(feature: Feature) -> Text:
+    """Where a message about a feature is."""
+    return said_place(feature.vertices[0].xyz)
