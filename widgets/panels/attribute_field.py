@@ -1,20 +1,54 @@
-"""AttributeEditor: the field in which one attribute of a feature is typed."""
+"""AttributeEditor: the field in which one attribute of the chosen features is typed."""
 
 from __future__ import annotations
 
-from PySide6.QtCore import QDate, QObject, QRegularExpression, Signal
-from PySide6.QtGui import QRegularExpressionValidator
-from PySide6.QtWidgets import QComboBox, QLineEdit, QWidget
+import unicodedata
+from typing import Final
+
+from PySide6.QtCore import QDate, QLocale, QObject, QRegularExpression, Qt, Signal
+from PySide6.QtGui import QRegularExpressionValidator, QWheelEvent
+from PySide6.QtWidgets import QComboBox, QLineEdit, QSizePolicy, QStyle, QWidget
+from typing_extensions import override
 
 from processing.project.catalogue import AttributeField
 from processing.project.feature import AttributeValue
 from processing.text import Language
 
+# Full-width forms too: a Japanese keyboard types them unless it is told not to.
+_DIGIT = "[0-9０-９]"
 _PATTERNS = {
-    "number": r"[-+−]?\d{0,12}([.,]\d{0,9})?",
-    "count": r"\d{0,9}",
-    "date": r"\d{0,4}(-\d{0,2}){0,2}",
+    "number": rf"[-+−－＋]?{_DIGIT}{{0,12}}([.,．，]{_DIGIT}{{0,9}})?",
+    "count": rf"{_DIGIT}{{0,9}}",
+    "date": rf"{_DIGIT}{{0,4}}([-/－／]{_DIGIT}{{0,2}}){{0,2}}",
 }
+_LEAST_LETTERS = 8
+
+
+class Several:
+    """What is shown of an attribute that differs among the chosen features."""
+
+
+SEVERAL: Final = Several()
+ShownValue = AttributeValue | Several
+
+
+class QuietBox(QComboBox):
+    """A list that may be narrow, and that the wheel of a form being scrolled doesn't change."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.setMinimumContentsLength(_LEAST_LETTERS)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setMaxVisibleItems(20)
+
+    @override
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        if self.hasFocus():
+            super().wheelEvent(event)
+        else:
+            event.ignore()
 
 
 class AttributeEditor(QObject):
@@ -23,8 +57,8 @@ class AttributeEditor(QObject):
     Parameters
     ----------
     field : AttributeField
-    value : str, float, int, bool or None
-        None: nothing is said yet.
+    value : str, float, int, bool, None or Several
+        None: nothing is said yet. ``SEVERAL``: the chosen features say different things.
     language : Language
 
     Attributes
@@ -40,55 +74,85 @@ class AttributeEditor(QObject):
 
     edited = Signal(str, object)
 
-    def __init__(self, field: AttributeField, value: AttributeValue, language: Language) -> None:
+    def __init__(self, field: AttributeField, value: ShownValue, language: Language) -> None:
         super().__init__()
         self._field = field
         self._value = value
+        self._several = self.tr("(several values)")
         self.widget: QWidget
         if field.type == "choice":
-            self._box = QComboBox()
+            self._box = QuietBox()
+            self._box.setPlaceholderText(self._several)
             self._fill(language)
             self._box.activated.connect(self._on_box_activated)
             self.widget = self._box
         else:
-            self._line = QLineEdit(_written(value))
+            self._line = QLineEdit()
+            self._add_clearing()
             if field.type in _PATTERNS:
                 pattern = QRegularExpression(_PATTERNS[field.type])
                 self._line.setValidator(QRegularExpressionValidator(pattern, self._line))
-            if field.type == "date":
-                self._line.setPlaceholderText(self.tr("YYYY-MM-DD"))
-            elif field.unit:
-                self._line.setPlaceholderText(field.unit)
+            self._write()
             self._line.editingFinished.connect(self._on_line_editing_finished)
             self.widget = self._line
         self.widget.setObjectName(field.id)
 
-    def show_value(self, value: AttributeValue) -> None:
+    def show_value(self, value: ShownValue) -> None:
         """Show another value; tells nobody."""
         if value == self._value:
             return
         self._value = value
         if self._field.type == "choice":
-            self._choose(value)
+            self._choose()
         else:
-            self._line.setText(_written(value))
+            self._write()
+
+    def finish(self) -> None:
+        """Take what is typed as it stands, before the field goes."""
+        if self._field.type != "choice":
+            self._on_line_editing_finished()
+
+    def _add_clearing(self) -> None:
+        """A button that empties a field of several values: there is no text to delete."""
+        icon = self._line.style().standardIcon(QStyle.StandardPixmap.SP_LineEditClearButton)
+        self._clearing = self._line.addAction(icon, QLineEdit.ActionPosition.TrailingPosition)
+        self._clearing.setToolTip(self.tr("Empty this field of all selected features"))
+        self._clearing.triggered.connect(self._on_clearing_triggered)
+
+    def _write(self) -> None:
+        is_several = isinstance(self._value, Several)
+        self._clearing.setVisible(is_several)
+        self._line.setPlaceholderText(self._several if is_several else self._hint())
+        self._line.setText("" if isinstance(self._value, Several) else written(self._value))
+
+    def _hint(self) -> str:
+        return self.tr("YYYY-MM-DD") if self._field.type == "date" else ""
 
     def _fill(self, language: Language) -> None:
         self._box.addItem("", None)
         for choice in self._field.choices:
             self._box.addItem(self._field.name_of_choice(choice).spoken(language), choice)
-        self._choose(self._value)
+        self._choose()
 
-    def _choose(self, value: AttributeValue) -> None:
-        index = self._box.findData(value)
-        if value is not None and index < 0:
+    def _choose(self) -> None:
+        value = self._value
+        if isinstance(value, Several):
+            self._box.setCurrentIndex(-1)
+            return
+        index = 0 if value is None else self._box.findData(value)
+        if index < 0:
             # A value that the catalogue no longer has: shown as it is.
             self._box.addItem(str(value), value)
             index = self._box.count() - 1
-        self._box.setCurrentIndex(max(index, 0))
+        self._box.setCurrentIndex(index)
 
     def _on_box_activated(self) -> None:
         self._tell(self._box.currentData())
+
+    def _on_clearing_triggered(self) -> None:
+        self._line.setModified(False)
+        self._tell(None)
+        self._write()
 
     def _on_line_editing_finished(self) -> None:
         if not self._line.isModified():
@@ -96,10 +160,11 @@ class AttributeEditor(QObject):
         self._line.setModified(False)
         text = self._line.text().strip()
         value = read_value(self._field, text)
-        if text and value is None:
-            self._line.setText(_written(self._value))
-            return
-        self._tell(value)
+        # What can't be read is not taken; an empty line of several values says nothing.
+        is_taken = value is not None or (not text and self._value is not SEVERAL)
+        if is_taken:
+            self._tell(value)
+        self._write()
 
     def _tell(self, value: AttributeValue) -> None:
         if value != self._value:
@@ -111,18 +176,25 @@ def read_value(field: AttributeField, text: str) -> AttributeValue:
     """What a text says as a value of the attribute; None when it says nothing valid."""
     if not text:
         return None
+    if field.type in ("text", "choice"):
+        return text
+    plain = unicodedata.normalize("NFKC", text).replace("−", "-")
     if field.type == "number":
         try:
-            return float(text.replace("−", "-").replace(",", "."))
+            return float(plain.replace(",", "."))
         except ValueError:
             return None
     if field.type == "count":
-        return int(text) if text.isdecimal() else None
-    if field.type == "date":
-        return text if QDate.fromString(text, "yyyy-MM-dd").isValid() else None
-    return text
+        return int(plain) if plain.isdecimal() else None
+    date = QDate.fromString(plain.replace("/", "-"), "yyyy-M-d")
+    return date.toString("yyyy-MM-dd") if date.isValid() else None
 
 
-def _written(value: AttributeValue) -> str:
-    # A float's shortest text that reads back as the same number.
-    return "" if value is None else str(value)
+def written(value: AttributeValue) -> str:
+    """A value as it is typed: the shortest text that reads back as the same number."""
+    if value is None:
+        return ""
+    if not isinstance(value, float):
+        return str(value)
+    locale = QLocale.c()
+    return locale.toString(value, "f", QLocale.FloatingPointPrecisionOption.FloatingPointShortest)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-import numpy as np
+import math
+from itertools import pairwise
+
+from PySide6.QtCore import QLocale
 
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature
-from processing.text import Text
+from processing.text import Language, Text
 from widgets.parts.number_field import coordinate
 
 _LENGTH = Text("Length", "延長")
@@ -17,32 +20,45 @@ _VERTICES = Text("Vertices", "頂点数")
 _AXES = (Text.same("E"), Text.same("N"), Text.same("H"))
 
 
-def facts_of(feature: Feature) -> tuple[tuple[Text, str], ...]:
-    """Names and values with units, in the order in which they are shown.
-
-    Lengths are measured in space, areas in plan (the shoelace formula about the first vertex, so
-    that large coordinates don't cost digits).
-    """
-    xyz = np.array([vertex.xyz for vertex in feature.vertices], dtype=np.float64).reshape(-1, 3)
+def facts_of(feature: Feature, language: Language = "en") -> tuple[tuple[Text, str], ...]:
+    """Names and values with units, in the order in which they are shown."""
     if feature.geometry is Geometry.POINT:
-        values = xyz[0].tolist() if len(xyz) else []
+        values = feature.vertices[0].xyz if feature.vertices else ()
         return tuple(
             (axis, f"{coordinate(value)} m") for axis, value in zip(_AXES, values, strict=False)
         )
+    locale = QLocale(language)
     is_area = feature.geometry is Geometry.AREA
-    ring = np.vstack([xyz, xyz[:1]]) if is_area else xyz
-    length_m = float(np.linalg.norm(np.diff(ring, axis=0), axis=1).sum())
-    facts = [(_PERIMETER if is_area else _LENGTH, f"{length_m:,.3f} m")]
+    length = locale.toString(length_m(feature), "f", 3)
+    facts = [(_PERIMETER if is_area else _LENGTH, f"{length} m")]
     if is_area:
-        facts.append((_AREA, f"{_area_m2(xyz):,.3f} m²"))
-    rise_m = float(np.ptp(xyz[:, 2])) if len(xyz) else 0.0
-    facts.append((_RISE, f"{rise_m:,.3f} m"))
-    facts.append((_VERTICES, f"{len(xyz):,}"))
+        facts.append((_AREA, f"{locale.toString(area_m2(feature), 'f', 3)} m²"))
+    heights = [vertex.xyz[2] for vertex in feature.vertices]
+    rise_m = max(heights) - min(heights) if heights else 0.0
+    facts.append((_RISE, f"{locale.toString(rise_m, 'f', 3)} m"))
+    facts.append((_VERTICES, locale.toString(len(heights))))
     return tuple(facts)
 
 
-def _area_m2(xyz: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> float:
-    if len(xyz) < 3:
+def length_m(feature: Feature) -> float:
+    """Length in space of a line, perimeter of an area; 0 for a point.
+
+    In plain numbers, not arrays: a table asks for a hundred thousand short lines at a time.
+    """
+    places = [vertex.xyz for vertex in feature.vertices]
+    length = sum(map(math.dist, places, places[1:]))
+    if feature.geometry is Geometry.AREA and places:
+        length += math.dist(places[-1], places[0])
+    return length
+
+
+def area_m2(feature: Feature) -> float:
+    """Area in plan of the ring, never negative; 0 for less than three vertices.
+
+    The shoelace formula about the first vertex, so that large coordinates don't cost digits.
+    """
+    if len(feature.vertices) < 3:
         return 0.0
-    x, y = (xyz[:, :2] - xyz[0, :2]).T
-    return float(abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2)
+    east, north, _ = feature.vertices[0].xyz
+    ring = [(vertex.xyz[0] - east, vertex.xyz[1] - north) for vertex in feature.vertices]
+    return abs(sum(x * next_y - next_x * y for (x, y), (next_x, next_y) in pairwise(ring))) / 2

@@ -1,0 +1,1 @@
+"""What the feature table is made of: rows, columns, marks and the menu."""
