@@ -23,7 +23,7 @@ from typing_extensions import override
 from app.actions.action import Action
 from app.settings import WindowLayout
 from app.window_actions import WindowActions
-from app.window_contents import Contents, Panel
+from app.window_contents import Contents, Panel, PlainToolBar
 from processing.text import Language, Text
 
 _ICON_PX = 20
@@ -105,7 +105,7 @@ class MainWindow(QMainWindow):
         self.setCentralWidget(_stacked(contents.message, self._pages))
         self.setMenuBar(QMenuBar(self))
         self.setStatusBar(contents.status)
-        self._toolbar = QToolBar(self.tr("Tools"), self)
+        self._toolbar = PlainToolBar(self.tr("Tools"), self)
         self._toolbar.setObjectName("toolbar")
         self._toolbar.setIconSize(QSize(_ICON_PX, _ICON_PX))
         self.addToolBar(self._toolbar)

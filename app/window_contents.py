@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QStatusBar, QWidget
+from PySide6.QtGui import QPaintEvent
+from PySide6.QtWidgets import QStatusBar, QToolBar, QWidget
+from typing_extensions import override
 
 from processing.text import Language, Text
 
@@ -58,3 +60,15 @@ class Contents:
     headers: Sequence[QWidget]
     message: QWidget
     status: QStatusBar
+
+
+class PlainToolBar(QToolBar):
+    """A toolbar in the window's own colour, where the style would paint a gradient and a line."""
+
+    def __init__(self, title: str, parent: QWidget) -> None:
+        super().__init__(title, parent)
+        self.setMovable(False)
+
+    @override
+    def paintEvent(self, event: QPaintEvent) -> None:
+        """Paint nothing: the window's ground is there already."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import weakref
 from collections.abc import Iterator
 
 import numpy as np
@@ -225,6 +226,30 @@ def test_a_closed_cache_has_no_threads_and_tells_nothing(drives: dict[str, Drive
     assert request_of(0, "height") not in {request for request, _ in listener.told}
     assert not [t for t in threading.enumerate() if t.name.startswith("tiles-")]
     cache.request(request_of(), listener.done)
+
+
+def test_who_leaves_is_told_nothing_more_and_held_by_nobody(drives: dict[str, Drive]) -> None:
+    listener = Listener()
+    cache, gate = loading_cache(drives, listener)
+    cache.request(request_of(0, "height"), listener.done)
+
+    def open_once_given_up() -> None:
+        while cache._waiting:
+            pass
+        gate.opened.set()
+
+    opening = threading.Thread(target=open_once_given_up)
+    opening.start()
+    cache.tell_nobody()
+    opening.join(WAIT_S)
+    assert listener.told == []
+    left = weakref.ref(listener)
+    del listener
+    assert left() is None
+    later = Listener()
+    cache.request(request_of(0, "class"), later.done)
+    later.wait_for(1)
+    cache.close()
 
 
 def test_a_cache_that_knows_no_drives_says_so() -> None:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from datetime import datetime
 from pathlib import Path
 
-from PySide6.QtCore import QDate, QEvent, QLocale, QObject, Qt, Signal
+from PySide6.QtCore import QDate, QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QAction, QKeyEvent, QShowEvent
 from PySide6.QtWidgets import (
     QHBoxLayout,
@@ -55,7 +54,8 @@ class StartPage(QWidget):
 
     def __init__(self, language: Language = "en", parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._locale = QLocale(language)
+        self._date_format = "yyyy/MM/dd" if language == "ja" else "yyyy-MM-dd"
+        self._shown: tuple[RecentProject, ...] = ()
         column = QWidget(self)
         column.setMaximumWidth(_WIDTH)
         layout = QVBoxLayout(column)
@@ -86,14 +86,17 @@ class StartPage(QWidget):
 
     def show_recent(self, projects: Iterable[RecentProject]) -> None:
         """List these projects, the newest first."""
+        self._shown = tuple(projects)
         self._list.clear()
-        for project in projects:
+        for project in self._shown:
             self._add(project)
-        first = self._list.topLevelItem(0)
+        is_empty = not self._shown
         self._heading.setText(
-            self.tr("No project was opened yet.") if first is None else self.tr("Recent projects")
+            self.tr("No project was opened yet.") if is_empty else self.tr("Recent projects")
         )
-        self._list.setVisible(first is not None)
+        self._list.setVisible(not is_empty)
+        there = [place for place, one in enumerate(self._shown) if not one.is_missing]
+        first = self._list.topLevelItem(there[0] if there else 0)
         if first is not None:
             self._list.setCurrentItem(first)
 
@@ -101,6 +104,12 @@ class StartPage(QWidget):
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
         (self._list if self._list.topLevelItemCount() else self._first_button).setFocus()
+
+    @override
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and self._shown:
+            self.show_recent(self._shown)  # in the greys of the other theme
 
     @override
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -136,7 +145,8 @@ class StartPage(QWidget):
 
     def _add(self, project: RecentProject) -> None:
         opened_at = project.opened_at
-        opened = "" if opened_at is None else self._date(opened_at)
+        day = None if opened_at is None else opened_at.date()
+        opened = "" if day is None else QDate(*day.timetuple()[:3]).toString(self._date_format)
         item = QTreeWidgetItem(
             self._list,
             [
@@ -156,10 +166,6 @@ class StartPage(QWidget):
             remove.setAutoRaise(True)
             remove.clicked.connect(_without_argument(lambda: self._forget(item)))
             self._list.setItemWidget(item, _REMOVE, remove)
-
-    def _date(self, day: datetime) -> str:
-        date = QDate(day.year, day.month, day.day)
-        return self._locale.toString(date, QLocale.FormatType.ShortFormat)
 
     def _title(self) -> QLabel:
         title = QLabel(self.tr("Zuka"), self)
