@@ -69,6 +69,7 @@ FIXED: tuple[FixedKey, ...] = (
         Text("Tab", "Tab"),
         Text("Go through the kinds used last", "最近使った種別を順に選ぶ"),
         ("Tab", "Shift+Tab"),
+        "cycle-kind",
     ),
     FixedKey(Text("Wheel", "ホイール"), Text("Zoom at the mouse", "マウスの位置で拡大・縮小")),
     FixedKey(

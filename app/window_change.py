@@ -10,7 +10,7 @@ import gc
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from PySide6.QtCore import QObject, QTimer
+from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtWidgets import QApplication
 
 from app.translation import Translation
@@ -19,6 +19,7 @@ from processing.errors import UserError
 from processing.text import Language
 from widgets.image_view.viewport import Viewport
 from widgets.scene_view.camera import Camera
+from widgets.scene_view.view import SceneView
 
 _LAID_OUT_MS = 50
 
@@ -29,6 +30,7 @@ class _Seen:
 
     viewport: Viewport | None
     camera: Camera
+    is_shaded: bool
     tool: str
     parameters: object
     error: UserError | None
@@ -37,11 +39,12 @@ class _Seen:
     @staticmethod
     def of(parts: WindowParts) -> _Seen:
         image, panel = parts.image_view, parts.processing_panel
-        form = panel.form
+        form, cloud = panel.form, parts.scene_view.cloud
         focused = QApplication.focusWidget()
         return _Seen(
             viewport=None if image.picture is None else image.viewport,
             camera=parts.scene_view.camera,
+            is_shaded=cloud is None or cloud.is_shading_wanted,
             tool=panel.tool,
             parameters=None if form is None else form.value(),
             error=parts.message_bar.error,
@@ -52,6 +55,8 @@ class _Seen:
         if self.viewport is not None:
             parts.image_view.look_through(self.viewport)
             parts.scene_view.look_from(self.camera)
+        if not self.is_shaded:
+            self._unshade(parts.scene_view)
         panel = parts.processing_panel
         if self.tool:
             panel.show_tool(self.tool)
@@ -61,6 +66,15 @@ class _Seen:
             parts.message_bar.show_error(self.error)
         if self.has_focus:
             parts.image_view.setFocus()
+
+    @staticmethod
+    def _unshade(view: SceneView) -> None:
+        """Turn the shading off once there is a picture that could be shaded."""
+
+        def unshade() -> None:
+            view.set_shading(is_on=False)
+
+        view.sharpened.connect(unshade, Qt.ConnectionType.SingleShotConnection)
 
 
 class WindowChange(QObject):

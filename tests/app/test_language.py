@@ -122,6 +122,7 @@ def test_what_is_looked_at_is_looked_at_again(qtbot: QtBot, street: WindowParts)
     street.image_view.zoom_by(3.0)
     street.image_view.center_on(place)
     street.scene_view.look_from_above()
+    street.scene_view.set_shading(is_on=False)
     street.window.stand_side_by_side(beside=True)
     street.processing_panel.show_tool("segments")
     qtbot.wait(0)
@@ -137,6 +138,10 @@ def test_what_is_looked_at_is_looked_at_again(qtbot: QtBot, street: WindowParts)
     assert street.window.are_views_beside
     assert street.window.actions_by_id["side-by-side"].isChecked()
     assert street.processing_panel.tool == "segments"
+    scene = street.scene_view
+    qtbot.waitUntil(
+        lambda: scene.cloud is not None and not scene.cloud.is_shading_wanted, timeout=WAIT_MS
+    )
 
 
 def test_docks_stay_where_they_were_put(qtbot: QtBot, street: WindowParts) -> None:
