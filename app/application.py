@@ -17,9 +17,11 @@ from app.actions.edit import edit_actions
 from app.actions.file import FileActions
 from app.actions.help import HelpActions
 from app.actions.process import process_actions
+from app.actions.tool_entries import TOOL_ENTRIES
 from app.actions.view import view_actions
 from app.cli.window_wish import WindowWish
 from app.document import Document
+from app.hand import make_toolbox
 from app.jobs import JobQueue
 from app.main_window import MainWindow
 from app.settings import Settings
@@ -32,17 +34,12 @@ from app.window_parts import LastingParts, WindowParts
 from app.wiring import connect_lasting, connect_parts
 from processing.text import Language, Text
 from widgets.image_view.view import ImageView
-from widgets.mouse_tools.draw_area import DrawArea
-from widgets.mouse_tools.draw_line import DrawLine
-from widgets.mouse_tools.draw_point import DrawPoint
-from widgets.mouse_tools.edit_vertices import EditVertices
-from widgets.mouse_tools.select import Select
-from widgets.mouse_tools.toolbox import MouseToolbox
 from widgets.panels.attribute_panel import AttributePanel
 from widgets.panels.jobs_panel import JobsPanel
 from widgets.panels.layers_panel import LayersPanel
 from widgets.panels.processing_panel import ProcessingPanel
 from widgets.panels.project_tree import ProjectTree
+from widgets.parts.drawing_bar import DrawingBar
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
 from widgets.parts.start_page import StartPage
@@ -130,23 +127,12 @@ def _make_lasting(settings: Settings) -> LastingParts:
     theme.choose(settings.theme)
     jobs = JobQueue()
     document = Document(jobs)
-    shared = document.shared
-    toolbox = MouseToolbox(
-        {
-            "select": Select(document, shared),
-            "point": DrawPoint(shared),
-            "line": DrawLine(shared),
-            "area": DrawArea(shared),
-            "edit": EditVertices(document, shared),
-        },
-        (),
-    )
     return LastingParts(
         settings=settings,
         theme=theme,
         jobs=jobs,
         document=document,
-        toolbox=toolbox,
+        toolbox=make_toolbox(document),
         window=MainWindow(),
     )
 
@@ -155,8 +141,9 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
     document = lasting.document
     shared, tiles = document.shared, document.tiles
     image_view = ImageView(document, shared, tiles, language=language)
-    scene_view = SceneView(document, shared, tiles)
+    scene_view = SceneView(document, shared, tiles, language=language)
     image_bar = ImageBar(document, shared, language)
+    hints = {entry.name: entry.hint for entry in TOOL_ENTRIES}
     message_bar = MessageBar(language)
     start_page = StartPage(language)
     status_line = StatusLine(document, shared, language)
@@ -170,6 +157,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         image_view=image_view,
         scene_view=scene_view,
         image_bar=image_bar,
+        drawing_bar=DrawingBar(shared, hints, language),
         message_bar=message_bar,
         start_page=start_page,
         status_line=status_line,
@@ -190,7 +178,7 @@ def _furnish(parts: WindowParts, files: FileActions, change: WindowChange) -> No
         language=parts.language,
         start_page=parts.start_page,
         views=views,
-        headers=(parts.image_bar,),
+        headers=(parts.image_bar, parts.drawing_bar),
         message=parts.message_bar,
         status=parts.status_line,
     )

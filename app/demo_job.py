@@ -248,6 +248,7 @@ def _read_drawing() -> tuple[_Wanted, ...]:
 
 
 def _click(widget: QWidget, position: QPointF) -> None:
+    """Click a pixel with Ctrl held: exactly this point, whatever edge is beside it."""
     left, none = Qt.MouseButton.LeftButton, Qt.MouseButton.NoButton
     for kind, held in (
         (QEvent.Type.MouseButtonPress, left),
@@ -259,6 +260,6 @@ def _click(widget: QWidget, position: QPointF) -> None:
             widget.mapToGlobal(position),
             left,
             held,
-            Qt.KeyboardModifier.NoModifier,
+            Qt.KeyboardModifier.ControlModifier,
         )
         QApplication.sendEvent(widget, event)

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
-from app.jobs import JobQueue
+from app.adoption import Adoption
+from app.jobs import JobQueue, Lane
 from app.undo import UndoStack
-from processing.errors import UserError
+from processing.errors import OutOfRange, UserError
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache
 from processing.monitor import Monitor
@@ -34,18 +34,11 @@ from widgets.shared.map_changes import MapChanges
 from widgets.shared.selection import Selection
 from widgets.shared.shared_state import SharedState
 from widgets.shared.sketch import Sketch
+from widgets.shared.snap_state import SnapState
 from widgets.shared.view_settings import ViewSettings
 
 _MOST_PREPARED = 50_000_000
 """Points of a drive whose surfaces are found unasked: half a gigabyte of results at most."""
-
-
-@dataclass(frozen=True)
-class _Adoption:
-    """What to do on the window's thread with what a job gave."""
-
-    project: Project
-    take: Callable[[Any], None]  # each job's own result type
 
 
 class Document(QObject):
@@ -55,6 +48,8 @@ class Document(QObject):
     -------
     opened, closed
         A project was opened or closed.
+    catalogue_changed
+        Another catalogue counts in the open project.
     refused(error: UserError)
         Something the user wanted can't be done; everything is as it was.
     told(text: Text)
@@ -63,25 +58,27 @@ class Document(QObject):
 
     opened = Signal()
     closed = Signal()
+    catalogue_changed = Signal()
     refused = Signal(object)
     told = Signal(object)
 
     def __init__(self, jobs: JobQueue, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self.shared = SharedState(
-            Cursor(self), Selection(self), MapChanges(self), ViewSettings(self), Sketch(self)
+            Cursor(self),
+            Selection(self),
+            MapChanges(self),
+            ViewSettings(self),
+            Sketch(self),
+            SnapState(self),
         )
         self.undo_stack = UndoStack(self)
-        self._jobs = jobs
         self.tiles = TileCache()
         self.tiles.use(self.drive)
         self._project: Project | None = None
         self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
-        self._adoptions: dict[str, _Adoption] = {}
-        self._new_projects: dict[str, Project] = {}
-        jobs.finished.connect(self._on_jobs_finished)
-        jobs.failed.connect(self._on_jobs_failed)
-        jobs.cancelled.connect(self._on_jobs_cancelled)
+        self._adoption = Adoption(jobs, self)
+        self._adoption.refused.connect(self.refused)
 
     # Reading: what views ask (MapSource).
 
@@ -134,9 +131,7 @@ class Document(QObject):
         """Close the project; jobs on it go on without effect."""
         if self._project is None:
             return
-        for job in list(self._adoptions):
-            self._jobs.cancel(job)
-        self._adoptions.clear()
+        self._adoption.give_up()
         self.shared.sketch.show(None)
         self.shared.selection.clear()
         self.shared.cursor.clear()
@@ -152,7 +147,14 @@ class Document(QObject):
     # Changing the map.
 
     def apply(self, label: Text, change: Change) -> bool:
-        """Do a change as one undoable step; says whether it could."""
+        """Do a change as one undoable step; says whether it could.
+
+        A change of something that has become something else meanwhile is refused: another window
+        part or a job was quicker, and its work must not be lost.
+        """
+        if self._project is not None and not self._project.features.fits(change):
+            self.refused.emit(_changed_meanwhile())
+            return False
 
         def push() -> Change:
             self.undo_stack.push(label, change)
@@ -178,6 +180,31 @@ class Document(QObject):
         self.shared.map_changes.drives_changed.emit()
         return True
 
+    def adopt_catalogue(self, path: Path, *, keep_used: bool) -> bool:
+        """Use an office's catalogue in the project; says whether it could."""
+        try:
+            self._needed().adopt_catalogue(path, keep_used=keep_used)
+        except UserError as error:
+            self.refused.emit(error)
+            return False
+        self.catalogue_changed.emit()
+        self.shared.map_changes.features_changed.emit(tuple(f.id for f in self.features()))
+        self.told.emit(
+            Text(
+                "The catalogue has {count} kinds now.", "カタログは{count}種類になりました。"
+            ).filled(count=len(self.catalogue()))
+        )
+        return True
+
+    def export_catalogue(self, path: Path) -> None:
+        """Write the project's catalogue as a file to start an own one from."""
+        try:
+            self._needed().export_catalogue(path)
+        except UserError as error:
+            self.refused.emit(error)
+            return
+        self.told.emit(Text("Wrote {path}.", "{path} を書き出しました。").filled(path=path.name))
+
     # Long work.
 
     def import_into_new(self, folder: Path, request: ImportRequest) -> str:
@@ -190,12 +217,14 @@ class Document(QObject):
         """
         if not self.create(folder, request.crs):
             return ""
-        job = self.import_files(request)
-        self._new_projects[job] = self._needed()
-        return job
+        project = self._needed()
+        return self._import(request, lambda: self._drop_if_empty(project))
 
     def import_files(self, request: ImportRequest) -> str:
         """Import delivered files in the background; gives the job's id."""
+        return self._import(request, lambda: None)
+
+    def _import(self, request: ImportRequest, otherwise: Callable[[], None]) -> str:
         project = self._needed()
         into = project.temporary_folder()
 
@@ -207,10 +236,10 @@ class Document(QObject):
 
         names = ", ".join(path.name for path in request.inputs[:3])
         title = Text("Import {names}", "{names} のインポート").filled(names=names)
-        return self._start(title, work, self._adopt_drives)
+        return self._adoption.start(project, title, work, self._adopt_drives, otherwise=otherwise)
 
     def start_run(
-        self, tool: str, drive_id: str, parameters: object, *, is_preparation: bool = False
+        self, tool: str, drive_id: str, parameters: object, *, lane: Lane = Lane.ASKED
     ) -> str:
         """Run a tool on a drive in the background; gives the job's id."""
         drive = self.drive(drive_id)
@@ -225,7 +254,22 @@ class Document(QObject):
         title = Text("{tool}: {name}", "{tool}: {name}").filled(
             tool=TOOLS[tool].name, name=drive.info.name
         )
-        return self._start(title, work, take, is_preparation=is_preparation)
+        return self._adoption.start(self._needed(), title, work, take, lane=lane)
+
+    def do_at_hand(self, work: Callable[[], object], take: Callable[[object | None], None]) -> None:
+        """Do a moment's work for the tool in the hand; it gets None where that failed."""
+
+        def watched(_monitor: Monitor) -> object:
+            return work()
+
+        self._adoption.start(
+            self._needed(),
+            Text("Drawing", "作図"),
+            watched,
+            take,
+            lane=Lane.AT_HAND,
+            otherwise=lambda: take(None),
+        )
 
     def export(self, request: ExportRequest) -> str:
         """Write the map to files in the background; gives the job's id."""
@@ -247,7 +291,7 @@ class Document(QObject):
                 ).filled(count=len(paths), folder=request.folder)
             )
 
-        return self._start(Text("Export", "書き出し"), work, take)
+        return self._adoption.start(project, Text("Export", "書き出し"), work, take)
 
     def _needed(self) -> Project:
         if self._project is None:
@@ -255,44 +299,9 @@ class Document(QObject):
             raise ValueError(message)
         return self._project
 
-    def _start(
-        self,
-        title: Text,
-        work: Callable[[Monitor], object],
-        take: Callable[[Any], None],
-        *,
-        is_preparation: bool = False,
-    ) -> str:
-        job = self._jobs.start(title, work, is_preparation=is_preparation)
-        self._adoptions[job] = _Adoption(self._needed(), take)
-        return job
-
-    def _on_jobs_finished(self, job: str, result: object) -> None:
-        adoption = self._adoptions.pop(job, None)
-        if adoption is None or adoption.project is not self._project:
-            return
-        try:
-            adoption.take(result)
-        except UserError as error:
-            self._drop_new_project(job)
-            self.refused.emit(error)
-        self._new_projects.pop(job, None)
-
-    def _on_jobs_failed(self, job: str, error: UserError) -> None:
-        if self._adoptions.pop(job, None) is not None:
-            self._drop_new_project(job)
-            self.refused.emit(error)
-
-    def _on_jobs_cancelled(self, job: str) -> None:
-        self._adoptions.pop(job, None)
-        self._drop_new_project(job)
-
-    def _drop_new_project(self, job: str) -> None:
+    def _drop_if_empty(self, project: Project) -> None:
         """Leave no empty project behind an import that failed."""
-        project = self._new_projects.pop(job, None)
-        if project is None or project is not self._project:
-            return
-        if not project.drives and len(project.features) == 0:
+        if project is self._project and not project.drives and len(project.features) == 0:
             self.close()
             Project.remove_new(project.folder)
 
@@ -318,7 +327,7 @@ class Document(QObject):
                 continue
             for tool in TOOLS.values():
                 if not all(drive.columns.has(column.name) for column in tool.outputs):
-                    self.start_run(tool.id, drive.id, tool.parameters(), is_preparation=True)
+                    self.start_run(tool.id, drive.id, tool.parameters(), lane=Lane.PREPARED)
 
     def _store_columns(self, drive: Drive, result: PointResult) -> None:
         for name, values in result.columns.items():
@@ -362,6 +371,17 @@ class Document(QObject):
         if not drives or settings.drive_id in {drive.id for drive in drives}:
             return
         settings.show_image(drives[0].id, _best_kind(drives[0], settings.image_kind))
+
+
+def _changed_meanwhile() -> UserError:
+    return OutOfRange(
+        Text(
+            "The feature was changed while you edited it; it stays as it is now.",
+            "編集中に地物が変更されたため、現在の状態のままにしました。",
+        ),
+        Text("the map", "地図"),
+        Text("Do your edit again.", "もう一度編集してください。"),
+    )
 
 
 def _prepare_tiles(folder: Path) -> None:

@@ -20,6 +20,17 @@ from processing.text import Text
 Work = Callable[[Monitor], object]
 
 
+class Lane(Enum):
+    """Which thread a job waits for."""
+
+    ASKED = "asked"
+    """What the user asked for, one after the other."""
+    PREPARED = "prepared"
+    """What nobody waits for; it doesn't hold up what was asked for."""
+    AT_HAND = "at hand"
+    """What the mouse waits for: a moment's work, told to nobody unless it fails."""
+
+
 class JobState(Enum):
     """What became of a job."""
 
@@ -61,9 +72,9 @@ class _Task:
 
 
 class JobQueue(QObject):
-    """Runs what the user asked for in one thread, what the program prepares in another.
+    """Runs jobs in a thread for each lane, in each one after the other.
 
-    In each thread one job after the other. Every job ends with exactly one of ``finished``,
+    Every job ends with exactly one of ``finished``,
     ``failed``, ``cancelled``, on the queue's own thread, which is the window's.
     """
 
@@ -81,43 +92,44 @@ class JobQueue(QObject):
         self._statuses: dict[str, JobStatus] = {}
         self._stops: dict[str, threading.Event] = {}
         self._started_at: dict[str, float] = {}
-        self._asked: SimpleQueue[_Task | None] = SimpleQueue()
-        self._prepared: SimpleQueue[_Task | None] = SimpleQueue()
+        self._lanes: dict[Lane, SimpleQueue[_Task | None]] = {lane: SimpleQueue() for lane in Lane}
+        self._quiet: set[str] = set()
         queued = Qt.ConnectionType.QueuedConnection
         self._progressed.connect(self._on_worker_progressed, queued)
         self._started.connect(self._on_worker_started, queued)
         self._ended.connect(self._on_worker_ended, queued)
         self._threads = [
             threading.Thread(target=self._run_tasks, args=(tasks,), name="jobs", daemon=True)
-            for tasks in (self._asked, self._prepared)
+            for tasks in self._lanes.values()
         ]
         for thread in self._threads:
             thread.start()
 
     @property
     def statuses(self) -> tuple[JobStatus, ...]:
-        """All jobs of this session, oldest first."""
-        return tuple(self._statuses.values())
+        """All jobs of this session that people see, oldest first."""
+        return tuple(one for one in self._statuses.values() if one.id not in self._quiet)
 
     @property
     def is_busy(self) -> bool:
         """Whether a job is running or waiting."""
         return bool(self._stops)
 
-    def start(self, title: Text, work: Work, *, is_preparation: bool = False) -> str:
+    def start(self, title: Text, work: Work, *, lane: Lane = Lane.ASKED) -> str:
         """Queue a job; gives its id.
 
         Parameters
         ----------
         work : callable
             Called in a worker thread with a monitor; touches no widget and no project.
-        is_preparation : bool
-            Nobody waits for it: it doesn't hold up what the user asks for.
+        lane : Lane
         """
         task = _Task(uuid4().hex, work, threading.Event())
         self._stops[task.id] = task.stop
+        if lane is Lane.AT_HAND:
+            self._quiet.add(task.id)
         self._tell(JobStatus(task.id, title))
-        (self._prepared if is_preparation else self._asked).put(task)
+        self._lanes[lane].put(task)
         return task.id
 
     def cancel(self, job: str) -> None:
@@ -129,8 +141,8 @@ class JobQueue(QObject):
         """Stop everything and wait for the workers."""
         for stop in self._stops.values():
             stop.set()
-        self._asked.put(None)
-        self._prepared.put(None)
+        for tasks in self._lanes.values():
+            tasks.put(None)
         for thread in self._threads:
             thread.join()
 
@@ -162,6 +174,8 @@ class JobQueue(QObject):
 
     def _on_worker_ended(self, job: str, result: object, error: BaseException | None) -> None:
         del self._stops[job]
+        if error is not None:
+            self._quiet.discard(job)
         status = replace(self._statuses[job], seconds_left=None)
         if error is None:
             self._tell(replace(status, state=JobState.FINISHED, fraction=1.0))
@@ -173,10 +187,14 @@ class JobQueue(QObject):
         else:
             self._tell(replace(status, state=JobState.CANCELLED))
             self.cancelled.emit(job)
+        if job in self._quiet:
+            self._quiet.discard(job)
+            del self._statuses[job]
 
     def _tell(self, status: JobStatus) -> None:
         self._statuses[status.id] = status
-        self.changed.emit(status)
+        if status.id not in self._quiet:
+            self.changed.emit(status)
 
 
 class _JobMonitor:

@@ -17,6 +17,7 @@ from widgets.panels.jobs_panel import JobsPanel
 from widgets.panels.layers_panel import LayersPanel
 from widgets.panels.processing_panel import ProcessingPanel
 from widgets.panels.project_tree import ProjectTree
+from widgets.parts.drawing_bar import DrawingBar
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
 from widgets.parts.start_page import StartPage
@@ -52,6 +53,7 @@ class WindowParts:
     image_view: ImageView
     scene_view: SceneView
     image_bar: ImageBar
+    drawing_bar: DrawingBar
     message_bar: MessageBar
     start_page: StartPage
     status_line: StatusLine

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject
 
+from app.drawing_wiring import connect_drawing
 from app.jobs import JobState, JobStatus
 from app.window_parts import WindowParts, take_down
 from processing.errors import Unsuitable
@@ -24,6 +25,7 @@ def connect_parts(parts: WindowParts) -> None:
     wiring = _Wiring(parts)
     _connect_document(parts, wiring)
     _connect_intentions(parts, wiring)
+    connect_drawing(parts)
     parts.window.closed.connect(wiring.on_window_closed)
     wiring.on_undo_stack_changed()
     wiring.on_toolbox_tool_chosen(parts.toolbox.name)

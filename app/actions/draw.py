@@ -1,41 +1,235 @@
-"""Draw actions: the tool in the hand and the kind it draws."""
+"""Draw actions: the tool in the hand, what it draws, what it snaps to."""
 
 from __future__ import annotations
 
-from app.actions.action import Action
-from app.window_parts import WindowParts
-from processing.project.catalogue import FeatureKind
-from processing.text import Text
+from collections.abc import Callable
 
-_TOOLS = (
-    ("select", Text("Pointer", "選択"), ("S",), "mdi6.cursor-default-outline"),
-    ("point", Text("Point", "点"), ("P",), "mdi6.map-marker-outline"),
-    ("line", Text("Line", "線"), ("L",), "mdi6.vector-polyline"),
-    ("area", Text("Area", "面"), ("A",), "mdi6.vector-polygon"),
-    ("edit", Text("Edit vertices", "頂点編集"), ("V",), "mdi6.vector-polyline-edit"),
-)
+from app.actions.action import Action
+from app.actions.tool_entries import SNAP_HINTS, TOOL_ENTRIES, ToolEntry
+from app.window_parts import WindowParts
+from app.working_planes import level_plane, plane_of_points
+from processing.text import Text
+from widgets.mouse_tools.measure import MeasureTool
+from widgets.shared.snap_state import SNAP_NAMES, SnapMode
+
+NUMBER_KEYS = ("1", "2", "3", "4", "5", "6", "7", "8", "9", "0")
 
 
 def draw_actions(parts: WindowParts) -> tuple[Action, ...]:
-    """The draw menu: tools, then the kinds that have a key."""
-    toolbox = parts.toolbox
+    """The draw menu: tools, the drawing at hand, kinds, snapping, the working plane."""
+    return (
+        *(_tool_action(parts, entry) for entry in TOOL_ENTRIES),
+        *_at_hand_actions(parts),
+        *_kind_actions(parts),
+        *_snap_actions(parts),
+        *_plane_actions(parts),
+    )
 
-    def choosing(name: str) -> Action:
+
+def _tool_action(parts: WindowParts, entry: ToolEntry) -> Action:
+    def choose() -> None:
+        parts.toolbox.choose(entry.name)
+
+    return Action(
+        f"tool-{entry.name}",
+        entry.text,
+        choose,
+        entry.menu,
+        (entry.key,),
+        entry.icon,
+        entry.toolbar,
+        is_checkable=True,
+        group="tool",
+        hint=entry.hint,
+        needs_project=True,
+        is_checked=parts.toolbox.name == entry.name,
+    )
+
+
+def _at_hand_actions(parts: WindowParts) -> tuple[Action, ...]:
+    toolbox, document = parts.toolbox, parts.document
+
+    def keep() -> None:
+        tool = toolbox.tool
+        if isinstance(tool, MeasureTool):
+            tool.keep()
+
+    def go_on() -> None:
+        chosen = [document.feature(id_) for id_ in document.shared.selection.features]
+        toolbox.continue_line([feature for feature in chosen if feature is not None])
+
+    return (
+        _action(
+            "close-drawing",
+            Text("Close the drawing", "作図を閉じる"),
+            toolbox.close_drawing,
+            "C",
+            Text(
+                "Leads the line or area back to its first vertex.", "最初の頂点に戻して閉じます。"
+            ),
+        ),
+        _action(
+            "continue-line",
+            Text("Continue the chosen line", "選択した線の続きを描く"),
+            go_on,
+            "Shift+C",
+            Text("Goes on at the end nearest to the cursor.", "カーソルに近い端から続けます。"),
+        ),
+        _action(
+            "keep-measurement",
+            Text("Keep the measurement as a feature", "計測結果を地物として保存"),
+            keep,
+            "K",
+            Text("With its numbers as attributes.", "計測値を属性として保存します。"),
+        ),
+    )
+
+
+def _kind_actions(parts: WindowParts) -> tuple[Action, ...]:
+    toolbox, document = parts.toolbox, parts.document
+
+    def drawing(key: str) -> Callable[[], None]:
         def choose() -> None:
-            toolbox.choose(name)
+            kind = document.catalogue().of_key(key)
+            if kind is not None:
+                toolbox.choose_kind(kind)
 
-        _, text, keys, icon = next(tool for tool in _TOOLS if tool[0] == name)
-        return Action(
-            f"tool-{name}", text, choose, "draw", keys, icon, 3, is_checkable=True, group="tool"
+        return choose
+
+    return (
+        _action(
+            "choose-kind",
+            Text("Choose what to draw…", "作図する種類を選ぶ…"),
+            parts.drawing_bar.choose_kind,
+            "Ctrl+K",
+            Text("All kinds of the catalogue by name.", "カタログの全種類から名前で選びます。"),
+        ),
+        _action(
+            "cycle-kind",
+            Text("The kind drawn before", "前に描いた種類"),
+            toolbox.cycle_kind,
+            "Tab",
+            Text("Goes round the kinds drawn last.", "最近使った種類を順に切り替えます。"),
+        ),
+        *(
+            _action(
+                f"kind-key-{key}",
+                kind_title(parts, key),
+                drawing(key),
+                key,
+                Text("", ""),
+                menu="draw/kinds",
+            )
+            for key in NUMBER_KEYS
+        ),
+    )
+
+
+def kind_title(parts: WindowParts, key: str) -> Text:
+    """What a number key draws in the project's catalogue."""
+    kind = parts.document.catalogue().of_key(key)
+    if kind is None:
+        return Text("Draw: (no kind has this key)", "作図:（このキーの種類なし）")
+    return Text("Draw: {name}", "作図: {name}").filled(name=kind.name)
+
+
+def _snap_actions(parts: WindowParts) -> tuple[Action, ...]:
+    snap = parts.document.shared.snap
+
+    def turning(mode: SnapMode) -> Callable[[], None]:
+        def turn() -> None:
+            snap.turn(mode, is_on=mode not in snap.modes)
+
+        return turn
+
+    return tuple(
+        Action(
+            f"snap-{mode.value}",
+            Text("Snap to: {name}", "スナップ: {name}").filled(name=SNAP_NAMES[mode]),
+            turning(mode),
+            "draw/snap",
+            (f"Alt+{number}",),
+            is_checkable=True,
+            is_checked=mode in snap.modes,
+            needs_project=True,
+            hint=SNAP_HINTS[mode],
         )
+        for number, mode in enumerate(SnapMode, start=1)
+    )
 
-    def drawing(kind: FeatureKind) -> Action:
-        def choose() -> None:
-            toolbox.choose_kind(kind)
 
-        text = Text("Draw: {name}", "作図: {name}").filled(name=kind.name)
-        keys = (kind.key,) if kind.key else ()
-        return Action(f"kind-{kind.id}", text, choose, "draw" if kind.key else "", keys)
+def _plane_actions(parts: WindowParts) -> tuple[Action, ...]:
+    document = parts.document
+    snap = document.shared.snap
 
-    kinds = parts.document.catalogue().kinds
-    return (*(choosing(name) for name, *_ in _TOOLS), *(drawing(kind) for kind in kinds))
+    def level() -> None:
+        plane = level_plane(document.shared)
+        if plane is None:
+            parts.status_line.show_message(NO_CURSOR)
+        else:
+            snap.work_on(plane)
+
+    def fitted() -> None:
+        plane = plane_of_points(document, document.shared)
+        if plane is None:
+            parts.status_line.show_message(NO_PLANE)
+        else:
+            snap.work_on(plane)
+
+    def off() -> None:
+        snap.work_on(None)
+
+    return (
+        _action(
+            "plane-level",
+            Text("Work on a level plane at the cursor", "カーソル高の水平面で作図"),
+            level,
+            "H",
+            Text(
+                "Clicks land on it where points mislead, and are marked as without a point.",
+                "点群が当てにならない所で、クリック位置を平面上に置きます（点なしの頂点として記録）。",
+            ),
+            menu="draw/plane",
+        ),
+        _action(
+            "plane-fitted",
+            Text("Work on a plane through the chosen points", "選択した点を通る平面で作図"),
+            fitted,
+            "Shift+H",
+            Text(
+                "Through the points chosen, or those within a metre of the cursor.",
+                "選択した点（なければカーソルから1 m以内の点）に当てはめた平面を使います。",
+            ),
+            menu="draw/plane",
+        ),
+        _action(
+            "plane-off",
+            Text("Work on the measured points again", "計測点での作図に戻す"),
+            off,
+            "Ctrl+H",
+            Text("", ""),
+            menu="draw/plane",
+        ),
+    )
+
+
+NO_CURSOR = Text(
+    "Click a point first: the plane lies at its height.",
+    "先に点をクリックしてください。その高さの水平面になります。",
+)
+NO_PLANE = Text(
+    "Choose at least three points that are not in one line, or put the cursor on a surface.",
+    "一直線上にない3点以上を選択するか、面の上にカーソルを置いてください。",
+)
+
+
+def _action(
+    id_: str,
+    text: Text,
+    run: Callable[[], object],
+    key: str,
+    hint: Text,
+    *,
+    menu: str = "draw",
+) -> Action:
+    return Action(id_, text, run, menu, (key,), hint=hint, needs_project=True)

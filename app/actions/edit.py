@@ -1,33 +1,59 @@
-"""Edit actions: steps back and forth, the selection."""
+"""Edit actions: steps back and forth, the clipboard, the selection, edits of what is chosen."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from app.actions.action import Action
+from app.map_edits import MapEdits
 from app.window_parts import WindowParts
+from processing.project.feature import Feature, Status
 from processing.text import Text
-from widgets.mouse_tools.removal import removal_of
+
+SIMPLIFY_M = 0.01
+"""What a vertex may be off the line and still be taken out: the accuracy of a good point."""
+
+_STATUSES = (
+    (Status.ACCEPTED, Text("Accept", "承認"), "Ctrl+Return"),
+    (Status.REJECTED, Text("Reject", "却下"), "Ctrl+Backspace"),
+    (Status.CANDIDATE, Text("Make candidates", "候補に戻す"), ""),
+)
 
 
 def edit_actions(parts: WindowParts) -> tuple[Action, ...]:
     """The edit menu, from top to bottom."""
-    document = parts.document
-    selection = document.shared.selection
+    edits = MapEdits(parts.document)
+    return (
+        *_steps(parts),
+        *_clipboard(edits),
+        *_selections(parts, edits),
+        *_line_edits(edits),
+        *_statuses(edits),
+    )
 
-    def delete_selected() -> None:
-        chosen = [document.feature(id_) for id_ in selection.features]
-        features = tuple(feature for feature in chosen if feature is not None)
-        if features:
-            document.apply(*removal_of(features))
 
-    def select_all() -> None:
-        hidden = document.shared.view_settings.hidden_kinds
-        selection.choose_features(
-            frozenset(feature.id for feature in document.features() if feature.kind not in hidden)
-        )
+def _steps(parts: WindowParts) -> tuple[Action, ...]:
+    document, toolbox = parts.document, parts.toolbox
+
+    def undo() -> None:
+        # While something is drawn, its last vertex is the last step.
+        if not toolbox.step_back():
+            document.undo()
 
     return (
         Action(
-            "undo", Text("Undo", "元に戻す"), document.undo, "edit", ("Ctrl+Z",), "mdi6.undo", 2
+            "undo",
+            Text("Undo", "元に戻す"),
+            undo,
+            "edit",
+            ("Ctrl+Z",),
+            "mdi6.undo",
+            2,
+            hint=Text(
+                "Without end, also after a restart; while drawing, the last vertex.",
+                "再起動後も含めて何回でも戻せます。作図中は最後の頂点を戻します。",
+            ),
+            needs_project=True,
         ),
         Action(
             "redo",
@@ -37,25 +63,162 @@ def edit_actions(parts: WindowParts) -> tuple[Action, ...]:
             ("Ctrl+Y", "Ctrl+Shift+Z"),
             "mdi6.redo",
             2,
-        ),
-        Action(
-            "delete",
-            Text("Delete the selected features", "選択した地物を削除"),
-            delete_selected,
-            "edit",
-        ),
-        Action(
-            "select-all",
-            Text("Select all features", "すべての地物を選択"),
-            select_all,
-            "edit",
-            ("Ctrl+A",),
-        ),
-        Action(
-            "select-none",
-            Text("Select nothing", "選択を解除"),
-            selection.clear,
-            "edit",
-            ("Ctrl+Shift+A",),
+            needs_project=True,
         ),
     )
+
+
+def _clipboard(edits: MapEdits) -> tuple[Action, ...]:
+    return (
+        _action(
+            "copy",
+            Text("Copy", "コピー"),
+            edits.copy,
+            "Ctrl+C",
+            Text(
+                "For this or another project, in any plane system.",
+                "別の座標系のプロジェクトにも貼り付けられます。",
+            ),
+        ),
+        _action("cut", Text("Cut", "切り取り"), edits.cut, "Ctrl+X", Text("", "")),
+        _action(
+            "paste",
+            Text("Paste", "貼り付け"),
+            edits.paste,
+            "Ctrl+V",
+            Text(
+                "Features copied in any project, or GeoJSON; transformed where needed.",
+                "他のプロジェクトでコピーした地物やGeoJSONを、必要なら座標変換して貼り付けます。",
+            ),
+        ),
+        _action(
+            "delete",
+            Text("Delete the selected features", "選択した地物を削除"),
+            edits.delete,
+            "",
+            Text("", ""),
+        ),
+    )
+
+
+def _selections(parts: WindowParts, edits: MapEdits) -> tuple[Action, ...]:
+    def same_kind(one: Feature, other: Feature) -> bool:
+        return one.kind == other.kind
+
+    def same_status(one: Feature, other: Feature) -> bool:
+        return one.status is other.status
+
+    def same_attributes(one: Feature, other: Feature) -> bool:
+        return one.kind == other.kind and dict(one.attributes) == dict(other.attributes)
+
+    def like(alike: Callable[[Feature, Feature], bool]) -> Callable[[], None]:
+        return lambda: edits.select_like(alike)
+
+    nothing = Text("", "")
+    menu = "edit/select"
+    return (
+        _action(
+            "select-all",
+            Text("All features", "すべての地物"),
+            edits.select_all,
+            "Ctrl+A",
+            nothing,
+            menu,
+        ),
+        _action(
+            "select-none",
+            Text("Nothing", "選択を解除"),
+            parts.document.shared.selection.clear,
+            "Ctrl+Shift+A",
+            nothing,
+            menu,
+        ),
+        _action(
+            "select-kind",
+            Text("Of the same kind", "同じ種類"),
+            like(same_kind),
+            "Ctrl+Shift+K",
+            nothing,
+            menu,
+        ),
+        _action(
+            "select-status",
+            Text("Of the same status", "同じ状態"),
+            like(same_status),
+            "",
+            nothing,
+            menu,
+        ),
+        _action(
+            "select-attributes",
+            Text("With the same attributes", "同じ属性"),
+            like(same_attributes),
+            "",
+            nothing,
+            menu,
+        ),
+        _action(
+            "select-occluded",
+            Text("With vertices without a measured point", "計測点のない頂点を持つ地物"),
+            edits.select_occluded,
+            "",
+            Text(
+                "Their heights come from neighbours; they are shown hollow.",
+                "高さを周囲から補った頂点です。白抜きで表示されます。",
+            ),
+            menu,
+        ),
+    )
+
+
+def _line_edits(edits: MapEdits) -> tuple[Action, ...]:
+    def simplify() -> None:
+        edits.simplify(SIMPLIFY_M)
+
+    menu = "edit/lines"
+    nothing = Text("", "")
+    return (
+        _action(
+            "join",
+            Text("Join", "結合"),
+            edits.join,
+            "J",
+            Text(
+                "Makes one line of several, at their nearest ends.",
+                "近い端どうしをつないで1本にします。",
+            ),
+            menu,
+        ),
+        _action("reverse", Text("Reverse", "向きを反転"), edits.reverse, "Shift+V", nothing, menu),
+        _action(
+            "simplify",
+            Text("Simplify (1 cm)", "単純化（1 cm）"),
+            simplify,
+            "Ctrl+M",
+            Text(
+                "Takes out vertices that are less than 1 cm off the line between others.",
+                "前後を結ぶ線から1 cm以内の頂点を取り除きます。",
+            ),
+            menu,
+        ),
+        _action("close-lines", Text("Close", "閉じる"), edits.close, "", nothing, menu),
+        _action("open-lines", Text("Open", "開く"), edits.open, "", nothing, menu),
+    )
+
+
+def _statuses(edits: MapEdits) -> tuple[Action, ...]:
+    def setting(status: Status, name: Text) -> Callable[[], None]:
+        return lambda: edits.set_status(status, name)
+
+    return tuple(
+        _action(
+            f"status-{status.value}", name, setting(status, name), key, Text("", ""), "edit/status"
+        )
+        for status, name, key in _STATUSES
+    )
+
+
+def _action(
+    id_: str, text: Text, run: Callable[[], object], key: str, hint: Text, menu: str = "edit"
+) -> Action:
+    return Action(id_, text, run, menu, (key,) if key else (), hint=hint, needs_project=True)

@@ -8,6 +8,7 @@ from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QFileDialog
 
 from app.actions.action import Action
+from app.catalogue_wish import adopt_catalogue
 from app.window_parts import WindowParts
 from processing.errors import UserError
 from processing.project.dropped_files import request_of_files
@@ -90,6 +91,28 @@ class FileActions:
                 needs_project=True,
             ),
             Action(
+                "adopt-catalogue",
+                Text("Use an office's catalogue…", "事務所のカタログを使う…"),
+                self.choose_catalogue,
+                "file",
+                hint=Text(
+                    "Reads feature kinds from a file; kinds that the map uses are never lost.",
+                    "地物の種類をファイルから読み込みます。図面で使用中の種類は失われません。",
+                ),
+                needs_project=True,
+            ),
+            Action(
+                "export-catalogue",
+                Text("Write the catalogue as a file…", "カタログをファイルに書き出す…"),
+                self.choose_catalogue_copy,
+                "file",
+                hint=Text(
+                    "To start an office's own from: docs/catalogue.md says how.",
+                    "事務所独自のカタログの雛形になります（docs/catalogue.md参照）。",
+                ),
+                needs_project=True,
+            ),
+            Action(
                 "demo",
                 Text("Open the sample street", "サンプル街路を開く"),
                 self.open_demo,
@@ -149,6 +172,27 @@ class FileActions:
         form = ReferenceSystemForm(self._parts.document.crs(), self._parts.window)
         form.system_chosen.connect(self._parts.document.set_reference_system)
         form.show()
+
+    def choose_catalogue(self) -> None:
+        """Ask for a catalogue file and use it in the project."""
+        title = QCoreApplication.translate("FileActions", "Use an office's catalogue")
+        name, _ = QFileDialog.getOpenFileName(
+            self._parts.window, title, str(self._projects_folder), "TOML (*.toml)"
+        )
+        if name:
+            adopt_catalogue(self._parts, Path(name))
+
+    def choose_catalogue_copy(self) -> None:
+        """Ask where the project's catalogue is to be written."""
+        title = QCoreApplication.translate("FileActions", "Write the catalogue")
+        name, _ = QFileDialog.getSaveFileName(
+            self._parts.window,
+            title,
+            str(self._projects_folder / "catalogue.toml"),
+            "TOML (*.toml)",
+        )
+        if name:
+            self._parts.document.export_catalogue(Path(name))
 
     def open_files(self, paths: tuple[Path, ...]) -> None:
         """Open a project, or import delivered files into the open or a new project."""

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
-from processing.drafting.plan_sides import (
-    cross,
-    crossing_fractions,
-    meeting_pairs,
-    nearest_fractions,
-    nearest_sides,
-)
+from processing.drafting.plan_sides import cross, nearest_fractions, nearest_sides
 from processing.drafting.polyline import Polyline, said_place
 from processing.errors import OutOfRange
 from processing.project.feature import Position
@@ -22,8 +16,7 @@ from processing.text import Text
 
 Floats = NDArray[np.float64]
 
-_SHARPEST_MITRE = np.radians(120.0)
-_TOO_NEAR_M = 1e-8
+_SHARPEST_MITRE = np.radians(100.0)
 _JOINED_M = 1e-6
 
 
@@ -32,10 +25,10 @@ def parallel(
 ) -> tuple[Position, ...]:
     """A copy of a line at a distance in plan.
 
-    1. Every side is shifted; outer joints are mitred, very sharp ones cut off at the distance.
-    2. The shifted line is cut where it crosses itself, and where it passes the line's ends.
-    3. Pieces that come nearer to the line than the distance are dropped: the loops that appear
-       where the distance is larger than a bend's radius.
+    1. Every side gets a strip of ground as wide as the distance; joints are mitred, very sharp
+       outer ones cut off at the distance.
+    2. The strips are united: where a bend is tighter than the distance, they overlap.
+    3. The copy is what bounds the union but the line itself and its two ends.
 
     Parameters
     ----------
@@ -62,10 +55,12 @@ def parallel(
         raise _no_copy(positions)
     if distance_m == 0:
         return line.positions(line.xyz)
-    parts = _parts_off(line, _shifted(line, distance_m), abs(distance_m))
-    if not parts.size:
+    chains = list(_far_sides(_band(line, distance_m), line, distance_m))
+    if not chains:
         raise _no_copy(positions)
-    plan = max(_chained(parts, is_closed=is_closed), key=_length)
+    plan = max(chains, key=_length)
+    if is_closed and (plan[0] == plan[-1]).all():
+        plan = plan[:-1]
     sides, fractions, _ = nearest_sides(line.plan_sides, plan)
     heights = line.between(sides, fractions)[:, 2]
     return line.positions(np.column_stack([plan, heights]))
@@ -116,24 +111,8 @@ def _without_repeats(line: Polyline) -> Polyline:
     return Polyline(line.origin, kept if kept.size else line.xyz[:1], line.is_closed)
 
 
-@dataclass(frozen=True)
-class _Shifted:
-    """The shifted sides in their order.
-
-    Attributes
-    ----------
-    sides : (s, 2, 2) float64
-        In plan; each with a length.
-    is_bridge : (s,) bool
-        Joins two sides across an inner bend that is too tight; never part of the copy.
-    """
-
-    sides: Floats
-    is_bridge: NDArray[np.bool_]
-
-
-def _shifted(line: Polyline, distance: float) -> _Shifted:
-    """The sides at the distance, joined; with the loops of tight inner bends still in it."""
+def _band(line: Polyline, distance: float) -> shapely.Geometry:
+    """The strip of ground between a line and its copy, as the union of one strip per side."""
     sides = line.plan_sides
     steps = sides[:, 1] - sides[:, 0]
     directions = steps / np.linalg.norm(steps, axis=1)[:, None]
@@ -144,24 +123,69 @@ def _shifted(line: Polyline, distance: float) -> _Shifted:
         cross(directions[before], directions[after]),
         (directions[before] * directions[after]).sum(axis=1),
     )
-    reach, is_loop = _reach_of_joints(sides, before, after, turn, distance)
+    reach = _reach_of_joints(sides, before, after, turn, distance)
     corners = sides[after, 0]
     leaving = corners + offsets[before] + reach[:, None] * directions[before]
     arriving = corners + offsets[after] - reach[:, None] * directions[after]
-    # Between two shifted sides lies a link: none at a mitre, a cut-off corner, or a bridge.
+    # At a mitre both are one place, to the last bit, or slivers would lie between the strips.
     is_mitre = np.linalg.norm(arriving - leaving, axis=1) < _JOINED_M
     arriving[is_mitre] = leaving[is_mitre]
-    places = np.stack([leaving, arriving], axis=1).reshape(-1, 2)
-    if line.is_closed:
-        places = np.concatenate([places, places[:1]])
-        is_bridge = np.column_stack([is_loop, np.zeros_like(is_loop)]).ravel()
-    else:
-        first, last = sides[0, 0] + offsets[0], sides[-1, 1] + offsets[-1]
-        places = np.concatenate([[first], places, [last]])
-        is_bridge = np.column_stack([np.zeros_like(is_loop), is_loop]).ravel()
-        is_bridge = np.append(is_bridge, np.zeros(1, np.bool_))
-    moves = (places[1:] != places[:-1]).any(axis=1)
-    return _Shifted(np.stack([places[:-1], places[1:]], axis=1)[moves], is_bridge[moves])
+    starts, ends = sides[:, 0] + offsets, sides[:, 1] + offsets
+    starts[after], ends[before] = arriving, leaving
+    strips = shapely.polygons(np.stack([sides[:, 0], sides[:, 1], ends, starts], axis=1))
+    is_cut = (turn * distance < 0) & ~is_mitre
+    corner_pieces = np.stack([corners, leaving, arriving], axis=1)[is_cut]
+    return shapely.union_all(np.concatenate([strips, shapely.polygons(corner_pieces)]))
+
+
+def _far_sides(band: shapely.Geometry, line: Polyline, distance: float) -> Iterator[Floats]:
+    """What bounds the strip but the line and the ends: (k, 2) each, in the line's direction."""
+    for polygon in shapely.get_parts(shapely.orient_polygons(band)):
+        for ring in (polygon.exterior, *polygon.interiors):
+            # With the strip on its left a boundary runs against a line that has it on its left.
+            places = shapely.get_coordinates(ring)[:: -1 if distance > 0 else 1]
+            yield from _runs_off(places, line, abs(distance))
+
+
+def _runs_off(ring: Floats, line: Polyline, distance: float) -> Iterator[Floats]:
+    """The runs of a closed boundary that keep off the line and its ends."""
+    middles = (ring[1:] + ring[:-1]) / 2
+    away = nearest_sides(line.plan_sides, middles)[2]
+    is_off = away > _JOINED_M
+    if not line.is_closed:
+        is_off &= ~_is_at_end(middles, line, distance)
+    if is_off.all():
+        # A hole that reaches the distance nowhere is a crack between overlapping strips.
+        if away.max() >= distance - _JOINED_M:
+            yield _without_doubles(ring)
+        return
+    first = int(np.flatnonzero(~is_off)[0])
+    order = np.roll(np.arange(len(middles)), -first)
+    for run in np.split(order, np.flatnonzero(np.diff(is_off[order].astype(np.int8))) + 1):
+        # Where the strip ends askew, its boundary comes back to the line: no part of the copy.
+        at_distance = np.flatnonzero(is_off[run] & (away[run] >= distance - _JOINED_M))
+        if at_distance.size:
+            kept = run[at_distance[0] : at_distance[-1] + 1]
+            yield _without_doubles(np.concatenate([ring[kept], ring[kept[-1:] + 1]]))
+
+
+def _is_at_end(places: Floats, line: Polyline, distance: float) -> NDArray[np.bool_]:
+    """Which places are on the straight edges that end the strip of an open line."""
+    found = np.zeros(len(places), np.bool_)
+    for xyz in (line.xyz, line.xyz[::-1]):
+        along = xyz[1, :2] - xyz[0, :2]
+        along /= np.linalg.norm(along)
+        away = places - xyz[0, :2]
+        is_square = np.abs(away @ along) < _JOINED_M
+        found |= is_square & (np.linalg.norm(away, axis=1) < distance + _JOINED_M)
+    return found
+
+
+def _without_doubles(places: Floats) -> Floats:
+    moves = np.linalg.norm(np.diff(places, axis=0), axis=1) > _JOINED_M
+    moves[-1:] = True
+    kept: Floats = places[np.concatenate([[True], moves])]
+    return kept
 
 
 def _reach_of_joints(
@@ -170,15 +194,11 @@ def _reach_of_joints(
     after: NDArray[np.int64],
     turn: Floats,
     distance: float,
-) -> tuple[Floats, NDArray[np.bool_]]:
-    """How far shifted sides go on beyond their corners, and which joints can't be mitred inside.
+) -> Floats:
+    """How far shifted sides go on beyond their corners, (j,) m.
 
-    Returns
-    -------
-    reach : (j,) float64
-        m; negative where a mitre shortens both sides.
-    is_loop : (j,) bool
-        An inner joint whose mitre would take more than the sides have.
+    Negative where a mitre shortens both sides; 0 inside a bend whose sides are too short for it:
+    there they overlap.
     """
     lengths = np.linalg.norm(sides[:, 1] - sides[:, 0], axis=1)
     is_outer = turn * distance <= 0
@@ -192,85 +212,7 @@ def _reach_of_joints(
     is_loop = ~is_outer & ~(fits[before] & fits[after])
     cut_off = np.abs(distance) * np.tan(np.abs(turn) / 4)
     outer = np.where(is_sharp, cut_off, mitre)
-    return np.where(is_outer, outer, np.where(is_loop, 0.0, -mitre)), is_loop
-
-
-def _parts_off(line: Polyline, shifted: _Shifted, distance: float) -> Floats:
-    """The parts of shifted sides that come no nearer to the line than the distance.
-
-    Returns
-    -------
-    (p, 2, 2) float64
-        In their order; each is a side or what lies between two of its crossings.
-    """
-    sides, lengths = shifted.sides, _lengths(shifted.sides)
-    middles = sides.mean(axis=1)
-    # No place of a side is further from the line than its middle by more than half its length.
-    is_possible = ~shifted.is_bridge
-    is_possible &= _distances(line, middles) + lengths / 2 >= distance - _TOO_NEAR_M
-    sides = sides[is_possible]
-    if not sides.size:
-        return sides
-    one, other = meeting_pairs(sides, sides)
-    is_first = one < other
-    one, other = one[is_first], other[is_first]
-    on_one, on_other = crossing_fractions(sides[one], sides[other])
-    real = (on_one >= 0) & (on_one <= 1) & (on_other >= 0) & (on_other <= 1)
-    stops = [np.arange(len(sides) + 1.0), (one + on_one)[real], (other + on_other)[real]]
-    if not line.is_closed:
-        stops += [_circle_cuts(sides, end[:2], distance) for end in (line.xyz[0], line.xyz[-1])]
-    cuts = np.unique(np.concatenate(stops))
-    side = cuts[:-1].astype(np.int64)
-    steps = sides[side, 1] - sides[side, 0]
-    starts = sides[side, 0] + (cuts[:-1] - side)[:, None] * steps
-    ends = sides[side, 0] + (cuts[1:] - side)[:, None] * steps
-    nearest = np.minimum(_distances(line, starts), _distances(line, ends)) + _JOINED_M
-    keeps_off = np.minimum(nearest, _distances(line, (starts + ends) / 2)) >= distance - _TOO_NEAR_M
-    parts: Floats = np.stack([starts, ends], axis=1)[keeps_off]
-    return parts
-
-
-def _circle_cuts(sides: Floats, centre: Floats, radius: float) -> Floats:
-    """Where sides cross a circle: index of the side plus the fraction on it."""
-    steps, away = sides[:, 1] - sides[:, 0], sides[:, 0] - centre
-    a, b = (steps**2).sum(axis=1), (steps * away).sum(axis=1)
-    roots = b**2 - a * ((away**2).sum(axis=1) - radius**2)
-    crosses = np.flatnonzero(roots > 0)
-    root = np.sqrt(roots[crosses])
-    cuts = []
-    for sign in (-1.0, 1.0):
-        fraction = (sign * root - b[crosses]) / a[crosses]
-        inside = (fraction >= 0) & (fraction <= 1)
-        cuts.append(crosses[inside] + fraction[inside])
-    return np.concatenate(cuts)
-
-
-def _chained(parts: Floats, *, is_closed: bool) -> list[Floats]:
-    """Lines, (k, 2) each, from parts of which one ends where the next begins."""
-    gaps = np.linalg.norm(parts[1:, 0] - parts[:-1, 1], axis=1) > _JOINED_M
-    chains = [_places_of(chain) for chain in np.split(parts, np.flatnonzero(gaps) + 1)]
-    if is_closed and np.linalg.norm(chains[-1][-1] - chains[0][0]) <= _JOINED_M:
-        if len(chains) > 1:
-            chains[0] = np.concatenate([chains.pop()[:-1], chains[0]])
-        else:
-            chains[0] = chains[0][:-1]
-    return chains
-
-
-def _places_of(parts: Floats) -> Floats:
-    """The places of a chain; those that crossings put on top of one another are one."""
-    places = np.concatenate([parts[:1, 0], parts[:, 1]])
-    moves = np.linalg.norm(np.diff(places, axis=0), axis=1) > _JOINED_M
-    return places[np.concatenate([[True], moves])]
-
-
-def _distances(line: Polyline, places: Floats) -> Floats:
-    return nearest_sides(line.plan_sides, places)[2]
-
-
-def _lengths(sides: Floats) -> Floats:
-    lengths: Floats = np.linalg.norm(sides[:, 1] - sides[:, 0], axis=1)
-    return lengths
+    return np.where(is_outer, outer, np.where(is_loop, 0.0, -mitre))
 
 
 def _length(plan: Floats) -> float:

@@ -60,6 +60,10 @@ class FeatureStore:
         """One feature, or None."""
         return self._features.get(id)
 
+    def fits(self, change: Change) -> bool:
+        """Whether what a change replaces or removes is what is stored now."""
+        return not self._misfits(change)
+
     def apply(self, label: Text, change: Change, *, run: Run | None = None) -> Change:
         """Do a change and remember it in the history, in one transaction.
 

@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from app.jobs import JobQueue, JobState
+from app.jobs import JobQueue, Lane, JobState
 from processing.errors import BadFile
 from processing.text import Text
 
@@ -78,7 +78,7 @@ def test_a_waiting_job_can_be_cancelled_before_it_starts(qtbot, jobs):
 
 def test_what_is_prepared_does_not_hold_up_what_is_asked_for(qtbot, jobs):
     gate = threading.Event()
-    jobs.start(TITLE, lambda monitor: gate.wait(10), is_preparation=True)
+    jobs.start(TITLE, lambda monitor: gate.wait(10), lane=Lane.PREPARED)
     with qtbot.waitSignal(jobs.finished) as told:
         asked = jobs.start(TITLE, lambda monitor: "asked")
     assert told.args == [asked, "asked"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -17,12 +17,14 @@ from processing.project.feature import Feature, PointReference, Vertex, new_feat
 from processing.project.importing import ImportRequest, import_drives
 from processing.text import Text
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
+from widgets.mouse_tools.draw_path import DrawPath
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.shared.cursor import Cursor, Place
 from widgets.shared.map_changes import MapChanges
 from widgets.shared.selection import Selection
 from widgets.shared.shared_state import SharedState
 from widgets.shared.sketch import Sketch
+from widgets.shared.snap_state import SnapState
 from widgets.shared.view_settings import ViewSettings
 
 KINDS = Catalogue(
@@ -37,7 +39,7 @@ KINDS = Catalogue(
 
 def shared_state() -> SharedState:
     """The state that the views of one window share."""
-    return SharedState(Cursor(), Selection(), MapChanges(), ViewSettings(), Sketch())
+    return SharedState(Cursor(), Selection(), MapChanges(), ViewSettings(), Sketch(), SnapState())
 
 
 def imported_drive(folder: Path, *, head: str = "left", seed: int = 1) -> Drive:
@@ -113,6 +115,18 @@ class OpenMap:
         )
         self.apply(Text.same("test"), Change(added=(feature,)))
         return feature
+
+
+def do_now(work: Callable[[], object], take: Callable[[object | None], None]) -> None:
+    """What the document does in the background, at once."""
+    take(work())
+
+
+def path_tool(source: OpenMap, geometry: Geometry) -> DrawPath:
+    """A tool that draws lines or areas of some kind."""
+    tool = DrawPath(source, source.shared, geometry, do_now)
+    tool.set_kind(KINDS[source.kind_of(geometry)])
+    return tool
 
 
 def place_on(drive: Drive, point: int) -> Place:

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from PySide6.QtGui import QColor, QPainter, QPen
 
 from processing.project.catalogue import Catalogue, Geometry
-from processing.project.feature import Status
+from processing.project.feature import Position, Status, Vertex
 from widgets.image_view.feature_places import FeaturePlaces
 from widgets.image_view.marks import MarkPainter
 from widgets.image_view.picture import Picture, Span
@@ -25,6 +25,11 @@ Floats = NDArray[np.float64]
 _MARGIN_PX = 16.0
 _MOST_SMOOTH = 300
 """More features than these are painted without smoothed edges, four times as fast."""
+
+
+def hollow_of(vertices: tuple[Vertex, ...]) -> NDArray[np.bool_]:
+    """(n,) which vertices rest on no measured point."""
+    return np.array([vertex.is_occluded for vertex in vertices], dtype=bool)
 
 
 class FeatureOverlay:
@@ -67,7 +72,10 @@ class FeatureOverlay:
             is_area = one.feature.geometry is Geometry.AREA
             self._marks.paint_line(painter, one.path, viewport, style, is_area=is_area)
             is_point = one.feature.geometry is Geometry.POINT
-            self._marks.paint_marks(painter, one.places, viewport, style, is_point=is_point)
+            hollow = hollow_of(one.feature.vertices) if is_selected else None
+            self._marks.paint_marks(
+                painter, one.places, viewport, style, is_point=is_point, hollow=hollow
+            )
 
     def paint_sketch(
         self,
@@ -85,10 +93,18 @@ class FeatureOverlay:
         shape = drawing.geometry if drawing.replaces else Geometry.LINE
         path = path_of_segments(segments_between(vertices, shape, picture))
         self._marks.paint_line(painter, path, viewport, style, is_area=False)
-        if drawing.preview is not None and vertices.size:
+        if drawing.preview and vertices.size:
             self._paint_preview(painter, viewport, picture, drawing, vertices)
         is_point = drawing.geometry is Geometry.POINT
-        self._marks.paint_marks(painter, vertices, viewport, style, is_point=is_point)
+        hollow = hollow_of(drawing.vertices)
+        self._marks.paint_marks(
+            painter, vertices, viewport, style, is_point=is_point, hollow=hollow
+        )
+
+    def screen_place(self, viewport: Viewport, xyz: Position) -> tuple[float, float] | None:
+        """Where a place is in the window; None where no point of the drive is near it."""
+        u, v = self._places.places_of((Vertex(xyz),))[0].tolist()
+        return (viewport.x_of(u), viewport.y_of(v)) if np.isfinite(u) else None
 
     def _paint_preview(
         self,
@@ -98,8 +114,7 @@ class FeatureOverlay:
         drawing: Drawing,
         vertices: Floats,
     ) -> None:
-        preview = () if drawing.preview is None else (drawing.preview,)
-        line = [vertices[-1], self._places.places_of(preview)[0]]
+        line = [vertices[-1], *self._places.places_of(drawing.preview)]
         if drawing.geometry is Geometry.AREA and vertices.shape[0] > 1:
             line.append(vertices[0])
         path = path_of_segments(segments_between(np.array(line), Geometry.LINE, picture))

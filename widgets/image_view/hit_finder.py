@@ -7,15 +7,21 @@ from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtGui import QPolygonF
 
+from processing.image.beam import beam_at
+from processing.image.kinds import ImageKind
+from processing.project.catalogue import Geometry
 from processing.project.feature import PointReference
 from widgets.image_view.feature_overlay import FeatureOverlay
 from widgets.image_view.picture import Picture, Span
 from widgets.image_view.placed_feature import PlacedFeature
 from widgets.image_view.viewport import Viewport
-from widgets.mouse_tools.mouse_tool import Boxed, Hit
+from widgets.mouse_tools.gesture import REACH_PX
+from widgets.mouse_tools.mouse_tool import Boxed, Hit, Ray
 from widgets.shared.cursor import Place
+from widgets.shared.outlines import are_inside, is_rectangle
 
 Floats = NDArray[np.float64]
 
@@ -57,46 +63,95 @@ class HitFinder:
     Parameters
     ----------
     overlay : FeatureOverlay
+
+    Attributes
+    ----------
+    picture : Picture or None
+        What is shown; the view keeps it up to date, as the viewport.
+    viewport : Viewport
+    needs_rays : bool
+        Whether hits tell the line of sight, which only a working plane asks for.
     """
 
     def __init__(self, overlay: FeatureOverlay) -> None:
         self._overlay = overlay
+        self.picture: Picture | None = None
+        self.viewport = Viewport()
+        self.needs_rays = False
 
-    def hit(
-        self,
-        picture: Picture,
-        viewport: Viewport,
-        position: QPointF,
-        modifiers: Qt.KeyboardModifier,
-    ) -> Hit:
+    def exact_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
         """What is under a position; vertices go before segments, chosen features before others."""
+        picture, viewport = self.picture, self.viewport
+        if picture is None:
+            return Hit(None, modifiers=modifiers)
         point = point_clicked(picture, viewport, position)
         place = None if point < 0 else place_of(picture, point)
-        mouse = np.array([position.x(), position.y()])
-        x, y, reach = position.x(), position.y(), VERTEX_PX
-        around = viewport.span_of(x - reach, y - reach, x + reach, y + reach)
-        shown = self._overlay.shown_in(around)
-        vertex = _nearest_vertex(shown, viewport, mouse, self._overlay.selected)
-        if vertex is not None:
-            return Hit(place, vertex[0], vertex=vertex[1], modifiers=modifiers)
-        segment = _nearest_segment(shown, viewport, mouse, self._overlay.selected)
-        if segment is not None:
-            return Hit(place, segment[0], segment=segment[1], modifiers=modifiers)
-        return Hit(place, modifiers=modifiers)
+        feature, vertex, segment = self._feature_at(position)
+        return Hit(
+            place,
+            feature,
+            vertex,
+            segment,
+            modifiers,
+            reach_m=_reach_m(picture, viewport),
+            ray=self._ray(picture, position) if self.needs_rays else None,
+        )
 
-    def boxed(
-        self, picture: Picture, viewport: Viewport, box: QRectF, modifiers: Qt.KeyboardModifier
-    ) -> Boxed:
-        """The features wholly inside a rectangle of the window, and the points inside it."""
-        span = viewport.span_of(box.left(), box.top(), box.right(), box.bottom())
-        low, high = np.array([span.left, span.top]), np.array([span.right, span.bottom])
+    def quick_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
+        """The same: in the image every point is at hand."""
+        return self.exact_hit(position, modifiers)
+
+    def enclosed(self, outline: QPolygonF, modifiers: Qt.KeyboardModifier) -> Boxed:
+        """The features wholly inside an outline in the window, and the points inside it."""
+        picture, viewport = self.picture, self.viewport
+        if picture is None:
+            return Boxed(frozenset(), {}, modifiers)
+        bounds = outline.boundingRect()
+        span = viewport.span_of(bounds.left(), bounds.top(), bounds.right(), bounds.bottom())
         features = frozenset(
             one.feature.id
             for one in self._overlay.shown_in(span)
-            if bool(((one.places >= low) & (one.places <= high)).all())
+            if bool(are_inside(viewport.to_screen(one.places), outline).all())
         )
         points = points_within(picture, span)
+        if not is_rectangle(outline):
+            rows, columns = picture.image.pixel_of(points)
+            places = picture.places(rows, columns.astype(np.int64))
+            points = points[are_inside(viewport.to_screen(places), outline)]
         return Boxed(features, {picture.drive.id: points}, modifiers)
+
+    def _feature_at(self, position: QPointF) -> tuple[str, int, int]:
+        """Id, vertex and segment of the feature under the mouse; an area also by its inside."""
+        viewport, selected = self.viewport, self._overlay.selected
+        x, y, reach = position.x(), position.y(), VERTEX_PX
+        mouse = np.array([x, y])
+        around = viewport.span_of(x - reach, y - reach, x + reach, y + reach)
+        shown = self._overlay.shown_in(around)
+        vertex = _nearest_vertex(shown, viewport, mouse, selected)
+        if vertex is not None:
+            return vertex[0], vertex[1], -1
+        segment = _nearest_segment(shown, viewport, mouse, selected)
+        if segment is not None:
+            return segment[0], -1, segment[1]
+        at = QPointF(*viewport.to_picture(x, y))
+        areas = (one for one in reversed(shown) if one.feature.geometry is Geometry.AREA)
+        inside = next((one.feature.id for one in areas if one.path.contains(at)), "")
+        return inside, -1, -1
+
+    def _ray(self, picture: Picture, position: QPointF) -> Ray | None:
+        if picture.image.kind is ImageKind.TOP_VIEW:
+            return None
+        row, column = picture.pixel_at(*self.viewport.to_picture(position.x(), position.y()))
+        beam = beam_at(picture.drive, picture.image, row, column)
+        return None if beam is None else Ray(*beam)
+
+
+def _reach_m(picture: Picture, viewport: Viewport) -> float:
+    """How far the mouse's circle reaches on the ground, near the trajectory."""
+    step_m = picture.lay.length_m / max(picture.size[0], 1)
+    along = REACH_PX / viewport.zoom_u * step_m
+    across = REACH_PX / viewport.zoom_v * step_m / picture.stretch
+    return (along + across) / 2
 
 
 def points_within(picture: Picture, span: Span) -> NDArray[np.int64]:

@@ -17,7 +17,6 @@ _VERTEX_PX = 7.0
 _DISC_PX = 9.0
 _RING_PX = 28.0
 _FILL_ALPHA = 34
-_TRAIL_PX = 72.0
 
 
 class MarkPainter:
@@ -58,20 +57,30 @@ class MarkPainter:
         style: FeatureStyle,
         *,
         is_point: bool,
+        hollow: NDArray[np.bool_] | None = None,
     ) -> None:
-        """Paint the symbols of points, and squares where vertices are shown."""
+        """Paint the symbols of points, and squares where vertices are shown.
+
+        Parameters
+        ----------
+        hollow : (n,) bool or None
+            Vertices whose squares are open: no measured point is there.
+        """
         if not (is_point or style.has_vertices):
             return
         ratio = painter.device().devicePixelRatioF()
         symbol = self._symbols.picture(style.symbol, style.colour, ratio) if is_point else None
-        for x, y in viewport.to_screen(places[np.isfinite(places[:, 0])]).tolist():
+        is_placed = np.isfinite(places[:, 0])
+        is_open = np.zeros(len(places), bool) if hollow is None else hollow
+        spots = viewport.to_screen(places[is_placed]).tolist()
+        for (x, y), is_hollow in zip(spots, is_open[is_placed].tolist(), strict=True):
             if symbol is not None:
                 _paint_picture(painter, x, y, symbol, style)
             elif is_point:
                 _paint_disc(painter, _box(x, y, _DISC_PX), style)
             if style.has_vertices:
                 side = _RING_PX - 4 if is_point else _VERTEX_PX
-                _paint_square(painter, _box(x, y, side), style, is_open=is_point)
+                _paint_square(painter, _box(x, y, side), style, is_open=is_point or is_hollow)
         painter.setBrush(Qt.BrushStyle.NoBrush)
 
 
@@ -109,40 +118,3 @@ def _paint_disc(painter: QPainter, box: QRectF, style: FeatureStyle) -> None:
     painter.setPen(QPen(QColor(style.colour), 2.0))
     painter.setBrush(Qt.BrushStyle.NoBrush if style.is_dashed else QColor(style.colour))
     painter.drawEllipse(box)
-
-
-def paint_cross(
-    painter: QPainter, x: float, y: float, before: tuple[float, float] | None, colour: QColor
-) -> None:
-    """The shared cursor: a cross with a gap in its middle, and a trail to where it was."""
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
-    if before is not None:
-        _paint_trail(painter, (x, y), before, colour)
-    arms = [
-        (QPointF(x + dx * 4, y + dy * 4), QPointF(x + dx * 14, y + dy * 14))
-        for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1))
-    ]
-    for pen in (QPen(QColor(0, 0, 0, 200), 4.0), QPen(colour, 1.75)):
-        painter.setPen(pen)
-        for start, end in arms:
-            painter.drawLine(start, end)
-
-
-def _paint_trail(
-    painter: QPainter, now: tuple[float, float], before: tuple[float, float], colour: QColor
-) -> None:
-    way = np.array(before) - np.array(now)
-    length = float(np.hypot(*way))
-    if length < 20:
-        return
-    direction = way / length
-    reach = min(length, _TRAIL_PX)
-    for step in range(4):
-        faded = QColor(colour)
-        faded.setAlpha(180 - 45 * step)
-        painter.setPen(QPen(faded, 1.5))
-        start, end = (16 + (reach - 16) * share / 4 for share in (step, step + 1))
-        painter.drawLine(
-            QPointF(*(np.array(now) + direction * start)),
-            QPointF(*(np.array(now) + direction * end)),
-        )

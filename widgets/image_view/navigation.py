@@ -51,6 +51,12 @@ class Navigation:
         self.is_space_down = False
 
     @property
+    def mouse_shape(self) -> Qt.CursorShape:
+        """What the mouse looks like over a picture."""
+        is_space = self.is_space_down
+        return Qt.CursorShape.OpenHandCursor if is_space else Qt.CursorShape.CrossCursor
+
+    @property
     def is_panning(self) -> bool:
         """Whether a drag is pushing the picture."""
         return self._from is not None

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from PySide6.QtCore import QCoreApplication, QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QPainter, QPen
+from PySide6.QtGui import QColor, QPainter, QPolygonF
 from PySide6.QtWidgets import QWidget
 
 from processing.errors import UserError
@@ -13,14 +13,14 @@ from processing.image.attributes import ATTRIBUTES
 from processing.project.catalogue import Catalogue
 from processing.text import Language
 from widgets.image_view.feature_overlay import FeatureOverlay
-from widgets.image_view.marks import paint_cross
 from widgets.image_view.mosaic import Mosaic
 from widgets.image_view.picture import Picture
 from widgets.image_view.shown_cursor import ShownCursor
 from widgets.image_view.tile_images import TileImages
 from widgets.image_view.viewport import Viewport
-from widgets.shared.feature_style import ACCENT, CURSOR_COLOUR
+from widgets.shared.screen_marks import paint_cross, paint_note, paint_outline, paint_snap
 from widgets.shared.sketch import Drawing
+from widgets.shared.snap_state import SNAP_NAMES, SnapMark
 from widgets.shared.view_settings import PointLook
 
 BACKGROUND = QColor("#14161a")
@@ -34,8 +34,10 @@ class Overlays:
 
     Attributes
     ----------
-    box : QRectF or None
-        The rectangle that is being drawn, widget pixels.
+    outline : QPolygonF or None
+        The rectangle or the lasso that is being drawn, widget pixels.
+    snap : SnapMark or None
+        Where the next click would land.
     refusal : UserError or None
         Why there is no picture.
     """
@@ -44,7 +46,8 @@ class Overlays:
     catalogue: Catalogue
     look: PointLook
     cursor: ShownCursor
-    box: QRectF | None
+    outline: QPolygonF | None
+    snap: SnapMark | None
     refusal: UserError | None
 
 
@@ -93,16 +96,21 @@ class ScenePainter:
             )
         spot, before = overlays.cursor.spot, overlays.cursor.before
         if spot is not None:
-            x, y = viewport.x_of(spot[0]), viewport.y_of(spot[1])
+            at = viewport.x_of(spot[0]), viewport.y_of(spot[1])
             trail = None if before is None else (viewport.x_of(before[0]), viewport.y_of(before[1]))
-            paint_cross(painter, x, y, trail, CURSOR_COLOUR)
-        if overlays.box is not None:
-            fill = QColor(ACCENT)
-            fill.setAlpha(40)
-            painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=False)
-            painter.setPen(QPen(ACCENT, 1.0, Qt.PenStyle.DashLine))
-            painter.setBrush(fill)
-            painter.drawRect(overlays.box)
+            paint_cross(painter, at, trail)
+        if drawing is not None:
+            for note in drawing.notes:
+                place = self._features.screen_place(viewport, note.xyz)
+                if place is not None:
+                    paint_note(painter, place, note)
+        if overlays.snap is not None:
+            place = self._features.screen_place(viewport, overlays.snap.xyz)
+            if place is not None:
+                name = SNAP_NAMES[overlays.snap.mode].spoken(self._language)
+                paint_snap(painter, place, overlays.snap.mode, name)
+        if overlays.outline is not None:
+            paint_outline(painter, overlays.outline)
 
     def _described(self, picture: Picture, viewport: Viewport, look: PointLook) -> str:
         attribute = ATTRIBUTES.get(look.attribute)

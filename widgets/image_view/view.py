@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from PySide6.QtCore import QEvent, QPointF, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QPointF, Qt, Signal
 from PySide6.QtGui import (
     QKeyEvent,
     QMouseEvent,
@@ -20,21 +20,22 @@ from processing.text import Language
 from widgets.image_view.edges import Edges
 from widgets.image_view.feature_overlay import FeatureOverlay
 from widgets.image_view.feature_places import FeaturePlaces
-from widgets.image_view.gesture import Gesture
 from widgets.image_view.hit_finder import HitFinder, place_of, point_under
 from widgets.image_view.navigation import Navigation, viewport_on
 from widgets.image_view.picture import Picture
+from widgets.image_view.place_search import PlaceSearch
 from widgets.image_view.scene_painter import Overlays, ScenePainter
 from widgets.image_view.shown_cursor import ShownCursor
 from widgets.image_view.tile_images import TileImages
+from widgets.image_view.view_menu import view_menu
 from widgets.image_view.viewport import Viewport
+from widgets.mouse_tools.gesture import Gesture
+from widgets.mouse_tools.menu_wish import MenuWish
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.shared.cursor import Place
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
-_SEARCH_S = 0.008
-_SEARCH_EVERY_MS = 10
 _MANY_FEATURES = 1_000
 _MARGIN_PX = 24.0
 
@@ -60,12 +61,15 @@ class ImageView(QWidget):
         The last tile that was missing in the window has come and is painted.
     features_placed
         Every vertex of another drive has found its point of this one, or none.
+    menu_requested(wish: MenuWish)
+        The right button with nothing under way.
     """
 
     open_requested = Signal()
     import_requested = Signal()
     sharpened = Signal()
     features_placed = Signal()
+    menu_requested = Signal(object)
 
     def __init__(
         self,
@@ -86,14 +90,15 @@ class ImageView(QWidget):
         self._images = TileImages(tiles)
         self._places = FeaturePlaces(source)
         self._overlay = FeatureOverlay(self._places)
-        self._gesture = Gesture(HitFinder(self._overlay), shared.cursor)
+        self._hits = HitFinder(self._overlay)
+        self._gesture = Gesture(self._hits, shared.cursor)
         self._navigation = Navigation()
         self._cursor = ShownCursor()
         self._scene = ScenePainter(self, self._images, self._overlay, language)
         self._edges = Edges(self, tiles)
-        self._search = QTimer(self)
-        self._search.setInterval(_SEARCH_EVERY_MS)
-        self._search.timeout.connect(self._on_search_timeout)
+        self._search = PlaceSearch(self._places, self._plan_middle, self)
+        self._search.found.connect(self.update)
+        self._search.ended.connect(self.features_placed)
         self.setMouseTracking(True)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setMinimumSize(160, 120)
@@ -118,6 +123,8 @@ class ImageView(QWidget):
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
         shared.view_settings.hidden_kinds_changed.connect(self._on_settings_hidden_kinds_changed)
         shared.sketch.changed.connect(self.update)
+        shared.snap.mark_changed.connect(self.update)
+        shared.snap.plane_changed.connect(self._on_snap_plane_changed)
 
     # What others ask.
 
@@ -189,7 +196,8 @@ class ImageView(QWidget):
             catalogue=self._source.catalogue(),
             look=self._shared.view_settings.look,
             cursor=self._cursor,
-            box=self._gesture.box,
+            outline=self._gesture.outline,
+            snap=self._shared.snap.mark,
             refusal=self._refusal,
         )
         was_sharp = self._is_sharp
@@ -219,9 +227,11 @@ class ImageView(QWidget):
             self._navigation.begin(position)
             self.setCursor(Qt.CursorShape.ClosedHandCursor)
         elif event.button() == Qt.MouseButton.LeftButton:
-            self._gesture.press(picture, self._viewport, position, event.modifiers())
-        elif event.button() == Qt.MouseButton.RightButton:
+            self._gesture.press(position, event.modifiers())
+        elif event.button() == Qt.MouseButton.RightButton and self._gesture.is_busy:
             self._gesture.complete()
+        elif event.button() == Qt.MouseButton.RightButton:
+            self._ask_for_menu(event)
 
     @override
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
@@ -232,9 +242,9 @@ class ImageView(QWidget):
             self._look_through(self._navigation.dragged(self._viewport, position))
             return
         self._hover(position)
-        had_box = self._gesture.box is not None
-        self._gesture.move(picture, self._viewport, position, event.modifiers())
-        if had_box or self._gesture.box is not None:
+        had_outline = self._gesture.outline is not None
+        self._gesture.move(position, event.modifiers())
+        if had_outline or self._gesture.outline is not None:
             self.update()
 
     @override
@@ -243,9 +253,7 @@ class ImageView(QWidget):
             self._navigation.end()
             self._show_mouse()
         elif self._picture is not None and event.button() == Qt.MouseButton.LeftButton:
-            self._gesture.release(
-                self._picture, self._viewport, event.position(), event.modifiers()
-            )
+            self._gesture.release(event.position(), event.modifiers())
             self.update()
 
     @override
@@ -304,7 +312,7 @@ class ImageView(QWidget):
             self._places.read_all()
         else:
             self._places.read(ids)
-        self._search_if_needed()
+        self._search.go_on()
         self.update()
 
     def _on_map_drives_changed(self) -> None:
@@ -339,29 +347,29 @@ class ImageView(QWidget):
         self._cursor.forget_trail()
         self._show_mouse()
         if self._viewport.width > 1:  # shown before
-            self._viewport = self._edges.lay_out(self._viewport)
+            self._viewport = self._hits.viewport = self._edges.lay_out(self._viewport)
+        self._hits.picture = picture
         if picture is not None:
             self._look_through(viewport_on(picture, before, self._viewport))
-        self._search_if_needed()
+        self._search.go_on()
         self.update()
 
     def _on_settings_hidden_kinds_changed(self) -> None:
         self._overlay.hidden_kinds = self._shared.view_settings.hidden_kinds
         self.update()
 
+    def _on_snap_plane_changed(self) -> None:
+        self._hits.needs_rays = self._shared.snap.plane is not None
+
     def _on_minimap_place_chosen(self, u: float) -> None:
         self._look_through(self._viewport.centred_on(u, self._viewport.centre[1]))
 
-    def _on_search_timeout(self) -> None:
-        picture = self._picture
-        near = None if picture is None else picture.plan_position(*self._viewport.centre)
-        if near is not None and self._places.search(_SEARCH_S, near):
-            self.update()
-        self._search_if_needed()
-        if not self._places.is_searching:
-            self.features_placed.emit()
-
     # What is done in more than one place.
+
+    def _ask_for_menu(self, event: QMouseEvent) -> None:
+        menu = view_menu(self, self.show_everything, self.show_one_to_one, self.center_on_selection)
+        hit = self._hits.exact_hit(event.position(), event.modifiers())
+        self.menu_requested.emit(MenuWish(menu, event.globalPosition().toPoint(), hit))
 
     def _chosen_picture(self) -> Picture | None:
         settings = self._shared.view_settings
@@ -370,7 +378,7 @@ class ImageView(QWidget):
         return None if drive is None else Picture.of(drive, settings.image_kind)
 
     def _look_through(self, viewport: Viewport) -> None:
-        self._viewport = viewport
+        self._viewport = self._hits.viewport = viewport
         self._edges.show_part(self._picture, viewport)
         self.update()
 
@@ -386,15 +394,12 @@ class ImageView(QWidget):
         if picture is not None:
             self._images.tint(chosen.get(picture.drive.id, np.empty(0, np.int64)))
 
-    def _search_if_needed(self) -> None:
-        if self._places.is_searching:
-            self._search.start()
-        else:
-            self._search.stop()
+    def _plan_middle(self) -> tuple[float, float] | None:
+        picture = self._picture
+        return None if picture is None else picture.plan_position(*self._viewport.centre)
 
     def _show_mouse(self) -> None:
         shape = Qt.CursorShape.ArrowCursor
         if self._picture is not None:
-            is_space = self._navigation.is_space_down
-            shape = Qt.CursorShape.OpenHandCursor if is_space else Qt.CursorShape.CrossCursor
+            shape = self._navigation.mouse_shape
         self.setCursor(shape)

@@ -1,17 +1,17 @@
-"""DrawingTool: what drawing points, lines and areas have in common."""
+"""DrawingTool: what all tools that make features of a kind have in common."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QObject
 from typing_extensions import override
 
-from processing.project.catalogue import Geometry
+from processing.project.catalogue import FeatureKind, Geometry
 from processing.project.change import Change
-from processing.project.feature import Feature, Vertex, new_feature_id
+from processing.project.feature import AttributeValue, Feature, Vertex, new_feature_id
 from processing.text import Text
 from widgets.mouse_tools.mouse_tool import Hit, MouseTool
+from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
-from widgets.shared.sketch import Drawing
 
 NO_POINT = Text(
     "There is no measured point here; click on a point.",
@@ -32,7 +32,7 @@ TOO_FEW = {
     ),
 }
 
-_LABELS = {
+DRAW = {
     Geometry.POINT: Text("Draw a point", "点の作図"),
     Geometry.LINE: Text("Draw a line", "線の作図"),
     Geometry.AREA: Text("Draw an area", "面の作図"),
@@ -40,77 +40,64 @@ _LABELS = {
 
 
 class DrawingTool(MouseTool):
-    """Clicks become vertices; the feature is there when the gesture is completed.
+    """Clicks become features of the kind that was chosen.
 
     Parameters
     ----------
+    source : MapSource
     shared : SharedState
-    geometry : Geometry
-        The shape that is drawn.
+    draws : frozenset of Geometry
+        The shapes it can make.
     """
 
     def __init__(
-        self, shared: SharedState, geometry: Geometry, parent: QObject | None = None
+        self,
+        source: MapSource,
+        shared: SharedState,
+        draws: frozenset[Geometry],
+        parent: QObject | None = None,
     ) -> None:
         super().__init__(parent)
+        self._source = source
+        self._shared = shared
         self._sketch = shared.sketch
-        self._geometry = geometry
-        self._kind = ""
-        self._vertices: tuple[Vertex, ...] = ()
-        self._preview: Vertex | None = None
+        self._draws = draws
+        self._kind: FeatureKind | None = None
         self._is_leaving = False
 
     @property
-    def geometry(self) -> Geometry:
-        """The shape that is drawn."""
-        return self._geometry
+    def draws(self) -> frozenset[Geometry]:
+        """The shapes it can make."""
+        return self._draws
 
     @property
-    def kind(self) -> str:
-        """The feature kind that is drawn; empty before one was set."""
+    def kind(self) -> FeatureKind | None:
+        """What is drawn; None before anything was chosen."""
         return self._kind
 
-    def set_kind(self, kind: str) -> None:
+    def set_kind(self, kind: FeatureKind) -> None:
         """Draw features of this kind from now on; the drawing at hand becomes one too."""
         self._kind = kind
         self._show()
 
+    @property
     @override
-    def press(self, hit: Hit) -> None:
-        vertex = hit.as_vertex()
-        if not self._kind:
-            self.told.emit(NO_KIND)
-        elif vertex is None:
-            self.told.emit(NO_POINT)
-        # Where a view sends both presses of a double click, the second one adds nothing.
-        elif vertex not in self._vertices[-1:]:
-            self._vertices += (vertex,)
-            self._show()
+    def snaps(self) -> bool:
+        return self._kind is not None
 
+    @property
     @override
-    def move(self, hit: Hit) -> None:
-        self._preview = hit.as_vertex()
-        self._show()
+    def snaps_to_edges(self) -> bool:
+        return self._kind is not None and self._kind.geometry is not Geometry.POINT
 
+    @property
     @override
-    def complete(self) -> None:
-        if not self._vertices:
-            return
-        if len(self._vertices) < LEAST_VERTICES[self._geometry]:
-            self.told.emit(TOO_FEW[self._geometry])
-            return
-        feature = Feature(new_feature_id(), self._kind, self._geometry, self._vertices)
-        self.put_down()
-        self.change_requested.emit(_LABELS[self._geometry], Change(added=(feature,)))
-
-    @override
-    def step_back(self) -> None:
-        self._vertices = self._vertices[:-1]
-        self._show()
+    def is_busy(self) -> bool:
+        return self._sketch.drawing is not None
 
     @override
     def leave(self) -> None:
-        if self._vertices:
+        if self.is_busy:
             self.put_down()
         elif not self._is_leaving:
             # Whoever takes the hand back may tell this tool to leave in turn.
@@ -118,14 +105,31 @@ class DrawingTool(MouseTool):
             self.finished.emit()
             self._is_leaving = False
 
-    @override
-    def put_down(self) -> None:
-        self._vertices, self._preview = (), None
-        self._show()
-
     def _show(self) -> None:
-        self._sketch.show(
-            Drawing(self._kind, self._geometry, self._vertices, self._preview)
-            if self._vertices
-            else None
-        )
+        """Show what is being drawn; a subclass says what."""
+
+    def _vertex_of(self, hit: Hit) -> Vertex | None:
+        """The vertex of a click, or None after saying why there is none."""
+        if self._kind is None:
+            self.told.emit(NO_KIND)
+            return None
+        vertex = hit.as_vertex()
+        if vertex is None:
+            self.told.emit(NO_POINT)
+        return vertex
+
+    def _finish(
+        self, vertices: tuple[Vertex, ...], attributes: dict[str, AttributeValue] | None = None
+    ) -> None:
+        """Make a feature of the chosen kind, and put the gesture down."""
+        kind = self._kind
+        if kind is None:
+            return
+        known = {
+            name: value
+            for name, value in (attributes or {}).items()
+            if kind.attribute(name) is not None
+        }
+        feature = Feature(new_feature_id(), kind.id, kind.geometry, vertices, known)
+        self.put_down()
+        self.change_requested.emit(DRAW[kind.geometry], Change(added=(feature,)))

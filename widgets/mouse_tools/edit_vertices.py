@@ -5,11 +5,11 @@ from __future__ import annotations
 from PySide6.QtCore import QObject
 from typing_extensions import override
 
-from processing.project.change import Change, Replacement
 from processing.project.feature import Feature
 from processing.text import Text
 from widgets.mouse_tools.drawing_tool import LEAST_VERTICES, NO_POINT, TOO_FEW
-from widgets.mouse_tools.mouse_tool import Hit, MouseTool
+from widgets.mouse_tools.editing_tool import EditingTool
+from widgets.mouse_tools.mouse_tool import Hit
 from widgets.mouse_tools.removal import removal_of
 from widgets.mouse_tools.vertex_drag import VertexDrag
 from widgets.shared.map_source import MapSource
@@ -20,30 +20,35 @@ INSERT_VERTEX = Text("Insert a vertex", "頂点の挿入")
 REMOVE_VERTEX = Text("Remove a vertex", "頂点の削除")
 
 
-class EditVertices(MouseTool):
-    """A press on a vertex takes hold of it, a press on a segment puts a vertex in.
-
-    Parameters
-    ----------
-    source : MapSource
-    shared : SharedState
-    """
+class EditVertices(EditingTool):
+    """A press on a vertex takes hold of it, a press on a segment puts a vertex in."""
 
     def __init__(
         self, source: MapSource, shared: SharedState, parent: QObject | None = None
     ) -> None:
-        super().__init__(parent)
-        self._source = source
-        self._selection = shared.selection
-        self._sketch = shared.sketch
+        super().__init__(source, shared, parent)
         self._drag: VertexDrag | None = None
         self._under_mouse = Hit(None)
-        self._is_leaving = False
+
+    @property
+    @override
+    def snaps(self) -> bool:
+        return self._drag is not None
+
+    @property
+    @override
+    def snaps_to_edges(self) -> bool:
+        return self._drag is not None and len(self._drag.vertices) > 1
+
+    @property
+    @override
+    def is_busy(self) -> bool:
+        return self._drag is not None
 
     @override
     def press(self, hit: Hit) -> None:
         self._under_mouse = hit
-        feature = self._source.feature(hit.feature) if hit.feature else None
+        feature = self._feature_of(hit)
         self._selection.choose_features(frozenset((feature.id,) if feature else ()))
         if feature is None:
             return
@@ -70,32 +75,22 @@ class EditVertices(MouseTool):
         self.put_down()
         if hit.place is None and drag.vertices != drag.before.vertices:
             self.told.emit(NO_POINT)
-        elif not drag.change.is_empty:
-            is_new = len(drag.vertices) > len(drag.before.vertices)
-            self.change_requested.emit(INSERT_VERTEX if is_new else MOVE_VERTEX, drag.change)
+            return
+        is_new = len(drag.vertices) > len(drag.before.vertices)
+        self._replace(INSERT_VERTEX if is_new else MOVE_VERTEX, drag.before, drag.after)
 
     @override
     def delete(self) -> None:
         hit = self._under_mouse
-        feature = self._source.feature(hit.feature) if hit.feature else None
+        feature = self._feature_of(hit)
         if self._drag is not None:
             return
-        if feature is not None and hit.vertex >= 0:
+        if feature is not None and 0 <= hit.vertex < len(feature.vertices):
             self._remove_vertex(feature, hit.vertex)
             return
-        chosen = [self._source.feature(id_) for id_ in sorted(self._selection.features)]
-        features = tuple(feature for feature in chosen if feature is not None)
+        features = self._chosen()
         if features:
             self.change_requested.emit(*removal_of(features))
-
-    @override
-    def leave(self) -> None:
-        if self._drag is not None:
-            self.put_down()
-        elif not self._is_leaving:
-            self._is_leaving = True
-            self.finished.emit()
-            self._is_leaving = False
 
     @override
     def put_down(self) -> None:
@@ -112,5 +107,4 @@ class EditVertices(MouseTool):
             return
         vertices = (*feature.vertices[:index], *feature.vertices[index + 1 :])
         self._under_mouse = Hit(None)  # its vertex numbers no longer hold
-        change = Change(replaced=(Replacement(feature, feature.with_vertices(vertices)),))
-        self.change_requested.emit(REMOVE_VERTEX, change)
+        self._replace(REMOVE_VERTEX, feature, feature.with_vertices(vertices))

@@ -8,13 +8,30 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Qt, Signal
 
-from processing.project.feature import Vertex
+from processing.project.feature import Position, Vertex
 from widgets.shared.cursor import Place
+
+
+class DragShape(Enum):
+    """What a drag with the left button draws in the view itself."""
+
+    NONE = "none"
+    BOX = "box"
+    LASSO = "lasso"
+
+
+@dataclass(frozen=True)
+class Ray:
+    """A line of sight, project CRS: of the eye in 3D, of the laser in the image."""
+
+    origin: Position
+    direction: Position
 
 
 @dataclass(frozen=True)
@@ -32,6 +49,10 @@ class Hit:
     segment : int
         Index of that feature's segment under the mouse (from vertex i to i + 1), or −1.
     modifiers : Qt.KeyboardModifier
+    reach_m : float
+        How far the circle about the mouse reaches on the ground; 0 where it isn't known.
+    ray : Ray or None
+        The line of sight through the pixel, whether a point is there or not.
     """
 
     place: Place | None
@@ -39,15 +60,18 @@ class Hit:
     vertex: int = -1
     segment: int = -1
     modifiers: Qt.KeyboardModifier = field(default=Qt.KeyboardModifier.NoModifier)
+    reach_m: float = 0.0
+    ray: Ray | None = None
 
     def as_vertex(self) -> Vertex | None:
         """The vertex that a click here makes; None over nothing."""
-        return None if self.place is None else Vertex(self.place.xyz, self.place.measured)
+        place = self.place
+        return None if place is None else Vertex(place.xyz, place.measured, place.is_occluded)
 
 
 @dataclass(frozen=True)
 class Boxed:
-    """What a rectangle that was drawn in a view holds.
+    """What a rectangle or a lasso that was drawn in a view holds.
 
     Attributes
     ----------
@@ -89,15 +113,39 @@ class MouseTool(QObject):
     def release(self, hit: Hit) -> None:
         """The left button went up."""
 
-    def takes_box(self, hit: Hit) -> bool:  # noqa: ARG002 - asked by the view after the press
-        """Whether a drag that starts at this hit draws a rectangle; asked after :meth:`press`."""
+    @property
+    def snaps(self) -> bool:
+        """Whether a hit now is drawn to vertices, lines and points of note."""
         return False
 
+    @property
+    def snaps_to_edges(self) -> bool:
+        """Whether edges of the cloud count among them; not for what stands by itself."""
+        return False
+
+    @property
+    def last_vertex(self) -> Vertex | None:
+        """From where the next segment starts; None when none does."""
+        return None
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether a gesture is under way that the right button would end."""
+        return False
+
+    def drag_shape(self, hit: Hit) -> DragShape:  # noqa: ARG002 - asked by the view
+        """What a drag that starts at this hit draws; asked after :meth:`press`."""
+        return DragShape.NONE
+
     def choose_box(self, boxed: Boxed) -> None:
-        """A rectangle was drawn; comes in place of :meth:`release`."""
+        """A rectangle or a lasso was drawn; comes in place of :meth:`release`."""
 
     def complete(self) -> None:
         """Right button, Enter or double click: end the gesture and keep it."""
+
+    def settle(self) -> None:
+        """Another tool is taken: keep what is whole, drop what isn't."""
+        self.put_down()
 
     def step_back(self) -> None:
         """Backspace: take back the last vertex."""
@@ -106,7 +154,7 @@ class MouseTool(QObject):
         """Escape: drop the gesture; with nothing being drawn, give the hand back."""
 
     def put_down(self) -> None:
-        """Another tool is taken: drop the gesture and say nothing."""
+        """Drop the gesture and say nothing."""
 
     def delete(self) -> None:
         """Delete: remove what is chosen."""

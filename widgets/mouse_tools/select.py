@@ -9,7 +9,8 @@ from typing_extensions import override
 
 from widgets.mouse_tools.drawing_tool import NO_POINT
 from widgets.mouse_tools.edit_vertices import MOVE_VERTEX
-from widgets.mouse_tools.mouse_tool import Boxed, Hit, MouseTool
+from widgets.mouse_tools.editing_tool import EditingTool
+from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit
 from widgets.mouse_tools.removal import removal_of
 from widgets.mouse_tools.vertex_drag import VertexDrag
 from widgets.shared.map_source import MapSource
@@ -18,36 +19,53 @@ from widgets.shared.shared_state import SharedState
 _SHIFT = Qt.KeyboardModifier.ShiftModifier
 
 
-class Select(MouseTool):
+class Select(EditingTool):
     """A click chooses and puts the cursor, a drag draws a box or moves a chosen feature's vertex.
 
     With Shift, what is hit is added to what was chosen.
 
     Parameters
     ----------
-    source : MapSource
-    shared : SharedState
+    shape : DragShape
+        What a drag over nothing draws: a box or a lasso.
     """
 
     def __init__(
-        self, source: MapSource, shared: SharedState, parent: QObject | None = None
+        self,
+        source: MapSource,
+        shared: SharedState,
+        shape: DragShape = DragShape.BOX,
+        parent: QObject | None = None,
     ) -> None:
-        super().__init__(parent)
-        self._source = source
+        super().__init__(source, shared, parent)
         self._cursor = shared.cursor
-        self._selection = shared.selection
-        self._sketch = shared.sketch
+        self._shape = shape
         self._drag: VertexDrag | None = None
+
+    @property
+    @override
+    def snaps(self) -> bool:
+        return self._drag is not None
+
+    @property
+    @override
+    def snaps_to_edges(self) -> bool:
+        return self._drag is not None and len(self._drag.vertices) > 1
+
+    @property
+    @override
+    def is_busy(self) -> bool:
+        return self._drag is not None
 
     @override
     def press(self, hit: Hit) -> None:
-        feature = self._source.feature(hit.feature) if hit.feature else None
+        feature = self._feature_of(hit)
         if feature is not None and hit.vertex >= 0 and feature.id in self._selection.features:
             self._drag = VertexDrag.of_vertex(feature, hit.vertex)
 
     @override
-    def takes_box(self, hit: Hit) -> bool:
-        return self._drag is None
+    def drag_shape(self, hit: Hit) -> DragShape:
+        return self._shape if self._drag is None else DragShape.NONE
 
     @override
     def move(self, hit: Hit) -> None:
@@ -60,12 +78,12 @@ class Select(MouseTool):
     def release(self, hit: Hit) -> None:
         drag = self._drag
         self.put_down()
-        if drag is None or drag.change.is_empty:
+        if drag is None or drag.after == drag.before:
             self._choose(hit)
         elif hit.place is None:
             self.told.emit(NO_POINT)
         else:
-            self.change_requested.emit(MOVE_VERTEX, drag.change)
+            self._replace(MOVE_VERTEX, drag.before, drag.after)
 
     @override
     def choose_box(self, boxed: Boxed) -> None:
@@ -83,8 +101,7 @@ class Select(MouseTool):
 
     @override
     def delete(self) -> None:
-        chosen = [self._source.feature(id_) for id_ in sorted(self._selection.features)]
-        features = tuple(feature for feature in chosen if feature is not None)
+        features = self._chosen()
         if features:
             self.change_requested.emit(*removal_of(features))
 
@@ -92,6 +109,8 @@ class Select(MouseTool):
     def leave(self) -> None:
         if self._drag is not None:
             self.put_down()
+        elif self._shape is not DragShape.BOX:
+            super().leave()
         else:
             self._selection.clear()
 

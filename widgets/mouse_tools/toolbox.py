@@ -2,18 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Protocol
+import math
+from collections.abc import Mapping, Sequence
+from typing import Protocol, TypeVar
 
 from PySide6.QtCore import QObject, Signal
 
 from processing.project.catalogue import FeatureKind, Geometry
+from processing.project.feature import Feature
+from processing.text import Text
+from widgets.mouse_tools.draw_path import DrawPath
 from widgets.mouse_tools.drawing_tool import DrawingTool
+from widgets.mouse_tools.legs import Way
 from widgets.mouse_tools.mouse_tool import MouseTool
+from widgets.mouse_tools.snapping import SnappingHand
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
 
 POINTER = "select"
-
 _TOOL_OF_GEOMETRY = {Geometry.POINT: "point", Geometry.LINE: "line", Geometry.AREA: "area"}
+_WAYS = {way.value: way for way in Way if way is not Way.STRAIGHT}
+_MOST_RECENT = 6
+
+CHOOSE_A_LINE = Text("Choose one line first.", "先に線を1つ選択してください。")
+
+
+AnyTool = TypeVar("AnyTool", bound=MouseTool)
 
 
 class ToolUser(Protocol):
@@ -25,6 +39,15 @@ class ToolUser(Protocol):
 
 class MouseToolbox(QObject):
     """The tools by name; one of them is in the hand, the same in all views.
+
+    ``arc``, ``spline`` and ``trace`` are ways of the line or the area at hand: a drawing goes on
+    when they change.
+
+    Parameters
+    ----------
+    tools : mapping of str to MouseTool
+        With ``select``, ``point``, ``line`` and ``area`` among them.
+    views : tuple of ToolUser
 
     Signals
     -------
@@ -41,15 +64,22 @@ class MouseToolbox(QObject):
 
     def __init__(
         self,
+        source: MapSource,
+        shared: SharedState,
         tools: Mapping[str, MouseTool],
-        views: tuple[ToolUser, ...],
+        views: tuple[ToolUser, ...] = (),
         parent: QObject | None = None,
     ) -> None:
         super().__init__(parent)
+        self._source = source
+        self._shared = shared
         self._tools = dict(tools)
         self._views = views
         self._name = POINTER
         self._kind: FeatureKind | None = None
+        self._kinds: dict[Geometry, FeatureKind] = {}
+        self._recent: list[str] = []
+        self.hand = SnappingHand(source, shared, self._tools[POINTER], self)
         for tool in self._tools.values():
             tool.change_requested.connect(self.change_requested)
             tool.told.connect(self.told)
@@ -58,47 +88,138 @@ class MouseToolbox(QObject):
 
     @property
     def name(self) -> str:
-        """The tool in the hand."""
+        """The tool in the hand, or the way in which it draws."""
         return self._name
+
+    @property
+    def tool(self) -> MouseTool:
+        """The tool in the hand."""
+        return self.hand.tool
+
+    def tools_of(self, kind_of_tool: type[AnyTool]) -> tuple[AnyTool, ...]:
+        """The tools of a class, to listen to what only they tell."""
+        return tuple(one for one in self._tools.values() if isinstance(one, kind_of_tool))
 
     @property
     def kind(self) -> FeatureKind | None:
         """The kind that is drawn; None before one was chosen."""
         return self._kind
 
+    @property
+    def recent_kinds(self) -> tuple[FeatureKind, ...]:
+        """Kinds drawn last that the catalogue has, newest first."""
+        catalogue = self._source.catalogue()
+        return tuple(catalogue[id_] for id_ in self._recent if id_ in catalogue)
+
     def use_views(self, views: tuple[ToolUser, ...]) -> None:
-        """Serve these views from now on; what is being drawn goes on in them."""
-        for view in self._views:
-            view.set_mouse_tool(None)
+        """Hand the tool to other views from now on."""
         self._views = views
         self._hand_out()
 
     def choose(self, name: str) -> None:
-        """Take a tool; what the one before was drawing is dropped."""
+        """Take a tool; what the one before had drawn is kept where it is whole."""
         if name == self._name:
             return
-        self._tools[self._name].put_down()
+        tool = self._tool_of(name)
+        if tool is not self.hand.tool:
+            self.hand.tool.settle()
+            self.hand.tool = tool
         self._name = name
+        if isinstance(tool, DrawPath):
+            tool.set_way(_WAYS.get(name, Way.STRAIGHT))
+        if isinstance(tool, DrawingTool):
+            self._give_kind(tool)
         self._hand_out()
         self.tool_chosen.emit(name)
 
     def choose_kind(self, kind: FeatureKind) -> None:
-        """Draw features of this kind from now on, with the tool for their shape."""
-        if kind != self._kind:
-            self._kind = kind
-            for tool in self._tools.values():
-                if isinstance(tool, DrawingTool) and tool.geometry is kind.geometry:
-                    tool.set_kind(kind.id)
-            self.kind_chosen.emit(kind)
-        self.choose(_TOOL_OF_GEOMETRY[kind.geometry])
+        """Draw features of this kind from now on, with a tool that can."""
+        tool = self.hand.tool
+        can_draw = isinstance(tool, DrawingTool) and kind.geometry in tool.draws
+        if not can_draw:
+            tool.settle()
+        self._take_kind(kind)
+        if isinstance(tool, DrawingTool) and can_draw:
+            tool.set_kind(kind)
+        else:
+            self.choose(_TOOL_OF_GEOMETRY[kind.geometry])
+
+    def cycle_kind(self) -> None:
+        """Draw the kind again that was drawn longest ago among the last ones."""
+        recent = self.recent_kinds
+        if len(recent) > 1:
+            self.choose_kind(recent[-1])
+
+    def forget_kinds(self) -> None:
+        """Another catalogue counts from now on."""
+        self.hand.tool.put_down()
+        self._kind = None
+        self._kinds.clear()
+        self.choose(POINTER)
 
     def complete(self) -> None:
         """End the gesture of the tool in the hand and keep what it made."""
-        self._tools[self._name].complete()
+        self.hand.complete()
+
+    def step_back(self) -> bool:
+        """Take the last click back; says whether a gesture was under way."""
+        if not self.hand.is_busy:
+            return False
+        self.hand.step_back()
+        return True
+
+    def continue_line(self, chosen: Sequence[Feature]) -> None:
+        """Go on drawing the chosen line at its end nearest to the cursor, or at its last one."""
+        lines = [one for one in chosen if one.geometry is Geometry.LINE]
+        tool = self._tools["line"]
+        if len(lines) != 1 or not isinstance(tool, DrawPath):
+            self.told.emit(CHOOSE_A_LINE)
+            return
+        (line,) = lines
+        if line.kind in self._source.catalogue():
+            self.choose_kind(self._source.catalogue()[line.kind])
+        if not isinstance(self.hand.tool, DrawPath):
+            self.choose("line")
+        place = self._shared.cursor.place
+        start, end = line.vertices[0].xyz, line.vertices[-1].xyz
+        at_start = place is not None and math.dist(place.xyz, start) < math.dist(place.xyz, end)
+        tool.continue_line(line, at_start=at_start)
+
+    def close_drawing(self) -> None:
+        """Lead the drawing at hand back to its start and complete it."""
+        tool = self.hand.tool
+        if isinstance(tool, DrawPath):
+            tool.close()
+
+    def _tool_of(self, name: str) -> MouseTool:
+        if name not in _WAYS:
+            return self._tools[name]
+        if isinstance(self.hand.tool, DrawPath):
+            return self.hand.tool
+        is_area = self._kind is not None and self._kind.geometry is Geometry.AREA
+        return self._tools["area" if is_area else "line"]
+
+    def _give_kind(self, tool: DrawingTool) -> None:
+        """Let a tool draw the kind at hand, or the last one of a shape that it can draw."""
+        kind = self._kind
+        if kind is None or kind.geometry not in tool.draws:
+            usual = (one for one in self._source.catalogue() if one.geometry in tool.draws)
+            known = (self._kinds[one] for one in Geometry if one in tool.draws & set(self._kinds))
+            kind = next(known, None) or next(usual, None)
+        if kind is not None:
+            self._take_kind(kind)
+            tool.set_kind(kind)
+
+    def _take_kind(self, kind: FeatureKind) -> None:
+        if kind == self._kind:
+            return
+        self._kind = self._kinds[kind.geometry] = kind
+        self._recent = [kind.id, *(one for one in self._recent if one != kind.id)][:_MOST_RECENT]
+        self.kind_chosen.emit(kind)
 
     def _hand_out(self) -> None:
         for view in self._views:
-            view.set_mouse_tool(self._tools[self._name])
+            view.set_mouse_tool(self.hand)
 
     def _on_tool_finished(self) -> None:
         self.choose(POINTER)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from processing.project.change import Change, Replacement
 from processing.project.feature import Feature, Vertex
 from widgets.shared.sketch import Drawing
 
@@ -52,10 +51,6 @@ class VertexDrag:
         )
 
     @property
-    def change(self) -> Change:
-        """What the drag makes of the map; empty when nothing moved."""
-        if self.vertices == self.before.vertices:
-            return Change()
-        return Change(
-            replaced=(Replacement(self.before, self.before.with_vertices(self.vertices)),)
-        )
+    def after(self) -> Feature:
+        """What becomes of the feature; equal to ``before`` when nothing moved."""
+        return self.before.with_vertices(self.vertices)

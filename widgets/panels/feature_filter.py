@@ -35,7 +35,7 @@ _COMPARISONS = {
     Comparison.CONTAINS: Text("contains", "を含む"),
     Comparison.EMPTY: Text("is empty", "が空欄"),
 }
-_LEAST_LETTERS = 7
+_LEAST_LETTERS = 9
 
 
 class FeatureFilter(QWidget):
@@ -70,16 +70,13 @@ class FeatureFilter(QWidget):
         )
         self._words.setClearButtonEnabled(True)
         self._kind = _box(self.tr("Kind of the features"))
-        self._status = _box(self.tr("Status of the features"))
+        self._status = _short_box(self.tr("Status of the features"))
         self._occluded = QCheckBox(self.tr("Occluded"), self)
         self._occluded.setToolTip(
             self.tr("Only features that have vertices without a measured point")
         )
         self._attribute = _box(self.tr("Attribute that is compared"))
-        self._comparison = _box(self.tr("How the attribute is compared"))
-        self._comparison.setMinimumContentsLength(0)
-        self._comparison.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
-        self._comparison.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        self._comparison = _short_box(self.tr("How the attribute is compared"))
         self._value = QLineEdit(self)
         self._value.setPlaceholderText(self.tr("Value"))
         self._select = QPushButton(self.tr("Select shown"), self)
@@ -146,7 +143,7 @@ class FeatureFilter(QWidget):
         row.setSpacing(4)
         row.addWidget(self._words, 3)
         row.addWidget(self._kind, 2)
-        row.addWidget(self._status, 1)
+        row.addWidget(self._status)
         row.addWidget(self._occluded)
         row.addWidget(self._attribute, 2)
         row.addWidget(self._comparison)
@@ -258,4 +255,13 @@ def _box(tip: str) -> QComboBox:
     box.setMinimumContentsLength(_LEAST_LETTERS)
     box.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
     box.setMaxVisibleItems(20)
+    return box
+
+
+def _short_box(tip: str) -> QComboBox:
+    """A list whose longest entry is short enough to be always seen whole."""
+    box = QComboBox()
+    box.setToolTip(tip)
+    box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
+    box.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
     return box

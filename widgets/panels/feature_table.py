@@ -122,6 +122,7 @@ class FeatureTable(QWidget):
         elif self._changed_unseen:
             self._read(tuple(self._changed_unseen))
         self._changed_unseen.clear()
+        self._follow_selection()
 
     def _read_all(self) -> None:
         self._is_read = True
@@ -144,6 +145,16 @@ class FeatureTable(QWidget):
     def _rows_of(self, ids: frozenset[str]) -> list[int]:
         rows = map(self._model.rows.row_of, ids)
         return [row for row in rows if row >= 0]
+
+    def _follow_selection(self) -> None:
+        ids = self._selection.features
+        if ids == ids_of(self.selected_features()):
+            return
+        rows = self._rows_of(ids)
+        self._table.mark_rows(rows)
+        if rows:
+            self._current_id = self._model.rows.at(min(rows)).id
+            self._go_to_current()
 
     def _go_to_current(self) -> None:
         self._table.make_current(self._model.rows.row_of(self._current_id))
@@ -206,13 +217,9 @@ class FeatureTable(QWidget):
     def _on_table_marked(self) -> None:
         self._selection.choose_features(ids_of(self.selected_features()))
 
-    def _on_selection_features_changed(self, ids: frozenset[str]) -> None:
-        if ids != ids_of(self.selected_features()):
-            rows = self._rows_of(ids)
-            self._table.mark_rows(rows)
-            if rows:
-                self._current_id = self._model.rows.at(min(rows)).id
-                self._go_to_current()
+    def _on_selection_features_changed(self) -> None:
+        if self.isVisible():
+            self._follow_selection()
 
     def _on_model_reset(self) -> None:
         self._table.show_order()

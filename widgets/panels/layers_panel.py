@@ -85,6 +85,10 @@ class LayersPanel(QWidget):
         self._settings.hidden_kinds_changed.connect(self._on_settings_hidden_kinds_changed)
         self._on_map_drives_changed()
 
+    def read_catalogue(self) -> None:
+        """Show the kinds of another catalogue."""
+        self._on_map_drives_changed()
+
     def mark_kind(self, kind: FeatureKind) -> None:
         """Show which kind is drawn now."""
         self._marked = kind.id

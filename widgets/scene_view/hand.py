@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QObject, QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
 from typing_extensions import override
 
-from widgets.scene_view.gesture import DRAG_PX, Gesture
+from widgets.mouse_tools.gesture import DRAG_PX, Gesture
 from widgets.scene_view.hits import SceneHits
 from widgets.scene_view.pilot import Pilot, keyed, moved_along, zoomed
 from widgets.shared.shared_state import SharedState
@@ -37,13 +37,13 @@ class Hand(QObject):
         The user moved the camera.
     acted()
         Something that is painted over the picture may be another.
-    menu_requested(where: QPoint), everything_requested, selection_requested
+    menu_requested(where: QPointF), everything_requested, selection_requested
         The context menu, Home, F.
     """
 
     camera_moved = Signal(object)
     acted = Signal()
-    menu_requested = Signal(QPoint)
+    menu_requested = Signal(QPointF)
     everything_requested = Signal()
     selection_requested = Signal()
 
@@ -136,10 +136,10 @@ class Hand(QObject):
             self._look_up.stop()
             self._click(self.gesture.release, event)
         elif event.button() == Qt.MouseButton.RightButton and right_at is not None:
-            if self._shared.sketch.drawing is not None:
+            if self.gesture.is_busy:
                 self.gesture.complete()
             else:
-                self.menu_requested.emit(event.position().toPoint())
+                self.menu_requested.emit(event.position())
 
     def _click(
         self, tell: Callable[[QPointF, Qt.KeyboardModifier], None], event: QMouseEvent

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QPointF, Qt
+from PySide6.QtGui import QPolygonF
 
-from widgets.mouse_tools.mouse_tool import Boxed, Hit
-from widgets.scene_view.map.feature_hits import are_within, feature_at, features_within
+from widgets.mouse_tools.gesture import REACH_PX
+from widgets.mouse_tools.mouse_tool import Boxed, Hit, Ray
+from widgets.scene_view.map.feature_hits import feature_at, features_within
 from widgets.scene_view.map.feature_shapes import FlatShapes, flattened
 from widgets.scene_view.points.point_finder import FoundPoint, PointFinder
 from widgets.scene_view.points.scene_tile import DrawnTile
 from widgets.scene_view.projection import Projection
+from widgets.shared.outlines import are_inside
 
 Floats = NDArray[np.float64]
 
@@ -27,6 +30,8 @@ class SceneHits:
         The features that are drawn.
     selected : frozenset of str
         Chosen features, which are hit before others.
+    origin : (3,) float64
+        The view's local origin, m, project CRS.
     """
 
     def __init__(self, finder: PointFinder, projection: Projection) -> None:
@@ -35,6 +40,7 @@ class SceneHits:
         self.drawn: tuple[DrawnTile, ...] = ()
         self.flat: FlatShapes = flattened(())
         self.selected: frozenset[str] = frozenset()
+        self.origin: Floats = np.zeros(3)
 
     def exact_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
         """What is under a pixel, among all measured points."""
@@ -45,16 +51,16 @@ class SceneHits:
         """What is under a pixel, among the points that are drawn."""
         return self._hit(self._drawn_point(position), position, modifiers)
 
-    def boxed(self, box: QRectF, modifiers: Qt.KeyboardModifier) -> Boxed:
-        """The features wholly inside a rectangle, and the drawn points inside it."""
+    def enclosed(self, outline: QPolygonF, modifiers: Qt.KeyboardModifier) -> Boxed:
+        """The features wholly inside an outline, and the drawn points inside it."""
         points: dict[str, list[NDArray[np.int64]]] = {}
         for one in self.drawn:
             pixels, _ = self.projection.to_screen(one.tile.local_xyz)
-            inside = one.tile.points[are_within(pixels, box)]
+            inside = one.tile.points[are_inside(pixels, outline)]
             if inside.size:
                 points.setdefault(one.tile.id.drive_id, []).append(inside)
         joined = {drive: np.unique(np.concatenate(parts)) for drive, parts in points.items()}
-        return Boxed(features_within(self.flat, self.projection, box), joined, modifiers)
+        return Boxed(features_within(self.flat, self.projection, outline), joined, modifiers)
 
     def place_under(self, position: QPointF) -> Floats:
         """(3,): the drawn point under a pixel, or what is at the distance looked at.
@@ -75,4 +81,20 @@ class SceneHits:
         place = None if found is None else found.place
         mouse = position.x(), position.y()
         feature = feature_at(self.flat, self.projection, mouse, self.selected)
-        return Hit(place, feature.feature, feature.vertex, feature.segment, modifiers)
+        camera = self.projection.camera
+        depth_m = camera.distance_m if found is None else found.depth_m
+        direction = self.projection.ray(*mouse)
+        return Hit(
+            place,
+            feature.feature,
+            feature.vertex,
+            feature.segment,
+            modifiers,
+            reach_m=REACH_PX * self.projection.metres_per_px(depth_m),
+            ray=Ray(_as_place(self.origin + np.array(camera.position)), _as_place(direction)),
+        )
+
+
+def _as_place(values: Floats) -> tuple[float, float, float]:
+    east, north, up = values.tolist()
+    return east, north, up

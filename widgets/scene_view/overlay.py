@@ -6,21 +6,22 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
+from PySide6.QtCore import QLineF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
 from processing.project.catalogue import Catalogue, Geometry
+from processing.text import Language
 from widgets.scene_view.map.feature_shapes import local_places, segments_of
 from widgets.scene_view.projection import Projection
-from widgets.shared.feature_style import ACCENT, CURSOR_COLOUR, FeatureStyle, sketch_style
+from widgets.shared.feature_style import ACCENT, FeatureStyle, sketch_style
+from widgets.shared.screen_marks import paint_cross, paint_note, paint_outline, paint_snap
 from widgets.shared.sketch import Drawing
+from widgets.shared.snap_state import SNAP_NAMES, SnapMark
 
 Floats = NDArray[np.float64]
 
-_GAP_PX, _ARM_PX = 4.0, 14.0
-_TRAIL_PX = 72.0
 _VERTEX_PX = 7.0
 _WORDS = QColor("#c9d1d9")
 
@@ -35,8 +36,12 @@ class OverlayContent:
         The view's local origin, m, project CRS.
     cursor, cursor_before : (3,) float64 or None
         Where the shared cursor is and was, metres from the origin.
-    box : QRectF or None
-        The rectangle that is being drawn.
+    outline : QPolygonF or None
+        The rectangle or the lasso that is being drawn.
+    snap : SnapMark or None
+        Where the next click would land.
+    language : Language
+        Of the mark's name.
     words : str
         A line in the middle: why there is nothing to see.
     """
@@ -46,7 +51,9 @@ class OverlayContent:
     drawing: Drawing | None = None
     cursor: Floats | None = None
     cursor_before: Floats | None = None
-    box: QRectF | None = None
+    outline: QPolygonF | None = None
+    snap: SnapMark | None = None
+    language: Language = "en"
     words: str = ""
 
 
@@ -78,15 +85,27 @@ class SceneOverlay(QWidget):
             painter.drawText(area, flags, content.words)
         if content.drawing is not None:
             _paint_drawing(painter, projection, content, content.drawing)
-        if content.cursor is not None:
-            _paint_cursor(painter, projection, content.cursor, content.cursor_before)
-        if content.box is not None:
-            painter.setPen(QPen(ACCENT, 1.0))
-            fill = QColor(ACCENT)
-            fill.setAlpha(40)
-            painter.setBrush(fill)
-            painter.drawRect(content.box)
+        _paint_marks(painter, projection, content)
+        if content.outline is not None:
+            paint_outline(painter, content.outline)
         painter.end()
+
+
+def _paint_marks(painter: QPainter, projection: Projection, content: OverlayContent) -> None:
+    """The cursor, notes beside the drawing, and where the next click would land."""
+    cursor = None if content.cursor is None else _pixel(projection, content.cursor)
+    if cursor is not None:
+        before = content.cursor_before
+        paint_cross(painter, cursor, None if before is None else _pixel(projection, before))
+    notes = () if content.drawing is None else content.drawing.notes
+    for note in notes:
+        at = _pixel(projection, np.array(note.xyz) - content.origin)
+        if at is not None:
+            paint_note(painter, at, note)
+    snap = content.snap
+    at = None if snap is None else _pixel(projection, np.array(snap.xyz) - content.origin)
+    if snap is not None and at is not None:
+        paint_snap(painter, at, snap.mode, SNAP_NAMES[snap.mode].spoken(content.language))
 
 
 def _paint_drawing(
@@ -100,9 +119,8 @@ def _paint_drawing(
     for pen in (style.halo_pen(), style.pen()):
         painter.setPen(pen)
         painter.drawLines(lines)
-    if drawing.preview is not None and len(places):
-        preview = local_places((drawing.preview,), content.origin)
-        way = [places[-1], preview[0]]
+    if drawing.preview and len(places):
+        way = [places[-1], *local_places(drawing.preview, content.origin)]
         if drawing.geometry is Geometry.AREA and len(places) > 1:
             way.append(places[0])
         to_preview = _lines(projection, np.array(way), segments_of(Geometry.LINE, len(way)))
@@ -111,17 +129,26 @@ def _paint_drawing(
         for pen in (QPen(QColor(0, 0, 0, 150), 3.0), dashes):
             painter.setPen(pen)
             painter.drawLines(to_preview)
-    _paint_vertices(painter, projection, places, style)
+    hollow = [vertex.is_occluded for vertex in drawing.vertices]
+    _paint_vertices(painter, projection, places, style, hollow)
 
 
 def _paint_vertices(
-    painter: QPainter, projection: Projection, places: Floats, style: FeatureStyle
+    painter: QPainter,
+    projection: Projection,
+    places: Floats,
+    style: FeatureStyle,
+    hollow: list[bool],
 ) -> None:
-    painter.setPen(QPen(QColor(0, 0, 0, 190), 1.5))
-    painter.setBrush(QColor(style.colour))
+    """Squares; open ones where no measured point is."""
     pixels, _ = projection.to_screen(places)
-    for x, y in pixels[np.isfinite(pixels[:, 0])].tolist():
-        half = _VERTEX_PX / 2
+    half = _VERTEX_PX / 2
+    for (x, y), is_hollow in zip(pixels.tolist(), hollow, strict=True):
+        if not np.isfinite(x):
+            continue
+        ink = QColor(style.colour) if is_hollow else QColor(0, 0, 0, 190)
+        painter.setPen(QPen(ink, 1.5))
+        painter.setBrush(Qt.BrushStyle.NoBrush if is_hollow else QColor(style.colour))
         painter.drawRect(QRectF(x - half, y - half, _VERTEX_PX, _VERTEX_PX))
 
 
@@ -130,36 +157,8 @@ def _lines(projection: Projection, places: Floats, ends: NDArray[np.int64]) -> l
     return [QLineF(*line) for line in pixels[np.isfinite(pixels).all(axis=1)].tolist()]
 
 
-def _paint_cursor(
-    painter: QPainter, projection: Projection, cursor: Floats, before: Floats | None
-) -> None:
-    pixels, _ = projection.to_screen(np.stack([cursor, cursor if before is None else before]))
-    (x, y), (x_before, y_before) = pixels.tolist()
-    if not np.isfinite(x):
-        return
-    if np.isfinite(x_before):
-        _paint_trail(painter, QPointF(x, y), QPointF(x_before, y_before))
-    arms = [
-        QLineF(x + dx * _GAP_PX, y + dy * _GAP_PX, x + dx * _ARM_PX, y + dy * _ARM_PX)
-        for dx, dy in ((1, 0), (-1, 0), (0, 1), (0, -1))
-    ]
-    for pen in (QPen(QColor(0, 0, 0, 200), 4.0), QPen(CURSOR_COLOUR, 1.75)):
-        painter.setPen(pen)
-        painter.drawLines(arms)
-
-
-def _paint_trail(painter: QPainter, now: QPointF, before: QPointF) -> None:
-    """Fading away towards where the cursor was."""
-    way = QLineF(now, before)
-    length = way.length()
-    if length < 20.0:
-        return
-    reach = min(length, _TRAIL_PX)
-    for step in range(4):
-        colour = QColor(CURSOR_COLOUR)
-        colour.setAlpha(150 - 35 * step)
-        painter.setPen(QPen(colour, 1.5))
-        begin = max(_ARM_PX, reach * step / 4) / length
-        end = reach * (step + 1) / 4 / length
-        if end > begin:
-            painter.drawLine(QLineF(way.pointAt(begin), way.pointAt(end)))
+def _pixel(projection: Projection, local: Floats) -> tuple[float, float] | None:
+    """Where a place is in the picture; None behind the camera."""
+    pixels, _ = projection.to_screen(local[None])
+    x, y = pixels[0].tolist()
+    return (x, y) if np.isfinite(x) else None

@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPoint, QPointF, QTimer, Signal
+from PySide6.QtCore import QPointF, Qt, QTimer, Signal
 from PySide6.QtGui import QCloseEvent, QColor, QPainter, QPaintEvent, QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QMenu, QWidget
+from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
 from processing.image.tile_cache import TileCache
+from processing.text import Language
+from widgets.mouse_tools.menu_wish import MenuWish
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.scene_view import overviews
 from widgets.scene_view.backdrop import BACKGROUND
@@ -24,6 +26,7 @@ from widgets.scene_view.points.point_finder import PointFinder
 from widgets.scene_view.projection import Projection
 from widgets.scene_view.shown_drives import ShownDrives
 from widgets.scene_view.stage_loader import StageLoader, reserve_graphics
+from widgets.scene_view.view_menu import view_menu
 from widgets.shared.cursor import Place
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
@@ -53,9 +56,12 @@ class SceneView(QWidget):
     -------
     sharpened()
         The camera rests, and all points that it sees are in the picture.
+    menu_requested(wish: MenuWish)
+        The right button with nothing under way.
     """
 
     sharpened = Signal()
+    menu_requested = Signal(object)
 
     def __init__(
         self,
@@ -63,8 +69,11 @@ class SceneView(QWidget):
         shared: SharedState,
         tiles: TileCache,
         parent: QWidget | None = None,
+        *,
+        language: Language = "en",
     ) -> None:
         super().__init__(parent)
+        self._language: Language = language
         self._source = source
         self._shared = shared
         self._tiles = tiles
@@ -100,6 +109,7 @@ class SceneView(QWidget):
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
         shared.view_settings.hidden_kinds_changed.connect(self._map_refresh.start)
         shared.sketch.changed.connect(self._on_sketch_changed)
+        shared.snap.mark_changed.connect(self._paint_overlay)
         hand.camera_moved.connect(self.look_from)
         hand.acted.connect(self._paint_overlay)
         hand.menu_requested.connect(self._on_hand_menu_requested)
@@ -186,6 +196,10 @@ class SceneView(QWidget):
             self._stage.redraw()
             self._size_points()
         self._paint_overlay()
+
+    @property
+    def _is_shading_wanted(self) -> bool:
+        return self._cloud is not None and self._cloud.is_shading_wanted
 
     def set_shading(self, *, is_on: bool) -> None:
         """Turn eye-dome lighting on or off."""
@@ -314,22 +328,10 @@ class SceneView(QWidget):
         if self._stage is not None:
             self._stage.redraw()
 
-    def _on_hand_menu_requested(self, where: QPoint) -> None:
-        menu = QMenu(self)
-        menu.addAction(self.tr("Along the drive"), self.look_along_drive)
-        menu.addAction(self.tr("From above"), self.look_from_above)
-        menu.addAction(self.tr("Show everything"), self.show_everything)
-        menu.addAction(self.tr("Centre on the selection"), self.center_on_selection)
-        menu.addSeparator()
-        shading = menu.addAction(self.tr("Shade by depth (eye-dome lighting)"))
-        shading.setCheckable(True)
-        shading.setChecked(self._cloud is not None and self._cloud.is_shading_wanted)
-        shading.toggled.connect(self._on_menu_shading_toggled)
-        menu.aboutToHide.connect(menu.deleteLater)
-        menu.popup(self.mapToGlobal(where))
-
-    def _on_menu_shading_toggled(self, is_on: bool) -> None:  # noqa: FBT001 - Qt's signal
-        self.set_shading(is_on=is_on)
+    def _on_hand_menu_requested(self, where: QPointF) -> None:
+        menu = view_menu(self, self, is_shading_wanted=self._is_shading_wanted)
+        hit = self._hits.exact_hit(where, Qt.KeyboardModifier.NoModifier)
+        self.menu_requested.emit(MenuWish(menu, self.mapToGlobal(where.toPoint()), hit))
 
     # What is done in more than one place.
 
@@ -342,6 +344,7 @@ class SceneView(QWidget):
         drives = self._drives
         self._finder.use(drives.with_kinds, drives.origin)
         self._hits.drawn = ()
+        self._hits.origin = drives.origin
         if self._cloud is not None:
             self._cloud.use(drives.with_kinds, drives.origin)
 
@@ -379,7 +382,9 @@ class SceneView(QWidget):
             drawing=self._shared.sketch.drawing,
             cursor=None if cursor is None else self._local(cursor),
             cursor_before=None if before is None else self._local(before),
-            box=self._hand.gesture.box,
+            outline=self._hand.gesture.outline,
+            snap=self._shared.snap.mark,
+            language=self._language,
             words=self._words(),
         )
         self._overlay.show_content(self._hits.projection, content)

@@ -18,10 +18,13 @@ class Place:
     xyz : tuple of float
         Easting, northing, height in metres, project CRS.
     measured : PointReference or None
+    is_occluded : bool
+        It was put where no measured point is.
     """
 
     xyz: Position
     measured: PointReference | None = None
+    is_occluded: bool = False
 
 
 class Cursor(QObject):

@@ -8,6 +8,7 @@ from widgets.shared.cursor import Cursor
 from widgets.shared.map_changes import MapChanges
 from widgets.shared.selection import Selection
 from widgets.shared.sketch import Sketch
+from widgets.shared.snap_state import SnapState
 from widgets.shared.view_settings import ViewSettings
 
 
@@ -20,3 +21,4 @@ class SharedState:
     map_changes: MapChanges
     view_settings: ViewSettings
     sketch: Sketch
+    snap: SnapState

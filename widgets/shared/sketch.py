@@ -7,7 +7,15 @@ from dataclasses import dataclass
 from PySide6.QtCore import QObject, Signal
 
 from processing.project.catalogue import Geometry
-from processing.project.feature import Vertex
+from processing.project.feature import Position, Vertex
+
+
+@dataclass(frozen=True)
+class Note:
+    """A short text at a place: a length, an angle."""
+
+    xyz: Position
+    text: str
 
 
 @dataclass(frozen=True)
@@ -20,17 +28,20 @@ class Drawing:
         Feature kind, for the colour.
     vertices : tuple of Vertex
         Fixed so far.
-    preview : Vertex or None
-        Where the next vertex would go.
+    preview : tuple of Vertex
+        What the next click would add behind the last vertex; several for curves.
     replaces : str
         Id of the feature that is being edited and therefore not painted itself; or empty.
+    notes : tuple of Note
+        What is written beside it.
     """
 
     kind: str
     geometry: Geometry
     vertices: tuple[Vertex, ...]
-    preview: Vertex | None = None
+    preview: tuple[Vertex, ...] = ()
     replaces: str = ""
+    notes: tuple[Note, ...] = ()
 
 
 class Sketch(QObject):

@@ -10,11 +10,10 @@ from processing.image.kinds import ImageKind
 from processing.points.drive import Drive
 from processing.project.catalogue import Geometry
 from processing.project.feature import Status
-from tests.widgets.builders import place_on, vertex_on
+from tests.widgets.builders import KINDS, path_tool, place_on, vertex_on
 from tests.widgets.image_view.conftest import Hand
 from tests.widgets.image_view.test_image_view import sky_spot
-from widgets.mouse_tools.draw_area import DrawArea
-from widgets.mouse_tools.draw_line import DrawLine
+from widgets.mouse_tools.draw_path import DrawPath
 from widgets.mouse_tools.draw_point import DrawPoint
 from widgets.mouse_tools.drawing_tool import NO_POINT, TOO_FEW
 from widgets.mouse_tools.edit_vertices import EditVertices
@@ -24,9 +23,8 @@ from widgets.shared.sketch import Drawing
 SHIFT = Qt.KeyboardModifier.ShiftModifier
 
 
-def draw_line(hand: Hand) -> DrawLine:
-    tool = DrawLine(hand.map.shared)
-    tool.set_kind(hand.map.kind_of(Geometry.LINE))
+def draw_line(hand: Hand) -> DrawPath:
+    tool = path_tool(hand.map, Geometry.LINE)
     hand.take(tool)
     return tool
 
@@ -105,20 +103,19 @@ def test_the_sketch_leads_to_the_point_under_the_mouse(hand: Hand) -> None:
     hand.move(hand.spot(second))
     drawing = hand.map.shared.sketch.drawing
     assert drawing is not None
-    assert drawing.preview == vertex_on(hand.drive, second)
+    assert drawing.preview == (vertex_on(hand.drive, second),)
 
 
 def test_areas_and_points_are_drawn_by_their_tools(hand: Hand) -> None:
     points = hand.points_across(3)
-    area = DrawArea(hand.map.shared)
-    area.set_kind(hand.map.kind_of(Geometry.AREA))
+    area = path_tool(hand.map, Geometry.AREA)
     hand.take(area)
     for point in points:
         hand.click(hand.spot(point))
     hand.key(Qt.Key.Key_Enter)
     assert drawn(hand) == xyz_of(hand, points)
-    dot = DrawPoint(hand.map.shared)
-    dot.set_kind(hand.map.kind_of(Geometry.POINT))
+    dot = DrawPoint(hand.map, hand.map.shared)
+    dot.set_kind(KINDS[hand.map.kind_of(Geometry.POINT)])
     hand.take(dot)
     hand.click(hand.spot(points[0]))
     assert len(hand.map.stored) == 2

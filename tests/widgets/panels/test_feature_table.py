@@ -136,7 +136,7 @@ def act(table: FeatureTable, *path: str) -> None:
     for words in path[:-1]:
         (entry,) = [one for one in actions if one.text() == words]
         actions = menu_of(entry).actions()
-    (action,) = [one for one in actions if one.text() == path[-1]]
+    (action,) = [one for one in actions if one.text().split("\t")[0] == path[-1]]
     assert isinstance(action, QAction)
     assert action.isEnabled()
     action.trigger()
@@ -475,6 +475,19 @@ def test_what_changes_while_the_table_is_hidden_is_read_when_it_is_shown(
     table.show()
     assert cells(table, "Status") == ["Rejected", "Accepted"]
     assert [one.id for one in table.selected_features()] == ["pole-00002"]
+
+
+def test_what_is_selected_while_the_table_is_hidden_is_marked_when_it_is_shown(
+    table: FeatureTable, open_map: OpenMap
+) -> None:
+    draw(open_map, *(pole(i) for i in range(100)))
+    table.hide()
+    choose(open_map, pole(80))
+    assert table.selected_features() == ()
+    table.show()
+    assert table.selected_features() == (pole(80),)
+    view = rows_in(table)
+    assert view.viewport().rect().contains(middle_of(view, 80))
 
 
 def test_another_project_is_read_anew(table: FeatureTable, open_map: OpenMap) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPolygonF
 
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature, Status, Vertex, new_feature_id
@@ -84,19 +85,19 @@ def test_a_box_holds_what_lies_wholly_inside() -> None:
     inside = feature(Geometry.LINE, (300, 300), (400, 400))
     across = feature(Geometry.LINE, (300, 300), (900, 400))
     flat = flattened(FeatureShapes(ORIGIN, [inside, across]).seen(frozenset()))
-    box = QRectF(250, 250, 300, 300)
+    box = QPolygonF(QRectF(250, 250, 300, 300))
     assert features_within(flat, VIEW, box) == {inside.id}
 
 
 def test_a_feature_behind_the_camera_is_in_no_box() -> None:
     behind = Feature("b", "kind", Geometry.POINT, (Vertex((-11_000.0, -35_010.0, 100.0)),))
     flat = flattened(FeatureShapes(ORIGIN, [behind]).seen(frozenset()))
-    assert features_within(flat, VIEW, QRectF(0, 0, 1000, 1000)) == frozenset()
+    assert features_within(flat, VIEW, QPolygonF(QRectF(0, 0, 1000, 1000))) == frozenset()
 
 
 def test_no_features_are_hit_where_there_are_none() -> None:
     assert hit([], 5, 5) == FeatureHit()
-    assert features_within(flattened(()), VIEW, QRectF(0, 0, 9, 9)) == frozenset()
+    assert features_within(flattened(()), VIEW, QPolygonF(QRectF(0, 0, 9, 9))) == frozenset()
 
 
 @pytest.mark.parametrize(

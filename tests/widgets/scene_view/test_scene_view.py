@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QColor, QImage
-from PySide6.QtWidgets import QMenu
 from pytestqt.qtbot import QtBot
 
 from processing.image.tile_cache import TileCache
@@ -15,9 +14,9 @@ from processing.project.catalogue import Geometry
 from processing.project.change import Change
 from processing.project.feature import Status
 from processing.text import Text
-from tests.widgets.builders import OpenMap, place_on
+from tests.widgets.builders import OpenMap, path_tool, place_on
 from tests.widgets.scene_view.conftest import RIGHT, Hand
-from widgets.mouse_tools.draw_line import DrawLine
+from widgets.mouse_tools.menu_wish import MenuWish
 from widgets.mouse_tools.select import Select
 from widgets.scene_view.view import SceneView
 from widgets.shared.cursor import Place
@@ -169,8 +168,7 @@ def test_rejected_features_are_not_drawn(hand: Hand) -> None:
 
 
 def test_a_line_is_drawn_with_clicks_and_finished_with_the_right_button(hand: Hand) -> None:
-    tool = DrawLine(hand.map.shared)
-    tool.set_kind("curb")
+    tool = path_tool(hand.map, Geometry.LINE)
     hand.take(tool)
     places = [place_on(hand.drive, point) for point in hand.road_points(2)]
     for place in places:
@@ -326,12 +324,14 @@ def test_chosen_points_are_marked(hand: Hand) -> None:
 
 
 def test_the_right_button_opens_a_menu_when_nothing_is_being_drawn(hand: Hand) -> None:
+    wishes: list[MenuWish] = []
+    hand.view.menu_requested.connect(wishes.append)
     hand.click(MIDDLE, button=RIGHT)
-    menu = hand.view.findChild(QMenu)
-    assert menu is not None
-    assert menu.isVisible()
-    assert len(menu.actions()) >= 5
-    menu.close()
+    (wish,) = wishes
+    assert len(wish.menu.actions()) >= 5
+    assert wish.where == hand.view.mapToGlobal(MIDDLE)
+    wish.menu.popup(wish.where)
+    wish.menu.close()
 
 
 def test_shading_can_be_turned_off(hand: Hand) -> None:

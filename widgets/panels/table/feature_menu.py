@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from functools import partial
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QMenu, QWidget
 
 from processing.project.catalogue import Catalogue
@@ -49,7 +50,8 @@ class FeatureMenu(QMenu):
         self._features = features
         self._catalogue = catalogue
         self._language = language
-        self.addAction(self.tr("Go there"), self.centre_requested.emit)
+        there = self.addAction(_with_key(self.tr("Go there"), Qt.Key.Key_Return))
+        there.triggered.connect(self.centre_requested)
         self.addAction(self.tr("Select all of this kind"), self._on_all_of_kind)
         self.addSeparator()
         for words, status in (
@@ -62,7 +64,8 @@ class FeatureMenu(QMenu):
         self.addSeparator()
         self._add_kinds()
         self.addSeparator()
-        self.addAction(self.tr("Delete"), self._on_delete)
+        delete = self.addAction(_with_key(self.tr("Delete"), Qt.Key.Key_Delete))
+        delete.triggered.connect(self._on_delete)
 
     def _add_kinds(self) -> None:
         kinds = kinds_for(self._features, self._catalogue)
@@ -88,3 +91,8 @@ class FeatureMenu(QMenu):
 
     def _on_delete(self) -> None:
         self.change_requested.emit(*removal_of(self._features))
+
+
+def _with_key(words: str, key: Qt.Key) -> str:
+    """The key is shown, not bound: it is the table that listens to it."""
+    return f"{words}\t{QKeySequence(key).toString(QKeySequence.SequenceFormat.NativeText)}"

@@ -6,10 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPolygonF
 
 from widgets.scene_view.map.feature_shapes import FlatShapes
 from widgets.scene_view.projection import Projection
+from widgets.shared.outlines import are_inside
 
 Floats = NDArray[np.float64]
 
@@ -59,25 +60,16 @@ def feature_at(
     return FeatureHit(flat.shapes[owner].feature.id, segment=segment)
 
 
-def features_within(flat: FlatShapes, projection: Projection, box: QRectF) -> frozenset[str]:
-    """Ids of the features that lie wholly inside a rectangle of the picture."""
+def features_within(flat: FlatShapes, projection: Projection, outline: QPolygonF) -> frozenset[str]:
+    """Ids of the features that lie wholly inside an outline in the picture."""
     if not flat.shapes:
         return frozenset()
     pixels, _ = projection.to_screen(flat.local_xyz)
-    is_outside = ~are_within(pixels, box)
+    is_outside = ~are_inside(pixels, outline)
     outside = np.bincount(flat.owners, weights=is_outside, minlength=len(flat.shapes))
     counts = np.bincount(flat.owners, minlength=len(flat.shapes))
     inside = np.flatnonzero((outside == 0) & (counts > 0))
     return frozenset(flat.shapes[number].feature.id for number in inside)
-
-
-def are_within(pixels: Floats, box: QRectF) -> NDArray[np.bool_]:
-    """(n,) whether pixels lie in a rectangle; NaN ones don't."""
-    x, y = pixels.T
-    within: NDArray[np.bool_] = (
-        (x >= box.left()) & (x <= box.right()) & (y >= box.top()) & (y <= box.bottom())
-    )
-    return within
 
 
 def _nearest(away: Floats, is_chosen: NDArray[np.bool_], within_px: float) -> int:

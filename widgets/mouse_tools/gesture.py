@@ -1,16 +1,20 @@
-"""Gesture: from the left button and keys to what the tool in the hand is told."""
+"""Gesture: from the left button and keys to what the tool in the hand is told, in any view."""
 
 from __future__ import annotations
 
 from typing import Protocol
 
 from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QPolygonF
 
-from widgets.mouse_tools.mouse_tool import Boxed, Hit, MouseTool
+from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit, MouseTool
 from widgets.shared.cursor import Cursor
 
 DRAG_PX = 4.0
 """A press that moves less is a click."""
+
+REACH_PX = 12.0
+"""Radius of the circle about the mouse in which things are looked for."""
 
 
 class HitSource(Protocol):
@@ -22,8 +26,8 @@ class HitSource(Protocol):
     def quick_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
         """What is under a pixel, among the points that are drawn."""
 
-    def boxed(self, box: QRectF, modifiers: Qt.KeyboardModifier) -> Boxed:
-        """What a rectangle holds."""
+    def enclosed(self, outline: QPolygonF, modifiers: Qt.KeyboardModifier) -> Boxed:
+        """What an outline in the window holds."""
 
 
 class Gesture:
@@ -34,6 +38,11 @@ class Gesture:
     hits : HitSource
     cursor : Cursor
         Put by a click when there is no tool.
+
+    Attributes
+    ----------
+    outline : QPolygonF or None
+        The rectangle or the lasso that is being drawn, widget pixels.
     """
 
     def __init__(self, hits: HitSource, cursor: Cursor) -> None:
@@ -41,9 +50,14 @@ class Gesture:
         self._cursor = cursor
         self._pressed_at: QPointF | None = None
         self._is_drag = False
-        self._may_box = False
+        self._shape = DragShape.NONE
         self.tool: MouseTool | None = None
-        self.box: QRectF | None = None
+        self.outline: QPolygonF | None = None
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether the right button would end something."""
+        return self.tool is not None and self.tool.is_busy
 
     def press(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> None:
         """The left button went down."""
@@ -51,7 +65,7 @@ class Gesture:
         self._pressed_at, self._is_drag = position, False
         if self.tool is not None:
             self.tool.press(hit)
-            self._may_box = self.tool.takes_box(hit)
+            self._shape = self.tool.drag_shape(hit)
         elif hit.place is not None:
             self._cursor.move_to(hit.place)
 
@@ -63,8 +77,8 @@ class Gesture:
             self._is_drag = max(abs(moved.x()), abs(moved.y())) >= DRAG_PX
             if not self._is_drag:
                 return None
-        if pressed is not None and self._may_box:
-            self.box = QRectF(pressed, position).normalized()
+        if pressed is not None and self._shape is not DragShape.NONE:
+            self._draw_outline(pressed, position)
             return None
         hit = self._hits.quick_hit(position, modifiers)
         if self.tool is not None:
@@ -76,12 +90,12 @@ class Gesture:
         if self._pressed_at is None:
             return
         self.move(position, modifiers)
-        box, self.box = self.box, None
-        self._pressed_at, self._may_box = None, False
+        outline, self.outline = self.outline, None
+        self._pressed_at, self._shape = None, DragShape.NONE
         if self.tool is None:
             return
-        if box is not None:
-            self.tool.choose_box(self._hits.boxed(box, modifiers))
+        if outline is not None:
+            self.tool.choose_box(self._hits.enclosed(outline, modifiers))
         else:
             self.tool.release(self._hits.exact_hit(position, modifiers))
 
@@ -93,7 +107,7 @@ class Gesture:
 
     def drop(self) -> None:
         """Forget a press that is under way."""
-        self._pressed_at, self._may_box, self.box = None, False, None
+        self._pressed_at, self._shape, self.outline = None, DragShape.NONE, None
 
     def key(self, key: int) -> bool:
         """Pass a key to the tool; says whether it is one of its keys."""
@@ -105,7 +119,7 @@ class Gesture:
         elif key == Qt.Key.Key_Backspace:
             tool.step_back()
         elif key == Qt.Key.Key_Escape:
-            if self.box is None:
+            if self.outline is None:
                 tool.leave()
             self.drop()
         elif key == Qt.Key.Key_Delete:
@@ -113,3 +127,11 @@ class Gesture:
         else:
             return False
         return True
+
+    def _draw_outline(self, pressed: QPointF, position: QPointF) -> None:
+        if self._shape is DragShape.BOX:
+            self.outline = QPolygonF(QRectF(pressed, position).normalized())
+        elif self.outline is None:
+            self.outline = QPolygonF([pressed, position])
+        else:
+            self.outline.append(position)

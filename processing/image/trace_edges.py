@@ -1,0 +1,130 @@
+"""Following an edge of the cloud: the corner of the profile across it, again and again."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.image.edge_kernels import (
+    AFTER,
+    BEFORE,
+    BEND,
+    ORDER,
+    STRENGTH,
+)
+from processing.image.edges import (
+    LEAST_STRENGTH_M,
+    PATCH_M,
+    Section,
+    length_needed,
+    section_along,
+    section_at,
+)
+from processing.image.trace_points import PointsBetween
+from processing.image.trace_search import Place, off_line
+
+_Floats = NDArray[np.float64]
+
+_BESIDE_M = 0.12  # lines this near to a click are meant
+_LOOKED_AROUND_M = (0.0, 0.3, 0.6)
+_ACROSS_M = (0.25, 0.12)
+_UNLIKE = math.radians(30.0)
+_MOST_UNLIKE = 3.0
+_MOST_POINTS = 400
+
+
+class EdgeFollower:
+    """Follows curb edges, wall feet and wall tops.
+
+    The look of an edge: 1 for a hollow one, −1 for a raised one; 1 where the ground rises to the
+    left of it, −1 where it falls; directions of the two surfaces in the profile, rad.
+    """
+
+    def __init__(self, cloud: PointsBetween) -> None:
+        self._cloud = cloud
+
+    def places_at(self, xyz: _Floats) -> Sequence[Place]:
+        """Edges that pass a place within 12 cm, the nearest first.
+
+        A place may be the very end of an edge, or a car may stand there: then what passes it is
+        looked for a little way off.
+        """
+        for distance in _LOOKED_AROUND_M:
+            found = []
+            for turn in range(1 if distance == 0 else 8):
+                angle = turn * math.pi / 4
+                center = xyz + distance * np.array([math.cos(angle), math.sin(angle), 0.0])
+                found += self._edges_about(center, xyz)
+            if found:
+                return sorted(found, key=lambda place: off_line(xyz, place))
+        return []
+
+    def places_near(self, expected: Place, slack_m: float) -> Sequence[tuple[Place, float]]:
+        """Edges of the same kind within so much of an expected one, with how unlike they look."""
+        local = self._cloud.xyz[self._cloud.near(expected.xyz, PATCH_M)] - expected.xyz
+        if not local.size:
+            return []
+        local = np.ascontiguousarray(local[:: max(1, local.shape[0] // _MOST_POINTS)])
+        frame = np.array([expected.heading_rad, expected.grade, expected.curvature])
+        # A narrow profile where what stands or rises beside the edge spoils the wide one.
+        for across in _ACROSS_M:
+            reach = (length_needed(local, frame), across + slack_m)
+            section = section_along(local, frame, reach, round(expected.look[1]))
+            found = [] if section is None else _like(_places_of(section), expected, slack_m)
+            if found:
+                return found
+        return []
+
+    def _edges_about(self, center: _Floats, xyz: _Floats) -> list[Place]:
+        section = section_at(self._cloud.xyz[self._cloud.near(center, PATCH_M)], center)
+        if section is None:
+            return []
+        near = 2 * _BESIDE_M + float(np.linalg.norm(center - xyz))
+        return [
+            place
+            for place in _places_of(section)
+            if off_line(xyz, place) <= _BESIDE_M and np.linalg.norm(place.xyz - xyz) <= near
+        ]
+
+    def turned(self, place: Place) -> Place:
+        """The same edge for the opposite direction."""
+        kind, order, before, after = place.look
+        return Place(
+            place.xyz,
+            place.heading_rad + math.pi,
+            -place.grade,
+            -place.curvature,
+            (kind, -order, -after, -before),
+        )
+
+
+def _places_of(section: Section) -> list[Place]:
+    places = []
+    for corner, xyz in zip(section.corners, section.places, strict=True):
+        if corner[STRENGTH] >= LEAST_STRENGTH_M:
+            look = (math.copysign(1.0, corner[BEND]), corner[ORDER], corner[BEFORE], corner[AFTER])
+            # Square to the edge here: the curve has turned between the middle and the corner.
+            places.append(Place(xyz, section.heading_rad, section.grade, section.curvature, look))
+    return places
+
+
+def _difference(look: tuple[float, ...], other: tuple[float, ...]) -> float:
+    if look[0] != other[0] or look[1] != other[1]:
+        return math.inf
+    turned = [
+        abs(math.remainder(a - b, 2 * math.pi)) for a, b in zip(look[2:], other[2:], strict=True)
+    ]
+    return float(sum(turned) / _UNLIKE) ** 2 / 2
+
+
+def _like(places: Sequence[Place], expected: Place, slack_m: float) -> list[tuple[Place, float]]:
+    found = []
+    for place in places:
+        unlike = _difference(place.look, expected.look)
+        if np.linalg.norm(place.xyz) <= slack_m and unlike <= _MOST_UNLIKE:
+            found.append((replace(place, xyz=place.xyz + expected.xyz), unlike))
+    return found

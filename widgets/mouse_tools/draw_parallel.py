@@ -1,0 +1,155 @@
+"""DrawParallel: copies of a line beside it, at the mouse or at an exact distance."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from PySide6.QtCore import QObject, Signal
+from typing_extensions import override
+
+from processing.drafting.heights import grounded
+from processing.drafting.parallels import distance_to_line, parallel
+from processing.errors import UserError
+from processing.project.catalogue import Geometry
+from processing.project.change import Change
+from processing.project.feature import Feature, Position, Provenance, Vertex, new_feature_id
+from processing.text import Text
+from widgets.mouse_tools.drawing_tool import NO_POINT
+from widgets.mouse_tools.editing_tool import EditingTool
+from widgets.mouse_tools.mouse_tool import Hit
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+from widgets.shared.sketch import Drawing, Note
+
+PARALLEL = Text("Parallel copy", "平行複写")
+PICK_LINE_OR_AREA = Text("Click on a line or an area.", "線または面をクリックしてください。")
+PICK_SIDE = Text(
+    "Click where the copy should run, or set the distance and press Enter.",
+    "複写する位置をクリックするか、距離を入力してEnterを押してください。",
+)
+_LEAST_M = 0.005
+
+
+class DrawParallel(EditingTool):
+    """The first click takes the line, the second says where the copy runs.
+
+    With a distance that was set, only the side is taken from the mouse. Heights come from the
+    measured points under the copy; the tool keeps the new line, so that one copy follows another.
+
+    Signals
+    -------
+    distance_changed(metres: float)
+        How far the mouse is from the line, for the field beside the tool.
+    """
+
+    distance_changed = Signal(float)
+
+    def __init__(
+        self, source: MapSource, shared: SharedState, parent: QObject | None = None
+    ) -> None:
+        super().__init__(source, shared, parent)
+        self._line: Feature | None = None
+        self._fixed_m: float | None = None
+        self._aside_m = 0.0
+
+    @property
+    @override
+    def snaps(self) -> bool:
+        return self._line is not None
+
+    @property
+    @override
+    def snaps_to_edges(self) -> bool:
+        return self._line is not None
+
+    @property
+    @override
+    def is_busy(self) -> bool:
+        return self._line is not None
+
+    def fix_distance(self, metres: float | None) -> None:
+        """Copy at exactly this distance; None: at the mouse."""
+        self._fixed_m = metres if metres is not None and metres >= _LEAST_M else None
+        self._show()
+
+    def take(self, line: Feature) -> None:
+        """Take a line as if it had been clicked."""
+        self._line, self._aside_m = line, 0.0
+        self._selection.choose_features(frozenset({line.id}))
+        self.told.emit(PICK_SIDE)
+
+    @override
+    def press(self, hit: Hit) -> None:
+        if self._line is None:
+            feature = self._feature_of(hit)
+            if feature is None or feature.geometry is Geometry.POINT:
+                self.told.emit(PICK_LINE_OR_AREA)
+            else:
+                self.take(feature)
+            return
+        if hit.place is None:
+            self.told.emit(NO_POINT)
+            return
+        self._aside_m = self._aside(hit.place.xyz)
+        self.complete()
+
+    @override
+    def move(self, hit: Hit) -> None:
+        if self._line is not None and hit.place is not None:
+            self._aside_m = self._aside(hit.place.xyz)
+            self.distance_changed.emit(abs(self._aside_m))
+            self._show()
+
+    @override
+    def complete(self) -> None:
+        line = None if self._line is None else self._source.feature(self._line.id)
+        if line is None or abs(self._aside_m) < _LEAST_M:
+            return
+        try:
+            places = self._places(line)
+        except UserError as refusal:
+            self._tell_refusal(refusal)
+            return
+        vertices = grounded(places, self._source.drives())
+        copy = replace(line, id=new_feature_id(), vertices=vertices, provenance=Provenance())
+        self.put_down()
+        self.change_requested.emit(PARALLEL, Change(added=(copy,)))
+        if self._source.feature(copy.id) is not None:
+            self.take(copy)
+
+    @override
+    def put_down(self) -> None:
+        self._line, self._aside_m = None, 0.0
+        self._sketch.show(None)
+
+    def _aside(self, place: Position) -> float:
+        line = self._line
+        if line is None:
+            return 0.0
+        is_closed = line.geometry is Geometry.AREA
+        places = [vertex.xyz for vertex in line.vertices]
+        aside = distance_to_line(places, place, is_closed=is_closed)
+        if self._fixed_m is None:
+            return aside
+        return self._fixed_m if aside >= 0 else -self._fixed_m
+
+    def _places(self, line: Feature) -> tuple[Position, ...]:
+        places = [vertex.xyz for vertex in line.vertices]
+        return parallel(places, self._aside_m, is_closed=line.geometry is Geometry.AREA)
+
+    def _show(self) -> None:
+        line = self._line
+        if line is None or abs(self._aside_m) < _LEAST_M:
+            self._sketch.show(None)
+            return
+        try:
+            places = self._places(line)
+        except UserError:  # told when it is clicked
+            self._sketch.show(None)
+            return
+        vertices = tuple(Vertex(place) for place in places)
+        ring = (vertices[0],) if line.geometry is Geometry.AREA else ()
+        note = Note(places[len(places) // 2], f"{abs(self._aside_m):.3f} m")
+        self._sketch.show(
+            Drawing(line.kind, Geometry.LINE, vertices[:1], vertices[1:] + ring, notes=(note,))
+        )

@@ -1,0 +1,369 @@
+"""DrawPath: lines and rings, click by click: straight, as arcs, as splines or along the cloud."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from PySide6.QtCore import QObject, Qt
+from typing_extensions import override
+
+from processing.drafting.crossings import crosses_itself
+from processing.drafting.heights import grounded
+from processing.project.catalogue import FeatureKind, Geometry
+from processing.project.change import Change, Replacement
+from processing.project.feature import Feature, Vertex
+from processing.text import Text
+from widgets.mouse_tools.drawing_tool import LEAST_VERTICES, TOO_FEW, DrawingTool
+from widgets.mouse_tools.legs import (
+    Leg,
+    Path,
+    Way,
+    arc_leg,
+    spline_leg,
+    squared_to,
+    straight_leg,
+)
+from widgets.mouse_tools.mouse_tool import Hit
+from widgets.mouse_tools.path_bend import PathBend, bend_at
+from widgets.mouse_tools.tracing import AtHand, TracedLine, tracing_work
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+from widgets.shared.sketch import Drawing
+
+CONTINUE = Text("Continue a line", "線の延長")
+CROSSES = Text(
+    "The area crosses itself near E {east:.2f}, N {north:.2f}; take vertices back (Backspace).",
+    "面の境界が E {east:.2f}、N {north:.2f} 付近で交差しています。"
+    "頂点を戻してください（Backspace）。",
+)
+GO_ON = Text(
+    "{reason} Click beyond to bridge the gap.",
+    "{reason}その先をクリックすると間をつないで続けます。",
+)
+RESTORED = Text("The drawing is back.", "作図を復元しました。")
+DROPPED = Text(
+    "The drawing was dropped; Backspace brings it back.",
+    "作図を中止しました。Backspaceで元に戻せます。",
+)
+FOLLOWING = Text("Following the recording…", "点群を追跡しています…")
+_LOST = Text("The line could not be followed.", "線を追跡できませんでした。")
+
+
+class DrawPath(DrawingTool):
+    """Every click adds a piece in the way that is set; ways may change from piece to piece.
+
+    Shift holds the direction of the last piece or the one across it. A press near a traced piece
+    drags it to where it should pass.
+
+    Parameters
+    ----------
+    geometry : Geometry
+        A line or an area.
+    at_hand : AtHand
+        Follows the recording in the background.
+    """
+
+    def __init__(
+        self,
+        source: MapSource,
+        shared: SharedState,
+        geometry: Geometry,
+        at_hand: AtHand,
+        parent: QObject | None = None,
+    ) -> None:
+        super().__init__(source, shared, frozenset({geometry}), parent)
+        self._geometry = geometry
+        self._at_hand = at_hand
+        self._way = Way.STRAIGHT
+        self._path = Path()
+        self._base: Feature | None = None
+        self._is_turned = False
+        self._dropped: Path | None = None
+        self._preview: Vertex | None = None
+        self._bend: PathBend | None = None
+        self._token = 0
+        self._is_following = False
+        self._bridges = False
+        self._completes = False
+
+    @property
+    def way(self) -> Way:
+        """How the next piece is drawn."""
+        return self._way
+
+    @property
+    def is_following(self) -> bool:
+        """Whether a piece is just being followed."""
+        return self._is_following
+
+    @property
+    @override
+    def last_vertex(self) -> Vertex | None:
+        return self._path.end
+
+    @property
+    @override
+    def is_busy(self) -> bool:
+        return self._path.end is not None
+
+    def set_way(self, way: Way) -> None:
+        """Draw the next pieces in this way."""
+        if way is not self._way:
+            self._way = way
+            self._path = replace(self._path, pending=())
+            self._show()
+
+    def continue_line(self, line: Feature, *, at_start: bool) -> None:
+        """Go on drawing a line that is there."""
+        self.settle()
+        self._base, self._is_turned = line, at_start
+        start = line.vertices[::-1] if at_start else line.vertices
+        self._path = Path(start=start)
+        self._show()
+
+    @override
+    def set_kind(self, kind: FeatureKind) -> None:
+        super().set_kind(kind)
+
+    @override
+    def press(self, hit: Hit) -> None:
+        vertex = self._vertex_of(hit)
+        if vertex is None or self._is_following:
+            return
+        if self._path.end is None:
+            self._begin(hit, vertex)
+            return
+        if self._way is Way.TRACE:
+            self._bend = bend_at(self._path, vertex, hit.reach_m)
+            if self._bend is not None:
+                return
+        self._add(self._squared(hit, vertex))
+
+    @override
+    def move(self, hit: Hit) -> None:
+        vertex = hit.as_vertex()
+        if self._bend is not None and vertex is not None:
+            self._bend = self._bend.moved_to(vertex)
+        elif self._path.end is not None:
+            self._preview = None if vertex is None else self._squared(hit, vertex, is_final=False)
+        self._show()
+
+    @override
+    def release(self, hit: Hit) -> None:
+        bend, self._bend = self._bend, None
+        if bend is None or bend.via is None:
+            return
+        leg = self._path.legs[bend.leg]
+        start = Path(self._path.start, self._path.legs[: bend.leg]).end
+        clicked = bend.clicked_of(leg)
+        if start is not None:
+            self._follow((start, *clicked), bend.leg)
+
+    @override
+    def complete(self) -> None:
+        if self._is_following:
+            self._completes = True
+            return
+        vertices = self._path.vertices
+        if not vertices:
+            return
+        if len(vertices) < LEAST_VERTICES[self._geometry]:
+            self.told.emit(TOO_FEW[self._geometry])
+            return
+        crossing = None
+        if self._geometry is Geometry.AREA:
+            crossing = crosses_itself([vertex.xyz for vertex in vertices], is_closed=True)
+        if crossing is not None:
+            self.told.emit(CROSSES.filled(east=crossing[0], north=crossing[1]))
+            return
+        base = self._base
+        self._path, self._dropped = Path(), None
+        if base is None:
+            self._finish(vertices)
+            return
+        longer = base.with_vertices(vertices[::-1] if self._is_turned else vertices)
+        self.put_down()
+        if longer != base:
+            self.change_requested.emit(CONTINUE, Change(replaced=(Replacement(base, longer),)))
+
+    def close(self) -> None:
+        """Lead the drawing back to its first vertex and complete it."""
+        vertices = self._path.vertices
+        if self._geometry is Geometry.LINE and not self._is_following:
+            if len(vertices) < LEAST_VERTICES[Geometry.AREA]:
+                self.told.emit(TOO_FEW[Geometry.AREA])
+                return
+            self._path = self._path.with_leg(straight_leg(vertices[0]))
+        self.complete()
+
+    @override
+    def step_back(self) -> None:
+        if self._is_following:
+            self._stop_following()
+        elif self._path.end is None and self._dropped is not None:
+            self._path, self._dropped = self._dropped, None
+            self.told.emit(RESTORED)
+        elif self._base is None or self._path.legs or self._path.pending:
+            self._path = self._path.without_last()
+        self._bridges = False
+        self._show()
+
+    @override
+    def leave(self) -> None:
+        was_busy = self.is_busy
+        super().leave()
+        if was_busy and self._dropped is not None:
+            self.told.emit(DROPPED)
+
+    @override
+    def settle(self) -> None:
+        if self._is_following:
+            self._stop_following()
+        if len(self._path.vertices) >= LEAST_VERTICES[self._geometry]:
+            self.complete()
+        self.put_down()
+
+    @override
+    def put_down(self) -> None:
+        self._stop_following()
+        if len(self._path.vertices) > 1 and self._base is None:
+            self._dropped = self._path
+        self._path, self._preview, self._bend, self._base = Path(), None, None, None
+        self._is_turned = self._bridges = self._completes = False
+        self._show()
+
+    # How pieces come about.
+
+    def _begin(self, hit: Hit, vertex: Vertex) -> None:
+        line = self._source.feature(hit.feature) if hit.feature else None
+        if (
+            line is not None
+            and line.id in self._shared.selection.features
+            and self._geometry is Geometry.LINE
+            and line.geometry is Geometry.LINE
+            and hit.vertex in (0, len(line.vertices) - 1)
+        ):
+            self.continue_line(line, at_start=hit.vertex == 0)
+            return
+        self._path, self._dropped = Path(start=(vertex,)), None
+        self._show()
+
+    def _add(self, vertex: Vertex) -> None:
+        path, start = self._path, self._path.end
+        # Where a view sends both presses of a double click, the second one adds nothing.
+        if start is None or vertex.xyz in (start.xyz, *(one.xyz for one in path.pending)):
+            return
+        if vertex.xyz == path.start[0].xyz and len(path.vertices) > 2:
+            self.close()
+            return
+        if self._way is Way.TRACE:
+            self._follow((start, vertex), len(path.legs))
+            return
+        if self._way is Way.ARC and not path.pending:
+            self._path = path.with_pending(vertex)
+        else:
+            self._path = self._grown(path, start, vertex, is_final=True)
+        self._show()
+
+    def _grown(self, path: Path, start: Vertex, vertex: Vertex, *, is_final: bool) -> Path:
+        """The path with one more click; curves get their heights from the points at last."""
+        if self._way is Way.ARC and path.pending:
+            leg = arc_leg(start, path.pending[-1], vertex)
+        elif self._way is Way.SPLINE:
+            clicked: tuple[Vertex, ...] = (vertex,)
+            if path.legs and path.legs[-1].way is Way.SPLINE:
+                clicked = (*path.legs[-1].clicked, vertex)
+                path = replace(path, legs=path.legs[:-1])
+                start = path.end or start
+            leg = spline_leg(start, clicked)
+        else:
+            leg = straight_leg(vertex)
+        return path.with_leg(self._on_ground(leg) if is_final else leg)
+
+    def _on_ground(self, leg: Leg) -> Leg:
+        clicked = set(leg.clicked)
+        between = [vertex for vertex in leg.vertices if vertex not in clicked]
+        if not between:
+            return leg
+        ground = iter(grounded([one.xyz for one in between], self._source.drives()))
+        vertices = tuple(one if one in clicked else next(ground) for one in leg.vertices)
+        return replace(leg, vertices=vertices)
+
+    def _squared(self, hit: Hit, vertex: Vertex, *, is_final: bool = True) -> Vertex:
+        """The vertex, or with Shift the place straight on or across."""
+        vertices = self._path.vertices
+        if not hit.modifiers & Qt.KeyboardModifier.ShiftModifier or len(vertices) < 2:
+            return vertex
+        place = squared_to(vertices[-2], vertices[-1], vertex.xyz)
+        return grounded((place,), self._source.drives())[0] if is_final else Vertex(place)
+
+    # Following the recording.
+
+    def _follow(self, through: tuple[Vertex, ...], leg: int) -> None:
+        work = tracing_work(self._source, through, across_gaps=self._bridges)
+        if work is None:
+            self._path = self._path.with_leg(straight_leg(through[-1]))
+            self._show()
+            return
+        self._token += 1
+        self._is_following = True
+        self.told.emit(FOLLOWING)
+        self._at_hand(work, self._taker(self._token, leg, through[1:]))
+        self._show()
+
+    def _taker(
+        self, token: int, leg: int, clicked: tuple[Vertex, ...]
+    ) -> Callable[[object | None], None]:
+        def take(result: object | None) -> None:
+            if token == self._token and self._is_following:
+                self._on_followed(leg, clicked, result)
+
+        return take
+
+    def _on_followed(self, leg: int, clicked: tuple[Vertex, ...], result: object | None) -> None:
+        self._is_following = False
+        if not isinstance(result, TracedLine):
+            self.told.emit(_LOST)
+            self._show()
+            return
+        self._bridges = not result.is_complete
+        if result.vertices:
+            last = clicked[-1] if result.is_complete else result.vertices[-1]
+            vertices = (*result.vertices[:-1], last)
+            traced = Leg(Way.TRACE, (*clicked[:-1], last), vertices)
+            self._path = replace(self._path, legs=(*self._path.legs[:leg], traced))
+        if not result.is_complete:
+            self.told.emit(GO_ON.filled(reason=result.reason))
+        else:
+            self.told.emit(Text("", ""))
+        self._preview = None
+        self._show()
+        if self._completes:
+            self._completes = False
+            if result.is_complete:
+                self.complete()
+
+    def _stop_following(self) -> None:
+        self._token += 1
+        self._is_following = False
+
+    @override
+    def _show(self) -> None:
+        path, kind, end = self._path, self._kind, self._path.end
+        if end is None or kind is None:
+            self._sketch.show(None)
+            return
+        if self._bend is not None and self._bend.via is not None:
+            path = self._bend.shown_in(path)
+        shown, preview = path.vertices, self._preview
+        coming: tuple[Vertex, ...] = ()
+        if preview is not None and self._bend is None and not self._is_following:
+            grown = self._grown(path, end, preview, is_final=False)
+            kept = len(path.vertices)
+            if self._way is Way.SPLINE and path.legs and path.legs[-1].way is Way.SPLINE:
+                kept -= len(path.legs[-1].vertices)
+            shown, coming = grown.vertices[:kept], grown.vertices[kept:]
+        shown += path.pending if not coming else ()
+        replaced = "" if self._base is None else self._base.id
+        self._sketch.show(Drawing(kind.id, self._geometry, shown, coming, replaced))

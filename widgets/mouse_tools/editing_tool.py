@@ -1,0 +1,84 @@
+"""EditingTool: what tools that change features on the map have in common."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject
+from typing_extensions import override
+
+from processing.drafting.crossings import crosses_itself
+from processing.errors import UserError
+from processing.project.catalogue import Geometry
+from processing.project.change import Change, Replacement
+from processing.project.feature import Feature
+from processing.text import Text
+from widgets.mouse_tools.mouse_tool import Hit, MouseTool
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+
+PICK_FEATURE = Text("Click on a feature.", "地物の上をクリックしてください。")
+PICK_LINE = Text("Click on a line.", "線の上をクリックしてください。")
+WOULD_CROSS = Text(
+    "The area would cross itself near E {east:.2f}, N {north:.2f}; it stays as it was.",
+    "面の境界が E {east:.2f}、N {north:.2f} 付近で交差するため、変更しませんでした。",
+)
+
+
+class EditingTool(MouseTool):
+    """Knows the map, the selection and the sketch; Escape drops the gesture, then gives up.
+
+    Parameters
+    ----------
+    source : MapSource
+    shared : SharedState
+    """
+
+    def __init__(
+        self, source: MapSource, shared: SharedState, parent: QObject | None = None
+    ) -> None:
+        super().__init__(parent)
+        self._source = source
+        self._shared = shared
+        self._selection = shared.selection
+        self._sketch = shared.sketch
+        self._is_leaving = False
+
+    @override
+    def leave(self) -> None:
+        if self.is_busy:
+            self.put_down()
+        elif not self._is_leaving:
+            # Whoever takes the hand back may tell this tool to leave in turn.
+            self._is_leaving = True
+            self.finished.emit()
+            self._is_leaving = False
+
+    def _feature_of(self, hit: Hit) -> Feature | None:
+        return self._source.feature(hit.feature) if hit.feature else None
+
+    def _line_of(self, hit: Hit) -> Feature | None:
+        """The line under the mouse, or None after asking for one."""
+        feature = self._feature_of(hit)
+        if feature is None or feature.geometry is not Geometry.LINE:
+            self.told.emit(PICK_LINE)
+            return None
+        return feature
+
+    def _chosen(self) -> tuple[Feature, ...]:
+        found = [self._source.feature(id_) for id_ in sorted(self._selection.features)]
+        return tuple(feature for feature in found if feature is not None)
+
+    def _replace(self, label: Text, before: Feature, after: Feature) -> None:
+        """Ask for one feature to become another, unless its ring would cross itself."""
+        if after == before:
+            return
+        if after.geometry is Geometry.AREA:
+            places = [vertex.xyz for vertex in after.vertices]
+            crossing = crosses_itself(places, is_closed=True)
+            if crossing is not None:
+                self.told.emit(WOULD_CROSS.filled(east=crossing[0], north=crossing[1]))
+                return
+        self.change_requested.emit(label, Change(replaced=(Replacement(before, after),)))
+
+    def _tell_refusal(self, refusal: UserError) -> None:
+        joined = Text("{what} {remedy}", "{what}{remedy}")
+        self.told.emit(joined.filled(what=refusal.what, remedy=refusal.remedy))

@@ -1,0 +1,186 @@
+"""SnappingHand: draws hits to vertices, lines and points of note before a tool gets them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from PySide6.QtCore import QObject, Qt
+from typing_extensions import override
+
+from processing.drafting.crossings import LinePlace, line_places
+from processing.drafting.heights import grounded
+from processing.image.edges import highest_point, lowest_point, strongest_bend
+from processing.project.feature import PointReference, Vertex
+from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit, MouseTool
+from widgets.mouse_tools.near_features import NearFeatures
+from widgets.shared.cursor import Place
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+from widgets.shared.snap_state import SnapMark, SnapMode
+
+EDGE_PX = 8
+"""How far beside an edge a click still means it, pixels of the image."""
+
+_MODE_OF_PLACE = {
+    "vertex": SnapMode.VERTEX,
+    "intersection": SnapMode.CROSSING,
+    "line": SnapMode.LINE,
+    "perpendicular": SnapMode.LINE,
+    "extension": SnapMode.EXTENSION,
+}
+_ORDER = ("vertex", "intersection", "perpendicular", "line", "extension")
+
+
+class SnappingHand(MouseTool):
+    """Stands between the views and the tool in the hand; every view tells it its hits.
+
+    Vertices go before crossings, those before lines and extensions, drawn things before the edges
+    of the cloud. Ctrl turns snapping off while it is held.
+
+    Parameters
+    ----------
+    source : MapSource
+    shared : SharedState
+
+    Attributes
+    ----------
+    tool : MouseTool
+        The tool in the hand.
+    """
+
+    def __init__(
+        self, source: MapSource, shared: SharedState, tool: MouseTool, parent: QObject | None = None
+    ) -> None:
+        super().__init__(parent)
+        self._source = source
+        self._shared = shared
+        self._near = NearFeatures(source, shared.map_changes)
+        self.tool = tool
+
+    @property
+    @override
+    def is_busy(self) -> bool:
+        return self.tool.is_busy
+
+    @override
+    def press(self, hit: Hit) -> None:
+        self.tool.press(self.snapped(hit))
+
+    @override
+    def move(self, hit: Hit) -> None:
+        self.tool.move(self.snapped(hit))
+
+    @override
+    def release(self, hit: Hit) -> None:
+        self.tool.release(self.snapped(hit))
+        self._shared.snap.show_mark(None)
+
+    @override
+    def drag_shape(self, hit: Hit) -> DragShape:
+        return self.tool.drag_shape(hit)
+
+    @override
+    def choose_box(self, boxed: Boxed) -> None:
+        self.tool.choose_box(boxed)
+
+    @override
+    def complete(self) -> None:
+        self.tool.complete()
+
+    @override
+    def step_back(self) -> None:
+        self.tool.step_back()
+
+    @override
+    def leave(self) -> None:
+        self.tool.leave()
+
+    @override
+    def put_down(self) -> None:
+        self.tool.put_down()
+        self._shared.snap.show_mark(None)
+
+    @override
+    def delete(self) -> None:
+        self.tool.delete()
+
+    def snapped(self, hit: Hit) -> Hit:
+        """The hit where a click would land now; its mark is shown in every view."""
+        if not self.tool.snaps:
+            self._shared.snap.show_mark(None)
+            return hit
+        hit = self._on_plane(hit)
+        is_free = bool(hit.modifiers & Qt.KeyboardModifier.ControlModifier)
+        found = None if is_free or hit.place is None else self._drawn(hit) or self._measured(hit)
+        if found is None:
+            self._shared.snap.show_mark(None)
+            return hit
+        place, mode = found
+        self._shared.snap.show_mark(SnapMark(place.xyz, mode))
+        return replace(hit, place=place)
+
+    def _on_plane(self, hit: Hit) -> Hit:
+        plane = self._shared.snap.plane
+        if plane is None:
+            return hit
+        met = None if hit.ray is None else plane.meets(hit.ray.origin, hit.ray.direction)
+        if met is None and hit.place is not None:
+            easting, northing, _ = hit.place.xyz
+            met = (easting, northing, plane.height_at(easting, northing))
+        return replace(hit, place=None if met is None else Place(met, is_occluded=True))
+
+    def _drawn(self, hit: Hit) -> tuple[Place, SnapMode] | None:
+        """The best place on what is drawn already, among the modes that are on."""
+        modes = self._shared.snap.modes
+        if hit.place is None or hit.reach_m <= 0 or not modes:
+            return None
+        own = self._shared.sketch.drawing
+        features = self._near.within(hit.place.xyz, hit.reach_m)
+        replaced = "" if own is None else own.replaces
+        lines = [one.vertices for one in features if one.id != replaced]
+        if own is not None and not own.replaces:
+            lines.append(own.vertices[:-1])
+        last = self.tool.last_vertex
+        found = line_places(
+            hit.place.xyz,
+            [tuple(vertex.xyz for vertex in line) for line in lines if line],
+            hit.reach_m,
+            from_=None if last is None else last.xyz,
+        )
+        wanted = [one for one in found if _MODE_OF_PLACE[one.what] in modes]
+        if not wanted:
+            return None
+        best = min(wanted, key=lambda one: (_ORDER.index(one.what), one.distance_m))
+        return self._place_of(best, lines), _MODE_OF_PLACE[best.what]
+
+    def _place_of(self, found: LinePlace, lines: list[tuple[Vertex, ...]]) -> Place:
+        if found.what == "vertex":
+            for line in lines:
+                for vertex in line:
+                    if vertex.xyz == found.xyz:
+                        return Place(vertex.xyz, vertex.measured, vertex.is_occluded)
+        if found.what == "extension":
+            vertex = grounded((found.xyz,), self._source.drives())[0]
+            return Place(vertex.xyz, vertex.measured, vertex.is_occluded)
+        return Place(found.xyz)
+
+    def _measured(self, hit: Hit) -> tuple[Place, SnapMode] | None:
+        """The lowest, the highest or the edge point near the point under the mouse."""
+        modes, place = self._shared.snap.modes, hit.place
+        if place is None or place.measured is None:
+            return None
+        drive = self._source.drive(place.measured.drive)
+        point = place.measured.point
+        if SnapMode.LOWEST in modes:
+            found, mode = lowest_point(drive, point, hit.reach_m), SnapMode.LOWEST
+        elif SnapMode.HIGHEST in modes:
+            found, mode = highest_point(drive, point, hit.reach_m), SnapMode.HIGHEST
+        elif SnapMode.EDGE in modes and self.tool.snaps_to_edges:
+            found, mode = strongest_bend(drive, point, EDGE_PX), SnapMode.EDGE
+        else:
+            return None
+        if found < 0:
+            return None
+        easting, northing, height = drive.xyz(np.array([found]))[0].tolist()
+        return Place((easting, northing, height), PointReference(drive.id, found)), mode

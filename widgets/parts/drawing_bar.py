@@ -1,0 +1,169 @@
+"""DrawingBar: what is drawn and how, what the tool expects next, and what is measured."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from PySide6.QtCore import QLocale, QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QFont, QIcon, QPixmap
+from PySide6.QtWidgets import (
+    QDoubleSpinBox,
+    QHBoxLayout,
+    QLabel,
+    QToolButton,
+    QWidget,
+)
+
+from processing.drafting.measuring import Measure
+from processing.project.catalogue import FeatureKind
+from processing.text import Language, Text
+from widgets.parts.elided_label import ElidedLabel
+from widgets.shared.shared_state import SharedState
+from widgets.shared.snap_state import SNAP_NAMES, SnapMode
+
+_SWATCH_PX = 14
+_FARTHEST_M = 999.0
+_NO_SNAP = Text("no snapping", "スナップなし")
+_ON_PLANE = Text("working plane", "作業平面")
+_SNAP = Text("Snap: {names}", "スナップ: {names}")
+_NO_KIND = Text("What to draw…", "作図する種類…")
+_DISTANCE = Text("Distance", "距離")
+_AT_MOUSE = Text("at the mouse", "マウス位置")
+
+
+class DrawingBar(QWidget):
+    """A line above the views, in step with the toolbox and the snap state.
+
+    Parameters
+    ----------
+    shared : SharedState
+    hints : mapping of str to Text
+        What each tool expects, by the tool's name.
+    language : Language
+
+    Signals
+    -------
+    kind_wanted
+        The button of the kind was pressed.
+    snaps_wanted
+        The words about snapping were pressed.
+    distance_set(metres: float)
+        The distance of parallel copies; 0 for the mouse's.
+    """
+
+    kind_wanted = Signal()
+    snaps_wanted = Signal()
+    distance_set = Signal(float)
+
+    def __init__(
+        self,
+        shared: SharedState,
+        hints: Mapping[str, Text],
+        language: Language,
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self._shared = shared
+        self._hints = hints
+        self._language: Language = language
+        self._kind = QToolButton(self)
+        self._kind.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self._kind.setIconSize(QSize(_SWATCH_PX, _SWATCH_PX))
+        self._kind.setToolTip(self.tr("What is drawn: choose by name (Ctrl+K) or number key"))
+        self._kind.clicked.connect(self.kind_wanted)
+        self._snaps = QToolButton(self)
+        self._snaps.setAutoRaise(True)
+        self._snaps.setToolTip(self.tr("What clicks snap to (Alt+1 to Alt+7)"))
+        self._snaps.clicked.connect(self.snaps_wanted)
+        self._words = ElidedLabel(self)
+        self._distance_name = QLabel(_DISTANCE.spoken(language), self)
+        self._distance = self._distance_field()
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(8, 0, 8, 4)
+        layout.setSpacing(8)
+        layout.addWidget(self._kind)
+        layout.addWidget(self._distance_name)
+        layout.addWidget(self._distance)
+        layout.addWidget(self._words, 1)
+        layout.addWidget(self._snaps)
+        shared.snap.modes_changed.connect(self._show_snaps)
+        shared.snap.plane_changed.connect(self._show_snaps)
+        self.show_kind(None)
+        self.show_tool("select")
+        self._show_snaps()
+
+    @property
+    def words(self) -> str:
+        """What the tool expects, or what is measured."""
+        return self._words.text()
+
+    @property
+    def kind_name(self) -> str:
+        """What the button says is drawn."""
+        return self._kind.text()
+
+    def choose_kind(self) -> None:
+        """Ask for the list of kinds."""
+        self.kind_wanted.emit()
+
+    def show_kind(self, kind: FeatureKind | None) -> None:
+        """Say what is drawn."""
+        name = _NO_KIND if kind is None else kind.name
+        self._kind.setText(name.spoken(self._language))
+        self._kind.setIcon(QIcon() if kind is None else swatch(kind.colour))
+
+    def show_tool(self, name: str) -> None:
+        """Say what a tool expects; only parallel copies have a distance."""
+        self._tool = name
+        is_parallel = name == "parallel"
+        self._distance_name.setVisible(is_parallel)
+        self._distance.setVisible(is_parallel)
+        hint = self._hints.get(name, Text("", ""))
+        self._words.setText(hint.spoken(self._language))
+
+    def show_measures(self, measures: tuple[Measure, ...]) -> None:
+        """Say what is measured; nothing: what the tool expects."""
+        if not measures:
+            self.show_tool(self._tool)
+            return
+        self._words.setText("   ".join(self._said(measure) for measure in measures))
+
+    def _said(self, measure: Measure) -> str:
+        locale = QLocale()
+        value = locale.toString(measure.value, "f", measure.decimals)
+        return f"{measure.name.spoken(self._language)} {value} {measure.unit}".rstrip()
+
+    def _distance_field(self) -> QDoubleSpinBox:
+        field = QDoubleSpinBox(self)
+        field.setRange(0.0, _FARTHEST_M)
+        field.setDecimals(3)
+        field.setSingleStep(0.05)
+        field.setSuffix(" m")
+        field.setSpecialValueText(_AT_MOUSE.spoken(self._language))
+        field.setToolTip(self.tr("Distance of the parallel copy; 0: where the mouse is"))
+        field.setKeyboardTracking(False)
+        font = QFont(self.font())
+        font.setFeature(QFont.Tag("tnum"), 1)
+        field.setFont(font)
+        field.valueChanged.connect(self.distance_set)
+        return field
+
+    def set_distance(self, metres: float) -> None:
+        """Show a distance that was set elsewhere."""
+        with QSignalBlocker(self._distance):  # the tool knows it already
+            self._distance.setValue(metres)
+
+    def _show_snaps(self) -> None:
+        snap = self._shared.snap
+        names = [SNAP_NAMES[mode].spoken(self._language) for mode in SnapMode if mode in snap.modes]
+        if snap.plane is not None:
+            names = [_ON_PLANE.spoken(self._language), *names]
+        joined = ", ".join(names) if names else _NO_SNAP.spoken(self._language)
+        self._snaps.setText(_SNAP.filled(names=joined).spoken(self._language))
+
+
+def swatch(colour: str) -> QIcon:
+    """A square in a kind's colour."""
+    picture = QPixmap(_SWATCH_PX, _SWATCH_PX)
+    picture.fill(QColor(colour))
+    return QIcon(picture)
