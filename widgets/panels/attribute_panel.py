@@ -123,7 +123,8 @@ class AttributePanel(QWidget):
         features = self._shown_now()
         if not features:
             return
-        field = self._source.catalogue()[features[0].kind].attribute(id_)
+        catalogue, kind = self._source.catalogue(), features[0].kind
+        field = catalogue[kind].attribute(id_) if kind in catalogue else None
         name = Text.same(id_) if field is None else field.name
         self._ask_for(*attribute_change(features, id_, name, value))
 
