@@ -102,6 +102,10 @@ class FeatureRowsView(QTableView):
     def mark_rows(self, rows: Iterable[int], *, adds: bool = False) -> None:
         """Mark exactly these rows, or these too; tells nobody."""
         marks = self.selectionModel()
+        if adds:
+            rows = [row for row in rows if not marks.isRowSelected(row, QModelIndex())]
+            if not rows:
+                return
         ranges = QItemSelection()
         for top, bottom in _runs(sorted(rows)):
             ranges.append(self._model.rows_between(top, bottom))
