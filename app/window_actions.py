@@ -44,6 +44,7 @@ class WindowActions(QObject):
         self._groups: dict[str, QActionGroup] = {}
         self._toolbar_group = 0
         self._has_project = False
+        self._forbidden: set[str] = set()
         self._menus: dict[str, QMenu] = {
             id_: window.menuBar().addMenu(title.spoken(language)) for id_, title in MENUS
         }
@@ -109,6 +110,11 @@ class WindowActions(QObject):
         for entry in self._entries.values():
             self._enable(entry)
 
+    def allow(self, id_: str, *, is_allowed: bool) -> None:
+        """Say whether there is anything for an action to do, project or not."""
+        (self._forbidden.discard if is_allowed else self._forbidden.add)(id_)
+        self._enable(self._entries[id_])
+
     def recolour(self) -> None:
         """Draw the icons in the colours of the window's palette."""
         for entry in self._entries.values():
@@ -133,8 +139,9 @@ class WindowActions(QObject):
         made.setToolTip(f"{first}\n{hint}" if hint else first)
 
     def _enable(self, entry: Entry) -> None:
-        if entry.action.needs_project:
-            entry.made.setEnabled(self._has_project)
+        action = entry.action
+        is_possible = self._has_project or not action.needs_project
+        entry.made.setEnabled(is_possible and action.id not in self._forbidden)
 
     def _colour(self, entry: Entry) -> None:
         if entry.action.icon:

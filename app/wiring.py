@@ -58,6 +58,7 @@ def _connect_intentions(parts: WindowParts, wiring: _Wiring) -> None:
     toolbox.kind_chosen.connect(parts.layers_panel.mark_kind)
     parts.layers_panel.kind_chosen.connect(wiring.on_layers_kind_chosen)
     parts.attribute_panel.change_requested.connect(document.apply)
+    parts.feature_table.change_requested.connect(document.apply)
     parts.project_tree.drive_chosen.connect(wiring.on_tree_drive_chosen)
     parts.processing_panel.run_requested.connect(wiring.on_processing_run_requested)
     parts.jobs_panel.cancel_requested.connect(parts.jobs.cancel)
@@ -116,7 +117,7 @@ class _Wiring(QObject):
         for name, label in labels.items():
             text = plain[name] if label is None else verbs[name].filled(label=label)
             actions[name].setText(text.spoken(language))
-            actions[name].setEnabled(label is not None)
+            self._parts.window.actions_made.allow(name, is_allowed=label is not None)
 
     def on_toolbox_tool_chosen(self, name: str) -> None:
         self._parts.window.actions_by_id[f"tool-{name}"].setChecked(True)
