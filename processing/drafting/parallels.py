@@ -17,6 +17,7 @@ from processing.text import Text
 Floats = NDArray[np.float64]
 
 _SHARPEST_MITRE = np.radians(100.0)
+_LONGEST_SPIKE_M = 0.01
 _JOINED_M = 1e-6
 
 
@@ -211,7 +212,10 @@ def _reach_of_joints(
     fits = taken <= lengths
     is_loop = ~is_outer & ~(fits[before] & fits[after])
     cut_off = np.abs(distance) * np.tan(np.abs(turn) / 4)
-    outer = np.where(is_sharp, cut_off, mitre)
+    # A mitre longer than its sides is a spike on an uneven line, not the corner of a street.
+    spike = np.hypot(distance, mitre) - abs(distance)
+    is_spike = (spike > _LONGEST_SPIKE_M) & (mitre > np.minimum(lengths[before], lengths[after]))
+    outer = np.where(is_sharp | is_spike, cut_off, mitre)
     return np.where(is_outer, outer, np.where(is_loop, 0.0, -mitre))
 
 
