@@ -35,6 +35,7 @@ from app.wiring import connect_lasting, connect_parts
 from processing.text import Language, Text
 from widgets.image_view.view import ImageView
 from widgets.panels.attribute_panel import AttributePanel
+from widgets.panels.feature_table import FeatureTable
 from widgets.panels.jobs_panel import JobsPanel
 from widgets.panels.layers_panel import LayersPanel
 from widgets.panels.processing_panel import ProcessingPanel
@@ -48,6 +49,7 @@ from widgets.scene_view.view import SceneView
 
 _LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
 _RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
+_BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
 _SIGNALS_SEEN_MS = 250
 
 
@@ -165,6 +167,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         layers_panel=LayersPanel(document, shared, language),
         processing_panel=ProcessingPanel(language),
         attribute_panel=AttributePanel(document, shared, language),
+        feature_table=FeatureTable(document, shared, language),
         jobs_panel=JobsPanel(language),
         window=lasting.window,
     )
@@ -217,6 +220,16 @@ def _panels(parts: WindowParts) -> tuple[Panel, ...]:
         Panel("attributes", Text("Attributes", "属性"), parts.attribute_panel, _RIGHT, 290, 380),
         Panel(
             "jobs", Text("Jobs", "ジョブ"), parts.jobs_panel, _RIGHT, 290, 380, behind="attributes"
+        ),
+        Panel(
+            "features",
+            Text("Table of features", "地物一覧"),
+            parts.feature_table,
+            _BELOW,
+            900,
+            230,
+            is_hidden=True,
+            key="F6",
         ),
     )
 

@@ -47,6 +47,7 @@ class MainWindow(QMainWindow):
         self._actions: WindowActions | None = None
         self._docks: dict[str, QDockWidget] = {}
         self._in_front: list[QDockWidget] = []
+        self._waiting: list[QDockWidget] = []
         self._toolbar: QToolBar | None = None
         self._splitter = QSplitter(Qt.Orientation.Vertical)
         self._pages = QStackedWidget()
@@ -134,6 +135,8 @@ class MainWindow(QMainWindow):
             if panel.behind:
                 self.tabifyDockWidget(self._docks[panel.behind], dock)
                 self._in_front.append(self._docks[panel.behind])
+            if panel.is_hidden:
+                self._waiting.append(dock)
             self._docks[panel.id] = dock
             self._adopt_toggle(panel, dock)
         placed = [panel for panel in panels if not panel.behind]
@@ -155,7 +158,7 @@ class MainWindow(QMainWindow):
         if is_open and was_open:
             return
         for dock in self._docks.values():
-            dock.setVisible(is_open)
+            dock.setVisible(is_open and dock not in self._waiting)
         if is_open:
             self._restore_docks()
 
@@ -209,6 +212,7 @@ class MainWindow(QMainWindow):
         self._remember_docks()
         self._is_open = False
         self._in_front.clear()
+        self._waiting.clear()
         # Children are found by their names when a layout is restored, so the old ones leave now.
         old = (*self._docks.values(), self._toolbar, self.menuBar().cornerWidget())
         for widget in old:
@@ -226,6 +230,7 @@ class MainWindow(QMainWindow):
             Text("Panel: {title}", "パネル: {title}").filled(title=panel.title),
             toggle.trigger,
             "view",
+            (panel.key,) if panel.key else (),
             needs_project=True,
         )
         self.actions_made.adopt(action, toggle)
@@ -242,7 +247,7 @@ class MainWindow(QMainWindow):
             if all(dock.isHidden() for dock in self._docks.values()):
                 self._docks_when_open = None
                 for dock in self._docks.values():
-                    dock.show()
+                    dock.setVisible(dock not in self._waiting)
         self._when_laid_out.start()
 
     def _on_laid_out(self) -> None:

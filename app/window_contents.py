@@ -25,6 +25,10 @@ class Panel:
         Its share there, in pixels of a usual window.
     behind : str
         Id of the panel with which it shares a place, as a tab; empty for a place of its own.
+    is_hidden : bool
+        Whether it waits to be called by its action.
+    key : str
+        The key of that action.
     """
 
     id: str
@@ -34,6 +38,8 @@ class Panel:
     width: int
     height: int
     behind: str = ""
+    is_hidden: bool = False
+    key: str = ""
 
 
 @dataclass(frozen=True)

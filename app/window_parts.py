@@ -13,6 +13,7 @@ from processing.text import Language
 from widgets.image_view.view import ImageView
 from widgets.mouse_tools.toolbox import MouseToolbox
 from widgets.panels.attribute_panel import AttributePanel
+from widgets.panels.feature_table import FeatureTable
 from widgets.panels.jobs_panel import JobsPanel
 from widgets.panels.layers_panel import LayersPanel
 from widgets.panels.processing_panel import ProcessingPanel
@@ -61,6 +62,7 @@ class WindowParts:
     layers_panel: LayersPanel
     processing_panel: ProcessingPanel
     attribute_panel: AttributePanel
+    feature_table: FeatureTable
     jobs_panel: JobsPanel
     window: MainWindow
 

@@ -14,9 +14,9 @@ SIMPLIFY_M = 0.01
 """What a vertex may be off the line and still be taken out: the accuracy of a good point."""
 
 _STATUSES = (
-    (Status.ACCEPTED, Text("Accept", "承認"), "Ctrl+Return"),
+    (Status.ACCEPTED, Text("Accept", "採用"), "Ctrl+Return"),
     (Status.REJECTED, Text("Reject", "却下"), "Ctrl+Backspace"),
-    (Status.CANDIDATE, Text("Make candidates", "候補に戻す"), ""),
+    (Status.CANDIDATE, Text("Make a candidate", "候補に戻す"), ""),
 )
 
 

@@ -33,6 +33,7 @@ _PIECE_PRICE = (
 )
 _LEAST_BEND = math.radians(15.0)
 _LEAST_JUMP = 3.0  # in noises
+_SIGNIFICANT = 5.0  # in standard deviations of where a piece ends that so few points show
 _SHORTEST_M = 0.008
 _ROUNDING_M = 0.035  # a piece this short between two bends of one sign is a rounded edge
 LONGEST_ARM_M = 0.10
@@ -96,51 +97,6 @@ def corners_kernel(
     count = _corners_of(best_pieces[:found], order, noise, limits[0], corners)
     largest = int(best_pieces[:found, _NUMBER].argmax())
     return count, least / number, best_pieces[largest, _SPREAD]
-
-
-@kernel
-def roughness_kernel(local: _Floats, noise: float, frames: _Floats, costs: _Floats) -> None:
-    """How badly points fall on one profile when looked at along each of some frames.
-
-    Parameters
-    ----------
-    frames : (k, 2)
-        Headings and grades.
-    costs : (k,)
-        Mean squares of the distance from short straight pieces, m², for profiles that rise or
-        fall, whichever is better.
-    """
-    reach = 0.0
-    for i in range(local.shape[0]):
-        for axis in range(3):
-            reach = max(reach, abs(local[i, axis]))
-    bins = max(8, min(_MOST_BINS, local.shape[0]))
-    size = 4 * reach / (bins - 2)
-    sums = np.empty((bins, 6))
-    for k in range(frames.shape[0]):
-        cos, sin, grade = math.cos(frames[k, 0]), math.sin(frames[k, 0]), frames[k, 1]
-        costs[k] = math.inf
-        for order in (1, -1):
-            sums[:] = 0
-            for i in range(local.shape[0]):
-                u = local[i, 1] * cos - local[i, 0] * sin
-                v = local[i, 2] - grade * (local[i, 0] * cos + local[i, 1] * sin)
-                place = int((u + order * v + 2 * reach) / size)
-                _add(sums[min(bins - 1, max(0, place))], u, v)
-            costs[k] = min(costs[k], _roughness(sums, order, (6 * noise) ** 2))
-
-
-@kernel
-def _roughness(sums: _Floats, order: int, most: float) -> float:
-    total, number = 0.0, 0.0
-    three = np.empty(6)
-    for k in range(1, sums.shape[0] - 1):
-        for j in range(6):
-            three[j] = sums[k - 1, j] + sums[k, j] + sums[k + 1, j]
-        if sums[k, 0] > 0 and three[0] > 2:
-            total += sums[k, 0] * min(most, _least_squares(three, order) / (three[0] - 2))
-            number += sums[k, 0]
-    return total / number if number > 0 else math.inf
 
 
 @kernel
@@ -380,6 +336,9 @@ def _crossing(before: _Floats, after: _Floats, order: int, corner: _Floats) -> i
     reach_before = before[_LAST] + 0.03 + 0.3 * before[_LENGTH]
     reach_after = after[_FIRST] - 0.03 - 0.3 * after[_LENGTH]
     if along > reach_before or back < reach_after:
+        return 0
+    short, long = (before, after) if before[_LENGTH] < after[_LENGTH] else (after, before)
+    if abs(sine) * short[_LENGTH] < _SIGNIFICANT * long[_SPREAD] * math.sqrt(12 / short[_NUMBER]):
         return 0
     arm = min(min(before[_LENGTH], after[_LENGTH]), LONGEST_ARM_M)
     if arm < _ROUNDING_M:

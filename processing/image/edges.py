@@ -7,7 +7,7 @@ around it (cells and rows of cells in a top view). All else is measured in metre
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,14 +16,18 @@ from numpy.typing import NDArray
 from processing.image.edge_kernels import (
     ACROSS,
     BEND,
-    CORNER_COLUMNS,
     HEIGHT,
     LONGEST_ARM_M,
-    MOST_CORNERS,
     ORDER,
     STRENGTH,
-    corners_kernel,
-    roughness_kernel,
+)
+from processing.image.edge_sections import (
+    LEAST_STRENGTH_M,
+    PATCH_M,
+    Section,
+    length_needed,
+    section_along,
+    section_at,
 )
 
 if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
@@ -32,71 +36,16 @@ if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
-LEAST_STRENGTH_M = 0.010
-"""An edge bends the surface at least so far from the straight: sine of the bend times the shorter
-of the two surfaces (10 cm at most). Steps of 2 cm and more are well above it, joints below."""
-
 _NONE = -1
-_FEWEST = 30  # points from which a direction and a profile can be told
-_ENOUGH, _MOST = 160, 500
-PATCH_M = 0.5  # radius of what is looked at as one straight piece of edge
-_LEAST_ALONG_M = 0.2
-_ACROSS_AGAIN_M = (0.25, 0.15)  # half widths of the second look
-_SAME_M = 0.05
 _TRUSTED_M = 0.25  # edges farther from the middle of a patch are left to the next patch
 _MOST_REACH_M = 2.0
-_NEIGHBOURS = 20  # points in the circle from which a normal is found
-NOISE_M = 0.004
-"""How far points of a mobile mapping system lie off a smooth surface, one after the other."""
-_NOISE_MARGIN, _MOST_NOISE_M = 1.1, 0.008
-_MOST_SPREAD_M = 0.020  # beyond: plants, parts of several things
-_TRIED_HEADINGS = np.radians(np.arange(-15.0, 15.1, 2.5))
+_ACROSS_AGAIN_M = (0.25, 0.15)  # half widths of the second look
+_SAME_M = 0.05
 _COMPARABLE = 0.5
 _ON_EDGE_M = 0.5  # the chosen point lies within so much along the edge
+_LEAST_CUT = 0.2  # sine of the angle at which a row must cut an edge
 _ROWS_ASIDE = 10
-_DENSE_M, _EVENLY_FILLED = 0.015, 0.6
 _COMPANY, _COMPANY_M = 3, 0.05  # others that lie so near a point bear it out
-_FOLDED = math.radians(110.0)  # sharper bends come from rows that don't fit on one profile
-
-
-@dataclass(frozen=True)
-class Section:
-    """The profile across an edge.
-
-    Attributes
-    ----------
-    center : (3,) float64
-        m; what the frame is about.
-    heading_rad, grade, curvature : float
-        Direction of the edge: counter-clockwise from the easting; rise per metre; 1/m.
-    corners : (k, CORNER_COLUMNS) float64
-        See `edge_kernels`.
-    spread_m : float
-        How far points lie off the profile, its pieces being paid for.
-    """
-
-    center: _Floats
-    heading_rad: float
-    grade: float
-    curvature: float
-    corners: _Floats
-    spread_m: float
-
-    @property
-    def direction(self) -> _Floats:
-        """(3,) unit vector along the edge."""
-        along = np.array([math.cos(self.heading_rad), math.sin(self.heading_rad), self.grade])
-        return np.asarray(along / np.linalg.norm(along))
-
-    @property
-    def places(self) -> _Floats:
-        """(k, 3) the corners, m, project CRS."""
-        left = np.array([-math.sin(self.heading_rad), math.cos(self.heading_rad), 0.0])
-        up = np.array([0.0, 0.0, 1.0])
-        corners = self.corners
-        return np.asarray(
-            self.center + corners[:, ACROSS, None] * left + corners[:, HEIGHT, None] * up
-        )
 
 
 def strongest_bend(drive: Drive, point: int, within_px: int = 8) -> int:
@@ -201,28 +150,46 @@ class _Edge:
 
 
 def _edges_beside(xyz: _Floats, row: _Row, center: _Floats, within_px: int) -> list[_Edge]:
-    """Strong edges near a place that pass the row within the pixels, each looked at again."""
+    """Strong edges near a place that pass the row within the pixels, each looked at again.
+
+    Where one of a section's edges is confirmed, its other plain ones are believed.
+    """
     section = section_at(xyz, center)
     if section is None:
         return []
+    near = np.hypot(section.corners[:, ACROSS], section.corners[:, HEIGHT]) <= _TRUSTED_M
+    strengths = section.corners[:, STRENGTH]
+    corners = np.flatnonzero(near & (strengths >= LEAST_STRENGTH_M))
+    again = {int(k): _seen_again(xyz, section, int(k)) for k in corners}
+    if all(seen is None for seen in again.values()):
+        return []
     edges = []
-    for k in np.flatnonzero(section.corners[:, STRENGTH] >= LEAST_STRENGTH_M):
-        seen = _seen_again(xyz, section, int(k))
-        if seen is None:
-            continue
-        place, direction, strength = seen
-        off = _off_line(row.xyz, place, direction)
-        if abs(row.offsets[off.argmin()]) <= within_px + 1:
-            edges.append(_Edge(place, direction, strength, float(off[row.middle])))
+    for k, seen in again.items():
+        if seen is None and strengths[k] >= _COMPARABLE * LONGEST_ARM_M:
+            seen = section.places[k], section.direction, float(strengths[k])
+        if seen is not None and (edge := _passing(row, seen, within_px)) is not None:
+            edges.append(edge)
     return edges
+
+
+def _passing(row: _Row, seen: tuple[_Floats, _Floats, float], within_px: int) -> _Edge | None:
+    """The edge, if the row cuts it within the pixels; a row that runs along it doesn't."""
+    place, direction, strength = seen
+    off = _off_line(row.xyz, place, direction)
+    nearest = int(off.argmin())
+    first, last = max(0, nearest - 3), min(off.size - 1, nearest + 3)
+    tangent = row.xyz[last, :2] - row.xyz[first, :2]
+    sine = abs(tangent[0] * direction[1] - tangent[1] * direction[0])
+    is_cut = sine >= _LEAST_CUT * float(np.linalg.norm(row.xyz[last] - row.xyz[first]))
+    if not is_cut or abs(row.offsets[nearest]) > within_px + 1:
+        return None
+    return _Edge(place, direction, strength, float(off[row.middle]))
 
 
 def _seen_again(
     xyz: _Floats, section: Section, corner: int
 ) -> tuple[_Floats, _Floats, float] | None:
     """The same corner in a narrow profile around it; None where it isn't there."""
-    if np.hypot(*section.corners[corner, [ACROSS, HEIGHT]]) > _TRUSTED_M:
-        return None
     place = section.places[corner]
     local = xyz - place
     local = np.ascontiguousarray(local[(local**2).sum(axis=1) <= PATCH_M**2])
@@ -242,114 +209,6 @@ def _seen_again(
             strength = max(float(strengths[k]), float(section.corners[corner, STRENGTH]))
             return place + again.places[k], again.direction, strength
     return None
-
-
-def section_at(xyz: _Floats, center: _Floats) -> Section | None:
-    """The profile of points about a place, seen along the edge that runs there.
-
-    Parameters
-    ----------
-    xyz : (n, 3) float64
-        m.
-
-    Returns
-    -------
-    Section or None
-        None where there are too few points or they are no surfaces.
-    """
-    local = xyz - center
-    near = (local**2).sum(axis=1) <= PATCH_M**2
-    local = local[near]
-    if local.shape[0] < _FEWEST:
-        return None
-    local = np.ascontiguousarray(local[:: max(1, local.shape[0] // _MOST)])
-    frame = _first_frame(local)
-    tried = np.tile(frame, (_TRIED_HEADINGS.size, 1))
-    tried[:, 0] += _TRIED_HEADINGS
-    costs = np.empty(tried.shape[0])
-    roughness_kernel(local, NOISE_M, tried, costs)
-    best: Section | None = None
-    for start in (frame, tried[costs.argmin()]):
-        if _runs_with_rows(local, start):
-            continue
-        found = section_along(local, start, (length_needed(local, start), PATCH_M), 0)
-        if found is not None and (best is None or found.spread_m < best.spread_m):
-            best = found
-    if best is None or best.spread_m > _MOST_SPREAD_M:
-        return None
-    return replace(best, center=center)
-
-
-def section_along(
-    local: _Floats, frame: _Floats, reach: tuple[float, float], order: int
-) -> Section | None:
-    """The profile of points about the origin when the direction of the edge is nearly known."""
-    corners = np.empty((MOST_CORNERS, CORNER_COLUMNS))
-    noise = NOISE_M
-    for _ in range(2):
-        turned = frame.copy()
-        limits = np.array([reach[0], reach[1], min(0.5, reach[1]), noise, order])
-        count, price, spread = corners_kernel(local, limits, turned, corners)
-        if not math.isfinite(price):
-            return None
-        if spread <= noise:
-            break
-        # Rougher ground or another scanner: again, by what was found.
-        noise = min(_MOST_NOISE_M, _NOISE_MARGIN * spread)
-    is_edge = np.abs(corners[:count, BEND]) <= _FOLDED
-    return Section(
-        center=np.zeros(3),
-        heading_rad=float(turned[0]),
-        grade=float(turned[1]),
-        curvature=float(turned[2]),
-        corners=corners[:count][is_edge],
-        spread_m=noise * math.sqrt(price),
-    )
-
-
-def _runs_with_rows(local: _Floats, frame: _Floats) -> bool:
-    """Whether points fall on few places of the profile, since rows run along that direction."""
-    across = local[:, 1] * math.cos(frame[0]) - local[:, 0] * math.sin(frame[0])
-    bins = round(2 * PATCH_M / _DENSE_M)
-    filled = np.unique((across / _DENSE_M).astype(np.int64)).size
-    return filled < _EVENLY_FILLED * bins * (1 - math.exp(-across.size / bins))
-
-
-def length_needed(local: _Floats, frame: _Floats) -> float:
-    """Half the length of edge that has enough points: the shorter, the straighter it is."""
-    along = np.abs(local[:, 0] * math.cos(frame[0]) + local[:, 1] * math.sin(frame[0]))
-    if along.size <= _ENOUGH:
-        return PATCH_M
-    return max(_LEAST_ALONG_M, float(np.partition(along, _ENOUGH)[_ENOUGH]))
-
-
-def _first_frame(local: _Floats) -> _Floats:
-    """Heading and grade of the direction square to all normals."""
-    step = max(1, local.shape[0] // _ENOUGH)
-    thinned = local[::step]
-    spacing = math.sqrt(math.pi * float((thinned[:, :2] ** 2).sum(axis=1).max()) / len(thinned))
-    scatters = _scatters(thinned, max(0.08, spacing * math.sqrt(_NEIGHBOURS / math.pi)))
-    values, vectors = np.linalg.eigh(scatters)
-    is_surface = values[:, 1] > 0.02 * values[:, 2]
-    if not is_surface.any():
-        return np.zeros(3)
-    normals = vectors[is_surface, :, 0]
-    along = np.linalg.eigh(normals.T @ normals)[1][:, 0]
-    level = math.hypot(along[0], along[1])
-    grade = float(along[2]) / level if level > 0.7 else 0.0
-    heading = math.atan2(along[1], along[0])
-    return np.array([heading, grade, 0.0])
-
-
-def _scatters(xyz: _Floats, radius: float) -> _Floats:
-    """(n, 3, 3) covariance of the neighbours of every point."""
-    squares = (xyz**2).sum(axis=1)
-    apart = squares[:, None] + squares - 2 * xyz @ xyz.T
-    is_near = (apart <= radius**2).astype(np.float64)
-    counts = is_near.sum(axis=1)[:, None]
-    means = is_near @ xyz / counts
-    products = is_near @ np.einsum("ij,ik->ijk", xyz, xyz).reshape(-1, 9) / counts
-    return np.asarray(products.reshape(-1, 3, 3) - np.einsum("ij,ik->ijk", means, means))
 
 
 @dataclass(frozen=True)

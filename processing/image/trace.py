@@ -77,6 +77,8 @@ def trace(drive: Drive, start: int, end: int, *, across_gaps: bool = False) -> T
        from the start to the end.
     3. The measured points nearest to the places are the line.
     """
+    if start == end:
+        return Traced(np.array([start]), is_complete=True, reason=_NOTHING)
     cloud = PointsBetween(drive, start, end)
     goal = drive.xyz(np.array([end]))[0] - cloud.origin
     line = _line_at_both((EdgeFollower(cloud), _marking_follower(drive, cloud)), goal)

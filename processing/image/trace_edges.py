@@ -16,7 +16,7 @@ from processing.image.edge_kernels import (
     ORDER,
     STRENGTH,
 )
-from processing.image.edges import (
+from processing.image.edge_sections import (
     LEAST_STRENGTH_M,
     PATCH_M,
     Section,

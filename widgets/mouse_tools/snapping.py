@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -21,6 +22,10 @@ from widgets.shared.snap_state import SnapMark, SnapMode
 
 EDGE_PX = 8
 """How far beside an edge a click still means it, pixels of the image."""
+
+_ALIKE_M = 0.03
+_DRAWN_BEFORE = 1.5
+"""What is drawn goes before an edge up to so many times its distance, and 3 cm more."""
 
 _MODE_OF_PLACE = {
     "vertex": SnapMode.VERTEX,
@@ -112,13 +117,26 @@ class SnappingHand(MouseTool):
             return hit
         hit = self._on_plane(hit)
         is_free = bool(hit.modifiers & Qt.KeyboardModifier.ControlModifier)
-        found = None if is_free or hit.place is None else self._drawn(hit) or self._measured(hit)
+        found = None if is_free or hit.place is None else self._found(hit, hit.place)
         if found is None:
             self._shared.snap.show_mark(None)
             return hit
         place, mode = found
         self._shared.snap.show_mark(SnapMark(place.xyz, mode))
         return replace(hit, place=place)
+
+    def _found(self, hit: Hit, place: Place) -> tuple[Place, SnapMode] | None:
+        """What is drawn, unless an edge of the cloud is much nearer to the mouse.
+
+        Seen from far the circle about the mouse holds both edges of a curb: who points at the upper
+        one doesn't mean the lower one that is drawn already.
+        """
+        drawn, measured = self._drawn(hit), self._measured(hit)
+        if drawn is None or measured is None:
+            return drawn or measured
+        to_drawn = math.dist(drawn[0].xyz, place.xyz)
+        to_measured = math.dist(measured[0].xyz, place.xyz)
+        return drawn if to_drawn <= _DRAWN_BEFORE * to_measured + _ALIKE_M else measured
 
     def _on_plane(self, hit: Hit) -> Hit:
         plane = self._shared.snap.plane

@@ -19,6 +19,8 @@ Floats = NDArray[np.float64]
 START = np.array([-11_030.0, -35_020.0, 125.0])
 SCALE = 0.0001
 PULSES = 1_000
+BEYOND_M = 3.0
+"""Rows run at 45°; so much before and after the street is recorded, that all of it is seen."""
 
 CURB = ((-2.5, 0.05), (0.0, 0.0), (0.02, 0.15), (1.5, 0.18))
 """Across the street and up, m: road, curb of 15 cm, sidewalk."""
@@ -81,13 +83,13 @@ def recorded(
     """
     random = np.random.default_rng(seed)
     across, up, normals = _along_profile(street)
-    rows = int(street.length_m / street.row_m)
+    rows = int((street.length_m + 2 * BEYOND_M) / street.row_m)
     row = np.repeat(np.arange(rows), across.size)
     column = np.tile(np.arange(across.size), rows)
     jitter = random.uniform(0, street.spacing_m, rows)[row] * 0.5
     u = across[column] + jitter * normals[column, 1]
     v = up[column] - jitter * normals[column, 0]
-    along = row * street.row_m + u
+    along = row * street.row_m - BEYOND_M + u
     noise = random.normal(0.0, street.noise_m, u.size)
     u, v = u + noise * normals[column, 0], v + noise * normals[column, 1]
     kept = np.ones(u.size, np.bool_)
