@@ -33,7 +33,7 @@ _PIECE_PRICE = (
 )
 _LEAST_BEND = math.radians(15.0)
 _LEAST_JUMP = 3.0  # in noises
-_SIGNIFICANT = 5.0  # in standard deviations of where a piece ends that so few points show
+_SIGNIFICANT = 4.0  # in standard deviations of where a piece ends that so few points show
 _SHORTEST_M = 0.008
 _ROUNDING_M = 0.035  # a piece this short between two bends of one sign is a rounded edge
 LONGEST_ARM_M = 0.10
