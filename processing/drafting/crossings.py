@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import Literal
 
 import numpy as np
@@ -110,13 +111,10 @@ def line_places(
         The nearest first; of places of different sorts within a millimetre of each other only a
         vertex, then an intersection, is given.
     """
-    # About the cursor, so that distances are lengths.
-    drawn = [Polyline.of(line, origin=near) for line in lines if len(line)]
-    if not drawn:
-        return ()
+    drawn = _Drawn.of(near, lines)
     nearby = _Nearby.of(drawn, reach_m)
     found: list[tuple[Floats, What]] = [
-        *((place, "vertex") for place in _vertices(drawn)),
+        *((place, "vertex") for place in drawn.vertices_within(reach_m)),
         *((place, "intersection") for place in nearby.crossings()),
         *((place, "perpendicular") for place in nearby.feet(from_, near)),
         *((place, "line") for place in nearby.nearest_of_lines()),
@@ -143,8 +141,54 @@ def _is_shown(place: Floats, what: What, other: tuple[Floats, What]) -> bool:
     return float(np.hypot(*(place - other[0])[:2])) < SAME_PLACE_M
 
 
-def _vertices(drawn: Sequence[Polyline]) -> Floats:
-    return np.concatenate([line.xyz for line in drawn])
+@dataclass(frozen=True)
+class _Drawn:
+    """All lines about the cursor, so that distances are lengths.
+
+    Attributes
+    ----------
+    xyz : (n, 3) float64
+        The places of all lines, one line after the other.
+    starts : (lines + 1,) int64
+        Where each line begins in ``xyz``.
+    """
+
+    xyz: Floats
+    starts: NDArray[np.int64]
+
+    @staticmethod
+    def of(near: Position, lines: Sequence[Sequence[Position]]) -> _Drawn:
+        """Take the lines as one array: a map has thousands of places, a cursor moves often."""
+        starts = np.concatenate([[0], np.cumsum([len(line) for line in lines], dtype=np.int64)])
+        numbers = chain.from_iterable(chain.from_iterable(lines))
+        flat = np.fromiter(numbers, dtype=np.float64, count=3 * int(starts[-1]))
+        return _Drawn(flat.reshape(-1, 3) - np.array(near), starts)
+
+    def vertices_within(self, reach_m: float) -> Floats:
+        """(k, 3): the places within reach in plan."""
+        return self.xyz[np.hypot(self.xyz[:, 0], self.xyz[:, 1]) <= reach_m]
+
+    def sides(self) -> tuple[Floats, NDArray[np.int64]]:
+        """The sides of all lines, (m, 2, 3), and the line of each."""
+        owner = np.repeat(np.arange(len(self.starts) - 1), np.diff(self.starts))
+        inside = owner[1:] == owner[:-1]
+        return np.stack([self.xyz[:-1], self.xyz[1:]], axis=1)[inside], owner[:-1][inside]
+
+    def extensions(self, reach_m: float) -> Iterator[tuple[int, Floats]]:
+        """The continuations, (2, 3) each, of open lines that end near the cursor."""
+        firsts, ends = self.starts[:-1], self.starts[1:]
+        chosen = np.flatnonzero(ends - firsts > 1)
+        corners = self.xyz[np.stack([firsts[chosen], ends[chosen] - 1])]
+        is_open = (corners[0] != corners[1]).any(axis=1)
+        may_reach = np.hypot(corners[..., 0], corners[..., 1]) <= EXTENSION_M + reach_m
+        for number in chosen[is_open & may_reach.any(axis=0)]:
+            xyz = self.xyz[firsts[number] : ends[number]]
+            for ordered in (xyz[::-1], xyz):
+                beyond = end_direction(Polyline(np.zeros(3), ordered))
+                if beyond is not None:
+                    direction, slope = beyond
+                    end = ordered[-1] + EXTENSION_M * np.append(direction, slope)
+                    yield int(number), np.stack([ordered[-1], end])
 
 
 @dataclass(frozen=True)
@@ -165,23 +209,15 @@ class _Nearby:
     is_extension: NDArray[np.bool_]
 
     @staticmethod
-    def of(drawn: Sequence[Polyline], reach_m: float) -> _Nearby:
+    def of(drawn: _Drawn, reach_m: float) -> _Nearby:
         """Collect what comes within reach in plan."""
-        parts: list[Floats] = []
-        owners: list[int] = []
-        extends: list[bool] = []
-        for number, line in enumerate(drawn):
-            own = np.stack([line.starts, line.ends], axis=1)
-            beyond = list(_extensions(line))
-            for sides, is_extension in ((own, False), *((side, True) for side in beyond)):
-                _, distances = nearest_fractions(sides[:, :, :2], np.zeros(2))
-                near = sides[distances <= reach_m]
-                parts.append(near)
-                owners += [number] * len(near)
-                extends += [is_extension] * len(near)
-        return _Nearby(
-            np.concatenate(parts), np.array(owners, np.int64), np.array(extends, np.bool_)
-        )
+        sides, owner = drawn.sides()
+        beyond = list(drawn.extensions(reach_m))
+        sides = np.concatenate([sides, *(side[None] for _, side in beyond)])
+        owner = np.concatenate([owner, np.array([line for line, _ in beyond], np.int64)])
+        is_extension = np.arange(len(sides)) >= len(sides) - len(beyond)
+        near = nearest_fractions(sides[:, :, :2], np.zeros(2))[1] <= reach_m
+        return _Nearby(sides[near], owner[near], is_extension[near])
 
     def nearest_of_lines(self) -> Iterator[Floats]:
         """The place nearest to the cursor on each line."""
@@ -226,15 +262,3 @@ class _Nearby:
         start, end = self.sides[side]
         place: Floats = start + fraction * (end - start)
         return place
-
-
-def _extensions(line: Polyline) -> Iterator[Floats]:
-    """The continuations of an open line beyond both ends: (1, 2, 3) each."""
-    if len(line.xyz) < 2 or bool((line.xyz[0] == line.xyz[-1]).all()):
-        return
-    for xyz in (line.xyz[::-1], line.xyz):
-        beyond = end_direction(Polyline(line.origin, xyz))
-        if beyond is not None:
-            direction, slope = beyond
-            end = xyz[-1] + EXTENSION_M * np.append(direction, slope)
-            yield np.stack([xyz[-1], end])[None]

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from processing.drafting.plan_sides import crossing_fractions, nearest_sides
+from processing.drafting.plan_sides import SideIndex, crossing_fractions
 from processing.drafting.polyline import SAME_PLACE_M, Polyline, said_place
 from processing.errors import Unsuitable
 from processing.project.feature import Position
@@ -235,7 +235,7 @@ def _perpendiculars(line: Polyline, along: Floats) -> tuple[Floats, Floats]:
 
 def _widths(places: Floats, normals: Floats, sides: Floats) -> Floats:
     """(k,): from places along their perpendiculars to the nearest of sides; inf where none is."""
-    nearest = nearest_sides(sides, places)[2]
+    nearest = SideIndex(sides).nearest(places)[2]
     # A line that turns away so far that the perpendicular is four times longer isn't beside it.
     arms = (_MOST_SKEW * nearest + SAME_PLACE_M)[:, None] * normals
     reaches = np.stack([places - arms, places + arms], axis=1)

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from processing.drafting.plan_sides import cross, nearest_fractions, nearest_sides
+from processing.drafting.plan_sides import SideIndex, cross, nearest_fractions
 from processing.drafting.polyline import Polyline, said_place
 from processing.errors import OutOfRange
 from processing.project.feature import Position
@@ -56,13 +56,14 @@ def parallel(
         raise _no_copy(positions)
     if distance_m == 0:
         return line.positions(line.xyz)
-    chains = list(_far_sides(_band(line, distance_m), line, distance_m))
+    index = SideIndex(line.plan_sides)
+    chains = list(_far_sides(_band(line, distance_m), line, index, distance_m))
     if not chains:
         raise _no_copy(positions)
     plan = max(chains, key=_length)
     if is_closed and (plan[0] == plan[-1]).all():
         plan = plan[:-1]
-    sides, fractions, _ = nearest_sides(line.plan_sides, plan)
+    sides, fractions, _ = index.nearest(plan)
     heights = line.between(sides, fractions)[:, 2]
     return line.positions(np.column_stack([plan, heights]))
 
@@ -139,19 +140,21 @@ def _band(line: Polyline, distance: float) -> shapely.Geometry:
     return shapely.union_all(np.concatenate([strips, shapely.polygons(corner_pieces)]))
 
 
-def _far_sides(band: shapely.Geometry, line: Polyline, distance: float) -> Iterator[Floats]:
+def _far_sides(
+    band: shapely.Geometry, line: Polyline, index: SideIndex, distance: float
+) -> Iterator[Floats]:
     """What bounds the strip but the line and the ends: (k, 2) each, in the line's direction."""
     for polygon in shapely.get_parts(shapely.orient_polygons(band)):
         for ring in (polygon.exterior, *polygon.interiors):
             # With the strip on its left a boundary runs against a line that has it on its left.
             places = shapely.get_coordinates(ring)[:: -1 if distance > 0 else 1]
-            yield from _runs_off(places, line, abs(distance))
+            yield from _runs_off(places, line, index, abs(distance))
 
 
-def _runs_off(ring: Floats, line: Polyline, distance: float) -> Iterator[Floats]:
+def _runs_off(ring: Floats, line: Polyline, index: SideIndex, distance: float) -> Iterator[Floats]:
     """The runs of a closed boundary that keep off the line and its ends."""
     middles = (ring[1:] + ring[:-1]) / 2
-    away = nearest_sides(line.plan_sides, middles)[2]
+    away = index.nearest(middles)[2]
     is_off = away > _JOINED_M
     if not line.is_closed:
         is_off &= ~_is_at_end(middles, line, distance)

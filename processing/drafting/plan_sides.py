@@ -13,7 +13,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _PARALLEL = 1e-12
-_BLOCK = 512
+_FIRST_BLOCK = 32
 
 
 def cross(one: Floats, other: Floats) -> Floats:
@@ -46,24 +46,35 @@ def nearest_fractions(sides: Floats, places: Floats) -> tuple[Floats, Floats]:
     return fractions, distances
 
 
-def nearest_sides(sides: Floats, places: Floats) -> tuple[Integers, Floats, Floats]:
-    """The side nearest to each of many places.
+class SideIndex:
+    """Sides sorted in plan, so that the one nearest to a place is found at once.
 
     Parameters
     ----------
     sides : (m, 2, 2) float64
-    places : (k, 2) float64
-
-    Returns
-    -------
-    sides : (k,) int64
-    fractions, distances : (k,) float64
     """
-    tree = shapely.STRtree(shapely.linestrings(sides))
-    _, found = tree.query_nearest(shapely.points(places), all_matches=False)
-    nearest = np.asarray(found, dtype=np.int64)
-    fractions, distances = nearest_fractions(sides[nearest], places)
-    return nearest, fractions, distances
+
+    def __init__(self, sides: Floats) -> None:
+        self._sides = sides
+        self._tree = shapely.STRtree(shapely.linestrings(sides))
+
+    def nearest(self, places: Floats) -> tuple[Integers, Floats, Floats]:
+        """The side nearest to each of many places.
+
+        Parameters
+        ----------
+        places : (k, 2) float64
+
+        Returns
+        -------
+        sides : (k,) int64
+        fractions, distances : (k,) float64
+            See :func:`nearest_fractions`.
+        """
+        _, found = self._tree.query_nearest(shapely.points(places), all_matches=False)
+        nearest = np.asarray(found, dtype=np.int64)
+        fractions, distances = nearest_fractions(self._sides[nearest], places)
+        return nearest, fractions, distances
 
 
 def meeting_pairs(sides: Floats, others: Floats) -> tuple[Integers, Integers]:
@@ -106,8 +117,10 @@ def first_meeting(sides: Floats, *, is_closed: bool) -> tuple[int, int] | None:
     shapes = shapely.linestrings(sides)
     tree = shapely.STRtree(shapes)
     ends = shapely.points(np.array([sides[0, 0], sides[-1, 1]]))
-    for start in range(0, count, _BLOCK):
-        one, other = tree.query(shapes[start : start + _BLOCK], predicate="intersects")
+    start, block = 0, _FIRST_BLOCK
+    while start < count:
+        # Small blocks first: a scribble meets itself at once, and thousands of times.
+        one, other = tree.query(shapes[start : start + block], predicate="intersects")
         one = one + start
         apart = other - one
         chosen = apart > 1
@@ -120,4 +133,5 @@ def first_meeting(sides: Floats, *, is_closed: bool) -> tuple[int, int] | None:
         if chosen.any():
             order = np.lexsort([other[chosen], one[chosen]])[0]
             return int(one[chosen][order]), int(other[chosen][order])
+        start, block = start + block, 2 * block
     return None
