@@ -1,0 +1,241 @@
+"""How well snapping and line following find the true curbs of a street.
+
+``python -m processing.score.lines_followed STREET_FOLDER… [--trajectory]`` imports every LAZ file
+of a street to a temporary place and writes one Markdown table. A street is a folder with LAZ
+files, ``trajectory.csv`` and ``truth/curbs.geojson``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import json
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from processing.image.edges import strongest_bend
+from processing.image.trace import trace
+from processing.monitor import SilentMonitor
+from processing.points.drive import Drive
+from processing.project.importing import ImportRequest, import_drives
+
+_Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
+
+_CLICKS, _ASIDE_PX = 400, 8
+_SNAPPED_M, _FOLLOWED_M = 0.02, 0.03
+_LEAST_LENGTH_M = 20.0
+_STEP_M = 0.005  # true lines are taken so densely that their steps add nothing to a distance
+_SEEN_M, _SEEN_POINTS = 0.10, 3  # a place is seen where so many points lie so near
+_HOLE_M = 1.0
+_JOINED_M = 0.6  # curbs and dropped curbs whose ends are this near are one line
+
+
+@dataclass(frozen=True)
+class TrueLine:
+    """One edge of one stretch of curb.
+
+    Attributes
+    ----------
+    edge, kind : str
+        ``lower`` or ``upper``; ``curb`` or ``dropped``.
+    xyz : (n, 3) float64
+        Every 5 mm, m.
+    is_covered : (n,) bool
+        Whether the truth says that points cover it there.
+    """
+
+    edge: str
+    kind: str
+    xyz: _Floats
+    is_covered: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Score:
+    """Shares of what was asked, and how long it took.
+
+    Attributes
+    ----------
+    what : str
+    asked : str
+        Number of clicks, or metres.
+    share : float
+    median_off_m : float
+    detail : str
+    """
+
+    what: str
+    asked: str
+    share: float
+    median_off_m: float
+    detail: str
+
+
+def main(arguments: list[str]) -> int:
+    """Score the streets named on the command line."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("streets", nargs="+", type=Path)
+    parser.add_argument("--trajectory", action="store_true", help="import with trajectory.csv")
+    chosen = parser.parse_args(arguments)
+    sys.stdout.write("| street | drive | what | asked | found | median off | detail |\n")
+    sys.stdout.write("|---|---|---|---|---|---|---|\n")
+    for street in chosen.streets:
+        lines = read_true_lines(street / "truth" / "curbs.geojson")
+        for cloud in sorted(street.glob("*.laz")):
+            trajectories = (street / "trajectory.csv",) if chosen.trajectory else ()
+            for score in _scores_of(cloud, trajectories, lines):
+                sys.stdout.write(
+                    f"| {street.name} | {cloud.stem} | {score.what} | {score.asked} "
+                    f"| {100 * score.share:.1f} % | {1000 * score.median_off_m:.1f} mm "
+                    f"| {score.detail} |\n"
+                )
+    return 0
+
+
+def read_true_lines(path: Path) -> list[TrueLine]:
+    """The edges of a street's curbs, in the order of the file."""
+    lines = []
+    for feature in json.loads(path.read_text(encoding="utf-8"))["features"]:
+        facts = feature["properties"]
+        places, along = _densely(np.array(feature["geometry"]["coordinates"], dtype=np.float64))
+        is_covered = np.zeros(along.size, np.bool_)
+        for section in facts["sections"]:
+            inside = (along >= section["u0"]) & (along <= section["u1"])
+            is_covered |= inside & (section["covered"] >= 0.9)
+        lines.append(TrueLine(facts["edge"], facts["type"], places, is_covered))
+    return lines
+
+
+def snapped_clicks(drive: Drive, lines: list[TrueLine], kind: str) -> Score:
+    """Clicks up to 8 pixels beside seen edges of one kind; how near the next edge they land."""
+    xyz = drive.xyz(slice(0, drive.count))
+    pulses = np.asarray(drive.columns["pulse"])
+    tree, edges = cKDTree(xyz), cKDTree(np.vstack([line.xyz for line in lines]))
+    of_kind = [line for line in lines if line.kind == kind]
+    places = np.vstack([line.xyz[_seen(tree, line.xyz) & line.is_covered] for line in of_kind])
+    random = np.random.default_rng(0)
+    off: list[float] = []
+    seconds: list[float] = []
+    while places.size and len(off) < _CLICKS:
+        nearest = int(tree.query(places[random.integers(len(places))])[1])
+        aside = pulses[nearest] + random.integers(-_ASIDE_PX, _ASIDE_PX + 1)
+        click = int(np.searchsorted(pulses, aside))
+        if click >= pulses.size or pulses[click] != aside:
+            continue
+        start = time.perf_counter()
+        found = strongest_bend(drive, click, _ASIDE_PX)
+        seconds.append(time.perf_counter() - start)
+        off.append(float(edges.query(xyz[found])[0]) if found >= 0 else np.inf)
+    if not off:
+        return Score(f"snap, {kind}", "0 clicks", np.nan, np.nan, "not seen")
+    offs = np.array(off)
+    detail = f"{100 * np.isinf(offs).mean():.1f} % without an edge; "
+    detail += (
+        f"{1000 * np.median(seconds):.1f} ms, 95 % within {1000 * np.quantile(seconds, 0.95):.1f}"
+    )
+    share = float((offs <= _SNAPPED_M).mean())
+    return Score(f"snap, {kind}", f"{len(off)} clicks", share, float(np.median(offs)), detail)
+
+
+def followed_lines(drive: Drive, lines: list[TrueLine], what: str) -> Score:
+    """Share of the length of lines that a trace between two clicks at their seen ends follows."""
+    xyz = drive.xyz(slice(0, drive.count))
+    tree = cKDTree(xyz)
+    length, good, number, whole, seconds = 0.0, 0.0, 0, 0, 0.0
+    off: list[_Floats] = []
+    for line in lines:
+        for stretch in _seen_stretches(_seen(tree, line.xyz)):
+            wanted = line.xyz[stretch]
+            start, end = (int(tree.query(place)[1]) for place in (wanted[0], wanted[-1]))
+            began = time.perf_counter()
+            traced = trace(drive, start, end)
+            seconds += time.perf_counter() - began
+            distances = _off_polyline(wanted, xyz[traced.points])
+            length += len(wanted) * _STEP_M
+            good += float((distances <= _FOLLOWED_M).sum()) * _STEP_M
+            number, whole = number + 1, whole + int(traced.is_complete)
+            off.append(distances)
+    if not number:
+        return Score(what, "0 m", np.nan, np.nan, "none so long is seen")
+    detail = f"{number} lines, {whole} to their end; {100 * seconds / length:.2f} s per 100 m"
+    median = float(np.median(np.concatenate(off)))
+    return Score(what, f"{length:.0f} m", good / length, median, detail)
+
+
+def _scores_of(
+    cloud: Path, trajectories: tuple[Path, ...], lines: list[TrueLine]
+) -> Iterator[Score]:
+    with tempfile.TemporaryDirectory(prefix="zuka-score-") as name:
+        request = ImportRequest((cloud,), trajectories)
+        for folder in import_drives(request, Path(name) / "drives", SilentMonitor()):
+            drive = Drive(folder)
+            yield snapped_clicks(drive, lines, "curb")
+            yield snapped_clicks(drive, lines, "dropped")
+            curbs = [line for line in lines if line.kind == "curb"]
+            yield followed_lines(drive, curbs, "trace, curbs of 20 m and more")
+            yield followed_lines(drive, _joined(lines), "trace, with dropped curbs between")
+
+
+def _joined(lines: list[TrueLine]) -> list[TrueLine]:
+    """Stretches of one edge that follow each other, as one line."""
+    joined: list[TrueLine] = []
+    for edge in ("lower", "upper"):
+        begun = False
+        for line in (line for line in lines if line.edge == edge):
+            last = joined[-1] if begun else None
+            if last is not None and np.linalg.norm(last.xyz[-1] - line.xyz[0]) <= _JOINED_M:
+                joined[-1] = TrueLine(
+                    edge,
+                    "joined",
+                    np.vstack([last.xyz, line.xyz]),
+                    np.concatenate([last.is_covered, line.is_covered]),
+                )
+            else:
+                joined.append(line)
+            begun = True
+    return [line for line in joined if line.kind == "joined"]
+
+
+def _densely(corners: _Floats) -> tuple[_Floats, _Floats]:
+    lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
+    ends = np.concatenate([[0.0], np.cumsum(lengths)])
+    along = np.arange(0.0, ends[-1], _STEP_M)
+    return np.column_stack([np.interp(along, ends, corners[:, k]) for k in range(3)]), along
+
+
+def _seen(tree: cKDTree, places: _Floats) -> NDArray[np.bool_]:
+    """Where this drive, not only the other scanner, has points on the edge."""
+    counts = tree.query_ball_point(places, _SEEN_M, return_length=True)
+    return np.asarray(counts >= _SEEN_POINTS)
+
+
+def _seen_stretches(is_seen: NDArray[np.bool_]) -> list[slice]:
+    """Stretches of 20 m and more without a hole of over a metre."""
+    seen = np.flatnonzero(is_seen)
+    parts = np.split(seen, np.flatnonzero(np.diff(seen) * _STEP_M > _HOLE_M) + 1)
+    spans = [slice(int(part[0]), int(part[-1]) + 1) for part in parts if part.size]
+    return [span for span in spans if (span.stop - span.start) * _STEP_M >= _LEAST_LENGTH_M]
+
+
+def _off_polyline(places: _Floats, corners: _Floats) -> _Floats:
+    if corners.shape[0] < 2:
+        return np.full(places.shape[0], np.inf)
+    best = np.full(places.shape[0], np.inf)
+    for start, end in itertools.pairwise(corners):
+        span, away = end - start, places - start
+        share = np.clip(away @ span / max(float(span @ span), 1e-12), 0.0, 1.0)
+        best = np.minimum(best, np.linalg.norm(away - share[:, None] * span, axis=1))
+    return best
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
