@@ -24,15 +24,18 @@ def adopt_catalogue(parts: WindowParts, path: Path) -> None:
     if comparison.loses_nothing or comparison.used_reshaped:
         parts.document.adopt_catalogue(path, keep_used=False)
         return
-    tr = QCoreApplication.translate
     box = QMessageBox(parts.window)
-    box.setWindowTitle(tr("CatalogueWish", "Use an office's catalogue"))
+    box.setWindowTitle(QCoreApplication.translate("CatalogueWish", "Use an office's catalogue"))
     box.setText(
-        tr("CatalogueWish", "The map uses kinds that the file doesn't have. Keep them with it?")
+        QCoreApplication.translate(
+            "CatalogueWish", "The map uses kinds that the file doesn't have. Keep them with it?"
+        )
     )
     lines = [text.spoken(parts.language) for text in comparison.texts()]
     box.setInformativeText("\n".join(lines))
-    keep = box.addButton(tr("CatalogueWish", "Keep them"), QMessageBox.ButtonRole.AcceptRole)
+    keep = box.addButton(
+        QCoreApplication.translate("CatalogueWish", "Keep them"), QMessageBox.ButtonRole.AcceptRole
+    )
     box.addButton(QMessageBox.StandardButton.Cancel)
 
     def decide() -> None:

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.actions.action import Action
+from app.actions.action import NOTHING, Action
 from app.map_edits import MapEdits
 from app.window_parts import WindowParts
 from processing.project.feature import Feature, Status
 from processing.text import Text
 
-SIMPLIFY_M = 0.01
-"""What a vertex may be off the line and still be taken out: the accuracy of a good point."""
+TOLERANCES_CM = (1, 2, 5, 10)
+"""What a vertex may be off the line and still go; the first is a good point's accuracy."""
 
 _STATUSES = (
     (Status.ACCEPTED, Text("Accept", "採用"), "Ctrl+Return"),
@@ -80,7 +80,7 @@ def _clipboard(edits: MapEdits) -> tuple[Action, ...]:
                 "別の座標系のプロジェクトにも貼り付けられます。",
             ),
         ),
-        _action("cut", Text("Cut", "切り取り"), edits.cut, "Ctrl+X", Text("", "")),
+        _action("cut", Text("Cut", "切り取り"), edits.cut, "Ctrl+X", NOTHING),
         _action(
             "paste",
             Text("Paste", "貼り付け"),
@@ -96,7 +96,7 @@ def _clipboard(edits: MapEdits) -> tuple[Action, ...]:
             Text("Delete the selected features", "選択した地物を削除"),
             edits.delete,
             "",
-            Text("", ""),
+            NOTHING,
         ),
     )
 
@@ -114,50 +114,24 @@ def _selections(parts: WindowParts, edits: MapEdits) -> tuple[Action, ...]:
     def like(alike: Callable[[Feature, Feature], bool]) -> Callable[[], None]:
         return lambda: edits.select_like(alike)
 
-    nothing = Text("", "")
-    menu = "edit/select"
     return (
-        _action(
-            "select-all",
-            Text("All features", "すべての地物"),
-            edits.select_all,
-            "Ctrl+A",
-            nothing,
-            menu,
-        ),
-        _action(
+        _selecting("select-all", Text("All features", "すべての地物"), edits.select_all, "Ctrl+A"),
+        _selecting(
             "select-none",
             Text("Nothing", "選択を解除"),
             parts.document.shared.selection.clear,
             "Ctrl+Shift+A",
-            nothing,
-            menu,
         ),
-        _action(
-            "select-kind",
-            Text("Of the same kind", "同じ種類"),
-            like(same_kind),
-            "Ctrl+Shift+K",
-            nothing,
-            menu,
+        _selecting(
+            "select-kind", Text("Of the same kind", "同じ種類"), like(same_kind), "Ctrl+Shift+K"
         ),
-        _action(
-            "select-status",
-            Text("Of the same status", "同じ状態"),
-            like(same_status),
-            "",
-            nothing,
-            menu,
-        ),
-        _action(
+        _selecting("select-status", Text("Of the same status", "同じ状態"), like(same_status)),
+        _selecting(
             "select-attributes",
             Text("With the same attributes", "同じ属性"),
             like(same_attributes),
-            "",
-            nothing,
-            menu,
         ),
-        _action(
+        _selecting(
             "select-occluded",
             Text("With vertices without a measured point", "計測点のない頂点を持つ地物"),
             edits.select_occluded,
@@ -166,19 +140,13 @@ def _selections(parts: WindowParts, edits: MapEdits) -> tuple[Action, ...]:
                 "Their heights come from neighbours; they are shown hollow.",
                 "高さを周囲から補った頂点です。白抜きで表示されます。",
             ),
-            menu,
         ),
     )
 
 
 def _line_edits(edits: MapEdits) -> tuple[Action, ...]:
-    def simplify() -> None:
-        edits.simplify(SIMPLIFY_M)
-
-    menu = "edit/lines"
-    nothing = Text("", "")
     return (
-        _action(
+        _of_lines(
             "join",
             Text("Join", "結合"),
             edits.join,
@@ -187,23 +155,27 @@ def _line_edits(edits: MapEdits) -> tuple[Action, ...]:
                 "Makes one line of several, at their nearest ends.",
                 "近い端どうしをつないで1本にします。",
             ),
-            menu,
         ),
-        _action("reverse", Text("Reverse", "向きを反転"), edits.reverse, "Shift+V", nothing, menu),
-        _action(
-            "simplify",
-            Text("Simplify (1 cm)", "単純化（1 cm）"),
-            simplify,
-            "Ctrl+M",
-            Text(
-                "Takes out vertices that are less than 1 cm off the line between others.",
-                "前後を結ぶ線から1 cm以内の頂点を取り除きます。",
-            ),
-            menu,
-        ),
-        _action("close-lines", Text("Close", "閉じる"), edits.close, "", nothing, menu),
-        _action("open-lines", Text("Open", "開く"), edits.open, "", nothing, menu),
+        _of_lines("reverse", Text("Reverse", "向きを反転"), edits.reverse, "Shift+V"),
+        _of_lines("close-lines", Text("Close", "閉じる"), edits.close),
+        _of_lines("open-lines", Text("Open", "開く"), edits.open),
+        *(_simplifying(edits, tolerance_cm) for tolerance_cm in TOLERANCES_CM),
     )
+
+
+def _simplifying(edits: MapEdits, tolerance_cm: int) -> Action:
+    def simplify() -> None:
+        edits.simplify(tolerance_cm / 100)
+
+    text = Text("Simplify to {cm} cm", "単純化（許容値 {cm} cm）").filled(cm=tolerance_cm)
+    hint = Text(
+        "Takes out vertices that lie less than {cm} cm off the line between others.",
+        "前後を結ぶ線から{cm} cm以内の頂点を取り除きます。",
+    ).filled(cm=tolerance_cm)
+    is_first = tolerance_cm == TOLERANCES_CM[0]
+    key = "Ctrl+M" if is_first else ""
+    id_ = "simplify" if is_first else f"simplify-{tolerance_cm}"
+    return _of_lines(id_, text, simplify, key, hint)
 
 
 def _statuses(edits: MapEdits) -> tuple[Action, ...]:
@@ -212,13 +184,36 @@ def _statuses(edits: MapEdits) -> tuple[Action, ...]:
 
     return tuple(
         _action(
-            f"status-{status.value}", name, setting(status, name), key, Text("", ""), "edit/status"
+            f"status-{status.value}",
+            name,
+            setting(status, name),
+            key,
+            NOTHING,
+            menu="edit/status",
         )
         for status, name, key in _STATUSES
     )
 
 
+def _of_lines(
+    id_: str, text: Text, run: Callable[[], object], key: str = "", hint: Text = NOTHING
+) -> Action:
+    return _action(id_, text, run, key, hint, menu="edit/lines")
+
+
+def _selecting(
+    id_: str, text: Text, run: Callable[[], object], key: str = "", hint: Text = NOTHING
+) -> Action:
+    return _action(id_, text, run, key, hint, menu="edit/select")
+
+
 def _action(
-    id_: str, text: Text, run: Callable[[], object], key: str, hint: Text, menu: str = "edit"
+    id_: str,
+    text: Text,
+    run: Callable[[], object],
+    key: str,
+    hint: Text,
+    *,
+    menu: str = "edit",
 ) -> Action:
     return Action(id_, text, run, menu, (key,) if key else (), hint=hint, needs_project=True)

@@ -176,8 +176,9 @@ class FileActions:
     def choose_catalogue(self) -> None:
         """Ask for a catalogue file and use it in the project."""
         title = QCoreApplication.translate("FileActions", "Use an office's catalogue")
+        files = QCoreApplication.translate("FileActions", "Catalogues (*.toml)")
         name, _ = QFileDialog.getOpenFileName(
-            self._parts.window, title, str(self._projects_folder), "TOML (*.toml)"
+            self._parts.window, title, str(self._projects_folder), files
         )
         if name:
             adopt_catalogue(self._parts, Path(name))
@@ -185,11 +186,12 @@ class FileActions:
     def choose_catalogue_copy(self) -> None:
         """Ask where the project's catalogue is to be written."""
         title = QCoreApplication.translate("FileActions", "Write the catalogue")
+        files = QCoreApplication.translate("FileActions", "Catalogues (*.toml)")
         name, _ = QFileDialog.getSaveFileName(
             self._parts.window,
             title,
             str(self._projects_folder / "catalogue.toml"),
-            "TOML (*.toml)",
+            files,
         )
         if name:
             self._parts.document.export_catalogue(Path(name))

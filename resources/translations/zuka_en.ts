@@ -2,7 +2,7 @@
 <!DOCTYPE TS>
 <TS version="2.1" language="en" sourcelanguage="en">
 <context>
-    <name>AttributePanel</name>
+    <name>AttributeForm</name>
     <message numerus="yes">
         <source>%n feature(s)</source>
         <translation>

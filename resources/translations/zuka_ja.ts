@@ -4,24 +4,20 @@
 <context>
     <name>AttributeEditor</name>
     <message>
+        <source>(several values)</source>
+        <translation>（複数の値）</translation>
+    </message>
+    <message>
+        <source>Empty this field of all selected features</source>
+        <translation>選択したすべての地物でこの項目を空にします</translation>
+    </message>
+    <message>
         <source>YYYY-MM-DD</source>
         <translation>YYYY-MM-DD</translation>
     </message>
 </context>
 <context>
-    <name>AttributePanel</name>
-    <message>
-        <source>Choose a feature to see what is known about it.</source>
-        <translation>地物を選択すると、その属性を表示します。</translation>
-    </message>
-    <message>
-        <source>Status</source>
-        <translation>状態</translation>
-    </message>
-    <message>
-        <source>Confidence</source>
-        <translation>信頼度</translation>
-    </message>
+    <name>AttributeForm</name>
     <message numerus="yes">
         <source>%n feature(s)</source>
         <translation>
@@ -30,7 +26,45 @@
     </message>
     <message>
         <source>Kind</source>
-        <translation>種類</translation>
+        <translation>種別</translation>
+    </message>
+    <message>
+        <source>Status</source>
+        <translation>状態</translation>
+    </message>
+    <message>
+        <source>(several kinds)</source>
+        <translation>（複数の種別）</translation>
+    </message>
+    <message>
+        <source>(several values)</source>
+        <translation>（複数の値）</translation>
+    </message>
+    <message>
+        <source>Confidence</source>
+        <translation>信頼度</translation>
+    </message>
+</context>
+<context>
+    <name>AttributePanel</name>
+    <message>
+        <source>Choose a feature to see what is known about it.</source>
+        <translation>地物を選択すると、その属性を表示します。</translation>
+    </message>
+</context>
+<context>
+    <name>CatalogueWish</name>
+    <message>
+        <source>Use an office&apos;s catalogue</source>
+        <translation>事務所のカタログを使う</translation>
+    </message>
+    <message>
+        <source>The map uses kinds that the file doesn&apos;t have. Keep them with it?</source>
+        <translation>図面で使用中の種別がこのファイルにありません。その種別を残して使用しますか。</translation>
+    </message>
+    <message>
+        <source>Keep them</source>
+        <translation>残して使用</translation>
     </message>
 </context>
 <context>
@@ -42,6 +76,21 @@
     <message>
         <source>Type part of a name</source>
         <translation>名前の一部を入力</translation>
+    </message>
+</context>
+<context>
+    <name>DrawingBar</name>
+    <message>
+        <source>What is drawn: choose by name (Ctrl+K) or number key</source>
+        <translation>作図する種別。名前（Ctrl+K）または数字キーで選びます</translation>
+    </message>
+    <message>
+        <source>What clicks snap to (Alt+1 to Alt+7)</source>
+        <translation>クリックの吸着先（Alt+1～Alt+7で切替）</translation>
+    </message>
+    <message>
+        <source>Distance of the parallel copy; 0: where the mouse is</source>
+        <translation>平行複写の距離（0はマウスの位置）</translation>
     </message>
 </context>
 <context>
@@ -107,10 +156,127 @@
     </message>
 </context>
 <context>
+    <name>FeatureFilter</name>
+    <message>
+        <source>Search</source>
+        <translation>検索</translation>
+    </message>
+    <message>
+        <source>Words in kinds, layers, attributes; the beginning of an id</source>
+        <translation>種別・レイヤ・属性に含まれる語、またはIDの先頭</translation>
+    </message>
+    <message>
+        <source>Kind of the features</source>
+        <translation>地物の種別</translation>
+    </message>
+    <message>
+        <source>Status of the features</source>
+        <translation>地物の状態</translation>
+    </message>
+    <message>
+        <source>Occluded</source>
+        <translation>点なし頂点あり</translation>
+    </message>
+    <message>
+        <source>Only features that have vertices without a measured point</source>
+        <translation>計測点のない頂点をもつ地物だけを表示します</translation>
+    </message>
+    <message>
+        <source>Attribute that is compared</source>
+        <translation>条件にする属性</translation>
+    </message>
+    <message>
+        <source>How the attribute is compared</source>
+        <translation>属性の比較方法</translation>
+    </message>
+    <message>
+        <source>Value</source>
+        <translation>値</translation>
+    </message>
+    <message>
+        <source>Select shown</source>
+        <translation>表示中を選択</translation>
+    </message>
+    <message>
+        <source>Select the features of all rows; with Shift in addition</source>
+        <translation>表示中のすべての行の地物を選択します（Shiftで追加選択）</translation>
+    </message>
+    <message>
+        <source>All kinds</source>
+        <translation>すべての種別</translation>
+    </message>
+    <message>
+        <source>{shown} of {total} features shown</source>
+        <translation>{total}個中{shown}個の地物を表示</translation>
+    </message>
+    <message>
+        <source>Any status</source>
+        <translation>すべての状態</translation>
+    </message>
+    <message>
+        <source>Any attribute</source>
+        <translation>属性条件なし</translation>
+    </message>
+</context>
+<context>
+    <name>FeatureMenu</name>
+    <message>
+        <source>Go there</source>
+        <translation>この地物へ移動</translation>
+    </message>
+    <message>
+        <source>Select all of this kind</source>
+        <translation>同じ種別をすべて選択</translation>
+    </message>
+    <message>
+        <source>Accept</source>
+        <translation>採用</translation>
+    </message>
+    <message>
+        <source>Reject</source>
+        <translation>却下</translation>
+    </message>
+    <message>
+        <source>Make a candidate</source>
+        <translation>候補に戻す</translation>
+    </message>
+    <message>
+        <source>Delete</source>
+        <translation>削除</translation>
+    </message>
+    <message>
+        <source>Change kind to</source>
+        <translation>種別の変更</translation>
+    </message>
+</context>
+<context>
+    <name>FeatureTable</name>
+    <message>
+        <source>No feature fits the filter.</source>
+        <translation>条件に合う地物はありません。</translation>
+    </message>
+    <message>
+        <source>Features appear here once something is drawn.</source>
+        <translation>作図すると、ここに地物の一覧が表示されます。</translation>
+    </message>
+</context>
+<context>
     <name>FileActions</name>
     <message>
         <source>Open project</source>
         <translation>プロジェクトを開く</translation>
+    </message>
+    <message>
+        <source>Use an office&apos;s catalogue</source>
+        <translation>事務所のカタログを使う</translation>
+    </message>
+    <message>
+        <source>Catalogues (*.toml)</source>
+        <translation>カタログ (*.toml)</translation>
+    </message>
+    <message>
+        <source>Write the catalogue</source>
+        <translation>カタログの書き出し</translation>
     </message>
 </context>
 <context>
@@ -138,6 +304,21 @@
     <message>
         <source>Contrast</source>
         <translation>コントラスト</translation>
+    </message>
+</context>
+<context>
+    <name>ImageView</name>
+    <message>
+        <source>Show everything</source>
+        <translation>全体を表示</translation>
+    </message>
+    <message>
+        <source>One pixel as one pixel</source>
+        <translation>画像の1画素を画面の1画素で表示</translation>
+    </message>
+    <message>
+        <source>Centre on the selection</source>
+        <translation>選択位置を中央に表示</translation>
     </message>
 </context>
 <context>
@@ -248,6 +429,21 @@
     <message>
         <source>The whole recording; click or drag to go there</source>
         <translation>計測データ全体。クリックまたはドラッグでその位置へ移動します</translation>
+    </message>
+</context>
+<context>
+    <name>OccludedRow</name>
+    <message>
+        <source>Next</source>
+        <translation>次へ</translation>
+    </message>
+    <message>
+        <source>Move the cursor to the next vertex without a measured point</source>
+        <translation>計測点のない次の頂点へカーソルを移動します</translation>
+    </message>
+    <message>
+        <source>{count} of {total} vertices without a measured point</source>
+        <translation>計測点のない頂点: {total}点中{count}点</translation>
     </message>
 </context>
 <context>
@@ -370,6 +566,18 @@
 <context>
     <name>SceneView</name>
     <message>
+        <source>The recording appears here in three dimensions once one is open.</source>
+        <translation>計測データを開くと、ここに3次元で表示します。</translation>
+    </message>
+    <message>
+        <source>The 3D view is starting.</source>
+        <translation>3Dビューを起動しています。</translation>
+    </message>
+    <message>
+        <source>Points are being loaded.</source>
+        <translation>点を読み込んでいます。</translation>
+    </message>
+    <message>
         <source>Along the drive</source>
         <translation>走行方向</translation>
     </message>
@@ -389,17 +597,72 @@
         <source>Shade by depth (eye-dome lighting)</source>
         <translation>奥行きの陰影（Eye-Dome Lighting）</translation>
     </message>
+</context>
+<context>
+    <name>ShortcutsForm</name>
     <message>
-        <source>The recording appears here in three dimensions once one is open.</source>
-        <translation>計測データを開くと、ここに3次元で表示します。</translation>
+        <source>Keyboard shortcuts</source>
+        <translation>キーボードショートカット</translation>
     </message>
     <message>
-        <source>The 3D view is starting.</source>
-        <translation>3Dビューを起動しています。</translation>
+        <source>Search by name, menu or key</source>
+        <translation>名前・メニュー・キーで検索</translation>
     </message>
     <message>
-        <source>Points are being loaded.</source>
-        <translation>点を読み込んでいます。</translation>
+        <source>Name</source>
+        <translation>名前</translation>
+    </message>
+    <message>
+        <source>Menu</source>
+        <translation>メニュー</translation>
+    </message>
+    <message>
+        <source>Key</source>
+        <translation>キー</translation>
+    </message>
+    <message>
+        <source>Use it here</source>
+        <translation>このキーを使う</translation>
+    </message>
+    <message>
+        <source>No key</source>
+        <translation>キーなし</translation>
+    </message>
+    <message>
+        <source>Reset this one</source>
+        <translation>この項目を初期値に戻す</translation>
+    </message>
+    <message>
+        <source>Reset all</source>
+        <translation>すべて初期値に戻す</translation>
+    </message>
+    <message>
+        <source>Save the list…</source>
+        <translation>一覧を保存…</translation>
+    </message>
+    <message>
+        <source>New key</source>
+        <translation>新しいキー</translation>
+    </message>
+    <message>
+        <source>Choose a command, then press its new key.</source>
+        <translation>コマンドを選び、新しいキーを押してください。</translation>
+    </message>
+    <message>
+        <source>This is the same in every view and can&apos;t be changed.</source>
+        <translation>すべてのビューで共通の操作のため、変更できません。</translation>
+    </message>
+    <message>
+        <source>Press the new key for: {name}</source>
+        <translation>「{name}」の新しいキーを押してください。</translation>
+    </message>
+    <message>
+        <source>Save the list</source>
+        <translation>一覧を保存</translation>
+    </message>
+    <message>
+        <source>Tables (*.csv)</source>
+        <translation>表 (*.csv)</translation>
     </message>
 </context>
 <context>
@@ -417,6 +680,14 @@
         <translation>まだプロジェクトを開いていません。</translation>
     </message>
     <message>
+        <source>Remove from the list</source>
+        <translation>一覧から削除</translation>
+    </message>
+    <message>
+        <source>not found</source>
+        <translation>見つかりません</translation>
+    </message>
+    <message>
         <source>Zuka</source>
         <translation>Zuka（図化）</translation>
     </message>
@@ -429,7 +700,7 @@
         <translation>プロジェクトを開く…</translation>
     </message>
     <message>
-        <source>Demo street</source>
+        <source>Sample street</source>
         <translation>サンプル街路</translation>
     </message>
 </context>
@@ -473,6 +744,13 @@
     <message>
         <source>cancelled</source>
         <translation>中止</translation>
+    </message>
+</context>
+<context>
+    <name>parts.window</name>
+    <message>
+        <source>What to draw</source>
+        <translation>作図する種別</translation>
     </message>
 </context>
 </TS>

@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from app.jobs import JobQueue, Lane, JobState
+from app.jobs import JobQueue, JobState, Lane
 from processing.errors import BadFile
 from processing.text import Text
 

@@ -20,6 +20,7 @@ PROCESSING_THAT_IS_NO_METHOD = {
     "image",
     "cameras",
     "project",
+    "drafting",
     "formats",
     "simulate",
     "score",

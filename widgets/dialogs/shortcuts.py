@@ -26,6 +26,7 @@ from PySide6.QtWidgets import (
 
 _NAME, _MENU, _KEYS = range(3)
 _ROW = Qt.ItemDataRole.UserRole
+_FILE = "zuka-keys.csv"
 _PORTABLE = QKeySequence.SequenceFormat.PortableText
 
 
@@ -264,7 +265,7 @@ class ShortcutsForm(QDialog):
 
     def _on_save_clicked(self) -> None:
         name, _ = QFileDialog.getSaveFileName(
-            self, self.tr("Save the list"), "zuka-keys.csv", self.tr("Tables (*.csv)")
+            self, self.tr("Save the list"), _FILE, self.tr("Tables (*.csv)")
         )
         if name:
             self.save_requested.emit(Path(name))

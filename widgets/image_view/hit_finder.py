@@ -22,6 +22,7 @@ from widgets.mouse_tools.gesture import REACH_PX
 from widgets.mouse_tools.mouse_tool import Boxed, Hit, Ray
 from widgets.shared.cursor import Place
 from widgets.shared.outlines import are_inside, is_rectangle
+from widgets.shared.snap_state import SnapState
 
 Floats = NDArray[np.float64]
 
@@ -63,21 +64,20 @@ class HitFinder:
     Parameters
     ----------
     overlay : FeatureOverlay
+    snap : SnapState
 
     Attributes
     ----------
     picture : Picture or None
         What is shown; the view keeps it up to date, as the viewport.
     viewport : Viewport
-    needs_rays : bool
-        Whether hits tell the line of sight, which only a working plane asks for.
     """
 
-    def __init__(self, overlay: FeatureOverlay) -> None:
+    def __init__(self, overlay: FeatureOverlay, snap: SnapState) -> None:
         self._overlay = overlay
+        self._snap = snap
         self.picture: Picture | None = None
         self.viewport = Viewport()
-        self.needs_rays = False
 
     def exact_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
         """What is under a position; vertices go before segments, chosen features before others."""
@@ -94,7 +94,8 @@ class HitFinder:
             segment,
             modifiers,
             reach_m=_reach_m(picture, viewport),
-            ray=self._ray(picture, position) if self.needs_rays else None,
+            # Only a working plane asks for the line of sight, which takes half a millisecond.
+            ray=None if self._snap.plane is None else self._ray(picture, position),
         )
 
     def quick_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:

@@ -90,7 +90,7 @@ class ImageView(QWidget):
         self._images = TileImages(tiles)
         self._places = FeaturePlaces(source)
         self._overlay = FeatureOverlay(self._places)
-        self._hits = HitFinder(self._overlay)
+        self._hits = HitFinder(self._overlay, shared.snap)
         self._gesture = Gesture(self._hits, shared.cursor)
         self._navigation = Navigation()
         self._cursor = ShownCursor()
@@ -124,7 +124,6 @@ class ImageView(QWidget):
         shared.view_settings.hidden_kinds_changed.connect(self._on_settings_hidden_kinds_changed)
         shared.sketch.changed.connect(self.update)
         shared.snap.mark_changed.connect(self.update)
-        shared.snap.plane_changed.connect(self._on_snap_plane_changed)
 
     # What others ask.
 
@@ -358,9 +357,6 @@ class ImageView(QWidget):
         self._overlay.hidden_kinds = self._shared.view_settings.hidden_kinds
         self.update()
 
-    def _on_snap_plane_changed(self) -> None:
-        self._hits.needs_rays = self._shared.snap.plane is not None
-
     def _on_minimap_place_chosen(self, u: float) -> None:
         self._look_through(self._viewport.centred_on(u, self._viewport.centre[1]))
 
@@ -399,7 +395,5 @@ class ImageView(QWidget):
         return None if picture is None else picture.plan_position(*self._viewport.centre)
 
     def _show_mouse(self) -> None:
-        shape = Qt.CursorShape.ArrowCursor
-        if self._picture is not None:
-            shape = self._navigation.mouse_shape
-        self.setCursor(shape)
+        is_empty = self._picture is None
+        self.setCursor(Qt.CursorShape.ArrowCursor if is_empty else self._navigation.mouse_shape)

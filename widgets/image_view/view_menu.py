@@ -16,9 +16,10 @@ def view_menu(
 ) -> QMenu:
     """What one can look at; it goes when it was closed."""
     menu = QMenu(view)
-    tr = QCoreApplication.translate
-    menu.addAction(tr("ImageView", "Show everything"), show_everything)
-    menu.addAction(tr("ImageView", "One pixel as one pixel"), show_one_to_one)
-    menu.addAction(tr("ImageView", "Centre on the selection"), center)
+    menu.addAction(QCoreApplication.translate("ImageView", "Show everything"), show_everything)
+    menu.addAction(
+        QCoreApplication.translate("ImageView", "One pixel as one pixel"), show_one_to_one
+    )
+    menu.addAction(QCoreApplication.translate("ImageView", "Centre on the selection"), center)
     menu.aboutToHide.connect(menu.deleteLater)
     return menu

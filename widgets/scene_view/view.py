@@ -197,10 +197,6 @@ class SceneView(QWidget):
             self._size_points()
         self._paint_overlay()
 
-    @property
-    def _is_shading_wanted(self) -> bool:
-        return self._cloud is not None and self._cloud.is_shading_wanted
-
     def set_shading(self, *, is_on: bool) -> None:
         """Turn eye-dome lighting on or off."""
         if self._cloud is not None:
@@ -329,7 +325,8 @@ class SceneView(QWidget):
             self._stage.redraw()
 
     def _on_hand_menu_requested(self, where: QPointF) -> None:
-        menu = view_menu(self, self, is_shading_wanted=self._is_shading_wanted)
+        is_shaded = self._cloud is not None and self._cloud.is_shading_wanted
+        menu = view_menu(self, self, is_shading_wanted=is_shaded)
         hit = self._hits.exact_hit(where, Qt.KeyboardModifier.NoModifier)
         self.menu_requested.emit(MenuWish(menu, self.mapToGlobal(where.toPoint()), hit))
 

@@ -34,13 +34,18 @@ def view_menu(parent: QWidget, view: Looking, *, is_shading_wanted: bool) -> QMe
         view.set_shading(is_on=is_on)
 
     menu = QMenu(parent)
-    tr = QCoreApplication.translate
-    menu.addAction(tr("SceneView", "Along the drive"), view.look_along_drive)
-    menu.addAction(tr("SceneView", "From above"), view.look_from_above)
-    menu.addAction(tr("SceneView", "Show everything"), view.show_everything)
-    menu.addAction(tr("SceneView", "Centre on the selection"), view.center_on_selection)
+    menu.addAction(
+        QCoreApplication.translate("SceneView", "Along the drive"), view.look_along_drive
+    )
+    menu.addAction(QCoreApplication.translate("SceneView", "From above"), view.look_from_above)
+    menu.addAction(QCoreApplication.translate("SceneView", "Show everything"), view.show_everything)
+    menu.addAction(
+        QCoreApplication.translate("SceneView", "Centre on the selection"), view.center_on_selection
+    )
     menu.addSeparator()
-    shading = menu.addAction(tr("SceneView", "Shade by depth (eye-dome lighting)"))
+    shading = menu.addAction(
+        QCoreApplication.translate("SceneView", "Shade by depth (eye-dome lighting)")
+    )
     shading.setCheckable(True)
     shading.setChecked(is_shading_wanted)
     shading.toggled.connect(shade)

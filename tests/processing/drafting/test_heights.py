@@ -120,6 +120,13 @@ def test_on_a_curbs_edge_the_given_height_decides(tmp_path: Path) -> None:
     assert np.abs(heights_of(upper) - 0.15).max() < 0.02
 
 
+def test_an_embankment_is_followed_up_its_slope(tmp_path: Path) -> None:
+    drive = surface(tmp_path / "a", plane(13, slope=(0.0, 0.6)))
+    given = places(*((5.0, y, 0.6 * y + 0.1) for y in np.linspace(1, 5, 60)))
+    truth = 0.6 * local(given)[:, 1]
+    assert np.abs(heights_of(grounded(given, [drive])) - truth).max() < 0.01
+
+
 def test_leaves_above_the_road_dont_lift_the_line(tmp_path: Path) -> None:
     cloud = plane(6, slope=(0.05, 0.0))
     random = np.random.default_rng(7)

@@ -292,7 +292,9 @@ def test_shift_holds_the_direction_or_the_one_across() -> None:
 
 
 def test_a_sign_is_turned_by_dragging() -> None:
-    kind = replace(KINDS["pole"], attributes=(AttributeField("facing_deg", Text.same("f"), "number"),))
+    kind = replace(
+        KINDS["pole"], attributes=(AttributeField("facing_deg", Text.same("f"), "number"),)
+    )
     desk = Desk(point_tool)
     desk.tool.set_kind(kind)
     desk.tool.press(Hit(Place((0.0, 0.0, 1.0))))

@@ -112,7 +112,7 @@ def test_a_pointer_snaps_to_nothing() -> None:
     desk = Desk()
     desk.line((0.0, 0.0, 5.0), (10.0, 0.0, 5.0))
     tool = path_tool(desk.map, Geometry.LINE)
-    tool._kind = None  # noqa: SLF001 - as before a kind was chosen
+    tool._kind = None  # as before a kind was chosen
     desk.hand.tool = tool
     assert _xyz(desk.at(9.9, 0.1, 5.0)) == (9.9, 0.1, 5.0)
 
@@ -144,7 +144,10 @@ def test_lowest_and_highest_points_of_the_circle(left_drive: Drive) -> None:
     xyz = left_drive.xyz(slice(0, left_drive.count))
     point = left_drive.count // 2
     near = np.hypot(*(xyz - xyz[point])[:, :2].T) <= REACH_M
-    for mode, limit in ((SnapMode.LOWEST, xyz[near, 2].min()), (SnapMode.HIGHEST, xyz[near, 2].max())):
+    for mode, limit in (
+        (SnapMode.LOWEST, xyz[near, 2].min()),
+        (SnapMode.HIGHEST, xyz[near, 2].max()),
+    ):
         desk.snap.choose_modes(frozenset({mode}))
         snapped = desk.hand.snapped(Hit(place_on(left_drive, point), reach_m=REACH_M))
         assert _xyz(snapped)[2] == pytest.approx(limit, abs=0.02)

@@ -6,72 +6,40 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 import pytest
-from PySide6.QtCore import QEvent, QPoint, Qt
-from PySide6.QtGui import QAction, QKeyEvent
+from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
-    QApplication,
     QCheckBox,
-    QComboBox,
-    QLabel,
-    QLineEdit,
-    QMenu,
     QPushButton,
-    QTableView,
 )
 from pytestqt.qtbot import QtBot
 
-from processing.project.catalogue import AttributeField, Catalogue, FeatureKind, Geometry
-from processing.project.change import Change, Replacement
-from processing.project.feature import AttributeValue, Feature, Provenance, Status, Vertex
+from processing.project.change import Change
+from processing.project.feature import Provenance, Status, Vertex
 from processing.text import Text
-from tests.widgets.builders import KINDS, OpenMap
+from tests.widgets.builders import OpenMap
+from tests.widgets.panels.table_hand import (
+    LEFT,
+    NONE,
+    SHIFT,
+    MapWithPoles,
+    cells,
+    change,
+    choose,
+    click_row,
+    column,
+    curb,
+    draw,
+    middle_of,
+    pick,
+    pole,
+    rows_in,
+    type_words,
+    written,
+)
 from widgets.panels.feature_table import FeatureTable
 from widgets.panels.feature_table_model import MOST_SINGLE_CHANGES
 from widgets.shared.cursor import Place
-
-NONE = Qt.KeyboardModifier.NoModifier
-SHIFT = Qt.KeyboardModifier.ShiftModifier
-LEFT = Qt.MouseButton.LeftButton
-
-POLE = FeatureKind(
-    "pole",
-    Text("Pole", "電柱"),
-    Geometry.POINT,
-    "",
-    "poles",
-    "#009e73",
-    96,
-    attributes=(
-        AttributeField("number", Text("Number", "番号"), "text"),
-        AttributeField("height_m", Text("Height", "高さ"), "number", "m"),
-    ),
-)
-SIGN = FeatureKind("sign", Text("Sign", "道路標識"), Geometry.POINT, "", "sign", "#cc79a7", 6)
-
-
-class MapWithPoles(OpenMap):
-    def catalogue(self) -> Catalogue:
-        return CATALOGUE
-
-
-CATALOGUE = Catalogue((*(kind for kind in KINDS if kind.id != "pole"), POLE, SIGN))
-
-
-def pole(number: int, **fields: object) -> Feature:
-    place = Vertex((float(number), 0.0, 5.0))
-    attributes: dict[str, AttributeValue] = {
-        "number": f"No. {number}",
-        "height_m": float(number),
-    }
-    feature = Feature(f"pole-{number:05}", "pole", Geometry.POINT, (place,), attributes)
-    return replace(feature, **fields)  # type: ignore[arg-type]
-
-
-def curb(name: str, length_m: float, **fields: object) -> Feature:
-    ends = Vertex((-11_000.0, -35_000.0, 5.0)), Vertex((-11_000.0 + length_m, -35_000.0, 5.0))
-    feature = Feature(f"curb-{name}", "curb", Geometry.LINE, ends)
-    return replace(feature, **fields)  # type: ignore[arg-type]
 
 
 @pytest.fixture
@@ -87,85 +55,6 @@ def table(qtbot: QtBot, open_map: OpenMap) -> FeatureTable:
     made.resize(1000, 400)
     made.show()
     return made
-
-
-def draw(open_map: OpenMap, *features: Feature) -> None:
-    open_map.apply(Text.same("draw"), Change(added=features))
-
-
-def change(open_map: OpenMap, *afters: Feature) -> None:
-    pairs = tuple(Replacement(open_map.stored[after.id], after) for after in afters)
-    open_map.apply(Text.same("change"), Change(replaced=pairs))
-
-
-def rows_in(table: FeatureTable) -> QTableView:
-    view = table.findChild(QTableView)
-    assert view is not None
-    return view
-
-
-def type_words(table: FeatureTable, words: str, line: str = "words") -> None:
-    field = table.findChild(QLineEdit, line)
-    assert field is not None
-    field.setText(words)
-
-
-def pick(table: FeatureTable, box_name: str, words: str) -> None:
-    box = table.findChild(QComboBox, box_name)
-    assert box is not None
-    index = box.findText(words)
-    assert index >= 0, [box.itemText(i) for i in range(box.count())]
-    box.setCurrentIndex(index)
-
-
-def written(table: FeatureTable) -> list[str]:
-    return [label.text() for label in table.findChildren(QLabel) if label.isVisible()]
-
-
-def menu_of(entry: QAction) -> QMenu:
-    menu = entry.menu()
-    assert isinstance(menu, QMenu)
-    return menu
-
-
-def act(table: FeatureTable, *path: str) -> None:
-    """Choose from the context menu, by its words."""
-    menu = table.menu()
-    assert menu is not None
-    actions = menu.actions()
-    for words in path[:-1]:
-        (entry,) = [one for one in actions if one.text() == words]
-        actions = menu_of(entry).actions()
-    (action,) = [one for one in actions if one.text().split("\t")[0] == path[-1]]
-    assert isinstance(action, QAction)
-    assert action.isEnabled()
-    action.trigger()
-    menu.close()
-
-
-def column(table: FeatureTable, title: str) -> int:
-    model = rows_in(table).model()
-    titles = [model.headerData(i, Qt.Orientation.Horizontal) for i in range(model.columnCount())]
-    return titles.index(title)
-
-
-def cells(table: FeatureTable, title: str) -> list[str]:
-    model = rows_in(table).model()
-    number = column(table, title)
-    return [model.index(row, number).data() for row in range(model.rowCount())]
-
-
-def choose(open_map: OpenMap, *features: Feature) -> None:
-    open_map.shared.selection.choose_features(frozenset(one.id for one in features))
-
-
-def click_row(qtbot: QtBot, table: FeatureTable, row: int, modifiers: Qt.KeyboardModifier) -> None:
-    view = rows_in(table)
-    qtbot.mouseClick(view.viewport(), LEFT, modifiers, middle_of(view, row))
-
-
-def middle_of(view: QTableView, row: int) -> QPoint:
-    return view.visualRect(view.model().index(row, 0)).center()
 
 
 def test_each_feature_is_a_row_with_what_is_known_of_it(
@@ -400,160 +289,3 @@ def test_select_shown_replaces_and_with_shift_adds(
     assert open_map.shared.selection.features == {"curb-a", "pole-00001", "pole-00002"}
     QTest.mouseClick(table.windowHandle(), LEFT, NONE, spot)
     assert open_map.shared.selection.features == {"pole-00001", "pole-00002"}
-
-
-def test_the_menu_judges_the_chosen_rows_in_one_step(
-    table: FeatureTable, open_map: OpenMap
-) -> None:
-    poles = [pole(i, status=Status.CANDIDATE) for i in range(3)]
-    draw(open_map, *poles)
-    choose(open_map, *poles[:2])
-    act(table, "Reject")
-    assert cells(table, "Status") == ["Rejected", "Rejected", "Candidate"]
-    assert open_map.applied[-1][0] == Text("Reject 2 features", "2個の地物を却下")
-    act(table, "Accept")
-    act(table, "Make a candidate")
-    assert cells(table, "Status") == ["Candidate"] * 3
-
-
-def test_the_menu_offers_kinds_of_the_same_geometry(table: FeatureTable, open_map: OpenMap) -> None:
-    draw(open_map, pole(1), pole(2), curb("a", 2.0))
-    choose(open_map, *open_map.features())
-    menu = table.menu()
-    assert menu is not None
-    (kinds,) = [menu_of(one) for one in menu.actions() if one.menu() is not None]
-    assert not kinds.isEnabled()
-    menu.close()
-    choose(open_map, pole(1), pole(2))
-    act(table, "Change kind to", "Sign")
-    assert cells(table, "Kind") == ["Sign", "Sign", "Curb"]
-    assert "Sign" in open_map.applied[-1][0].en
-
-
-def test_the_menu_selects_all_of_a_kind_and_goes_there(
-    table: FeatureTable, open_map: OpenMap
-) -> None:
-    draw(open_map, pole(1), curb("a", 2.0), pole(2))
-    choose(open_map, pole(2))
-    act(table, "Go there")
-    assert open_map.shared.cursor.place == Place((2.0, 0.0, 5.0))
-    act(table, "Select all of this kind")
-    assert open_map.shared.selection.features == {"pole-00001", "pole-00002"}
-
-
-def test_nothing_chosen_has_no_menu_and_deletes_nothing(
-    qtbot: QtBot, table: FeatureTable, open_map: OpenMap
-) -> None:
-    draw(open_map, pole(1))
-    assert table.menu() is None
-    qtbot.keyClick(rows_in(table), Qt.Key.Key_Delete)
-    qtbot.keyClick(rows_in(table), Qt.Key.Key_Return)
-    assert len(open_map.stored) == 1
-    assert open_map.shared.cursor.place is None
-
-
-def test_a_kind_that_the_catalogue_lacks_is_shown_by_its_id(
-    table: FeatureTable, open_map: OpenMap
-) -> None:
-    draw(open_map, pole(1, kind="old_kind"), pole(2, kind="old_kind"))
-    assert cells(table, "Kind") == ["old_kind", "old_kind"]
-    assert cells(table, "Layer") == ["", ""]
-    pick(table, "kind", "old_kind")
-    choose(open_map, *open_map.features())
-    act(table, "Change kind to", "Pole")
-    assert cells(table, "Kind") == ["Pole", "Pole"]
-
-
-def test_what_changes_while_the_table_is_hidden_is_read_when_it_is_shown(
-    table: FeatureTable, open_map: OpenMap
-) -> None:
-    draw(open_map, pole(1))
-    table.hide()
-    draw(open_map, pole(2))
-    change(open_map, pole(1, status=Status.REJECTED))
-    choose(open_map, pole(2))
-    table.show()
-    assert cells(table, "Status") == ["Rejected", "Accepted"]
-    assert [one.id for one in table.selected_features()] == ["pole-00002"]
-
-
-def test_what_is_selected_while_the_table_is_hidden_is_marked_when_it_is_shown(
-    table: FeatureTable, open_map: OpenMap
-) -> None:
-    draw(open_map, *(pole(i) for i in range(100)))
-    table.hide()
-    choose(open_map, pole(80))
-    assert table.selected_features() == ()
-    table.show()
-    assert table.selected_features() == (pole(80),)
-    view = rows_in(table)
-    assert view.viewport().rect().contains(middle_of(view, 80))
-
-
-def test_another_project_is_read_anew(table: FeatureTable, open_map: OpenMap) -> None:
-    draw(open_map, pole(1))
-    open_map.stored = {"curb-z": curb("z", 5.0)}
-    open_map.shared.map_changes.drives_changed.emit()
-    assert cells(table, "Kind") == ["Curb"]
-
-
-def test_ten_thousand_scattered_rows_are_selected_judged_and_deleted(
-    table: FeatureTable, open_map: OpenMap
-) -> None:
-    draw(open_map, *(pole(i) for i in range(20_000)))
-    choose(open_map, *(pole(i) for i in range(0, 20_000, 2)))
-    act(table, "Reject")
-    assert len(table.selected_features()) == 10_000
-    assert open_map.applied[-1][0].en == "Reject 10,000 features"
-    act(table, "Delete")
-    assert len(cells(table, "Kind")) == 10_000
-    assert table.selected_features() == ()
-
-
-@pytest.mark.parametrize(
-    ("key", "modifiers"),
-    [
-        (Qt.Key.Key_A, Qt.KeyboardModifier.ControlModifier),
-        (Qt.Key.Key_Return, NONE),
-        (Qt.Key.Key_Delete, NONE),
-    ],
-)
-def test_keys_that_the_window_has_too_mean_rows_here(
-    table: FeatureTable, open_map: OpenMap, key: Qt.Key, modifiers: Qt.KeyboardModifier
-) -> None:
-    draw(open_map, pole(1))
-    asked = QKeyEvent(QEvent.Type.ShortcutOverride, key, modifiers)
-    asked.ignore()
-    QApplication.sendEvent(rows_in(table), asked)
-    assert asked.isAccepted()
-
-
-def test_the_order_is_marked_at_its_column_when_columns_come_and_go(
-    table: FeatureTable, open_map: OpenMap
-) -> None:
-    draw(open_map, pole(2), pole(1))
-    view = rows_in(table)
-    view.sortByColumn(column(table, "Status"), Qt.SortOrder.DescendingOrder)
-    view.sortByColumn(column(table, "Vertices"), Qt.SortOrder.DescendingOrder)
-    draw(open_map, curb("a", 2.0))
-    header = view.horizontalHeader()
-    assert header.sortIndicatorSection() == column(table, "Vertices")
-    assert cells(table, "Vertices") == ["2", "1", "1"]
-    open_map.apply(Text.same("away"), Change(removed=(open_map.stored["curb-a"],)))
-    view.sortByColumn(column(table, "Number"), Qt.SortOrder.AscendingOrder)
-    assert cells(table, "Number") == ["No. 1", "No. 2"]
-    draw(open_map, curb("b", 2.0))
-    assert header.sortIndicatorSection() == -1
-    assert cells(table, "Kind") == ["Pole", "Pole", "Curb"]
-
-
-def test_the_table_speaks_japanese(qtbot: QtBot, open_map: OpenMap) -> None:
-    table = FeatureTable(open_map, open_map.shared, "ja")
-    qtbot.addWidget(table)
-    table.show()
-    draw(open_map, pole(1, status=Status.REJECTED))
-    assert cells(table, "種別") == ["電柱"]
-    assert cells(table, "状態") == ["却下"]
-    assert cells(table, "作成元") == ["手作業"]
-    type_words(table, "pole")
-    assert cells(table, "高さ (m)") == ["1"]
