@@ -45,6 +45,7 @@ def _connect_document(parts: WindowParts, wiring: _Wiring) -> None:
     document.told.connect(parts.message_bar.hide)
     document.undo_stack.changed.connect(parts.message_bar.hide)
     document.undo_stack.changed.connect(wiring.on_undo_stack_changed)
+    document.shared.sketch.changed.connect(wiring.on_sketch_changed)
     parts.jobs.changed.connect(wiring.on_jobs_changed)
     document.shared.view_settings.image_changed.connect(parts.processing_panel.refresh)
     document.shared.map_changes.drives_changed.connect(parts.processing_panel.refresh)
@@ -74,6 +75,7 @@ class _Wiring(QObject):
     def __init__(self, parts: WindowParts) -> None:
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
+        self._was_drawing = parts.toolbox.hand.is_busy
 
     def reason_against_tool(self, tool: str) -> Text | None:
         """Why a tool can't run on the drive shown; None when it can."""
@@ -117,7 +119,16 @@ class _Wiring(QObject):
         for name, label in labels.items():
             text = plain[name] if label is None else verbs[name].filled(label=label)
             actions[name].setText(text.spoken(language))
-            self._parts.window.actions_made.allow(name, is_allowed=label is not None)
+            # While something is drawn, undo takes its last vertex back.
+            is_drawing = name == "undo" and self._was_drawing
+            is_allowed = label is not None or is_drawing
+            self._parts.window.actions_made.allow(name, is_allowed=is_allowed)
+
+    def on_sketch_changed(self) -> None:
+        is_drawing = self._parts.toolbox.hand.is_busy
+        if is_drawing is not self._was_drawing:
+            self._was_drawing = is_drawing
+            self.on_undo_stack_changed()
 
     def on_toolbox_tool_chosen(self, name: str) -> None:
         self._parts.window.actions_by_id[f"tool-{name}"].setChecked(True)

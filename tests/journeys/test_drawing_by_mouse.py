@@ -129,3 +129,16 @@ def test_a_deleted_feature_is_gone_in_both_views_and_comes_back(street):
     assert street.document.shared.selection.features == frozenset()
     street.document.undo()
     assert list(street.document.features()) == [line]
+
+
+def test_undo_takes_back_the_last_vertex_while_a_line_is_drawn(street):
+    first, second, third = _points_down_the_road(street, 3)
+    street.parts.toolbox.choose_kind(_kind(street, Geometry.LINE))
+    undo = street.parts.window.actions_by_id["undo"]
+    assert not undo.isEnabled()
+    for point in (first, second, third):
+        street.click(point)
+    undo.trigger()
+    street.key(Qt.Key.Key_Return)
+    (line,) = street.document.features()
+    assert [vertex.measured.point for vertex in line.vertices] == [first, second]

@@ -1,0 +1,1 @@
+"""Pictures of every tool and form in use: ``python -m app.screenshots OUT``."""
