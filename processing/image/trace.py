@@ -36,6 +36,7 @@ _ALONG_M = 0.15
 _ON_LINE_M = 0.005
 _FARTHEST_M = 0.02
 _FEW_POINTS = 12
+_MOST_STARTS = 4
 
 
 @dataclass(frozen=True)
@@ -85,11 +86,13 @@ def trace(drive: Drive, start: int, end: int, *, across_gaps: bool = False) -> T
     if line is None:
         return Traced(np.array([start]), is_complete=False, reason=_NO_LINE)
     places, is_complete = _places_between(line, goal, across_gaps=across_gaps)
+    if not places:
+        return Traced(np.array([start]), is_complete=False, reason=_reason(cloud, np.zeros(3)))
     followed = _points_along(cloud, places)
     ends = [np.array([start]), followed, np.array([end] if is_complete else [], np.int64)]
     points = _without_repeats(np.concatenate(ends))
     kept = _thinned(drive.xyz(points))
-    reason = _NOTHING if is_complete else _reason(cloud, places[-1])
+    reason = _NOTHING if is_complete else _reason(cloud, places[-1].ahead(0.5).xyz)
     return Traced(points[kept], is_complete, reason)
 
 
@@ -108,32 +111,38 @@ def _marking_follower(drive: Drive, cloud: PointsBetween) -> MarkingFollower:
 
 
 def _line_at_both(followers: Sequence[Follower], goal: _Floats) -> _Line | None:
-    """What passes both points; what passes the start where nothing is found at the end."""
-    only_start: _Line | None = None
+    """What passes both points; or one of them, where nothing is found at the other."""
+    only_one: _Line | None = None
     for follower in followers:
         starts, ends = follower.places_at(np.zeros(3)), follower.places_at(goal)
         either_way = [*ends, *(follower.turned(place) for place in ends)]
-        pair = _best_pair(starts, either_way, goal)
-        if pair is not None:
-            first, last = pair
-            return _Line(follower, (first, follower.turned(first)), (last, follower.turned(last)))
-        if starts and only_start is None:
-            only_start = _Line(follower, (starts[0], follower.turned(starts[0])), ())
-    return only_start
+        kind = _kind_at_both(starts, either_way, goal)
+        if kind is not None:
+            return _Line(
+                follower, _of_kind(follower, starts, kind), _of_kind(follower, either_way, kind)
+            )
+        if only_one is None and bool(starts) != bool(ends):
+            kind = (starts or ends)[0].look[0]
+            only_one = _Line(
+                follower, _of_kind(follower, starts, kind), _of_kind(follower, ends, kind)
+            )
+    return only_one
 
 
-def _best_pair(
-    starts: Sequence[Place], ends: Sequence[Place], goal: _Floats
-) -> tuple[Place, Place] | None:
-    """Of lines of the same kind at the start and at the end, those nearest to them."""
+def _kind_at_both(starts: Sequence[Place], ends: Sequence[Place], goal: _Floats) -> float | None:
+    """The kind of line that passes nearest to both."""
     pairs = [
-        (first, last)
+        (off_line(np.zeros(3), first) + off_line(goal, last), first.look[0])
         for first, last in itertools.product(starts, ends)
         if first.look[0] == last.look[0]
     ]
-    if not pairs:
-        return None
-    return min(pairs, key=lambda pair: off_line(np.zeros(3), pair[0]) + off_line(goal, pair[1]))
+    return min(pairs)[1] if pairs else None
+
+
+def _of_kind(follower: Follower, places: Sequence[Place], kind: float) -> tuple[Place, ...]:
+    """Some of the places, to be left in either direction."""
+    chosen = [place for place in places if place.look[0] == kind][:_MOST_STARTS]
+    return tuple(way for place in chosen for way in (place, follower.turned(place)))
 
 
 def _places_between(line: _Line, goal: _Floats, *, across_gaps: bool) -> tuple[list[Place], bool]:
@@ -146,7 +155,7 @@ def _places_between(line: _Line, goal: _Floats, *, across_gaps: bool) -> tuple[l
             turned = [line.follower.turned(place) for place in reversed(back.places)]
             return turned, True
     places, is_complete = list(way.places), way.is_complete
-    while across_gaps and not is_complete:
+    while places and across_gaps and not is_complete:
         again = find_again(line.follower, places[-1], goal)
         if again is None:
             return places, True
@@ -203,6 +212,5 @@ def _thinned(xyz: _Floats) -> _Integers:
     return np.flatnonzero(is_kept)
 
 
-def _reason(cloud: PointsBetween, last: Place) -> Text:
-    ahead = last.ahead(0.5).xyz
+def _reason(cloud: PointsBetween, ahead: _Floats) -> Text:
     return _SPARSE if cloud.near(ahead, 0.4).size < _FEW_POINTS else _LOST

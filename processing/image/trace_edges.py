@@ -13,7 +13,6 @@ from processing.image.edge_kernels import (
     AFTER,
     BEFORE,
     BEND,
-    ORDER,
     STRENGTH,
 )
 from processing.image.edge_sections import (
@@ -40,8 +39,8 @@ _MOST_POINTS = 400
 class EdgeFollower:
     """Follows curb edges, wall feet and wall tops.
 
-    The look of an edge: 1 for a hollow one, −1 for a raised one; 1 where the ground rises to the
-    left of it, −1 where it falls; directions of the two surfaces in the profile, rad.
+    The look of an edge: 1 for a hollow one, −1 for a raised one; directions of the two surfaces
+    in the profile, rad.
     """
 
     def __init__(self, cloud: PointsBetween) -> None:
@@ -73,7 +72,7 @@ class EdgeFollower:
         # A narrow profile where what stands or rises beside the edge spoils the wide one.
         for across in _ACROSS_M:
             reach = (length_needed(local, frame), across + slack_m)
-            section = section_along(local, frame, reach, round(expected.look[1]))
+            section = section_along(local, frame, reach, 0)
             found = [] if section is None else _like(_places_of(section), expected, slack_m)
             if found:
                 return found
@@ -92,13 +91,13 @@ class EdgeFollower:
 
     def turned(self, place: Place) -> Place:
         """The same edge for the opposite direction."""
-        kind, order, before, after = place.look
+        kind, before, after = place.look
         return Place(
             place.xyz,
             place.heading_rad + math.pi,
             -place.grade,
             -place.curvature,
-            (kind, -order, -after, -before),
+            (kind, -after, -before),
         )
 
 
@@ -106,17 +105,16 @@ def _places_of(section: Section) -> list[Place]:
     places = []
     for corner, xyz in zip(section.corners, section.places, strict=True):
         if corner[STRENGTH] >= LEAST_STRENGTH_M:
-            look = (math.copysign(1.0, corner[BEND]), corner[ORDER], corner[BEFORE], corner[AFTER])
-            # Square to the edge here: the curve has turned between the middle and the corner.
+            look = (math.copysign(1.0, corner[BEND]), float(corner[BEFORE]), float(corner[AFTER]))
             places.append(Place(xyz, section.heading_rad, section.grade, section.curvature, look))
     return places
 
 
 def _difference(look: tuple[float, ...], other: tuple[float, ...]) -> float:
-    if look[0] != other[0] or look[1] != other[1]:
+    if look[0] != other[0]:
         return math.inf
     turned = [
-        abs(math.remainder(a - b, 2 * math.pi)) for a, b in zip(look[2:], other[2:], strict=True)
+        abs(math.remainder(a - b, 2 * math.pi)) for a, b in zip(look[1:], other[1:], strict=True)
     ]
     return float(sum(turned) / _UNLIKE) ** 2 / 2
 

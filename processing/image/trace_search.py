@@ -11,7 +11,7 @@ import heapq
 import itertools
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
@@ -25,10 +25,12 @@ STEP_M = 0.25
 HOLE_M = 1.0
 """A line isn't followed over more than this without finding it again."""
 
-_SLACK_M, _SLACK_RATIO = 0.03, 0.10  # how far off the way ahead a line may go on
+_SLACK_M, _SLACK_RATIO = 0.03, 0.20  # how far off the way ahead a line may go on
 _SHARPEST_TURN = math.radians(20.0)  # at one step; a curb's smallest radius is about 0.7 m
 _CELL_M = 0.08
 _DETOUR, _DETOUR_M = 1.3, 4.0
+_HOLE_PRICE = 3.0  # a metre without the line is as dear as three more with it
+_DEAREST = 3.0
 _MOST_PLACES = 20_000
 
 
@@ -102,35 +104,74 @@ def find_way(follower: Follower, starts: Sequence[Place], end: _Floats) -> Way:
     A step costs its length, more where it turns off the way ahead or looks different. Of all
     places the one with the least cost so far plus the straight distance to the end goes on.
     """
-    number = itertools.count()
-    waiting: list[tuple[float, int, float, Place, int]] = []
-    reached: list[tuple[Place, int]] = []
-    seen: set[tuple[int, ...]] = set()
-    longest = _DETOUR * _distance(starts[0].xyz, end) + _DETOUR_M if starts else 0.0
+    search = _Search(follower, end)
     for start in starts:
-        left = _distance(start.xyz, end)
-        heapq.heappush(waiting, (left, next(number), 0.0, start, -1))
-    nearest, least = -1, math.inf
-    while waiting and len(reached) < _MOST_PLACES:
-        _, _, cost, place, before = heapq.heappop(waiting)
+        search.wait(_Waiting(0.0, start, -1, STEP_M), _distance(start.xyz, end))
+    return search.way()
+
+
+@dataclass(frozen=True)
+class _Waiting:
+    """A place and what the way to it costs, where it was reached from, how far to look ahead."""
+
+    cost: float
+    place: Place
+    before: int
+    look_m: float
+
+
+class _Search:
+    """Places reached, and places that wait."""
+
+    def __init__(self, follower: Follower, end: _Floats) -> None:
+        self._follower, self._end = follower, end
+        self._waiting: list[tuple[float, int, _Waiting]] = []
+        self._numbers = itertools.count()
+        self._reached: list[tuple[Place, int]] = []
+        self._seen: set[tuple[int, ...]] = set()
+        self._dearest = 0.0
+
+    def wait(self, waiting: _Waiting, left_m: float) -> None:
+        """Let a place wait by its cost and what is left to the end."""
+        if waiting.before < 0:
+            self._dearest = max(self._dearest, _DEAREST * (_DETOUR * left_m + _DETOUR_M))
+        if waiting.cost + left_m <= self._dearest:
+            heapq.heappush(self._waiting, (waiting.cost + left_m, next(self._numbers), waiting))
+
+    def way(self) -> Way:
+        nearest, least = -1, math.inf
+        while self._waiting and len(self._reached) < _MOST_PLACES:
+            waiting = heapq.heappop(self._waiting)[2]
+            left = _distance(waiting.place.xyz, self._end)
+            if waiting.look_m <= STEP_M:
+                if not self._is_new(waiting.place):
+                    continue
+                self._reached.append((waiting.place, waiting.before))
+                waiting = replace(waiting, before=len(self._reached) - 1)
+                if _passes(waiting.place, self._end):
+                    return Way(_back(self._reached, waiting.before), is_complete=True)
+                if left < least:
+                    nearest, least = waiting.before, left
+            self._look_ahead(waiting, left)
+        if nearest < 0:
+            return Way((), is_complete=False)
+        is_near = _leads_to(self._reached[nearest][0], self._end)
+        return Way(_back(self._reached, nearest), is_complete=is_near)
+
+    def _is_new(self, place: Place) -> bool:
         cell = (*np.floor(place.xyz / _CELL_M).astype(int), _way_round(place))
-        if cell in seen:
-            continue
-        seen.add(cell)
-        reached.append((place, before))
-        left = _distance(place.xyz, end)
-        if _passes(reached, end):
-            return Way(_back(reached, len(reached) - 1), is_complete=True)
-        if left < least:
-            nearest, least = len(reached) - 1, left
-        for after, price in _steps_from(follower, place):
-            total = cost + price
-            estimate = total + _distance(after.xyz, end)
-            if total + 0.0 <= 3 * longest and _distance(after.xyz, end) <= longest:
-                heapq.heappush(waiting, (estimate, next(number), total, after, len(reached) - 1))
-    if nearest < 0:
-        return Way((), is_complete=False)
-    return Way(_back(reached, nearest), _leads_to(reached[nearest][0], end))
+        is_new = cell not in self._seen
+        self._seen.add(cell)
+        return is_new
+
+    def _look_ahead(self, waiting: _Waiting, left_m: float) -> None:
+        for after, price in _found_at(self._follower, waiting.place, waiting.look_m):
+            found = _Waiting(waiting.cost + price, after, waiting.before, STEP_M)
+            self.wait(found, _distance(after.xyz, self._end))
+        farther = waiting.look_m + STEP_M
+        if farther <= HOLE_M:
+            # What is found farther ahead waits till all that was found nearer leads nowhere.
+            self.wait(replace(waiting, look_m=farther), left_m + _hole_price(farther))
 
 
 def find_again(follower: Follower, place: Place, end: _Floats) -> Place | None:
@@ -141,35 +182,33 @@ def find_again(follower: Follower, place: Place, end: _Floats) -> Place | None:
         expected = place.ahead(distance)
         slack = _SLACK_M + _SLACK_RATIO * distance
         for found, _ in follower.places_near(expected, slack):
-            if _steps_from(follower, found):
+            if _found_at(follower, found, STEP_M):
                 return found
         distance += STEP_M
     return None
 
 
-def _steps_from(follower: Follower, place: Place) -> list[tuple[Place, float]]:
-    """Next places with their prices: as near as the line is found again."""
-    distance = STEP_M
-    while distance <= HOLE_M + 1e-9:
-        expected = place.ahead(distance)
-        slack = _SLACK_M + _SLACK_RATIO * distance
-        steps = []
-        for found, unlike in follower.places_near(expected, slack):
-            turn = _angle(found.heading_rad - place.heading_rad)
-            if abs(turn) <= _SHARPEST_TURN * distance / STEP_M:
-                off = _distance(found.xyz, expected.xyz) / slack
-                turned = abs(turn - place.curvature * distance) / _SHARPEST_TURN
-                holes = distance / STEP_M - 1
-                steps.append((found, distance * (1 + off**2 + turned**2 + unlike + holes)))
-        if steps:
-            return steps
-        distance += STEP_M
-    return []
+def _found_at(follower: Follower, place: Place, distance_m: float) -> list[tuple[Place, float]]:
+    """Where the line is found again so far ahead, with prices."""
+    expected = place.ahead(distance_m)
+    slack = _SLACK_M + _SLACK_RATIO * distance_m
+    found = []
+    for after, unlike in follower.places_near(expected, slack):
+        turn = _angle(after.heading_rad - place.heading_rad)
+        if abs(turn) <= _SHARPEST_TURN * distance_m / STEP_M:
+            off = _distance(after.xyz, expected.xyz) / slack
+            turned = abs(turn - place.curvature * distance_m) / _SHARPEST_TURN
+            worse = off**2 + turned**2 + unlike
+            found.append((after, distance_m * (1 + worse) + _hole_price(distance_m)))
+    return found
 
 
-def _passes(reached: Sequence[tuple[Place, int]], end: _Floats) -> bool:
-    """Whether the last step leads by the end."""
-    place, _ = reached[-1]
+def _hole_price(distance_m: float) -> float:
+    return _HOLE_PRICE * (distance_m - STEP_M)
+
+
+def _passes(place: Place, end: _Floats) -> bool:
+    """Whether the end lies beside a place."""
     along = float((end - place.xyz) @ place.direction)
     return off_line(end, place) <= _SLACK_M + _SLACK_RATIO and abs(along) <= STEP_M
 
