@@ -24,8 +24,8 @@ from widgets.shared.sketch import Drawing, Note
 PARALLEL = Text("Parallel copy", "平行複写")
 PICK_LINE_OR_AREA = Text("Click on a line or an area.", "線または面をクリックしてください。")
 PICK_SIDE = Text(
-    "Click where the copy should run, or set the distance and press Enter.",
-    "複写する位置をクリックするか、距離を入力してEnterを押してください。",
+    "Click where the copy should run; where a distance is set, the click only says the side.",
+    "複写する位置をクリックしてください。距離を入力した場合は、クリックした側に複写します。",
 )
 _LEAST_M = 0.005
 

@@ -148,6 +148,8 @@ class MeasureTool(EditingTool):
             self.measured.emit(())
             return
         preview = () if self._preview is None else (self._preview,)
+        if self._vertices[-1:] == preview:  # the mouse rests where it clicked
+            preview = ()
         whole = self._vertices + preview
         measures = self._measures(whole)
         geometry = Geometry.AREA if self._is_closed else Geometry.LINE

@@ -186,3 +186,17 @@ def test_what_is_measured_is_told_and_kept_on_demand() -> None:
     tool.keep()
     assert source.told == [NO_SUCH_KIND.filled(name="measurement")]
     assert source.stored == {}
+
+
+def test_a_mouse_that_rests_where_it_clicked_measures_no_leg_of_nothing() -> None:
+    source = OpenMap()
+    tool = MeasureTool(source, source.shared)
+    measured: list[tuple[object, ...]] = []
+    tool.measured.connect(measured.append)
+    for place in (Place((0.0, 0.0, 1.0)), Place((3.0, 4.0, 1.0))):
+        tool.move(Hit(place))
+        tool.press(Hit(place))
+        tool.move(Hit(place))
+    names = {one.id for one in measured[-1]}
+    assert "slope_percent" in names
+    assert "last_leg_m" not in names
