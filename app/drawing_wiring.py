@@ -37,6 +37,7 @@ def connect_drawing(parts: WindowParts) -> None:
     bar.snaps_wanted.connect(wiring.on_bar_snaps_wanted)
     for parallel in toolbox.tools_of(DrawParallel):
         bar.distance_set.connect(parallel.fix_distance)
+        bar.rise_set.connect(parallel.set_rise)
     for measure in toolbox.tools_of(MeasureTool):
         measure.measured.connect(bar.show_measures)
     snap.modes_changed.connect(wiring.on_snap_modes_changed)

@@ -28,6 +28,8 @@ PICK_SIDE = Text(
     "複写する位置をクリックしてください。距離を入力した場合は、クリックした側に複写します。",
 )
 _LEAST_M = 0.005
+_STEP_M, _NEAR_STEP_M = 0.5, 0.06
+"""How far above or below the line points of the copy may lie; and with a rise that was set."""
 
 
 class DrawParallel(EditingTool):
@@ -50,6 +52,7 @@ class DrawParallel(EditingTool):
         super().__init__(source, shared, parent)
         self._line: Feature | None = None
         self._fixed_m: float | None = None
+        self._rise_m = 0.0
         self._aside_m = 0.0
 
     @property
@@ -70,6 +73,11 @@ class DrawParallel(EditingTool):
     def fix_distance(self, metres: float | None) -> None:
         """Copy at exactly this distance; None: at the mouse."""
         self._fixed_m = metres if metres is not None and metres >= _LEAST_M else None
+        self._show()
+
+    def set_rise(self, metres: float) -> None:
+        """Look for the copy's heights so much above the line: the upper edge of a curb."""
+        self._rise_m = metres
         self._show()
 
     def take(self, line: Feature) -> None:
@@ -110,7 +118,9 @@ class DrawParallel(EditingTool):
         except UserError as refusal:
             self._tell_refusal(refusal)
             return
-        vertices = grounded(places, self._source.drives())
+        # At the edge of a curb both heights are near; the rise that was set says which is meant.
+        step_m = _NEAR_STEP_M if self._rise_m else _STEP_M
+        vertices = grounded(places, self._source.drives(), step_m=step_m)
         copy = replace(line, id=new_feature_id(), vertices=vertices, provenance=Provenance())
         self.put_down()
         self.change_requested.emit(PARALLEL, Change(added=(copy,)))
@@ -135,7 +145,8 @@ class DrawParallel(EditingTool):
 
     def _places(self, line: Feature) -> tuple[Position, ...]:
         places = [vertex.xyz for vertex in line.vertices]
-        return parallel(places, self._aside_m, is_closed=line.geometry is Geometry.AREA)
+        beside = parallel(places, self._aside_m, is_closed=line.geometry is Geometry.AREA)
+        return tuple((east, north, up + self._rise_m) for east, north, up in beside)
 
     def _show(self) -> None:
         line = self._line
@@ -149,7 +160,8 @@ class DrawParallel(EditingTool):
             return
         vertices = tuple(Vertex(place) for place in places)
         ring = (vertices[0],) if line.geometry is Geometry.AREA else ()
-        note = Note(places[len(places) // 2], f"{abs(self._aside_m):.3f} m")
+        rise = f"  ↑{self._rise_m:+.3f} m" if self._rise_m else ""
+        note = Note(places[len(places) // 2], f"{abs(self._aside_m):.3f} m{rise}")
         self._sketch.show(
             Drawing(line.kind, Geometry.LINE, vertices[:1], vertices[1:] + ring, notes=(note,))
         )

@@ -309,34 +309,33 @@ class DrawPath(DrawingTool):
         self._token += 1
         self._is_following = True
         self.told.emit(FOLLOWING)
-        self._at_hand(work, self._taker(self._token, leg, through[1:]))
+        self._at_hand(work, self._taker(self._token, leg, through[1:], must_arrive=self._bridges))
         self._show()
 
     def _taker(
-        self, token: int, leg: int, clicked: tuple[Vertex, ...]
+        self, token: int, leg: int, clicked: tuple[Vertex, ...], *, must_arrive: bool
     ) -> Callable[[object | None], None]:
         def take(result: object | None) -> None:
-            if token == self._token and self._is_following:
-                self._on_followed(leg, clicked, result)
+            if token != self._token or not self._is_following:
+                return
+            self._is_following = False
+            if isinstance(result, TracedLine):
+                arrived = result.going_straight_to(clicked[-1]) if must_arrive else result
+                self._on_followed(leg, clicked, arrived)
+            else:
+                self.told.emit(_LOST)
+                self._show()
 
         return take
 
-    def _on_followed(self, leg: int, clicked: tuple[Vertex, ...], result: object | None) -> None:
-        self._is_following = False
-        if not isinstance(result, TracedLine):
-            self.told.emit(_LOST)
-            self._show()
-            return
+    def _on_followed(self, leg: int, clicked: tuple[Vertex, ...], result: TracedLine) -> None:
         self._bridges = not result.is_complete
         if result.vertices:
             last = clicked[-1] if result.is_complete else result.vertices[-1]
             vertices = (*result.vertices[:-1], last)
             traced = Leg(Way.TRACE, (*clicked[:-1], last), vertices)
             self._path = replace(self._path, legs=(*self._path.legs[:leg], traced))
-        if not result.is_complete:
-            self.told.emit(GO_ON.filled(reason=result.reason))
-        else:
-            self.told.emit(Text("", ""))
+        self.told.emit(result.reason if result.is_complete else GO_ON.filled(reason=result.reason))
         self._preview = None
         self._show()
         if self._completes:

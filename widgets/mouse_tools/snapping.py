@@ -12,7 +12,8 @@ from typing_extensions import override
 from processing.drafting.crossings import LinePlace, line_places
 from processing.drafting.heights import grounded
 from processing.image.edges import highest_point, lowest_point, strongest_bend
-from processing.project.feature import PointReference, Vertex
+from processing.project.catalogue import Geometry
+from processing.project.feature import Feature, PointReference, Vertex
 from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit, MouseTool
 from widgets.mouse_tools.near_features import NearFeatures
 from widgets.shared.cursor import Place
@@ -156,7 +157,7 @@ class SnappingHand(MouseTool):
         own = self._shared.sketch.drawing
         features = self._near.within(hit.place.xyz, hit.reach_m)
         replaced = "" if own is None else own.replaces
-        lines = [one.vertices for one in features if one.id != replaced]
+        lines = [_outline(one) for one in features if one.id != replaced]
         if own is not None and not own.replaces:
             lines.append(own.vertices[:-1])
         last = self.tool.last_vertex
@@ -202,3 +203,10 @@ class SnappingHand(MouseTool):
             return None
         easting, northing, height = drive.xyz(np.array([found]))[0].tolist()
         return Place((easting, northing, height), PointReference(drive.id, found)), mode
+
+
+def _outline(feature: Feature) -> tuple[Vertex, ...]:
+    """The vertices of a feature; those of an area lead back to the first."""
+    if feature.geometry is Geometry.AREA:
+        return (*feature.vertices, feature.vertices[0])
+    return feature.vertices

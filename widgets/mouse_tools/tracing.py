@@ -15,6 +15,10 @@ from processing.project.feature import PointReference, Vertex
 from processing.text import Text
 from widgets.shared.map_source import MapSource
 
+STRAIGHT_ON = Text(
+    "Where nothing could be followed the line goes straight.",
+    "追跡できない区間は直線でつなぎました。",
+)
 _SAME_EDGE_M = 0.15
 
 
@@ -36,12 +40,18 @@ class TracedLine:
     is_complete : bool
         Whether it came to the end that was clicked.
     reason : Text
-        Why it did not.
+        Why it did not, or how it came there all the same.
     """
 
     vertices: tuple[Vertex, ...]
     is_complete: bool
     reason: Text
+
+    def going_straight_to(self, end: Vertex) -> TracedLine:
+        """The line led on to where it was told to go, though nothing could be followed there."""
+        if self.is_complete:
+            return self
+        return TracedLine((*self.vertices, end), is_complete=True, reason=STRAIGHT_ON)
 
 
 def tracing_work(

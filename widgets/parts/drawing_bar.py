@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from PySide6.QtCore import QLocale, QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtCore import QLocale, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QIcon, QPixmap
 from PySide6.QtWidgets import (
     QDoubleSpinBox,
@@ -23,12 +23,14 @@ from widgets.shared.snap_state import SNAP_NAMES, SnapMode
 
 _SWATCH_PX = 14
 _FARTHEST_M = 999.0
+_HIGHEST_M = 99.0
 _NO_SNAP = Text("no snapping", "スナップなし")
 _ON_PLANE = Text("working plane", "作業平面")
 _SNAP = Text("Snap: {names}", "スナップ: {names}")
 _NO_KIND = Text("What to draw…", "作図する種類…")
 _DISTANCE = Text("Distance", "距離")
 _AT_MOUSE = Text("at the mouse", "マウス位置")
+_RISE = Text("Rise", "比高")
 
 
 class DrawingBar(QWidget):
@@ -47,13 +49,14 @@ class DrawingBar(QWidget):
         The button of the kind was pressed.
     snaps_wanted
         The words about snapping were pressed.
-    distance_set(metres: float)
-        The distance of parallel copies; 0 for the mouse's.
+    distance_set(metres: float), rise_set(metres: float)
+        The distance of parallel copies, 0 for the mouse's; how much higher they run.
     """
 
     kind_wanted = Signal()
     snaps_wanted = Signal()
     distance_set = Signal(float)
+    rise_set = Signal(float)
 
     def __init__(
         self,
@@ -77,13 +80,24 @@ class DrawingBar(QWidget):
         self._snaps.clicked.connect(self.snaps_wanted)
         self._words = ElidedLabel(self)
         self._distance_name = QLabel(_DISTANCE.spoken(language), self)
-        self._distance = self._distance_field()
+        self._distance = self._metres_field(
+            0.0, self.tr("Distance of the parallel copy; 0: where the mouse is")
+        )
+        self._distance.setSpecialValueText(_AT_MOUSE.spoken(language))
+        self._distance.valueChanged.connect(self.distance_set)
+        self._rise_name = QLabel(_RISE.spoken(language), self)
+        self._rise = self._metres_field(
+            -_HIGHEST_M, self.tr("How much higher the copy runs: the upper edge of a curb")
+        )
+        self._rise.valueChanged.connect(self.rise_set)
         layout = QHBoxLayout(self)
         layout.setContentsMargins(8, 0, 8, 4)
         layout.setSpacing(8)
         layout.addWidget(self._kind)
         layout.addWidget(self._distance_name)
         layout.addWidget(self._distance)
+        layout.addWidget(self._rise_name)
+        layout.addWidget(self._rise)
         layout.addWidget(self._words, 1)
         layout.addWidget(self._snaps)
         shared.snap.modes_changed.connect(self._show_snaps)
@@ -116,8 +130,8 @@ class DrawingBar(QWidget):
         """Say what a tool expects; only parallel copies have a distance."""
         self._tool = name
         is_parallel = name == "parallel"
-        self._distance_name.setVisible(is_parallel)
-        self._distance.setVisible(is_parallel)
+        for part in (self._distance_name, self._distance, self._rise_name, self._rise):
+            part.setVisible(is_parallel)
         hint = self._hints.get(name, Text("", ""))
         self._words.setText(hint.spoken(self._language))
 
@@ -133,25 +147,18 @@ class DrawingBar(QWidget):
         value = locale.toString(measure.value, "f", measure.decimals)
         return f"{measure.name.spoken(self._language)} {value} {measure.unit}".rstrip()
 
-    def _distance_field(self) -> QDoubleSpinBox:
+    def _metres_field(self, low_m: float, tip: str) -> QDoubleSpinBox:
         field = QDoubleSpinBox(self)
-        field.setRange(0.0, _FARTHEST_M)
+        field.setRange(low_m, _FARTHEST_M)
         field.setDecimals(3)
         field.setSingleStep(0.05)
         field.setSuffix(" m")
-        field.setSpecialValueText(_AT_MOUSE.spoken(self._language))
-        field.setToolTip(self.tr("Distance of the parallel copy; 0: where the mouse is"))
+        field.setToolTip(tip)
         field.setKeyboardTracking(False)
         font = QFont(self.font())
         font.setFeature(QFont.Tag("tnum"), 1)
         field.setFont(font)
-        field.valueChanged.connect(self.distance_set)
         return field
-
-    def set_distance(self, metres: float) -> None:
-        """Show a distance that was set elsewhere."""
-        with QSignalBlocker(self._distance):  # the tool knows it already
-            self._distance.setValue(metres)
 
     def _show_snaps(self) -> None:
         snap = self._shared.snap

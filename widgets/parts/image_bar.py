@@ -58,7 +58,7 @@ class ImageBar(QWidget):
         one.setToolTip(self.tr("One pixel of the image on one of the screen"))
         one.clicked.connect(self.one_to_one_requested)
         layout = QHBoxLayout(self)
-        layout.setContentsMargins(8, 4, 8, 4)
+        layout.setContentsMargins(8, 0, 8, 0)
         layout.setSpacing(8)
         layout.addWidget(self._drive)
         layout.addWidget(self._kind)
