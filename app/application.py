@@ -181,12 +181,14 @@ def _furnish(parts: WindowParts, files: FileActions, change: WindowChange) -> No
         language=parts.language,
         start_page=parts.start_page,
         views=views,
-        headers=(parts.image_bar, parts.drawing_bar),
+        tools=parts.image_bar,
+        header=parts.drawing_bar,
         message=parts.message_bar,
         status=parts.status_line,
     )
     parts.window.hold(contents)
     _add_actions(parts, files, change)
+    parts.window.end_toolbar(contents.tools)
     parts.window.add_panels(_panels(parts), parts.language)
     give_keys(parts)
     connect_parts(parts)
@@ -213,17 +215,35 @@ def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -
 
 
 def _panels(parts: WindowParts) -> tuple[Panel, ...]:
+    project, layers = Text("Project", "プロジェクト"), Text("Layers", "レイヤ")
+    processing, attributes = Text("Processing", "処理"), Text("Attributes", "属性")
+    jobs, table = Text("Jobs", "ジョブ"), Text("Table of features", "地物一覧")
     return (
-        Panel("project", Text("Project", "プロジェクト"), parts.project_tree, _LEFT, 230, 200),
-        Panel("layers", Text("Layers", "レイヤ"), parts.layers_panel, _LEFT, 230, 600),
-        Panel("processing", Text("Processing", "処理"), parts.processing_panel, _RIGHT, 290, 420),
-        Panel("attributes", Text("Attributes", "属性"), parts.attribute_panel, _RIGHT, 290, 380),
+        Panel("layers", layers, parts.layers_panel, _LEFT, 220, 600),
+        Panel("project", project, parts.project_tree, _LEFT, 220, 200, narrow_behind="layers"),
+        Panel("attributes", attributes, parts.attribute_panel, _RIGHT, 260, 420),
         Panel(
-            "jobs", Text("Jobs", "ジョブ"), parts.jobs_panel, _RIGHT, 290, 380, behind="attributes"
+            "processing",
+            processing,
+            parts.processing_panel,
+            _RIGHT,
+            260,
+            380,
+            narrow_behind="attributes",
+        ),
+        Panel(
+            "jobs",
+            jobs,
+            parts.jobs_panel,
+            _RIGHT,
+            260,
+            380,
+            behind="processing",
+            narrow_behind="attributes",
         ),
         Panel(
             "features",
-            Text("Table of features", "地物一覧"),
+            table,
             parts.feature_table,
             _BELOW,
             900,

@@ -28,6 +28,11 @@ from processing.text import Language, Text
 
 _ICON_PX = 20
 _BESIDE = "side-by-side"
+_NARROW_PX = 1800
+"""Narrower windows have panels at one side only, so that the street keeps its room."""
+_COLUMN_PX = 256
+_LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
+_BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
 
 
 class MainWindow(QMainWindow):
@@ -48,7 +53,9 @@ class MainWindow(QMainWindow):
         self._docks: dict[str, QDockWidget] = {}
         self._in_front: list[QDockWidget] = []
         self._waiting: list[QDockWidget] = []
+        self._panels: tuple[Panel, ...] = ()
         self._toolbar: QToolBar | None = None
+        self._tools: QAction | None = None
         self._splitter = QSplitter(Qt.Orientation.Vertical)
         self._pages = QStackedWidget()
         self._is_open = False
@@ -101,7 +108,7 @@ class MainWindow(QMainWindow):
         self._splitter.restoreState(views)
         self._pages = QStackedWidget()
         self._pages.addWidget(contents.start_page)
-        self._pages.addWidget(_stacked(*contents.headers, self._splitter))
+        self._pages.addWidget(_stacked(contents.header, self._splitter))
         # The old widget is deleted by Qt in each of these.
         self.setCentralWidget(_stacked(contents.message, self._pages))
         self.setMenuBar(QMenuBar(self))
@@ -117,6 +124,11 @@ class MainWindow(QMainWindow):
         self.actions_made.add(actions)
         self.actions_made.know_project(is_open=self._is_open)
 
+    def end_toolbar(self, tools: QWidget) -> None:
+        """Put a widget behind the toolbar's buttons, for the time that a project is open."""
+        if self._toolbar is not None:
+            self._tools = self._toolbar.addWidget(tools)
+
     def show_in_corner(self, id_: str) -> None:
         """Show an action at the end of the menu bar as well."""
         button = QToolButton(self)
@@ -127,23 +139,16 @@ class MainWindow(QMainWindow):
     def add_panels(self, panels: Sequence[Panel], language: Language) -> None:
         """Put panels into docks; docks of one area stand above each other."""
         self.actions_made.divide("view")
+        self._panels = tuple(panels)
         for panel in panels:
             dock = QDockWidget(panel.title.spoken(language), self)
             dock.setObjectName(panel.id)
             dock.setWidget(panel.widget)
             self.addDockWidget(panel.area, dock)
-            if panel.behind:
-                self.tabifyDockWidget(self._docks[panel.behind], dock)
-                self._in_front.append(self._docks[panel.behind])
             if panel.is_hidden:
                 self._waiting.append(dock)
             self._docks[panel.id] = dock
             self._adopt_toggle(panel, dock)
-        placed = [panel for panel in panels if not panel.behind]
-        own = [self._docks[panel.id] for panel in placed]
-        across, down = Qt.Orientation.Horizontal, Qt.Orientation.Vertical
-        self.resizeDocks(own, [panel.width for panel in placed], across)
-        self.resizeDocks(own, [panel.height for panel in placed], down)
 
     def give_keys(self, keys: Mapping[str, tuple[str, ...]]) -> None:
         """Let actions be reached by these keys from now on."""
@@ -154,12 +159,15 @@ class MainWindow(QMainWindow):
         self._remember_docks()
         was_open, self._is_open = self._is_open, is_open
         self.actions_made.know_project(is_open=is_open)
+        if self._tools is not None:
+            self._tools.setVisible(is_open)
         self._pages.setCurrentIndex(1 if is_open else 0)
         if is_open and was_open:
             return
         for dock in self._docks.values():
             dock.setVisible(is_open and dock not in self._waiting)
         if is_open:
+            self._place_docks()
             self._restore_docks()
 
     def show_title(self, name: str) -> None:
@@ -234,6 +242,26 @@ class MainWindow(QMainWindow):
             needs_project=True,
         )
         self.actions_made.adopt(action, toggle)
+
+    def _place_docks(self) -> None:
+        """Put the docks where they belong at first, in a window as wide as this."""
+        is_narrow = self.width() < _NARROW_PX
+        self._in_front.clear()
+        placed: list[Panel] = []
+        for panel in self._panels:
+            dock, behind = self._docks[panel.id], panel.narrow_behind if is_narrow else panel.behind
+            is_beside = panel.area is not _BELOW
+            self.addDockWidget(_LEFT if is_narrow and is_beside else panel.area, dock)
+            if behind:
+                self.tabifyDockWidget(self._docks[behind], dock)
+                self._in_front.append(self._docks[behind])
+            else:
+                placed.append(panel)
+        own = [self._docks[panel.id] for panel in placed]
+        widths = [_COLUMN_PX if is_narrow else panel.width for panel in placed]
+        self.resizeDocks(own, widths, Qt.Orientation.Horizontal)
+        heights = [panel.height for panel in placed]
+        self.resizeDocks(own, heights, Qt.Orientation.Vertical)
 
     def _remember_docks(self) -> None:
         """Keep how the docks stand, for the next time that a project is open."""

@@ -25,6 +25,8 @@ class Panel:
         Its share there, in pixels of a usual window.
     behind : str
         Id of the panel with which it shares a place, as a tab; empty for a place of its own.
+    narrow_behind : str
+        The same in a window too narrow for panels at both sides.
     is_hidden : bool
         Whether it waits to be called by its action.
     key : str
@@ -38,6 +40,7 @@ class Panel:
     width: int
     height: int
     behind: str = ""
+    narrow_behind: str = ""
     is_hidden: bool = False
     key: str = ""
 
@@ -52,8 +55,10 @@ class Contents:
         Shown while nothing is open.
     views : sequence of QWidget
         From top to bottom.
-    headers : sequence of QWidget
-        The lines above the views.
+    tools : QWidget
+        Stands at the end of the toolbar, while a project is open.
+    header : QWidget
+        The line above the views.
     message : QWidget
         The line above everything.
     status : QStatusBar
@@ -63,7 +68,8 @@ class Contents:
     language: Language
     start_page: QWidget
     views: Sequence[QWidget]
-    headers: Sequence[QWidget]
+    tools: QWidget
+    header: QWidget
     message: QWidget
     status: QStatusBar
 
