@@ -13,9 +13,10 @@ from widgets.parts.drawing_bar import swatch
 def show_kind_palette(parts: WindowParts) -> None:
     """Let the user choose what to draw by typing a part of its name in either language."""
     recent = [kind.id for kind in parts.toolbox.recent_kinds]
-    palette = CommandPalette(
-        named_kinds(parts), parts.language, parts.window.centralWidget(), used=recent
-    )
+    kinds = named_kinds(parts)
+    palette = CommandPalette(kinds, parts.language, parts.window.centralWidget(), used=recent)
+    for one in kinds:
+        one.action.setParent(palette)  # a hundred actions that would stay behind each time
     palette.setWindowTitle(parts.window.tr("What to draw"))
     palette.show()
 

@@ -95,7 +95,10 @@ class MapEdits:
     def set_status(self, status: Status, name: Text) -> None:
         """Accept, reject or doubt what is chosen."""
         self._each(
-            Text("{name}: {count} features", "{name}: {count}個の地物").filled(name=name),
+            # How many they are is known, and filled in, once they are changed.
+            Text("{name}: {count} features", "{name}: {count}個の地物").filled(
+                name=name, count="{count}"
+            ),
             lambda feature: replace(feature, status=status),
             *Geometry,
         )
