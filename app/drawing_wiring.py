@@ -11,8 +11,10 @@ from app.kind_palette import show_kind_palette
 from app.window_parts import WindowParts
 from processing.project.catalogue import Geometry
 from widgets.mouse_tools.draw_parallel import DrawParallel
+from widgets.mouse_tools.gesture import REACH_PX
 from widgets.mouse_tools.measure import MeasureTool
 from widgets.mouse_tools.menu_wish import MenuWish
+from widgets.shared.mouse_shape import drawing_cursor
 from widgets.shared.snap_state import SnapMode
 
 _OF_LINES = (
@@ -95,6 +97,9 @@ class _DrawingWiring(QObject):
         actions, modes = self._parts.window.actions_by_id, self._parts.document.shared.snap.modes
         for mode in SnapMode:
             actions[f"snap-{mode.value}"].setChecked(mode in modes)
+        picture = self._parts.scene_view.picture
+        if picture is not None:
+            picture.setCursor(drawing_cursor(modes, REACH_PX))
 
     def on_view_menu_requested(self, wish: MenuWish) -> None:
         document = self._parts.document

@@ -10,6 +10,7 @@ from PySide6.QtGui import QGuiApplication
 from app.document import Document
 from processing.drafting.line_edits import reversed_line, simplified
 from processing.drafting.line_joins import join
+from processing.drafting.measuring import width_between
 from processing.errors import UserError
 from processing.project.catalogue import Geometry
 from processing.project.change import Change, Replacement
@@ -23,6 +24,11 @@ NO_LINES = Text("Choose lines or areas first.", "先に線または面を選択�
 COPIED = Text("Copied {count} features.", "{count}個の地物をコピーしました。")
 PASTE = Text("Paste {count} features", "{count}個の地物の貼り付け")
 
+TWO_LINES = Text("Choose two lines first.", "先に線を2本選択してください。")
+WIDTH = Text(
+    "Width {mean:.3f} m on average, from {least:.3f} to {greatest:.3f} m",
+    "幅 平均{mean:.3f} m（最小{least:.3f} m、最大{greatest:.3f} m）",
+)
 _FEWEST_OF_RING = 3
 _NO_PASTE = Text("There is nothing to paste.", "貼り付けるものがありません。")
 
@@ -137,6 +143,22 @@ class MapEdits:
             self._selection.choose_features(frozenset(one.id for one in pasted.features))
             for note in pasted.notes:
                 document.told.emit(note)
+
+    def tell_width(self) -> None:
+        """Say how wide it is between the two chosen lines."""
+        lines = [feature for feature in self.chosen if feature.geometry is Geometry.LINE]
+        if len(lines) != 2:
+            self._document.told.emit(TWO_LINES)
+            return
+        one, other = ([vertex.xyz for vertex in line.vertices] for line in lines)
+        try:
+            width = width_between(one, other)
+        except UserError as refusal:
+            self._document.refused.emit(refusal)
+            return
+        self._document.told.emit(
+            WIDTH.filled(least=width.least_m, mean=width.mean_m, greatest=width.greatest_m)
+        )
 
     def select_like(self, alike: Callable[[Feature, Feature], bool]) -> None:
         """Choose all shown features that are like one of the chosen."""

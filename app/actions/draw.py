@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from app.actions.action import Action
 from app.actions.tool_entries import SNAP_HINTS, TOOL_ENTRIES, ToolEntry
+from app.map_edits import MapEdits
 from app.window_parts import WindowParts
 from app.working_planes import level_plane, plane_of_points
 from processing.text import Text
@@ -74,6 +75,16 @@ def _at_hand_actions(parts: WindowParts) -> tuple[Action, ...]:
             go_on,
             "Shift+C",
             Text("Goes on at the end nearest to the cursor.", "カーソルに近い端から続けます。"),
+        ),
+        _action(
+            "measure-width",
+            Text("Width between two chosen lines", "選択した2本の線の幅"),
+            MapEdits(document).tell_width,
+            "Ctrl+Shift+W",
+            Text(
+                "Least, mean and greatest width in plan, square to the first line.",
+                "1本目の線に直角に測った、平面上の最小・平均・最大幅を表示します。",
+            ),
         ),
         _action(
             "keep-measurement",

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 from PySide6.QtCore import QPointF, Qt
-from PySide6.QtGui import QWheelEvent
+from PySide6.QtGui import QCursor, QWheelEvent
 
 from widgets.image_view.picture import Picture
 from widgets.image_view.viewport import Viewport
+from widgets.mouse_tools.gesture import REACH_PX
+from widgets.shared.mouse_shape import drawing_cursor
+from widgets.shared.snap_state import SnapMode
 
 NOTCH = 120.0
 ZOOM_PER_NOTCH = 1.25
@@ -50,11 +53,11 @@ class Navigation:
         self._from: QPointF | None = None
         self.is_space_down = False
 
-    @property
-    def mouse_shape(self) -> Qt.CursorShape:
-        """What the mouse looks like over a picture."""
-        is_space = self.is_space_down
-        return Qt.CursorShape.OpenHandCursor if is_space else Qt.CursorShape.CrossCursor
+    def mouse_shape(self, modes: frozenset[SnapMode]) -> QCursor:
+        """What the mouse looks like over a picture while clicks snap to these."""
+        if self.is_space_down:
+            return QCursor(Qt.CursorShape.OpenHandCursor)
+        return drawing_cursor(modes, REACH_PX)
 
     @property
     def is_panning(self) -> bool:

@@ -124,6 +124,7 @@ class ImageView(QWidget):
         shared.view_settings.hidden_kinds_changed.connect(self._on_settings_hidden_kinds_changed)
         shared.sketch.changed.connect(self.update)
         shared.snap.mark_changed.connect(self.update)
+        shared.snap.modes_changed.connect(self._show_mouse)
 
     # What others ask.
 
@@ -395,5 +396,5 @@ class ImageView(QWidget):
         return None if picture is None else picture.plan_position(*self._viewport.centre)
 
     def _show_mouse(self) -> None:
-        is_empty = self._picture is None
-        self.setCursor(Qt.CursorShape.ArrowCursor if is_empty else self._navigation.mouse_shape)
+        shape = self._navigation.mouse_shape(self._shared.snap.modes)
+        self.setCursor(shape if self._picture is not None else Qt.CursorShape.ArrowCursor)

@@ -76,6 +76,7 @@ class FeatureActors:
             if one.style.has_vertices and one.shape.feature.geometry is not Geometry.POINT
         ]
         self._show_marks(chosen, _VERTEX_PX * scale, is_round=False)
+        self._hollow(chosen, (_VERTEX_PX - 3.0) * scale)
 
     def clear(self) -> None:
         """Draw nothing."""
@@ -98,6 +99,20 @@ class FeatureActors:
             actor.GetProperty().SetPointSize(size_px + extra_px)
             actor.GetProperty().SetRenderPointsAsSpheres(is_round)
             self._add(renderer, actor)
+
+    def _hollow(self, styled: Sequence[StyledShape], size_px: float) -> None:
+        """Open the squares of vertices that rest on no measured point."""
+        inside = [
+            place
+            for one in styled
+            for place, vertex in zip(one.shape.local_xyz, one.shape.feature.vertices, strict=True)
+            if vertex.is_occluded
+        ]
+        if inside:
+            dark = np.tile(np.array(_HALO_RGB, dtype=np.uint8), (len(inside), 1))
+            actor = _points_actor(np.array(inside), dark)
+            actor.GetProperty().SetPointSize(size_px)
+            self._add(self._marks, actor)
 
     def _add(self, renderer: vtkRenderer, actor: vtkActor) -> None:
         renderer.AddActor(actor)
