@@ -174,8 +174,8 @@ class ImageView(QWidget):
         chosen = [self._places.get(id_) for id_ in self._shared.selection.features]
         bounds = [one.bounds for one in chosen if one is not None and np.isfinite(one.bounds[0])]
         if bounds:
-            left, top = np.min([one[:2] for one in bounds], axis=0)
-            right, bottom = np.max([one[2:] for one in bounds], axis=0)
+            left, top = np.min([one[:2] for one in bounds], axis=0).tolist()
+            right, bottom = np.max([one[2:] for one in bounds], axis=0).tolist()
             self._look_through(self._viewport.holding(left, top, right, bottom))
         elif self._shared.cursor.place is not None:
             self.center_on(self._shared.cursor.place)

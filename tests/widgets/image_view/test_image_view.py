@@ -231,6 +231,19 @@ def test_f_puts_the_chosen_feature_in_the_middle(hand: Hand) -> None:
     assert (middle - QPoint(450, 20 + 320)).manhattanLength() < 12
 
 
+def test_f_on_a_feature_larger_than_the_window_paints_all_of_it(hand: Hand) -> None:
+    image = hand.drive.image(ImageKind.TRAJECTORY_CENTER)
+    points = [image.nearest_filled(row, image.width // 2, 40) for row in (2, image.rows - 3)]
+    feature = hand.map.add(Geometry.LINE, hand.drive, *points)
+    hand.map.shared.selection.choose_features(frozenset({feature.id}))
+    hand.view.zoom_by(16.0)
+    hand.key(Qt.Key.Key_F)
+    # Paint: numbers of numpy instead of Python's would be refused by Qt here.
+    hand.view.grab()
+    for point in points:
+        assert hand.view.rect().contains(hand.spot(point))
+
+
 def test_the_empty_view_offers_what_would_fill_it(qtbot: QtBot, tiles: TileCache) -> None:
     nothing = OpenMap()
     view = ImageView(nothing, nothing.shared, tiles)
