@@ -42,14 +42,41 @@ _MOST_REACH_M = 2.0
 _ACROSS_AGAIN_M = (0.25, 0.15)  # half widths of the second look
 _SAME_M = 0.05
 _COMPARABLE = 0.5
-_ON_EDGE_M = 0.5  # the chosen point lies within so much along the edge
 _LEAST_CUT = 0.2  # sine of the angle at which a row must cut an edge
 _ROWS_ASIDE = 10
 _COMPANY, _COMPANY_M = 3, 0.05  # others that lie so near a point bear it out
 
 
+@dataclass(frozen=True)
+class EdgePlace:
+    """A place on an edge of the cloud.
+
+    Attributes
+    ----------
+    point : int
+        The measured point nearest to it.
+    xyz : tuple of float
+        m, project CRS: where the row that was clicked cuts the edge that was fitted to the points
+        around; on the far side of a street measured points lie several cm apart.
+    """
+
+    point: int
+    xyz: tuple[float, float, float]
+
+
 def strongest_bend(drive: Drive, point: int, within_px: int = 8) -> int:
-    """The measured point on the edge of the cloud beside a point: curb edge, wall foot, wall top.
+    """The measured point nearest to the edge beside a point, −1 where there is none.
+
+    See Also
+    --------
+    edge_beside : The place on the edge itself.
+    """
+    found = edge_beside(drive, point, within_px)
+    return _NONE if found is None else found.point
+
+
+def edge_beside(drive: Drive, point: int, within_px: int = 8) -> EdgePlace | None:
+    """The edge of the cloud beside a point: curb edge, wall foot, wall top.
 
     Parameters
     ----------
@@ -60,8 +87,8 @@ def strongest_bend(drive: Drive, point: int, within_px: int = 8) -> int:
 
     Returns
     -------
-    int
-        −1 where the surface doesn't bend: on a flat road, in leaves, on a wire.
+    EdgePlace or None
+        None where the surface doesn't bend: on a flat road, in leaves, on a wire.
 
     Notes
     -----
@@ -69,9 +96,9 @@ def strongest_bend(drive: Drive, point: int, within_px: int = 8) -> int:
        same (that of the least eigenvalue of the sum of n·nᵀ over the surface normals n), so they
        fall on one profile, much denser than one row.
     2. The profile is cut into straight pieces; neighbouring pieces cross on the edge.
-    3. Of the edges at least half as strong as the strongest, the nearest is taken; and of the
-       points around it the one that lies best on it. Points of the same row may be 10 cm apart,
-       so it may be one of a row beside.
+    3. Of the edges at least half as strong as the strongest, the nearest is taken, where the row
+       cuts it. Points of the row may be 10 cm apart, so the measured point nearest to that place
+       may be one of a row beside.
     """
     row = _row_around(drive, point, within_px)
     around = neighbours(drive, point, row.reach_m + PATCH_M)
@@ -83,13 +110,16 @@ def strongest_bend(drive: Drive, point: int, within_px: int = 8) -> int:
         if any(edge.strength_m >= _COMPARABLE * LONGEST_ARM_M for edge in edges):
             break
     if not edges:
-        return _NONE
+        return None
     strongest = max(edge.strength_m for edge in edges)
     edge = min(
         (edge for edge in edges if edge.strength_m >= _COMPARABLE * strongest),
         key=lambda edge: edge.distance_m,
     )
-    return int(around[_best_on_edge(xyz, row.xyz, edge.place, edge.direction)])
+    place = row.nearest_on(edge.place, edge.direction)
+    nearest = int(np.linalg.norm(xyz - place, axis=1).argmin())
+    easting, northing, height = place.tolist()
+    return EdgePlace(int(around[nearest]), (easting, northing, height))
 
 
 def lowest_point(drive: Drive, point: int, radius_m: float) -> int:
@@ -160,7 +190,7 @@ def _edges_beside(xyz: _Floats, row: _Row, center: _Floats, within_px: int) -> l
     near = np.hypot(section.corners[:, ACROSS], section.corners[:, HEIGHT]) <= _TRUSTED_M
     strengths = section.corners[:, STRENGTH]
     corners = np.flatnonzero(near & (strengths >= LEAST_STRENGTH_M))
-    again = {int(k): _seen_again(xyz, section, int(k)) for k in corners}
+    again = {int(k): _seen_again(xyz, row, section, int(k)) for k in corners}
     if all(seen is None for seen in again.values()):
         return []
     edges = []
@@ -187,10 +217,10 @@ def _passing(row: _Row, seen: tuple[_Floats, _Floats, float], within_px: int) ->
 
 
 def _seen_again(
-    xyz: _Floats, section: Section, corner: int
+    xyz: _Floats, row: _Row, section: Section, corner: int
 ) -> tuple[_Floats, _Floats, float] | None:
-    """The same corner in a narrow profile around it; None where it isn't there."""
-    place = section.places[corner]
+    """The same corner in a narrow profile where the row cuts it; None where it isn't there."""
+    place = row.nearest_on(section.places[corner], section.direction)
     local = xyz - place
     local = np.ascontiguousarray(local[(local**2).sum(axis=1) <= PATCH_M**2])
     frame = np.array([section.heading_rad, section.grade, section.curvature])
@@ -224,6 +254,11 @@ class _Row:
         """How far the row goes from its middle."""
         away = self.xyz - self.xyz[self.middle]
         return min(_MOST_REACH_M, float(np.linalg.norm(away, axis=1).max()))
+
+    def nearest_on(self, place: _Floats, direction: _Floats) -> _Floats:
+        """(3,) where the row comes nearest to a line."""
+        nearest = int(_off_line(self.xyz, place, direction).argmin())
+        return np.asarray(place + ((self.xyz[nearest] - place) @ direction) * direction)
 
 
 def _row_around(drive: Drive, point: int, within_px: int) -> _Row:
@@ -298,12 +333,3 @@ def _off_line(xyz: _Floats, place: _Floats, direction: _Floats) -> _Floats:
     away = xyz - place
     along = away @ direction
     return np.asarray(np.linalg.norm(away - along[:, None] * direction, axis=1))
-
-
-def _best_on_edge(xyz: _Floats, row_xyz: _Floats, place: _Floats, direction: _Floats) -> int:
-    """The point that lies best on an edge, near where the row passes it."""
-    passing = row_xyz[_off_line(row_xyz, place, direction).argmin()]
-    along = np.abs((xyz - place) @ direction - float((passing - place) @ direction))
-    # A point 10 cm along the edge is as good as one 1 mm farther off it.
-    away = _off_line(xyz, place, direction) + 0.01 * along
-    return int(np.where(along <= _ON_EDGE_M, away, np.inf).argmin())

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from processing.image.edges import strongest_bend
+from processing.image.edges import edge_beside
 from processing.image.trace import trace
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
@@ -132,9 +132,9 @@ def snapped_clicks(drive: Drive, lines: list[TrueLine], kind: str) -> Score:
         if click >= pulses.size or pulses[click] != aside:
             continue
         start = time.perf_counter()
-        found = strongest_bend(drive, click, _ASIDE_PX)
+        found = edge_beside(drive, click, _ASIDE_PX)
         seconds.append(time.perf_counter() - start)
-        off.append(float(edges.query(xyz[found])[0]) if found >= 0 else np.inf)
+        off.append(np.inf if found is None else float(edges.query(found.xyz)[0]))
     if not off:
         return Score(f"snap, {kind}", "0 clicks", np.nan, np.nan, "not seen")
     offs = np.array(off)

@@ -11,7 +11,7 @@ from typing_extensions import override
 
 from processing.drafting.crossings import LinePlace, line_places
 from processing.drafting.heights import grounded
-from processing.image.edges import highest_point, lowest_point, strongest_bend
+from processing.image.edges import edge_beside, highest_point, lowest_point
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature, PointReference, Vertex
 from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit, MouseTool
@@ -196,10 +196,11 @@ class SnappingHand(MouseTool):
         elif SnapMode.HIGHEST in modes:
             found, mode = highest_point(drive, point, hit.reach_m), SnapMode.HIGHEST
         elif SnapMode.EDGE in modes and self.tool.snaps_to_edges:
-            found, mode = strongest_bend(drive, point, EDGE_PX), SnapMode.EDGE
+            edge = edge_beside(drive, point, EDGE_PX)
+            if edge is None:
+                return None
+            return Place(edge.xyz, PointReference(drive.id, edge.point)), SnapMode.EDGE
         else:
-            return None
-        if found < 0:
             return None
         easting, northing, height = drive.xyz(np.array([found]))[0].tolist()
         return Place((easting, northing, height), PointReference(drive.id, found)), mode

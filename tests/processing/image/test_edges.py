@@ -9,7 +9,13 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.image.edge_kernels import BEND, CORNER_COLUMNS, MOST_CORNERS, corners_kernel
-from processing.image.edges import highest_point, lowest_point, neighbours, strongest_bend
+from processing.image.edges import (
+    edge_beside,
+    highest_point,
+    lowest_point,
+    neighbours,
+    strongest_bend,
+)
 from processing.points.drive import Drive
 from tests.processing.image.profiled_streets import (
     LOWER,
@@ -37,9 +43,9 @@ def clicks(drive: Drive, street: Street, corner: Floats, aside_px: int) -> list[
 
 
 def snapped(drive: Drive, points: list[int]) -> Floats:
-    found = np.array([strongest_bend(drive, point) for point in points])
-    assert (found >= 0).all()
-    return drive.xyz(found)
+    found = [place.xyz for point in points if (place := edge_beside(drive, point)) is not None]
+    assert len(found) == len(points)
+    return np.array(found)
 
 
 @pytest.mark.parametrize("corner", [LOWER, UPPER], ids=["lower", "upper"])
@@ -47,7 +53,7 @@ def snapped(drive: Drive, points: list[int]) -> Floats:
     "street",
     [
         Street(),
-        Street(noise_m=0.005),
+        Street(noise_m=0.005, length_m=14.0),
         Street(row_m=0.17, spacing_m=0.05),
         Street(row_m=0.05, spacing_m=0.006),
         Street(curvature=0.15),
