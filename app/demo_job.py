@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import shutil
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,6 +14,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from app.cli.image import write_image
 from app.cli.import_drives import describe_drive
 from app.cli.output import print_lines
+from app.sample_drawing import read_sample_drawing
 from app.window_parts import WindowParts
 from processing.errors import MissingInput, UserError, told_as_user_error
 from processing.image.attributes import available
@@ -33,16 +32,6 @@ from widgets.shared.cursor import Place
 _LONGEST_WAIT_MS = 300_000
 _SETTLE_MS = 1_500
 _NEAR_M = 0.3
-_DRAWING = "sample_street/drawing.json"
-
-
-@dataclass(frozen=True)
-class _Wanted:
-    """One feature of the demo's drawing: its kind, its scanner, where its vertices should be."""
-
-    kind: str
-    drive: str
-    places: tuple[tuple[float, float, float], ...]
 
 
 def do_demo_job(parts: WindowParts, out: Path) -> int:
@@ -105,7 +94,7 @@ class _DemoJob:
     def draw(self) -> None:
         """Draw with clicks on the image, as a person does."""
         settings = self._document.shared.view_settings
-        for wanted in _read_drawing():
+        for wanted in read_sample_drawing():
             drive = next(d for d in self._document.drives() if wanted.drive in d.info.name)
             settings.show_image(drive.id, ImageKind.TRAJECTORY_CENTER)
             self._parts.image_view.show_one_to_one()
@@ -237,14 +226,6 @@ class _DemoJob:
     def _raise_refusal(self) -> None:
         if self._errors:
             raise self._errors[0]
-
-
-def _read_drawing() -> tuple[_Wanted, ...]:
-    stored = json.loads(path_of(_DRAWING).read_text(encoding="utf-8"))
-    return tuple(
-        _Wanted(one["kind"], one["drive"], tuple((x, y, z) for x, y, z in one["places"]))
-        for one in stored["features"]
-    )
 
 
 def _click(widget: QWidget, position: QPointF) -> None:

@@ -14,6 +14,7 @@ COMMANDS = {
     "setup": "make the environment in .venv",
     "demo": "set up, then run the demo (by itself where there is no display)",
     "test": "set up, then run every check and test; what follows -- goes to pytest",
+    "screenshots": "set up, then take pictures of every tool and form in use",
     "translations": "set up, then collect the texts for translation and compile them",
 }
 
@@ -37,7 +38,9 @@ def main() -> int:
         epilog="\n".join(f"{name:13} {words}" for name, words in COMMANDS.items()),
     )
     parser.add_argument("command", choices=tuple(COMMANDS))
-    parser.add_argument("pytest", nargs="*", metavar="-- ARGS", help="for test: pytest's arguments")
+    parser.add_argument(
+        "more", nargs="*", metavar="-- ARGS", help="for test: pytest's; for screenshots: its own"
+    )
     chosen = parser.parse_args()
     complaint = version_complaint(sys.version_info[:2])
     if complaint:
@@ -46,7 +49,7 @@ def main() -> int:
     sys.path.insert(0, str(ROOT))
     from installer.commands import run
 
-    return run(chosen.command, ROOT, tuple(chosen.pytest))
+    return run(chosen.command, ROOT, tuple(chosen.more))
 
 
 if __name__ == "__main__":

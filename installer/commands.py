@@ -13,6 +13,8 @@ from installer.environment import Environment
 from installer.steps import Stop, fingerprint, status_of, tell
 
 DEMO_OUTPUT = "demo-output"
+SCREENSHOTS = "screenshots"
+_LARGE_SCREEN = "2560x1440x24"
 CHECKS: tuple[tuple[str, ...], ...] = (
     ("ruff", "format", "--check", "--quiet", "."),
     ("ruff", "check", "--quiet", "."),
@@ -21,17 +23,17 @@ CHECKS: tuple[tuple[str, ...], ...] = (
 )
 
 
-def run(command: str, root: Path, pytest_arguments: Sequence[str]) -> int:
+def run(command: str, root: Path, arguments: Sequence[str]) -> int:
     """Set up the checkout, then do what the command asks for.
 
     Parameters
     ----------
     command : str
-        ``setup``, ``demo``, ``test`` or ``translations``.
+        ``setup``, ``demo``, ``test``, ``screenshots`` or ``translations``.
     root : Path
         The checkout.
-    pytest_arguments : Sequence[str]
-        For ``test``: added to pytest's command line.
+    arguments : Sequence[str]
+        For ``test``: added to pytest's command line; for ``screenshots``: to its own.
 
     Returns
     -------
@@ -44,7 +46,9 @@ def run(command: str, root: Path, pytest_arguments: Sequence[str]) -> int:
         if command == "demo":
             return _demo(environment)
         if command == "test":
-            return _test(environment, pytest_arguments)
+            return _test(environment, arguments)
+        if command == "screenshots":
+            return _screenshots(environment, arguments)
         if command == "translations":
             translations.collect(environment, root / translations.FOLDER)
             translations.compile_all(environment)
@@ -97,6 +101,16 @@ def _test(environment: Environment, pytest_arguments: Sequence[str]) -> int:
     with virtual_display(environment.variables) as variables:
         return status_of(
             [environment.program("python"), "-m", "pytest", *pytest_arguments],
+            folder=environment.root,
+            environment=variables,
+        )
+
+
+def _screenshots(environment: Environment, arguments: Sequence[str]) -> int:
+    """Take the pictures on a screen of their own, so that nothing else is on them."""
+    with virtual_display(environment.variables, _LARGE_SCREEN) as variables:
+        return status_of(
+            [environment.program("python"), "-m", "app.screenshots", SCREENSHOTS, *arguments],
             folder=environment.root,
             environment=variables,
         )

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 
 from installer.steps import Stop
 
-SCREEN = "1600x1000x24"
+USUAL_SCREEN = "1600x1000x24"
 
 
 def has_display(variables: Mapping[str, str]) -> bool:
@@ -21,10 +21,17 @@ def has_display(variables: Mapping[str, str]) -> bool:
 
 
 @contextmanager
-def virtual_display(variables: Mapping[str, str]) -> Iterator[dict[str, str]]:
+def virtual_display(
+    variables: Mapping[str, str], screen: str = USUAL_SCREEN
+) -> Iterator[dict[str, str]]:
     """Give the environment of programs that draw on a virtual screen while the body runs.
 
     Off Linux, where windows need no such thing, the environment is given as it is.
+
+    Parameters
+    ----------
+    screen : str
+        Its size as Xvfb wants it: width, height and depth.
 
     Raises
     ------
@@ -34,7 +41,7 @@ def virtual_display(variables: Mapping[str, str]) -> Iterator[dict[str, str]]:
     if not sys.platform.startswith("linux"):
         yield dict(variables)
         return
-    server, number = _started(variables)
+    server, number = _started(variables, screen)
     try:
         yield _drawn_on(variables, number)
     finally:
@@ -42,10 +49,10 @@ def virtual_display(variables: Mapping[str, str]) -> Iterator[dict[str, str]]:
         server.wait()
 
 
-def _started(variables: Mapping[str, str]) -> tuple[subprocess.Popen[bytes], str]:
+def _started(variables: Mapping[str, str], screen: str) -> tuple[subprocess.Popen[bytes], str]:
     """Start Xvfb; it chooses a free display and writes the number into our pipe when ready."""
     reader, writer = os.pipe()
-    command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", SCREEN, "-nolisten", "tcp"]
+    command = ["Xvfb", "-displayfd", str(writer), "-screen", "0", screen, "-nolisten", "tcp"]
     try:
         server = subprocess.Popen(
             [*command, "-noreset"],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QMimeData, QPoint, QPointF, Qt, QUrl
@@ -24,15 +25,11 @@ class Hand:
     def __init__(self) -> None:
         self._held: tuple[QWidget, QPoint] | None = None
 
-    def move(
-        self, widget: QWidget, spot: QPoint, modifiers: Qt.KeyboardModifier = PLAIN
-    ) -> None:
+    def move(self, widget: QWidget, spot: QPoint, modifiers: Qt.KeyboardModifier = PLAIN) -> None:
         """Bring the mouse over a place of a widget; with the button held, drag."""
-        _send(QEvent.Type.MouseMove, widget, spot, modifiers, self._held is not None)
+        _move(widget, spot, modifiers, NO_BUTTON if self._held is None else LEFT)
 
-    def click(
-        self, widget: QWidget, spot: QPoint, modifiers: Qt.KeyboardModifier = PLAIN
-    ) -> None:
+    def click(self, widget: QWidget, spot: QPoint, modifiers: Qt.KeyboardModifier = PLAIN) -> None:
         """Bring the mouse there and click."""
         self.move(widget, spot, modifiers)
         QTest.mouseClick(widget, LEFT, modifiers, spot)
@@ -49,7 +46,7 @@ class Hand:
         self.move(widget, way[0], modifiers)
         QTest.mousePress(widget, LEFT, modifiers, way[0])
         self._held = (widget, way[-1])
-        for begin, end in zip(way, way[1:], strict=False):
+        for begin, end in itertools.pairwise(way):
             for step in range(1, _STEPS + 1):
                 self.move(widget, begin + (end - begin) * step / _STEPS, modifiers)
 
@@ -62,7 +59,7 @@ class Hand:
     def push(self, widget: QWidget, begin: QPoint, end: QPoint) -> None:
         """Drag with the middle button from one place to another."""
         QTest.mousePress(widget, MIDDLE, PLAIN, begin)
-        _send(QEvent.Type.MouseMove, widget, end, PLAIN, False)
+        _move(widget, end, PLAIN, MIDDLE)
         QTest.mouseRelease(widget, MIDDLE, PLAIN, end)
 
     def wheel(
@@ -81,7 +78,7 @@ class Hand:
             NO_BUTTON,
             modifiers,
             Qt.ScrollPhase.NoScrollPhase,
-            False,
+            False,  # noqa: FBT003 - Qt takes it by its place only
         )
         QApplication.sendEvent(widget, event)
 
@@ -110,15 +107,15 @@ class Hand:
         QApplication.sendEvent(widget, event)
 
 
-def _send(
-    kind: QEvent.Type,
-    widget: QWidget,
-    spot: QPoint,
-    modifiers: Qt.KeyboardModifier,
-    is_held: bool,
+def _move(
+    widget: QWidget, spot: QPoint, modifiers: Qt.KeyboardModifier, held: Qt.MouseButton
 ) -> None:
-    held = LEFT if is_held else NO_BUTTON
     event = QMouseEvent(
-        kind, QPointF(spot), QPointF(widget.mapToGlobal(spot)), NO_BUTTON, held, modifiers
+        QEvent.Type.MouseMove,
+        QPointF(spot),
+        QPointF(widget.mapToGlobal(spot)),
+        NO_BUTTON,
+        held,
+        modifiers,
     )
     QApplication.sendEvent(widget, event)

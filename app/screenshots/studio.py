@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from time import monotonic
+from time import monotonic, sleep
 from typing import TypeVar
 
 import numpy as np
-from PySide6.QtCore import QPoint, Qt
-from PySide6.QtGui import QImage
+from PySide6.QtCore import QByteArray, QEventLoop, QPoint, Qt, QTimer
+from PySide6.QtGui import QCursor, QImage
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QDialog, QWidget
+from PySide6.QtWidgets import QApplication, QDialog, QDockWidget, QLineEdit, QWidget
 
 from app.screenshots.hand import CONTROL, PLAIN, Hand
 from app.window_parts import WindowParts
 from processing.points.drive import Drive
-from processing.project.feature import PointReference, Position
+from processing.project.feature import Feature, PointReference, Position
 from widgets.shared.cursor import Place
 
 _LONGEST_MS = 60_000
@@ -26,6 +27,7 @@ _REST_MS = 4_000
 _PULSE_MS = 60
 _NEAR_M = 0.3
 _SAME_TIMES = 3
+_MOST_STEPS = 20
 
 Found = TypeVar("Found", bound=QWidget)
 
@@ -48,6 +50,8 @@ class Studio:
     out: Path
     scratch: Path
     hand: Hand
+    _features: dict[str, Feature] = field(default_factory=dict, init=False)
+    _docks: QByteArray = field(default_factory=QByteArray, init=False)
 
     @property
     def view(self) -> QWidget:
@@ -77,11 +81,28 @@ class Studio:
         at = self.parts.scene_view.position_of(self.place(name, xyz))
         return QPoint() if at is None else at.toPoint()
 
+    def features(self, kind: str, name: str) -> list[Feature]:
+        """What was drawn of a kind on a drive."""
+        drive = self.drive(name).id
+        return [
+            one
+            for one in self.parts.document.features()
+            if one.kind == kind and one.vertices[0].measured is not None
+            if one.vertices[0].measured.drive == drive
+        ]
+
+    def feature(self, kind: str, name: str) -> Feature:
+        """The one of a kind on a drive that has most vertices."""
+        return max(self.features(kind, name), key=lambda one: len(one.vertices))
+
+    def show_drive(self, name: str) -> None:
+        """Choose a drive, as a click in the project's tree does."""
+        if self.parts.document.shared.view_settings.drive_id != self.drive(name).id:
+            self.parts.project_tree.drive_chosen.emit(self.drive(name).id)
+
     def look(self, name: str, xyz: Position, notches: int) -> None:
         """Show a drive with a place in the middle, so many notches of the wheel larger."""
-        tree = self.parts.project_tree
-        if self.parts.document.shared.view_settings.drive_id != self.drive(name).id:
-            tree.drive_chosen.emit(self.drive(name).id)
+        self.show_drive(name)
         self.key(Qt.Key.Key_Home)
         spot = self.spot(name, xyz)
         self.hand.wheel(self.view, spot, notches)
@@ -108,7 +129,66 @@ class Studio:
         self.hand.move(self.view, spot - QPoint(9, 5), modifiers)
         self.hand.move(self.view, spot, modifiers)
 
+    def key_in_focus(self, key: Qt.Key) -> None:
+        """Press a key in the field that has the focus."""
+        self.hand.key(QApplication.focusWidget() or self.view, key)
+
+    def point_at(self, widget: QWidget) -> None:
+        """Put the system's mouse on a widget: menus open where it is."""
+        QCursor.setPos(widget.mapToGlobal(widget.rect().bottomLeft()))
+
+    def act(self, id_: str) -> None:
+        """Choose a command."""
+        self.parts.window.actions_by_id[id_].trigger()
+
+    def bring(self, panel: str) -> None:
+        """Bring a panel to the front of those that share its place."""
+        dock = self.parts.window.findChild(QDockWidget, panel)
+        if isinstance(dock, QDockWidget):
+            dock.show()
+            dock.raise_()
+
     # Waiting and shooting.
+
+    def remember(self) -> None:
+        """Come back to how the window stands now after each scene."""
+        self._features = self._by_id()
+        self._docks = self.parts.window.saveState()
+
+    def restore(self) -> None:
+        """Take back what a scene has done."""
+        self.tidy()
+        parts = self.parts
+        for status in parts.jobs.statuses:
+            parts.jobs.cancel(status.id)
+        self.wait(lambda: not parts.jobs.is_busy)
+        self.letter("S")
+        for _ in range(2):
+            self.key(Qt.Key.Key_Escape)
+        self.letter("H", CONTROL)
+        for _ in range(_MOST_STEPS):
+            if self._by_id() == self._features:
+                break
+            self.letter("Z", CONTROL)
+        parts.message_bar.hide()
+        for panel in (parts.layers_panel, parts.feature_table):
+            for line in panel.findChildren(QLineEdit):
+                line.clear()
+        beside = parts.window.actions_by_id["side-by-side"]
+        if beside.isChecked():
+            beside.trigger()
+        self.act("show-intensity")
+        parts.window.restoreState(self._docks)
+
+    def leave(self) -> None:
+        """Close the window for good."""
+        self.parts.window.close()
+        self.parts.window.deleteLater()
+
+    @staticmethod
+    def pause() -> None:
+        """Let some time go by in another thread."""
+        sleep(_PULSE_MS / 1000)
 
     def wait(self, condition: Callable[[], bool], longest_ms: int = _LONGEST_MS) -> bool:
         """Let the window live until something is so; says whether it came to be."""
@@ -116,7 +196,7 @@ class Studio:
         while not condition():
             if monotonic() > end:
                 return False
-            QTest.qWait(_PULSE_MS)
+            _live(_PULSE_MS)
         return True
 
     def settle(self) -> None:
@@ -142,7 +222,9 @@ class Studio:
     def dialog(self, kind: type[Found]) -> Found:
         """The form that is open, made active."""
         found = [
-            one for one in QApplication.topLevelWidgets() if isinstance(one, kind) and one.isVisible()
+            one
+            for one in QApplication.topLevelWidgets()
+            if isinstance(one, kind) and one.isVisible()
         ]
         if not found:
             message = f"no {kind.__name__} is open"
@@ -162,9 +244,13 @@ class Studio:
             if isinstance(one, QDialog) and one.isVisible():
                 one.close()
         window = self.parts.window
+        QCursor.setPos(window.geometry().bottomRight())
         window.activateWindow()
         QTest.qWaitForWindowActive(window)
         self.view.setFocus()
+
+    def _by_id(self) -> dict[str, Feature]:
+        return {feature.id: feature for feature in self.parts.document.features()}
 
     def _grab(self) -> QImage:
         window = self.parts.window
@@ -173,11 +259,18 @@ class Studio:
         return picture.toImage()
 
 
+def _live(milliseconds: int) -> None:
+    """Let the window live for a while; other threads as well, which QTest's waiting holds up."""
+    loop = QEventLoop()
+    QTimer.singleShot(milliseconds, loop.quit)
+    loop.exec()
+
+
 def along(line: list[Position], share: float) -> Position:
     """The place at a share of a line's length."""
-    legs = [math.dist(a, b) for a, b in zip(line, line[1:], strict=False)]
+    legs = [math.dist(a, b) for a, b in itertools.pairwise(line)]
     left = share * sum(legs)
-    for (begin, end), leg in zip(zip(line, line[1:], strict=False), legs, strict=True):
+    for (begin, end), leg in zip(itertools.pairwise(line), legs, strict=True):
         if left <= leg:
             part = left / leg
             x, y, z = ((1 - part) * a + part * b for a, b in zip(begin, end, strict=True))

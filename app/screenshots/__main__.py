@@ -1,0 +1,95 @@
+"""``python -m app.screenshots OUT``: pictures of every tool and form, in use."""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from PySide6.QtTest import QTest
+
+from app.application import build_window, make_application
+from app.screenshots.drawing import DRAWING
+from app.screenshots.editing import EDITING
+from app.screenshots.forms import FORMS, WITHOUT_STREET
+from app.screenshots.frame import FRAME
+from app.screenshots.hand import Hand
+from app.screenshots.street import draw_street, open_street
+from app.screenshots.studio import Studio
+from app.settings import Settings
+from app.theme import ThemeChoice
+from processing.text import Language
+
+ON_STREET: Mapping[str, Callable[[Studio], None]] = {**FRAME, **DRAWING, **EDITING, **FORMS}
+_LANGUAGES: Mapping[str, tuple[Language, ...]] = {
+    "en": ("en",),
+    "ja": ("ja",),
+    "both": ("en", "ja"),
+}
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Make the pictures that are asked for; gives the exit status."""
+    parser = argparse.ArgumentParser(prog="python -m app.screenshots", description=__doc__)
+    parser.add_argument("out", type=Path, help="folder of the pictures")
+    parser.add_argument("--language", choices=tuple(_LANGUAGES), default="both")
+    parser.add_argument("--size", type=_size, default=(1366, 768), metavar="WIDTHxHEIGHT")
+    parser.add_argument("--theme", choices=("light", "dark"), default="light")
+    known = (*ON_STREET, *WITHOUT_STREET)
+    parser.add_argument("--only", nargs="+", choices=known, default=known, metavar="NAME")
+    chosen = parser.parse_args(arguments)
+    chosen.out.mkdir(parents=True, exist_ok=True)
+    for language in _LANGUAGES[chosen.language]:
+        with TemporaryDirectory(prefix="zuka-") as folder:
+            settings = Settings(Path(folder) / "settings.ini")
+            settings.choose_language(language)
+            settings.choose_theme(ThemeChoice(chosen.theme))
+            studio = _studio(settings, chosen.out, Path(folder), chosen.size)
+            take_pictures(studio, chosen.only)
+            studio.leave()
+    return 0
+
+
+def take_pictures(studio: Studio, names: Sequence[str]) -> None:
+    """Make the scenes of these names, and a picture of each; nothing is open before and after."""
+    if any(name in ON_STREET for name in names):
+        open_street(studio)
+        draw_street(studio)
+        studio.remember()
+    for name, make in ON_STREET.items():
+        if name in names:
+            make(studio)
+            studio.shoot(name)
+            studio.restore()
+    studio.parts.document.close()
+    for name, make in WITHOUT_STREET.items():
+        if name in names:
+            make(studio)
+            studio.shoot(name)
+            studio.tidy()
+    studio.parts.document.close()
+
+
+def _studio(settings: Settings, out: Path, scratch: Path, size: tuple[int, int]) -> Studio:
+    """A window of this size in the corner of the screen."""
+    make_application().setCursorFlashTime(0)  # a caret that comes and goes never rests
+    parts = build_window(settings, scratch / "projects")
+    parts.window.resize(*size)
+    parts.window.move(0, 0)
+    parts.window.show()
+    QTest.qWaitForWindowActive(parts.window)
+    return Studio(parts, out, scratch, Hand())
+
+
+def _size(words: str) -> tuple[int, int]:
+    found = re.fullmatch(r"(\d{3,4})x(\d{3,4})", words)
+    if found is None:
+        raise argparse.ArgumentTypeError(f"{words!r} is no size such as 1366x768")
+    return int(found[1]), int(found[2])
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

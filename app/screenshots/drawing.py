@@ -1,0 +1,187 @@
+"""Scenes of what is drawn and measured."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from PySide6.QtCore import QPoint, Qt
+
+from app.screenshots.hand import CONTROL, SHIFT
+from app.screenshots.street import CARRIAGEWAY_M, LEFT, MARKING_M, RIGHT, SIDEWALK_M, at
+from app.screenshots.studio import Studio
+from processing.project.feature import Position
+from widgets.mouse_tools.draw_path import DrawPath
+
+_FOLLOWED_MS = 20_000
+
+
+def line(studio: Studio) -> None:
+    """A white line being drawn, the mouse drawn to its edge."""
+    studio.look(RIGHT, at(9.0, MARKING_M), 8)
+    studio.letter("0")
+    studio.draw(RIGHT, [at(4.0, MARKING_M), at(6.5, MARKING_M), at(9.0, MARKING_M)])
+    studio.hover(studio.spot(RIGHT, at(11.5, 0.03)))
+
+
+def line_to_vertex(studio: Studio) -> None:
+    """A gutter that is to end at a vertex of the curb."""
+    studio.look(RIGHT, at(7.5, 0.0), 9)
+    studio.letter("4")
+    studio.draw(RIGHT, [at(4.0, SIDEWALK_M), at(6.0, 0.9)])
+    studio.hover(_vertex_of_curb(studio, 4))
+
+
+def line_in_3d(studio: Studio) -> None:
+    """The same tool in 3D."""
+    studio.look(RIGHT, at(9.0, 0.0), 6)
+    studio.letter("0")
+    studio.draw(RIGHT, [at(5.0, MARKING_M), at(7.0, MARKING_M), at(9.0, MARKING_M)])
+    picture = studio.parts.scene_view.picture
+    if picture is not None:
+        spot = studio.spot_3d(RIGHT, at(11.0, MARKING_M))
+        studio.hand.move(picture, spot - QPoint(7, 3))
+        studio.hand.move(picture, spot)
+
+
+def point(studio: Studio) -> None:
+    """A sign and where it faces."""
+    sign = (-11396.84, -35134.68, 127.94)
+    studio.look(RIGHT, sign, 8)
+    studio.letter("6")
+    spot = studio.spot(RIGHT, sign)
+    studio.hand.drag(studio.view, [spot, spot + QPoint(60, 46)], CONTROL)
+
+
+def trace(studio: Studio) -> None:
+    """A curb that is followed."""
+    _traced(studio, LEFT, (-11385.871, -35121.449, 125.696), (-11389.463, -35126.003, 125.712), 6)
+    studio.hover(studio.spot(LEFT, (-11389.85, -35126.5, 125.62)))
+
+
+def trace_stopped(studio: Studio) -> None:
+    """A curb that ends before the second click."""
+    begin, end = (-11393.1, -35130.62, 125.73), (-11403.6, -35144.0, 125.7)
+    _traced(studio, LEFT, begin, end, 4)
+
+
+def arc(studio: Studio) -> None:
+    """An arc over a click."""
+    studio.look(RIGHT, at(9.0, SIDEWALK_M), 8)
+    studio.letter("3")
+    studio.letter("A", SHIFT)
+    studio.draw(RIGHT, [at(6.0, 0.5), at(9.0, 1.6)])
+    studio.hover(studio.spot(RIGHT, at(11.5, 0.6)), CONTROL)
+
+
+def spline(studio: Studio) -> None:
+    """A smooth curve through clicks."""
+    studio.look(RIGHT, at(9.0, SIDEWALK_M), 8)
+    studio.letter("3")
+    studio.letter("L", SHIFT)
+    studio.draw(RIGHT, [at(5.0, 0.6), at(7.0, 1.7), at(9.0, 0.8)])
+    studio.hover(studio.spot(RIGHT, at(11.5, 1.6)), CONTROL)
+
+
+def area(studio: Studio) -> None:
+    """An area, corner by corner."""
+    studio.look(RIGHT, at(9.0, CARRIAGEWAY_M), 6)
+    studio.letter("A")
+    corners = [at(6.0, -1.4), at(10.0, -1.4), at(10.0, -2.8)]
+    studio.draw(RIGHT, corners)
+    studio.hover(studio.spot(RIGHT, at(6.3, -2.8)), CONTROL)
+
+
+def rectangle(studio: Studio) -> None:
+    """A rectangle by three points, with its size."""
+    studio.look(RIGHT, at(9.0, -0.6), 10)
+    studio.letter("R")
+    studio.draw(RIGHT, [at(8.0, -0.2), at(9.0, -0.2)])
+    studio.hover(studio.spot(RIGHT, at(9.0, -0.6)), CONTROL)
+
+
+def circle(studio: Studio) -> None:
+    """A circle by three points, with its diameter."""
+    studio.look(RIGHT, at(9.0, CARRIAGEWAY_M), 10)
+    studio.letter("9")
+    studio.letter("R", SHIFT)
+    studio.draw(RIGHT, [at(8.7, -2.0), at(9.0, -1.7)])
+    studio.hover(studio.spot(RIGHT, at(9.3, -2.0)), CONTROL)
+
+
+def parallel(studio: Studio) -> None:
+    """A copy beside a curb, at a distance."""
+    studio.look(RIGHT, at(9.0, 0.3), 7)
+    studio.letter("O")
+    studio.hand.click(studio.view, _middle_of_curb(studio, 4))
+    studio.hover(studio.spot(RIGHT, at(9.0, 0.6)), CONTROL)
+
+
+def plane(studio: Studio) -> None:
+    """Vertices on a working plane, where no point was measured."""
+    studio.look(RIGHT, at(9.0, SIDEWALK_M), 6)
+    studio.hand.click(studio.view, studio.spot(RIGHT, at(7.0, SIDEWALK_M)))
+    studio.letter("H")
+    studio.letter("4")
+    middle = studio.view.rect().center()
+    for spot in (QPoint(-160, -50), QPoint(-20, -70), QPoint(110, -48)):
+        studio.hand.click(studio.view, middle + spot)
+    studio.hover(middle + QPoint(220, -60))
+
+
+def measure(studio: Studio) -> None:
+    """A distance with its read-out."""
+    studio.look(RIGHT, at(9.0, 0.0), 7)
+    studio.letter("M")
+    studio.draw(RIGHT, [at(6.0, -0.05), at(9.0, 0.3)])
+    studio.hover(studio.spot(RIGHT, at(11.0, 1.5)), CONTROL)
+
+
+def measure_area(studio: Studio) -> None:
+    """An area with its read-out, ended."""
+    studio.look(RIGHT, at(9.0, CARRIAGEWAY_M), 6)
+    studio.letter("M", SHIFT)
+    studio.draw(RIGHT, [at(6.0, -1.4), at(10.0, -1.4), at(10.0, -2.8), at(6.3, -2.8)])
+    studio.key(Qt.Key.Key_Return)
+
+
+def _traced(studio: Studio, drive: str, begin: Position, end: Position, notches: int) -> None:
+    middle = tuple((a + b) / 2 for a, b in zip(begin, end, strict=True))
+    studio.look(drive, (middle[0], middle[1], middle[2]), notches)
+    studio.letter("1")
+    studio.letter("T")
+    studio.hand.click(studio.view, studio.spot(drive, begin))
+    studio.hand.click(studio.view, studio.spot(drive, end))
+    tool = studio.parts.toolbox.tool
+    if isinstance(tool, DrawPath):
+        studio.wait(lambda: not tool.is_following, _FOLLOWED_MS)
+
+
+def _vertex_of_curb(studio: Studio, number: int) -> QPoint:
+    """Where a vertex of the drawn lower edge is."""
+    curb = studio.feature("curb_lower", RIGHT)
+    return studio.spot(RIGHT, curb.vertices[number].xyz)
+
+
+def _middle_of_curb(studio: Studio, number: int) -> QPoint:
+    """The middle of a segment of the drawn lower edge."""
+    one, other = _vertex_of_curb(studio, number), _vertex_of_curb(studio, number + 1)
+    return (one + other) / 2
+
+
+DRAWING: Mapping[str, Callable[[Studio], None]] = {
+    "draw-arc": arc,
+    "draw-area": area,
+    "draw-circle": circle,
+    "draw-line": line,
+    "draw-line-3d": line_in_3d,
+    "draw-line-vertex": line_to_vertex,
+    "draw-parallel": parallel,
+    "draw-plane": plane,
+    "draw-point": point,
+    "draw-rectangle": rectangle,
+    "draw-spline": spline,
+    "draw-trace": trace,
+    "draw-trace-stopped": trace_stopped,
+    "measure-area": measure_area,
+    "measure-line": measure,
+}

@@ -1,0 +1,94 @@
+"""Scenes of forms, of questions, and of what is shown while nothing is open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QLineEdit, QTreeWidget
+
+from app.catalogue_wish import adopt_catalogue
+from app.screenshots.hand import CONTROL
+from app.screenshots.studio import Studio
+from resources import path_of
+from widgets.dialogs.import_drive import ImportForm
+from widgets.dialogs.shortcuts import ShortcutsForm
+
+
+def import_form(studio: Studio) -> None:
+    """What is to be imported."""
+    studio.letter("I", CONTROL)
+    form = studio.dialog(ImportForm)
+    form.add_files(tuple(sorted(path_of("sample_street").glob("*.[lc][as][zv]"))))
+
+
+def export_form(studio: Studio) -> None:
+    """What is to be written."""
+    studio.letter("E", CONTROL)
+
+
+def reference_system(studio: Studio) -> None:
+    """What the coordinates refer to."""
+    studio.letter("R", CONTROL)
+
+
+def shortcuts(studio: Studio) -> None:
+    """All keys; a new one for the line belongs to something else."""
+    studio.key(Qt.Key.Key_F1, CONTROL)
+    form = studio.dialog(ShortcutsForm)
+    studio.hand.type(form.findChildren(QLineEdit)[0], "line")
+    studio.settle()
+    form.choose("tool-line")
+    studio.settle()
+    rows = form.findChildren(QTreeWidget)[0]
+    rows.itemActivated.emit(rows.currentItem(), 0)
+    studio.key_in_focus(Qt.Key.Key_P)
+
+
+def catalogue_question(studio: Studio) -> None:
+    """An office's catalogue that lacks kinds which the map uses."""
+    whole = path_of("catalogue/level500.toml").read_text(encoding="utf-8")
+    head, *kinds = whole.split("[[kind]]")
+    kept = [kind for kind in kinds if 'id = "street_tree"' not in kind]
+    path = studio.scratch / "office.toml"
+    path.write_text("[[kind]]".join([head, *kept]), encoding="utf-8")
+    adopt_catalogue(studio.parts, path)
+
+
+def start_recent(studio: Studio) -> None:
+    """Recent projects, one of them gone."""
+    settings, document = studio.parts.settings, studio.parts.document
+    gone = studio.scratch / "県道12号 富士見町.zuka"
+    gone.mkdir()
+    settings.remember_project(gone)
+    for name in ("国道20号 甲州街道 3工区", "Nishi-Shinjuku ward road 7"):
+        document.create(studio.scratch / f"{name}.zuka", "EPSG:6677")
+    document.close()
+    gone.rmdir()
+    studio.settle()
+    studio.parts.start_page.show_recent(settings.recent_projects)
+
+
+def start_empty(studio: Studio) -> None:
+    """The first start."""
+    for project in studio.parts.settings.recent_projects:
+        studio.parts.start_page.forget_requested.emit(project.folder)
+
+
+def empty_project(studio: Studio) -> None:
+    """A project without a drive."""
+    studio.parts.document.create(studio.scratch / "empty.zuka", "")
+
+
+FORMS: Mapping[str, Callable[[Studio], None]] = {
+    "catalogue-question": catalogue_question,
+    "form-export": export_form,
+    "form-import": import_form,
+    "form-reference-system": reference_system,
+    "form-shortcuts": shortcuts,
+}
+WITHOUT_STREET: Mapping[str, Callable[[Studio], None]] = {
+    "start-recent": start_recent,
+    "start-empty": start_empty,
+    "empty-project": empty_project,
+}
