@@ -63,7 +63,6 @@ class DrawingTool(MouseTool):
         self._sketch = shared.sketch
         self._draws = draws
         self._kind: FeatureKind | None = None
-        self._is_leaving = False
 
     @property
     def draws(self) -> frozenset[Geometry]:
@@ -94,16 +93,6 @@ class DrawingTool(MouseTool):
     @override
     def is_busy(self) -> bool:
         return self._sketch.drawing is not None
-
-    @override
-    def leave(self) -> None:
-        if self.is_busy:
-            self.put_down()
-        elif not self._is_leaving:
-            # Whoever takes the hand back may tell this tool to leave in turn.
-            self._is_leaving = True
-            self.finished.emit()
-            self._is_leaving = False
 
     def _show(self) -> None:
         """Show what is being drawn; a subclass says what."""

@@ -8,10 +8,10 @@ from typing_extensions import override
 from processing.project.feature import Feature
 from processing.text import Text
 from widgets.mouse_tools.drawing_tool import LEAST_VERTICES, NO_POINT, TOO_FEW
-from widgets.mouse_tools.editing_tool import EditingTool
 from widgets.mouse_tools.mouse_tool import Hit
 from widgets.mouse_tools.removal import removal_of
 from widgets.mouse_tools.vertex_drag import VertexDrag
+from widgets.mouse_tools.vertex_drag_tool import VertexDragTool
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -20,30 +20,14 @@ INSERT_VERTEX = Text("Insert a vertex", "頂点の挿入")
 REMOVE_VERTEX = Text("Remove a vertex", "頂点の削除")
 
 
-class EditVertices(EditingTool):
+class EditVertices(VertexDragTool):
     """A press on a vertex takes hold of it, a press on a segment puts a vertex in."""
 
     def __init__(
         self, source: MapSource, shared: SharedState, parent: QObject | None = None
     ) -> None:
         super().__init__(source, shared, parent)
-        self._drag: VertexDrag | None = None
         self._under_mouse = Hit(None)
-
-    @property
-    @override
-    def snaps(self) -> bool:
-        return self._drag is not None
-
-    @property
-    @override
-    def snaps_to_edges(self) -> bool:
-        return self._drag is not None and len(self._drag.vertices) > 1
-
-    @property
-    @override
-    def is_busy(self) -> bool:
-        return self._drag is not None
 
     @override
     def press(self, hit: Hit) -> None:
@@ -63,9 +47,7 @@ class EditVertices(EditingTool):
     @override
     def move(self, hit: Hit) -> None:
         self._under_mouse = hit
-        vertex = hit.as_vertex()
-        if self._drag is not None and vertex is not None:
-            self._take(self._drag.moved_to(vertex))
+        super().move(hit)
 
     @override
     def release(self, hit: Hit) -> None:
@@ -91,15 +73,6 @@ class EditVertices(EditingTool):
         features = self._chosen()
         if features:
             self.change_requested.emit(*removal_of(features))
-
-    @override
-    def put_down(self) -> None:
-        self._drag = None
-        self._sketch.show(None)
-
-    def _take(self, drag: VertexDrag) -> None:
-        self._drag = drag
-        self._sketch.show(drag.drawing)
 
     def _remove_vertex(self, feature: Feature, index: int) -> None:
         if len(feature.vertices) <= LEAST_VERTICES[feature.geometry]:

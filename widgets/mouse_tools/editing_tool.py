@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QObject
-from typing_extensions import override
 
 from processing.drafting.crossings import crosses_itself
 from processing.errors import UserError
@@ -40,17 +39,6 @@ class EditingTool(MouseTool):
         self._shared = shared
         self._selection = shared.selection
         self._sketch = shared.sketch
-        self._is_leaving = False
-
-    @override
-    def leave(self) -> None:
-        if self.is_busy:
-            self.put_down()
-        elif not self._is_leaving:
-            # Whoever takes the hand back may tell this tool to leave in turn.
-            self._is_leaving = True
-            self.finished.emit()
-            self._is_leaving = False
 
     def _feature_of(self, hit: Hit) -> Feature | None:
         return self._source.feature(hit.feature) if hit.feature else None

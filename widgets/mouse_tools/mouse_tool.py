@@ -104,6 +104,10 @@ class MouseTool(QObject):
     finished = Signal()
     told = Signal(object)
 
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._is_leaving = False
+
     def press(self, hit: Hit) -> None:
         """The left button went down."""
 
@@ -152,9 +156,23 @@ class MouseTool(QObject):
 
     def leave(self) -> None:
         """Escape: drop the gesture; with nothing being drawn, give the hand back."""
+        if self.is_busy:
+            self.put_down()
+        elif not self._is_leaving:
+            # Whoever takes the hand back may tell this tool to leave in turn.
+            self._is_leaving = True
+            self.finished.emit()
+            self._is_leaving = False
 
     def put_down(self) -> None:
         """Drop the gesture and say nothing."""
+
+    def take_back(self) -> None:
+        """The change that was just asked for was refused: what was drawn is at hand again."""
+
+    def forget(self) -> None:
+        """The project is closed: nothing that was made in it comes back."""
+        self.put_down()
 
     def delete(self) -> None:
         """Delete: remove what is chosen."""

@@ -9,17 +9,17 @@ from typing_extensions import override
 
 from widgets.mouse_tools.drawing_tool import NO_POINT
 from widgets.mouse_tools.edit_vertices import MOVE_VERTEX
-from widgets.mouse_tools.editing_tool import EditingTool
 from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit
 from widgets.mouse_tools.removal import removal_of
 from widgets.mouse_tools.vertex_drag import VertexDrag
+from widgets.mouse_tools.vertex_drag_tool import VertexDragTool
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
 _SHIFT = Qt.KeyboardModifier.ShiftModifier
 
 
-class Select(EditingTool):
+class Select(VertexDragTool):
     """A click chooses and puts the cursor, a drag draws a box or moves a chosen feature's vertex.
 
     With Shift, what is hit is added to what was chosen.
@@ -40,22 +40,6 @@ class Select(EditingTool):
         super().__init__(source, shared, parent)
         self._cursor = shared.cursor
         self._shape = shape
-        self._drag: VertexDrag | None = None
-
-    @property
-    @override
-    def snaps(self) -> bool:
-        return self._drag is not None
-
-    @property
-    @override
-    def snaps_to_edges(self) -> bool:
-        return self._drag is not None and len(self._drag.vertices) > 1
-
-    @property
-    @override
-    def is_busy(self) -> bool:
-        return self._drag is not None
 
     @override
     def press(self, hit: Hit) -> None:
@@ -66,13 +50,6 @@ class Select(EditingTool):
     @override
     def drag_shape(self, hit: Hit) -> DragShape:
         return self._shape if self._drag is None else DragShape.NONE
-
-    @override
-    def move(self, hit: Hit) -> None:
-        vertex = hit.as_vertex()
-        if self._drag is not None and vertex is not None:
-            self._drag = self._drag.moved_to(vertex)
-            self._sketch.show(self._drag.drawing)
 
     @override
     def release(self, hit: Hit) -> None:
@@ -113,12 +90,6 @@ class Select(EditingTool):
             super().leave()
         else:
             self._selection.clear()
-
-    @override
-    def put_down(self) -> None:
-        if self._drag is not None:
-            self._drag = None
-            self._sketch.show(None)
 
     def _choose(self, hit: Hit) -> None:
         selection = self._selection
