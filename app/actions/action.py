@@ -71,6 +71,19 @@ class Action:
         return Text(_bare(title.en), _bare(title.ja))
 
 
+def map_action(
+    id_: str,
+    text: Text,
+    run: Callable[[], object],
+    key: str = "",
+    hint: Text = NOTHING,
+    *,
+    menu: str,
+) -> Action:
+    """An action on the open map, with one key or none."""
+    return Action(id_, text, run, menu, (key,) if key else (), hint=hint, needs_project=True)
+
+
 MENUS: tuple[tuple[str, Text], ...] = (
     ("file", Text("&File", "ファイル(&F)")),
     ("edit", Text("&Edit", "編集(&E)")),

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
-from app.actions.action import Action
+from app.actions.action import Action, map_action
 from app.actions.tool_entries import SNAP_HINTS, TOOL_ENTRIES, ToolEntry
 from app.map_edits import MapEdits
 from app.window_parts import WindowParts
@@ -12,6 +13,9 @@ from app.working_planes import level_plane, plane_of_points
 from processing.text import Text
 from widgets.mouse_tools.measure import MeasureTool
 from widgets.shared.snap_state import SNAP_NAMES, SnapMode
+
+_draw = partial(map_action, menu="draw")
+_plane = partial(map_action, menu="draw/plane")
 
 NUMBER_KEYS = ("1", "2", "3", "4", "5", "6", "7", "8", "9", "0")
 
@@ -60,7 +64,7 @@ def _at_hand_actions(parts: WindowParts) -> tuple[Action, ...]:
         toolbox.continue_line([feature for feature in chosen if feature is not None])
 
     return (
-        _action(
+        _draw(
             "close-drawing",
             Text("Close the drawing", "作図を閉じる"),
             toolbox.close_drawing,
@@ -69,14 +73,14 @@ def _at_hand_actions(parts: WindowParts) -> tuple[Action, ...]:
                 "Leads the line or area back to its first vertex.", "最初の頂点に戻して閉じます。"
             ),
         ),
-        _action(
+        _draw(
             "continue-line",
             Text("Continue the chosen line", "選択した線の続きを描く"),
             go_on,
             "Shift+C",
             Text("Goes on at the end nearest to the cursor.", "カーソルに近い端から続けます。"),
         ),
-        _action(
+        _draw(
             "measure-width",
             Text("Width between two chosen lines", "選択した2本の線の幅"),
             MapEdits(document).tell_width,
@@ -86,7 +90,7 @@ def _at_hand_actions(parts: WindowParts) -> tuple[Action, ...]:
                 "1本目の線に直角に測った、平面上の最小・平均・最大幅を表示します。",
             ),
         ),
-        _action(
+        _draw(
             "keep-measurement",
             Text("Keep the measurement as a feature", "計測結果を地物として保存"),
             keep,
@@ -108,14 +112,14 @@ def _kind_actions(parts: WindowParts) -> tuple[Action, ...]:
         return choose
 
     return (
-        _action(
+        _draw(
             "choose-kind",
             Text("Choose what to draw…", "作図する種類を選ぶ…"),
             parts.drawing_bar.choose_kind,
             "Ctrl+K",
             Text("All kinds of the catalogue by name.", "カタログの全種類から名前で選びます。"),
         ),
-        _action(
+        _draw(
             "cycle-kind",
             Text("The kind drawn before", "前に描いた種類"),
             toolbox.cycle_kind,
@@ -123,12 +127,11 @@ def _kind_actions(parts: WindowParts) -> tuple[Action, ...]:
             Text("Goes round the kinds drawn last.", "最近使った種類を順に切り替えます。"),
         ),
         *(
-            _action(
+            _draw(
                 f"kind-key-{key}",
                 kind_title(parts, key),
                 drawing(key),
                 key,
-                Text("", ""),
                 menu="draw/kinds",
             )
             for key in NUMBER_KEYS
@@ -191,7 +194,7 @@ def _plane_actions(parts: WindowParts) -> tuple[Action, ...]:
         snap.work_on(None)
 
     return (
-        _action(
+        _plane(
             "plane-level",
             Text("Work on a level plane at the cursor", "カーソル高の水平面で作図"),
             level,
@@ -200,9 +203,8 @@ def _plane_actions(parts: WindowParts) -> tuple[Action, ...]:
                 "Clicks land on it where points mislead, and are marked as without a point.",
                 "点群が当てにならない所で、クリック位置を平面上に置きます（点なしの頂点として記録）。",
             ),
-            menu="draw/plane",
         ),
-        _action(
+        _plane(
             "plane-fitted",
             Text("Work on a plane through the chosen points", "選択した点を通る平面で作図"),
             fitted,
@@ -211,15 +213,12 @@ def _plane_actions(parts: WindowParts) -> tuple[Action, ...]:
                 "Through the points chosen, or those within a metre of the cursor.",
                 "選択した点（なければカーソルから1 m以内の点）に当てはめた平面を使います。",
             ),
-            menu="draw/plane",
         ),
-        _action(
+        _plane(
             "plane-off",
             Text("Work on the measured points again", "計測点での作図に戻す"),
             off,
             "Ctrl+H",
-            Text("", ""),
-            menu="draw/plane",
         ),
     )
 
@@ -232,15 +231,3 @@ NO_PLANE = Text(
     "Choose at least three points that are not in one line, or put the cursor on a surface.",
     "一直線上にない3点以上を選択するか、面の上にカーソルを置いてください。",
 )
-
-
-def _action(
-    id_: str,
-    text: Text,
-    run: Callable[[], object],
-    key: str,
-    hint: Text,
-    *,
-    menu: str = "draw",
-) -> Action:
-    return Action(id_, text, run, menu, (key,), hint=hint, needs_project=True)

@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
-from app.actions.action import NOTHING, Action
+from app.actions.action import NOTHING, Action, map_action
 from app.map_edits import MapEdits
 from app.window_parts import WindowParts
 from processing.project.feature import Feature, Status
 from processing.text import Text
+
+_edit = partial(map_action, menu="edit")
+_select = partial(map_action, menu="edit/select")
+_lines = partial(map_action, menu="edit/lines")
 
 TOLERANCES_CM = (1, 2, 5, 10)
 """What a vertex may be off the line and still go; the first is a good point's accuracy."""
@@ -70,7 +75,7 @@ def _steps(parts: WindowParts) -> tuple[Action, ...]:
 
 def _clipboard(edits: MapEdits) -> tuple[Action, ...]:
     return (
-        _action(
+        _edit(
             "copy",
             Text("Copy", "コピー"),
             edits.copy,
@@ -80,8 +85,8 @@ def _clipboard(edits: MapEdits) -> tuple[Action, ...]:
                 "別の座標系のプロジェクトにも貼り付けられます。",
             ),
         ),
-        _action("cut", Text("Cut", "切り取り"), edits.cut, "Ctrl+X", NOTHING),
-        _action(
+        _edit("cut", Text("Cut", "切り取り"), edits.cut, "Ctrl+X"),
+        _edit(
             "paste",
             Text("Paste", "貼り付け"),
             edits.paste,
@@ -91,12 +96,10 @@ def _clipboard(edits: MapEdits) -> tuple[Action, ...]:
                 "他のプロジェクトでコピーした地物やGeoJSONを、必要なら座標変換して貼り付けます。",
             ),
         ),
-        _action(
+        _edit(
             "delete",
             Text("Delete the selected features", "選択した地物を削除"),
             edits.delete,
-            "",
-            NOTHING,
         ),
     )
 
@@ -115,23 +118,23 @@ def _selections(parts: WindowParts, edits: MapEdits) -> tuple[Action, ...]:
         return lambda: edits.select_like(alike)
 
     return (
-        _selecting("select-all", Text("All features", "すべての地物"), edits.select_all, "Ctrl+A"),
-        _selecting(
+        _select("select-all", Text("All features", "すべての地物"), edits.select_all, "Ctrl+A"),
+        _select(
             "select-none",
             Text("Nothing", "選択を解除"),
             parts.document.shared.selection.clear,
             "Ctrl+Shift+A",
         ),
-        _selecting(
+        _select(
             "select-kind", Text("Of the same kind", "同じ種類"), like(same_kind), "Ctrl+Shift+K"
         ),
-        _selecting("select-status", Text("Of the same status", "同じ状態"), like(same_status)),
-        _selecting(
+        _select("select-status", Text("Of the same status", "同じ状態"), like(same_status)),
+        _select(
             "select-attributes",
             Text("With the same attributes", "同じ属性"),
             like(same_attributes),
         ),
-        _selecting(
+        _select(
             "select-occluded",
             Text("With vertices without a measured point", "計測点のない頂点を持つ地物"),
             edits.select_occluded,
@@ -146,7 +149,7 @@ def _selections(parts: WindowParts, edits: MapEdits) -> tuple[Action, ...]:
 
 def _line_edits(edits: MapEdits) -> tuple[Action, ...]:
     return (
-        _of_lines(
+        _lines(
             "join",
             Text("Join", "結合"),
             edits.join,
@@ -156,9 +159,9 @@ def _line_edits(edits: MapEdits) -> tuple[Action, ...]:
                 "近い端どうしをつないで1本にします。",
             ),
         ),
-        _of_lines("reverse", Text("Reverse", "向きを反転"), edits.reverse, "Shift+V"),
-        _of_lines("close-lines", Text("Close", "閉じる"), edits.close),
-        _of_lines("open-lines", Text("Open", "開く"), edits.open),
+        _lines("reverse", Text("Reverse", "向きを反転"), edits.reverse, "Shift+V"),
+        _lines("close-lines", Text("Close", "閉じる"), edits.close),
+        _lines("open-lines", Text("Open", "開く"), edits.open),
         *(_simplifying(edits, tolerance_cm) for tolerance_cm in TOLERANCES_CM),
     )
 
@@ -175,7 +178,7 @@ def _simplifying(edits: MapEdits, tolerance_cm: int) -> Action:
     is_first = tolerance_cm == TOLERANCES_CM[0]
     key = "Ctrl+M" if is_first else ""
     id_ = "simplify" if is_first else f"simplify-{tolerance_cm}"
-    return _of_lines(id_, text, simplify, key, hint)
+    return _lines(id_, text, simplify, key, hint)
 
 
 def _statuses(edits: MapEdits) -> tuple[Action, ...]:
@@ -183,7 +186,7 @@ def _statuses(edits: MapEdits) -> tuple[Action, ...]:
         return lambda: edits.set_status(status, name)
 
     return tuple(
-        _action(
+        map_action(
             f"status-{status.value}",
             name,
             setting(status, name),
@@ -193,27 +196,3 @@ def _statuses(edits: MapEdits) -> tuple[Action, ...]:
         )
         for status, name, key in _STATUSES
     )
-
-
-def _of_lines(
-    id_: str, text: Text, run: Callable[[], object], key: str = "", hint: Text = NOTHING
-) -> Action:
-    return _action(id_, text, run, key, hint, menu="edit/lines")
-
-
-def _selecting(
-    id_: str, text: Text, run: Callable[[], object], key: str = "", hint: Text = NOTHING
-) -> Action:
-    return _action(id_, text, run, key, hint, menu="edit/select")
-
-
-def _action(
-    id_: str,
-    text: Text,
-    run: Callable[[], object],
-    key: str,
-    hint: Text,
-    *,
-    menu: str = "edit",
-) -> Action:
-    return Action(id_, text, run, menu, (key,) if key else (), hint=hint, needs_project=True)

@@ -7,20 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
-from PySide6.QtGui import QMouseEvent, QWheelEvent
-from PySide6.QtWidgets import QApplication
+from PySide6.QtCore import QPoint, Qt
 from pytestqt.qtbot import QtBot
 
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache
 from processing.points.drive import Drive
+from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap, place_on
 from widgets.image_view.view import ImageView
 from widgets.mouse_tools.mouse_tool import MouseTool
 
 LEFT = Qt.MouseButton.LeftButton
-NO_KEYS = Qt.KeyboardModifier.NoModifier
 
 
 @dataclass
@@ -47,16 +45,7 @@ class Hand:
         self.qtbot.mouseClick(self.view, LEFT, keys, spot)
 
     def move(self, spot: QPoint, buttons: Qt.MouseButton = Qt.MouseButton.NoButton) -> None:
-        """Move by an event of our own: the pointer of the test machine stays where it is."""
-        event = QMouseEvent(
-            QEvent.Type.MouseMove,
-            QPointF(spot),
-            QPointF(self.view.mapToGlobal(spot)),
-            Qt.MouseButton.NoButton,
-            buttons,
-            NO_KEYS,
-        )
-        QApplication.sendEvent(self.view, event)
+        move_mouse(self.view, spot, buttons)
 
     def drag(
         self, start: QPoint, end: QPoint, keys: Qt.KeyboardModifier = NO_KEYS, button=LEFT
@@ -67,17 +56,7 @@ class Hand:
         self.qtbot.mouseRelease(self.view, button, keys, end)
 
     def wheel(self, spot: QPoint, notches: int, keys: Qt.KeyboardModifier = NO_KEYS) -> None:
-        event = QWheelEvent(
-            QPointF(spot),
-            QPointF(self.view.mapToGlobal(spot)),
-            QPoint(),
-            QPoint(0, 120 * notches),
-            Qt.MouseButton.NoButton,
-            keys,
-            Qt.ScrollPhase.NoScrollPhase,
-            False,
-        )
-        QApplication.sendEvent(self.view, event)
+        turn_wheel(self.view, spot, notches, keys)
 
     def key(self, key: Qt.Key) -> None:
         self.qtbot.keyClick(self.view, key)

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
-from PySide6.QtGui import QMouseEvent, QWheelEvent
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from processing.image.tile_cache import TileCache
 from processing.points.drive import Drive
+from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.scene_view.camera import Camera
@@ -23,7 +23,6 @@ from widgets.shared.cursor import Place
 
 LEFT = Qt.MouseButton.LeftButton
 RIGHT = Qt.MouseButton.RightButton
-NO_KEYS = Qt.KeyboardModifier.NoModifier
 
 
 @dataclass
@@ -68,16 +67,7 @@ class Hand:
         self.qtbot.mouseClick(self.picture, button, keys, spot)
 
     def move(self, spot: QPoint, buttons: Qt.MouseButton = Qt.MouseButton.NoButton) -> None:
-        """Move by an event of our own: the pointer of the test machine stays where it is."""
-        event = QMouseEvent(
-            QEvent.Type.MouseMove,
-            QPointF(spot),
-            QPointF(self.picture.mapToGlobal(spot)),
-            Qt.MouseButton.NoButton,
-            buttons,
-            NO_KEYS,
-        )
-        QApplication.sendEvent(self.picture, event)
+        move_mouse(self.picture, spot, buttons)
 
     def drag(
         self, start: QPoint, end: QPoint, keys: Qt.KeyboardModifier = NO_KEYS, button=LEFT
@@ -88,17 +78,7 @@ class Hand:
         self.qtbot.mouseRelease(self.picture, button, keys, end)
 
     def wheel(self, spot: QPoint, notches: int, keys: Qt.KeyboardModifier = NO_KEYS) -> None:
-        event = QWheelEvent(
-            QPointF(spot),
-            QPointF(self.picture.mapToGlobal(spot)),
-            QPoint(),
-            QPoint(0, 120 * notches),
-            Qt.MouseButton.NoButton,
-            keys,
-            Qt.ScrollPhase.NoScrollPhase,
-            False,
-        )
-        QApplication.sendEvent(self.picture, event)
+        turn_wheel(self.picture, spot, notches, keys)
 
     def key(self, key: Qt.Key) -> None:
         self.qtbot.keyClick(self.picture, key)
