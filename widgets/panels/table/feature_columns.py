@@ -141,7 +141,7 @@ class FeatureColumns:
                 Text("Occluded", "遮蔽点数"),
                 Text(
                     "Vertices without a measured point: their height comes from neighbours",
-                    "測定点のない頂点の数。高さは近傍点から求めたものです",
+                    "計測点のない頂点の数。高さは周囲から補ったものです",
                 ),
                 lambda one: occluded_count(one) or None,
                 0,
