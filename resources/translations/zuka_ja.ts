@@ -92,6 +92,10 @@
         <source>Distance of the parallel copy; 0: where the mouse is</source>
         <translation>平行複写の距離（0はマウスの位置）</translation>
     </message>
+    <message>
+        <source>How much higher the copy runs: the upper edge of a curb</source>
+        <translation>複写線を高くする量（縁石の上端など）</translation>
+    </message>
 </context>
 <context>
     <name>EmptyPage</name>
