@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication
+from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import QMessageBox
 
 from app.window_parts import WindowParts
@@ -36,7 +37,8 @@ def adopt_catalogue(parts: WindowParts, path: Path) -> None:
     keep = box.addButton(
         QCoreApplication.translate("CatalogueWish", "Keep them"), QMessageBox.ButtonRole.AcceptRole
     )
-    box.addButton(QMessageBox.StandardButton.Cancel)
+    cancel = box.addButton(QMessageBox.StandardButton.Cancel)
+    cancel.setIcon(QIcon())  # no other button has one
 
     def decide() -> None:
         if box.clickedButton() is keep:

@@ -34,9 +34,11 @@ def connect_drawing(parts: WindowParts) -> None:
     wiring = _DrawingWiring(parts)
     toolbox, bar, snap = parts.toolbox, parts.drawing_bar, parts.document.shared.snap
     toolbox.tool_chosen.connect(bar.show_tool)
+    toolbox.tool_chosen.connect(parts.status_line.clearMessage)
     toolbox.kind_chosen.connect(bar.show_kind)
     bar.kind_wanted.connect(wiring.on_bar_kind_wanted)
     bar.snaps_wanted.connect(wiring.on_bar_snaps_wanted)
+    bar.entered.connect(wiring.on_bar_entered)
     for parallel in toolbox.tools_of(DrawParallel):
         bar.distance_set.connect(parallel.fix_distance)
         bar.rise_set.connect(parallel.set_rise)
@@ -46,6 +48,7 @@ def connect_drawing(parts: WindowParts) -> None:
     parts.image_view.menu_requested.connect(wiring.on_view_menu_requested)
     parts.scene_view.menu_requested.connect(wiring.on_view_menu_requested)
     parts.document.opened.connect(wiring.on_document_opened)
+    parts.document.closed.connect(parts.status_line.clearMessage)
     parts.document.catalogue_changed.connect(wiring.on_document_opened)
     parts.document.catalogue_changed.connect(parts.layers_panel.read_catalogue)
     wiring.keep_tab_to_views()
@@ -81,6 +84,10 @@ class _DrawingWiring(QObject):
 
     def on_bar_kind_wanted(self) -> None:
         show_kind_palette(self._parts)
+
+    def on_bar_entered(self) -> None:
+        self._parts.toolbox.complete()
+        self._parts.image_view.setFocus()
 
     def on_bar_snaps_wanted(self) -> None:
         menu = QMenu(self._parts.drawing_bar)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from processing.text import Text
 
 NOTHING = Text("", "")
+_SAYS_ITS_GROUP = ": "
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ class Action:
         title = SUBMENUS.get(self.menu)
         return (
             bare
-            if title is None
+            if title is None or _SAYS_ITS_GROUP in bare.en
             else Text("{menu}: {name}", "{menu}: {name}").filled(menu=title, name=bare)
         )
 
@@ -101,7 +102,7 @@ SUBMENUS: Mapping[str, Text] = {
     "edit/select": Text("Select", "選択"),
     "edit/lines": Text("Lines", "線の編集"),
     "edit/status": Text("Status", "状態"),
-    "draw/kinds": Text("Kinds by number key", "数字キーの種類"),
+    "draw/kinds": Text("Kinds by number key", "数字キーの種別"),
     "draw/snap": Text("Snap", "スナップ"),
     "draw/plane": Text("Working plane", "作業平面"),
 }

@@ -29,8 +29,8 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
         "S",
         "mdi6.cursor-default-outline",
         Text(
-            "Click to choose, drag a box; Shift adds; drag a vertex of what is chosen.",
-            "クリックで選択、ドラッグで矩形選択、Shiftで追加。選択中の地物の頂点をドラッグできます。",
+            "Click to choose, drag a box, Shift adds; drag a vertex of what is chosen.",
+            "クリックで選択、ドラッグで矩形選択、Shiftで追加。選択した地物の頂点はドラッグで移動。",
         ),
     ),
     ToolEntry(
@@ -57,10 +57,8 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
         "L",
         "mdi6.vector-polyline",
         Text(
-            "Click vertex by vertex; Enter or the right button ends, Backspace takes back, Shift"
-            " holds the direction, Ctrl doesn't snap; begin at the end of a chosen line to go on.",
-            "頂点を順にクリックします。Enterまたは右クリックで終了、Backspaceで1つ戻る、Shiftで方向固定、"
-            "Ctrlでスナップなし。選択中の線の端から始めると続きを描きます。",
+            "Click vertices; Enter ends, Backspace takes back, Shift: straight on, Ctrl: no snap.",
+            "頂点をクリック。Enterで終了、Backspaceで戻る、Shiftで方向固定、Ctrlでスナップなし。",
         ),
     ),
     ToolEntry(
@@ -69,10 +67,8 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
         "T",
         "mdi6.vector-curve",
         Text(
-            "Click the start and the end of a curb, a wall foot or a marking: the line follows the"
-            " points between; drag it where it went wrong.",
-            "縁石・壁の下端・標示の始点と終点をクリックすると、その間の点群に沿って線を引きます。"
-            "外れた所はドラッグで直せます。",
+            "Click start and end of a curb, wall foot or marking; drag the line where it is wrong.",
+            "縁石・壁の下端・標示の始点と終点をクリック。外れた所はドラッグで直します。",
         ),
     ),
     ToolEntry(
@@ -120,7 +116,7 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
         "Shift+R",
         "mdi6.vector-circle-variant",
         Text(
-            "Three places on the rim; of a kind that is a point, its middle and its diameter.",
+            "Three places on the rim; a point gets the middle and the diameter.",
             "円周上の3点をクリックします。点の地物では中心と直径になります。",
         ),
         toolbar=0,
@@ -131,8 +127,8 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
         "O",
         "mdi6.arrow-split-vertical",
         Text(
-            "Click a line, then where its copy runs; or set the distance and click the side.",
-            "線をクリックし、次に複写位置をクリックします。距離を入力して側だけを選ぶこともできます。",
+            "Click a line, then where its copy is to run.",
+            "線、次に複写する位置をクリックします。",
         ),
     ),
     ToolEntry(
@@ -141,8 +137,7 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
         "V",
         "mdi6.vector-polyline-edit",
         Text(
-            "Drag a vertex; press on a segment to put one in; Delete takes out the one under the"
-            " mouse.",
+            "Drag a vertex; press on a segment to put one in; Delete takes one out.",
             "頂点をドラッグで移動、辺を押すと挿入、Deleteでマウス下の頂点を削除します。",
         ),
         toolbar=4,

@@ -33,10 +33,15 @@ def line_to_vertex(studio: Studio) -> None:
 
 def line_in_3d(studio: Studio) -> None:
     """The same tool in 3D."""
-    studio.look(RIGHT, at(9.0, 0.0), 6)
+    studio.look(RIGHT, at(9.0, MARKING_M), 6)
+    studio.hand.click(studio.view, studio.spot(RIGHT, at(9.0, MARKING_M)), CONTROL)
+    studio.letter("F")
+    picture = studio.parts.scene_view.picture
+    if picture is not None:
+        studio.hand.wheel(picture, picture.rect().center(), 8)
+    studio.settle()
     studio.letter("0")
     studio.draw(RIGHT, [at(5.0, MARKING_M), at(7.0, MARKING_M), at(9.0, MARKING_M)])
-    picture = studio.parts.scene_view.picture
     if picture is not None:
         spot = studio.spot_3d(RIGHT, at(11.0, MARKING_M))
         studio.hand.move(picture, spot - QPoint(7, 3))
@@ -60,7 +65,7 @@ def trace(studio: Studio) -> None:
 
 def trace_stopped(studio: Studio) -> None:
     """A curb that ends before the second click."""
-    begin, end = (-11393.1, -35130.62, 125.73), (-11403.6, -35144.0, 125.7)
+    begin, end = (-11393.104, -35130.616, 125.726), (-11404.609, -35145.199, 125.646)
     _traced(studio, LEFT, begin, end, 4)
 
 
@@ -119,13 +124,12 @@ def parallel(studio: Studio) -> None:
 def plane(studio: Studio) -> None:
     """Vertices on a working plane, where no point was measured."""
     studio.look(RIGHT, at(9.0, SIDEWALK_M), 6)
-    studio.hand.click(studio.view, studio.spot(RIGHT, at(7.0, SIDEWALK_M)))
+    studio.hand.click(studio.view, studio.spot(RIGHT, at(9.0, SIDEWALK_M)))
     studio.letter("H")
     studio.letter("4")
-    middle = studio.view.rect().center()
-    for spot in (QPoint(-160, -50), QPoint(-20, -70), QPoint(110, -48)):
-        studio.hand.click(studio.view, middle + spot)
-    studio.hover(middle + QPoint(220, -60))
+    for along_m in (6.0, 8.0, 10.0):
+        studio.hand.click(studio.view, studio.spot(RIGHT, at(along_m, 1.7)), CONTROL)
+    studio.hover(studio.spot(RIGHT, at(12.0, 1.7)), CONTROL)
 
 
 def measure(studio: Studio) -> None:

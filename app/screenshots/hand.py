@@ -6,7 +6,7 @@ import itertools
 from collections.abc import Sequence
 
 from PySide6.QtCore import QEvent, QMimeData, QPoint, QPointF, Qt, QUrl
-from PySide6.QtGui import QDropEvent, QMouseEvent, QWheelEvent
+from PySide6.QtGui import QDragEnterEvent, QDropEvent, QMouseEvent, QWheelEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 
@@ -101,10 +101,9 @@ class Hand:
         """Drop files."""
         files = QMimeData()
         files.setUrls([QUrl.fromLocalFile(path) for path in paths])
-        event = QDropEvent(
-            QPointF(widget.rect().center()), Qt.DropAction.CopyAction, files, LEFT, PLAIN
-        )
-        QApplication.sendEvent(widget, event)
+        copy, middle = Qt.DropAction.CopyAction, widget.rect().center()
+        QApplication.sendEvent(widget, QDragEnterEvent(middle, copy, files, LEFT, PLAIN))
+        QApplication.sendEvent(widget, QDropEvent(QPointF(middle), copy, files, LEFT, PLAIN))
 
 
 def _move(

@@ -68,6 +68,9 @@ class Studio:
         """The measured point of a drive nearest to a place."""
         drive = self.drive(name)
         point = drive.nearest_point(np.array(xyz), _NEAR_M)
+        if point < 0:
+            message = f"no point of {name} is near {xyz}"
+            raise LookupError(message)
         east, north, up = drive.xyz(np.array([point]))[0].tolist()
         return Place((east, north, up), PointReference(drive.id, point))
 

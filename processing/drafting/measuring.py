@@ -162,7 +162,7 @@ def _of_line(positions: Sequence[Position]) -> tuple[Measure, ...]:
         ),
         _metres(
             "last_height_difference_m",
-            Text("Height difference of the last leg", "最終辺の比高"),
+            Text("Rise of the last leg", "最終辺の比高"),
             last[2] - corner[2],
         ),
         _metres(

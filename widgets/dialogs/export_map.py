@@ -20,6 +20,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from widgets.parts.plain_buttons import without_icons
+
 
 @dataclass(frozen=True)
 class ExportWish:
@@ -65,6 +67,7 @@ class ExportForm(QDialog):
         self._export = self._buttons.addButton(
             self.tr("Export"), QDialogButtonBox.ButtonRole.AcceptRole
         )
+        without_icons(self._buttons)
         self._lay_out()
         self._buttons.accepted.connect(self._on_buttons_accepted)
         self._buttons.rejected.connect(self.close)

@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 )
 
 from widgets.dialogs.reference_systems import ReferenceSystemBox
+from widgets.parts.plain_buttons import without_icons
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,7 @@ class ImportForm(QDialog):
         self._import = self._buttons.addButton(
             self.tr("Import"), QDialogButtonBox.ButtonRole.AcceptRole
         )
+        without_icons(self._buttons)
         self._lay_out()
         self._buttons.accepted.connect(self._on_buttons_accepted)
         self._buttons.rejected.connect(self.close)

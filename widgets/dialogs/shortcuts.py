@@ -24,6 +24,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from widgets.parts.plain_buttons import without_icons
+
 _NAME, _MENU, _KEYS = range(3)
 _ROW = Qt.ItemDataRole.UserRole
 _FILE = "zuka-keys.csv"
@@ -168,6 +170,7 @@ class ShortcutsForm(QDialog):
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
         buttons.addButton(self._defaults, QDialogButtonBox.ButtonRole.ResetRole)
         buttons.addButton(self._save, QDialogButtonBox.ButtonRole.ActionRole)
+        without_icons(buttons)
         buttons.rejected.connect(self.close)
         for button in buttons.buttons():
             if isinstance(button, QPushButton):

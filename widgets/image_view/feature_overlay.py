@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtGui import QColor, QPainter, QPen
+from PySide6.QtGui import QPainter
 
 from processing.project.catalogue import Catalogue, Geometry
 from processing.project.feature import Position, Status, Vertex
@@ -17,7 +17,8 @@ from widgets.image_view.placed_feature import (
     segments_between,
 )
 from widgets.image_view.viewport import Viewport
-from widgets.shared.feature_style import ACCENT, sketch_style, style_of
+from widgets.shared.feature_style import sketch_style, style_of
+from widgets.shared.screen_marks import preview_pens
 from widgets.shared.sketch import Drawing
 
 Floats = NDArray[np.float64]
@@ -119,7 +120,5 @@ class FeatureOverlay:
             line.append(vertices[0])
         path = path_of_segments(segments_between(np.array(line), Geometry.LINE, picture))
         screen = viewport.transform().map(path)
-        painter.strokePath(screen, QPen(QColor(0, 0, 0, 150), 3.0))
-        pen = QPen(ACCENT, 1.25)
-        pen.setDashPattern([4.0, 3.0])
-        painter.strokePath(screen, pen)
+        for pen in preview_pens():
+            painter.strokePath(screen, pen)

@@ -21,7 +21,7 @@ _PATTERNS = {
     "count": rf"{_DIGIT}{{0,9}}",
     "date": rf"{_DIGIT}{{0,4}}([-/－／]{_DIGIT}{{0,2}}){{0,2}}",
 }
-_LEAST_LETTERS = 8
+_LEAST_LETTERS = 6
 
 
 class Several:

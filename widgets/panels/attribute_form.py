@@ -12,15 +12,15 @@ from processing.project.feature import AttributeValue, Feature, Status
 from processing.text import Language
 from widgets.panels.attribute_field import AttributeEditor, QuietBox, Several, ShownValue
 from widgets.panels.feature_changes import kinds_for
-from widgets.panels.feature_table_model import swatch_of
 from widgets.panels.feature_words import STATUS_NAMES, name_of_kind, words_of_value
 from widgets.panels.geometry_facts import facts_of
 from widgets.panels.occluded_row import OccludedRow
 from widgets.panels.shared_values import common_fields, common_value
 from widgets.shared.cursor import Cursor
+from widgets.shared.swatch import swatch_of
 
 _MOST_KINDS_LISTED = 5
-_WIDEST_LABEL_PX = 112
+_WIDEST_LABEL_PX = 96
 
 
 class AttributeForm(QWidget):

@@ -23,9 +23,9 @@ from processing.project.catalogue import AttributeField, Catalogue
 from processing.project.feature import Status
 from processing.project.feature_query import AttributeCondition, Comparison, FeatureQuery
 from processing.text import Language, Text
-from widgets.panels.feature_table_model import swatch_of
 from widgets.panels.feature_words import STATUS_NAMES, name_of_kind
 from widgets.shared.feature_style import colour_of_kind
+from widgets.shared.swatch import swatch_of
 
 _COMPARISONS = {
     Comparison.EQUAL: Text.same("="),

@@ -12,7 +12,7 @@ from PySide6.QtCore import (
     QPersistentModelIndex,
     Qt,
 )
-from PySide6.QtGui import QColor, QIcon, QPalette, QPixmap
+from PySide6.QtGui import QIcon, QPalette
 from typing_extensions import override
 
 from processing.project.feature import Feature, Status
@@ -22,11 +22,11 @@ from widgets.panels.table.feature_columns import KIND, Column, FeatureColumns
 from widgets.panels.table.feature_rows import FeatureRows
 from widgets.shared.feature_style import colour_of_kind
 from widgets.shared.map_source import MapSource
+from widgets.shared.swatch import swatch_of
 
 MOST_SINGLE_CHANGES = 100
 """With more features changed at once, all rows are laid anew: that takes less time."""
 
-SWATCH_PX = 12
 _ROLE = Qt.ItemDataRole
 _RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 _NOWHERE = QModelIndex()
@@ -215,16 +215,6 @@ class FeatureTableModel(QAbstractTableModel):
         if kind not in self._swatches:
             self._swatches[kind] = swatch_of(colour_of_kind(self._catalogue, kind))
         return self._swatches[kind]
-
-
-def swatch_of(colour: str) -> QIcon:
-    """A small square of a kind's colour, ``#rrggbb``."""
-    pixmap = QPixmap(SWATCH_PX, SWATCH_PX)
-    pixmap.fill(QColor(colour))
-    icon = QIcon(pixmap)
-    # The same in a chosen row: a tinted square would be another kind's.
-    icon.addPixmap(pixmap, QIcon.Mode.Selected)
-    return icon
 
 
 def ids_of(features: Iterable[Feature]) -> frozenset[str]:

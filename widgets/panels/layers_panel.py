@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtGui import QColor, QIcon, QPixmap
 from PySide6.QtWidgets import (
     QHeaderView,
     QLineEdit,
@@ -19,10 +18,10 @@ from widgets.panels.feature_tally import FeatureTally
 from widgets.panels.tree_items import children_of
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
+from widgets.shared.swatch import swatch_of
 
 _KIND = Qt.ItemDataRole.UserRole
 _NAME, _COUNT, _KEY, _SHOWN = range(4)
-_SWATCH_PX = 12
 _LEAST_COLUMN_PX = 16
 
 
@@ -120,9 +119,10 @@ class LayersPanel(QWidget):
         name = kind.name.spoken(self._language)
         item = QTreeWidgetItem(group, [name, f"{count:,}" if count else "", kind.key])
         item.setData(_NAME, _KIND, kind.id)
-        item.setIcon(_NAME, _swatch(kind.colour))
+        item.setIcon(_NAME, swatch_of(kind.colour))
         item.setTextAlignment(_COUNT, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         item.setTextAlignment(_KEY, Qt.AlignmentFlag.AlignCenter)
+        item.setForeground(_KEY, self.palette().placeholderText())
         other = kind.name.en if self._language == "ja" else kind.name.ja
         item.setToolTip(_NAME, "\n".join(part for part in (name, other, kind.layer) if part))
         item.setToolTip(_KEY, self.tr("Key that chooses this kind") if kind.key else "")
@@ -187,9 +187,3 @@ class LayersPanel(QWidget):
     def _on_map_drives_changed(self) -> None:
         self._tally.read_all()
         self._show()
-
-
-def _swatch(colour: str) -> QIcon:
-    pixmap = QPixmap(_SWATCH_PX, _SWATCH_PX)
-    pixmap.fill(QColor(colour))
-    return QIcon(pixmap)

@@ -23,6 +23,8 @@ from widgets.parts.name_match import match_rank
 
 _NAME, _OTHER, _KEY = range(3)
 _ROW = Qt.ItemDataRole.UserRole
+_WHOLE_NAME = -1
+"""Before everything that only begins like what was typed."""
 _NATIVE = QKeySequence.SequenceFormat.NativeText
 _STEPS = {
     Qt.Key.Key_Down: 1,
@@ -132,6 +134,8 @@ class CommandPalette(QDialog):
     @staticmethod
     def _rank(words: str, named: NamedAction) -> int | None:
         ranks = [match_rank(words, name) for name in (named.name.en, named.name.ja)]
+        if any(words.casefold() == name.casefold() for name in (named.name.en, named.name.ja)):
+            return _WHOLE_NAME
         return min((rank for rank in ranks if rank is not None), default=None)
 
     def _item(self, named: NamedAction) -> QTreeWidgetItem:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from PySide6.QtCore import QLocale, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFont, QIcon, QPixmap
+from PySide6.QtGui import QFont, QIcon
 from PySide6.QtWidgets import (
     QDoubleSpinBox,
     QHBoxLayout,
@@ -20,14 +20,15 @@ from processing.text import Language, Text
 from widgets.parts.elided_label import ElidedLabel
 from widgets.shared.shared_state import SharedState
 from widgets.shared.snap_state import SNAP_NAMES, SnapMode
+from widgets.shared.swatch import SWATCH_PX, swatch_of
 
-_SWATCH_PX = 14
 _FARTHEST_M = 999.0
 _HIGHEST_M = 99.0
+_MEASURING = "measure"
 _NO_SNAP = Text("no snapping", "スナップなし")
 _ON_PLANE = Text("working plane", "作業平面")
 _SNAP = Text("Snap: {names}", "スナップ: {names}")
-_NO_KIND = Text("What to draw…", "作図する種類…")
+_NO_KIND = Text("What to draw…", "作図する種別…")
 _DISTANCE = Text("Distance", "距離")
 _AT_MOUSE = Text("at the mouse", "マウス位置")
 _RISE = Text("Rise", "比高")
@@ -49,12 +50,15 @@ class DrawingBar(QWidget):
         The button of the kind was pressed.
     snaps_wanted
         The words about snapping were pressed.
+    entered
+        Enter in a field: what is in the hand is to be done.
     distance_set(metres: float), rise_set(metres: float)
         The distance of parallel copies, 0 for the mouse's; how much higher they run.
     """
 
     kind_wanted = Signal()
     snaps_wanted = Signal()
+    entered = Signal()
     distance_set = Signal(float)
     rise_set = Signal(float)
 
@@ -71,7 +75,7 @@ class DrawingBar(QWidget):
         self._language: Language = language
         self._kind = QToolButton(self)
         self._kind.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
-        self._kind.setIconSize(QSize(_SWATCH_PX, _SWATCH_PX))
+        self._kind.setIconSize(QSize(SWATCH_PX, SWATCH_PX))
         self._kind.setToolTip(self.tr("What is drawn: choose by name (Ctrl+K) or number key"))
         self._kind.clicked.connect(self.kind_wanted)
         self._snaps = QToolButton(self)
@@ -100,6 +104,8 @@ class DrawingBar(QWidget):
         layout.addWidget(self._rise)
         layout.addWidget(self._words, 1)
         layout.addWidget(self._snaps)
+        # As high as with its fields, so that the views stay where they are when these come.
+        self.setFixedHeight(self._distance.sizeHint().height() + 4)
         shared.snap.modes_changed.connect(self._show_snaps)
         shared.snap.plane_changed.connect(self._show_snaps)
         self.show_kind(None)
@@ -124,11 +130,12 @@ class DrawingBar(QWidget):
         """Say what is drawn."""
         name = _NO_KIND if kind is None else kind.name
         self._kind.setText(name.spoken(self._language))
-        self._kind.setIcon(QIcon() if kind is None else swatch(kind.colour))
+        self._kind.setIcon(QIcon() if kind is None else swatch_of(kind.colour))
 
     def show_tool(self, name: str) -> None:
-        """Say what a tool expects; only parallel copies have a distance."""
+        """Say what a tool expects; only parallel copies have a distance, measures have no kind."""
         self._tool = name
+        self._kind.setVisible(not name.startswith(_MEASURING))
         is_parallel = name == "parallel"
         for part in (self._distance_name, self._distance, self._rise_name, self._rise):
             part.setVisible(is_parallel)
@@ -155,6 +162,7 @@ class DrawingBar(QWidget):
         field.setSuffix(" m")
         field.setToolTip(tip)
         field.setKeyboardTracking(False)
+        field.lineEdit().returnPressed.connect(self.entered)
         font = QFont(self.font())
         font.setFeature(QFont.Tag("tnum"), 1)
         field.setFont(font)
@@ -167,10 +175,3 @@ class DrawingBar(QWidget):
             names = [_ON_PLANE.spoken(self._language), *names]
         joined = ", ".join(names) if names else _NO_SNAP.spoken(self._language)
         self._snaps.setText(_SNAP.filled(names=joined).spoken(self._language))
-
-
-def swatch(colour: str) -> QIcon:
-    """A square in a kind's colour."""
-    picture = QPixmap(_SWATCH_PX, _SWATCH_PX)
-    picture.fill(QColor(colour))
-    return QIcon(picture)

@@ -15,8 +15,14 @@ from processing.project.catalogue import Catalogue, Geometry
 from processing.text import Language
 from widgets.scene_view.map.feature_shapes import local_places, segments_of
 from widgets.scene_view.projection import Projection
-from widgets.shared.feature_style import ACCENT, FeatureStyle, sketch_style
-from widgets.shared.screen_marks import paint_cross, paint_note, paint_outline, paint_snap
+from widgets.shared.feature_style import FeatureStyle, sketch_style
+from widgets.shared.screen_marks import (
+    paint_cross,
+    paint_note,
+    paint_outline,
+    paint_snap,
+    preview_pens,
+)
 from widgets.shared.sketch import Drawing
 from widgets.shared.snap_state import SNAP_NAMES, SnapMark
 
@@ -124,9 +130,7 @@ def _paint_drawing(
         if drawing.geometry is Geometry.AREA and len(places) > 1:
             way.append(places[0])
         to_preview = _lines(projection, np.array(way), segments_of(Geometry.LINE, len(way)))
-        dashes = QPen(ACCENT, 1.25)
-        dashes.setDashPattern([4.0, 3.0])
-        for pen in (QPen(QColor(0, 0, 0, 150), 3.0), dashes):
+        for pen in preview_pens():
             painter.setPen(pen)
             painter.drawLines(to_preview)
     hollow = [vertex.is_occluded for vertex in drawing.vertices]

@@ -17,6 +17,9 @@ SNAP_COLOUR = QColor("#ffd23f")
 _SHADOW = QColor(0, 0, 0, 200)
 _PLATE = QColor(16, 18, 22, 205)
 _INK = QColor("#eef2f6")
+_COMING = QColor("#8fc6ff")
+"""Paler than what is chosen: it reads on dark points, on its shadow on bright ones."""
+
 _GAP_PX, _ARM_PX = 4.0, 14.0
 _TRAIL_PX = 72.0
 _SNAP_PX = 6.0
@@ -57,6 +60,14 @@ def paint_snap(painter: QPainter, at: Place, mode: SnapMode, name: str) -> None:
         painter.setPen(pen)
         _SIGNS[mode](painter, x, y)
     _paint_plate(painter, x + 2 * _SNAP_PX, y - 2 * _SNAP_PX, name)
+
+
+def preview_pens() -> tuple[QPen, QPen]:
+    """The dark line below and the dashes of where the next click would lead."""
+    dashes = QPen(_COMING, 1.75)
+    dashes.setCapStyle(Qt.PenCapStyle.FlatCap)
+    dashes.setDashPattern([4.0, 2.0])
+    return QPen(_SHADOW, 3.5), dashes
 
 
 def paint_note(painter: QPainter, at: Place, note: Note) -> None:

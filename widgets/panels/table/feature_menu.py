@@ -13,7 +13,7 @@ from processing.project.feature import Feature, Status
 from processing.text import Language
 from widgets.mouse_tools.removal import removal_of
 from widgets.panels.feature_changes import kind_change, kinds_for, status_change
-from widgets.panels.feature_table_model import swatch_of
+from widgets.shared.swatch import swatch_of
 
 
 class FeatureMenu(QMenu):
