@@ -46,8 +46,8 @@ class Document(QObject):
 
     Signals
     -------
-    opened, closed
-        A project was opened or closed.
+    about_to_close, opened, closed
+        A project is open for the last moment; was opened; was closed.
     catalogue_changed
         Another catalogue counts in the open project.
     refused(error: UserError)
@@ -56,6 +56,7 @@ class Document(QObject):
         Something was done that is worth a line.
     """
 
+    about_to_close = Signal()
     opened = Signal()
     closed = Signal()
     catalogue_changed = Signal()
@@ -131,8 +132,10 @@ class Document(QObject):
         """Close the project; jobs on it go on without effect."""
         if self._project is None:
             return
+        self.about_to_close.emit()
         self._adoption.give_up()
         self.shared.sketch.show(None)
+        self.shared.snap.work_on(None)
         self.shared.selection.clear()
         self.shared.cursor.clear()
         for drive in self._project.drives:
@@ -191,7 +194,7 @@ class Document(QObject):
         self.shared.map_changes.features_changed.emit(tuple(f.id for f in self.features()))
         self.told.emit(
             Text(
-                "The catalogue has {count} kinds now.", "カタログは{count}種類になりました。"
+                "The catalogue has {count} kinds now.", "カタログは{count}種別になりました。"
             ).filled(count=len(self.catalogue()))
         )
         return True

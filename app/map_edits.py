@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
@@ -10,13 +11,14 @@ from PySide6.QtGui import QGuiApplication
 from app.document import Document
 from processing.drafting.line_edits import reversed_line, simplified
 from processing.drafting.line_joins import join
-from processing.drafting.measuring import width_between
+from processing.drafting.measuring import Width, width_between
 from processing.errors import UserError
 from processing.project.catalogue import Geometry
 from processing.project.change import Change, Replacement
-from processing.project.feature import Feature, Status
+from processing.project.feature import Feature, Status, Vertex, new_feature_id
 from processing.project.feature_clips import clip_of, features_of_clip
 from processing.text import Text
+from widgets.mouse_tools.measure import KEEP, MEASUREMENT, NO_SUCH_KIND
 from widgets.mouse_tools.removal import removal_of
 
 NOTHING_CHOSEN = Text("Choose features first.", "先に地物を選択してください。")
@@ -144,21 +146,36 @@ class MapEdits:
             for note in pasted.notes:
                 document.told.emit(note)
 
-    def tell_width(self) -> None:
-        """Say how wide it is between the two chosen lines."""
+    def tell_width(self) -> tuple[list[Feature], Width] | None:
+        """Say how wide it is between the two chosen lines; gives both, None where it can't."""
         lines = [feature for feature in self.chosen if feature.geometry is Geometry.LINE]
         if len(lines) != 2:
             self._document.told.emit(TWO_LINES)
-            return
+            return None
         one, other = ([vertex.xyz for vertex in line.vertices] for line in lines)
         try:
             width = width_between(one, other)
         except UserError as refusal:
             self._document.refused.emit(refusal)
+            return None
+        said = WIDTH.filled(least=width.least_m, mean=width.mean_m, greatest=width.greatest_m)
+        self._document.told.emit(said)
+        return lines, width
+
+    def keep_width(self) -> None:
+        """Keep the mean width between the two chosen lines as a measurement across them."""
+        found = self.tell_width()
+        catalogue = self._document.catalogue()
+        if found is None:
             return
-        self._document.told.emit(
-            WIDTH.filled(least=width.least_m, mean=width.mean_m, greatest=width.greatest_m)
-        )
+        if MEASUREMENT not in catalogue:
+            self._document.told.emit(NO_SUCH_KIND.filled(name=MEASUREMENT))
+            return
+        (one, other), width = found
+        across = _nearest_vertices(one, other)
+        attributes = {"width_m": round(width.mean_m, 3)}
+        feature = Feature(new_feature_id(), MEASUREMENT, Geometry.LINE, across, attributes)
+        self._document.apply(KEEP, Change(added=(feature,)))
 
     def select_like(self, alike: Callable[[Feature, Feature], bool]) -> None:
         """Choose all shown features that are like one of the chosen."""
@@ -220,6 +237,12 @@ class MapEdits:
             self._document.told.emit(Text("Nothing changes.", "変更はありません。"))
             return
         self._document.apply(label.filled(count=len(changed)), Change(replaced=changed))
+
+
+def _nearest_vertices(one: Feature, other: Feature) -> tuple[Vertex, Vertex]:
+    """The vertex in the middle of a line, and the one of the other line nearest to it."""
+    middle = one.vertices[len(one.vertices) // 2]
+    return middle, min(other.vertices, key=lambda vertex: math.dist(vertex.xyz, middle.xyz))
 
 
 def _closed(line: Feature) -> Feature:

@@ -10,6 +10,7 @@ from app.drawing_wiring import connect_drawing
 from app.jobs import JobState, JobStatus
 from app.window_parts import WindowParts, take_down
 from processing.errors import Unsuitable
+from processing.project.change import Change
 from processing.runner import check_needs, tool_of
 from processing.text import Text
 from widgets.panels.jobs_panel import JobView
@@ -17,7 +18,14 @@ from widgets.panels.jobs_panel import JobView
 
 def connect_lasting(parts: WindowParts) -> None:
     """Connect what stays through changes of language with each other, once."""
-    parts.toolbox.change_requested.connect(parts.document.apply)
+    document, toolbox = parts.document, parts.toolbox
+
+    def apply(label: Text, change: Change) -> None:
+        if not document.apply(label, change):
+            toolbox.take_back()
+
+    toolbox.change_requested.connect(apply)
+    document.about_to_close.connect(toolbox.put_away)
 
 
 def connect_parts(parts: WindowParts) -> None:
@@ -81,7 +89,7 @@ class _Wiring(QObject):
         """Why a tool can't run on the drive shown; None when it can."""
         drive_id = self._parts.document.shared.view_settings.drive_id
         if not drive_id:
-            return Text("Open a drive first.", "先にドライブを開いてください。")
+            return Text("Open a drive first.", "先に走行データを開いてください。")
         try:
             check_needs(tool_of(tool), self._parts.document.drive(drive_id))
         except Unsuitable as reason:

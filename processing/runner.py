@@ -125,7 +125,7 @@ _NEEDS: Mapping[Needs, _Need] = {
         lambda drive: drive.turns is not None,
         Text(
             "“{tool}” needs the revolutions of the scanner, which this drive doesn't have.",
-            "「{tool}」にはスキャナの回転情報が必要ですが、このドライブにはありません。",
+            "「{tool}」にはスキャナの回転情報が必要ですが、この走行データにはありません。",
         ),
         Text(
             "Import the points of a rotating scanner with their times and the trajectory.",
@@ -136,11 +136,11 @@ _NEEDS: Mapping[Needs, _Need] = {
         lambda drive: drive.trajectory is not None,
         Text(
             "“{tool}” needs a trajectory, which this drive doesn't have.",
-            "「{tool}」には走行軌跡が必要ですが、このドライブにはありません。",
+            "「{tool}」には走行軌跡が必要ですが、この走行データにはありません。",
         ),
         Text(
             "Import the drive again together with its trajectory.",
-            "走行軌跡と一緒にドライブをインポートし直してください。",
+            "走行軌跡と一緒に走行データをインポートし直してください。",
         ),
     ),
 }

@@ -91,6 +91,16 @@ def _at_hand_actions(parts: WindowParts) -> tuple[Action, ...]:
             ),
         ),
         _draw(
+            "keep-width",
+            Text("Keep the width between two chosen lines", "選択した2本の線の幅を保存"),
+            MapEdits(document).keep_width,
+            "",
+            Text(
+                "As a measurement across them, with the mean width.",
+                "平均幅を持つ計測線として保存します。",
+            ),
+        ),
+        _draw(
             "keep-measurement",
             Text("Keep the measurement as a feature", "計測結果を地物として保存"),
             keep,
@@ -114,17 +124,17 @@ def _kind_actions(parts: WindowParts) -> tuple[Action, ...]:
     return (
         _draw(
             "choose-kind",
-            Text("Choose what to draw…", "作図する種類を選ぶ…"),
+            Text("Choose what to draw…", "作図する種別を選ぶ…"),
             parts.drawing_bar.choose_kind,
             "Ctrl+K",
-            Text("All kinds of the catalogue by name.", "カタログの全種類から名前で選びます。"),
+            Text("All kinds of the catalogue by name.", "カタログの全種別から名前で選びます。"),
         ),
         _draw(
             "cycle-kind",
-            Text("The kind drawn before", "前に描いた種類"),
+            Text("The kind drawn before", "前に描いた種別"),
             toolbox.cycle_kind,
             "Tab",
-            Text("Goes round the kinds drawn last.", "最近使った種類を順に切り替えます。"),
+            Text("Goes round the kinds drawn last.", "最近使った種別を順に切り替えます。"),
         ),
         *(
             _draw(
@@ -143,7 +153,7 @@ def kind_title(parts: WindowParts, key: str) -> Text:
     """What a number key draws in the project's catalogue."""
     kind = parts.document.catalogue().of_key(key)
     if kind is None:
-        return Text("Draw: (no kind has this key)", "作図:（このキーの種類なし）")
+        return Text("Draw: (no kind has this key)", "作図:（このキーの種別なし）")
     return Text("Draw: {name}", "作図: {name}").filled(name=kind.name)
 
 

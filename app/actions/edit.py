@@ -126,12 +126,19 @@ def _selections(parts: WindowParts, edits: MapEdits) -> tuple[Action, ...]:
             "Ctrl+Shift+A",
         ),
         _select(
-            "select-kind", Text("Of the same kind", "同じ種類"), like(same_kind), "Ctrl+Shift+K"
+            "select-kind",
+            Text("All of the same kind", "同じ種別をすべて選択"),
+            like(same_kind),
+            "Ctrl+Shift+K",
         ),
-        _select("select-status", Text("Of the same status", "同じ状態"), like(same_status)),
+        _select(
+            "select-status",
+            Text("All of the same status", "同じ状態をすべて選択"),
+            like(same_status),
+        ),
         _select(
             "select-attributes",
-            Text("With the same attributes", "同じ属性"),
+            Text("All with the same attributes", "同じ属性をすべて選択"),
             like(same_attributes),
         ),
         _select(

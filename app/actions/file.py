@@ -97,7 +97,7 @@ class FileActions:
                 "file",
                 hint=Text(
                     "Reads feature kinds from a file; kinds that the map uses are never lost.",
-                    "地物の種類をファイルから読み込みます。図面で使用中の種類は失われません。",
+                    "地物の種別をファイルから読み込みます。図面で使用中の種別は失われません。",
                 ),
                 needs_project=True,
             ),

@@ -51,9 +51,9 @@ def read_images(folder: Path) -> ImageList | None:
         raise BadFile(
             Text(
                 "The list of a drive's camera images is damaged.",
-                "ドライブのカメラ画像一覧が壊れています。",
+                "走行データのカメラ画像一覧が壊れています。",
             ),
             Text.same(f"{path}: {error}"),
-            Text("Import the drive again.", "ドライブを再インポートしてください。"),
+            Text("Import the drive again.", "走行データを再インポートしてください。"),
         ) from error
     return ImageList(images)

@@ -67,7 +67,7 @@ ATTRIBUTES: Mapping[str, Attribute] = {
             ("segment",),
             Text(
                 "Run the tool “Segments” on this drive first.",
-                "先にこのドライブで「セグメント分割」を実行してください。",
+                "先にこの走行データで「セグメント分割」を実行してください。",
             ),
         ),
         Attribute("color", Text("Colour", "色")),
@@ -139,7 +139,7 @@ def _check(drive: Drive, attribute: Attribute) -> None:
     if attribute.id == "color":
         remedy = Text(
             "Import camera images with this drive, or points that have colours.",
-            "このドライブと一緒にカメラ画像を、または色付きの点群をインポートしてください。",
+            "この走行データと一緒にカメラ画像を、または色付きの点群をインポートしてください。",
         )
     raise Unsuitable(
         Text("The points have no “{title}” yet.", "点に「{title}」の情報がありません。").filled(

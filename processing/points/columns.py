@@ -181,12 +181,12 @@ class Columns:
                 raise BadFile(
                     Text(
                         "A column of the drive is not as long as the drive has points.",
-                        "ドライブの列データの長さが点数と一致しません。",
+                        "走行データの列データの長さが点数と一致しません。",
                     ),
                     Text.same(f"{path}, byte {size}"),
                     Text(
                         "Import the drive again from the delivered files. {unchanged}",
-                        "納品ファイルからドライブを再インポートしてください。{unchanged}",
+                        "納品ファイルから走行データを再インポートしてください。{unchanged}",
                     ).filled(unchanged=UNCHANGED),
                 )
             if self._count == 0:

@@ -147,7 +147,7 @@ class Drive:
             raise Unsuitable(
                 Text(
                     "This drive has no image of the kind “{kind}”.",
-                    "このドライブでは「{kind}」の画像を作成できません。",
+                    "この走行データでは「{kind}」の画像を作成できません。",
                 ).filled(kind=kind.title),
                 Text.same(self.info.name),
                 self.info.rows_reason
@@ -182,12 +182,12 @@ class Drive:
                 raise BadFile(
                     Text(
                         "A drive lacks one of its columns.",
-                        "ドライブに必要な列データがありません。",
+                        "走行データに必要な列データがありません。",
                     ),
                     Text.same(f"{self._folder}: {name}"),
                     Text(
                         "Import the drive again from the delivered files.",
-                        "納品ファイルからドライブを再インポートしてください。",
+                        "納品ファイルから走行データを再インポートしてください。",
                     ),
                 )
 

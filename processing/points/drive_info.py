@@ -107,12 +107,12 @@ def read_drive_info(folder: Path) -> DriveInfo:
     except (ValueError, TypeError, KeyError) as error:
         raise BadFile(
             Text(
-                "The description of a drive is damaged.", "ドライブの記述ファイルが壊れています。"
+                "The description of a drive is damaged.", "走行データの記述ファイルが壊れています。"
             ),
             Text.same(f"{path}: {error}"),
             Text(
                 "Import the drive again from the delivered files.",
-                "納品ファイルからドライブを再インポートしてください。",
+                "納品ファイルから走行データを再インポートしてください。",
             ),
         ) from error
 

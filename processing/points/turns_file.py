@@ -60,10 +60,10 @@ def read_turns(folder: Path) -> Turns | None:
                 )
         except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
             raise BadFile(
-                Text("The rows of a drive are damaged.", "ドライブの行データが壊れています。"),
+                Text("The rows of a drive are damaged.", "走行データの行データが壊れています。"),
                 Text.same(f"{path}: {error}"),
                 Text(
                     "Import the drive again from the delivered files.",
-                    "納品ファイルからドライブを再インポートしてください。",
+                    "納品ファイルから走行データを再インポートしてください。",
                 ),
             ) from error

@@ -37,9 +37,10 @@ class Vertex:
     Attributes
     ----------
     xyz : tuple of float
-        Easting, northing, height in metres, project CRS; the measured point's own coordinate where
-        ``measured`` names one.
+        Easting, northing, height in metres, project CRS.
     measured : PointReference or None
+        The measured point that it is; or, on an edge that was fitted through many points, the one
+        nearest to it (within a few centimetres).
     is_occluded : bool
         No measured point is at this place: its height comes from its neighbours or from a working
         plane. Views show it hollow, the table lists it.

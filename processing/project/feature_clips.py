@@ -244,7 +244,7 @@ def _notes_of_points(before: list[Feature], after: list[Feature]) -> tuple[Text,
         Text(
             "{count} vertices rest on measured points of drives that this project does not have; "
             "they keep their place only.",
-            "頂点{count}個は、このプロジェクトにないドライブの計測点に基づいています。"
+            "頂点{count}個は、このプロジェクトにない走行データの計測点に基づいています。"
             "座標だけを引き継ぎました。",
         ).filled(count=f"{lost:,}"),
     )

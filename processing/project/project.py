@@ -390,7 +390,7 @@ def _other_system(drive: Drive, theirs: str, ours: str) -> OutOfRange:
     return OutOfRange(
         Text(
             "The drive's reference system {theirs} is not the project's {ours}.",
-            "ドライブの座標参照系 {theirs} がプロジェクトの {ours} と異なります。",
+            "走行データの座標参照系 {theirs} がプロジェクトの {ours} と異なります。",
         ).filled(theirs=theirs, ours=ours),
         Text.same(drive.info.name),
         Text(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 from PySide6.QtCore import QObject, Signal
@@ -10,7 +11,7 @@ from typing_extensions import override
 from processing.drafting.heights import grounded
 from processing.drafting.parallels import distance_to_line, parallel
 from processing.errors import UserError
-from processing.project.catalogue import Geometry
+from processing.project.catalogue import FeatureKind, Geometry
 from processing.project.change import Change
 from processing.project.feature import Feature, Position, Provenance, Vertex, new_feature_id
 from processing.text import Text
@@ -40,11 +41,12 @@ class DrawParallel(EditingTool):
 
     Signals
     -------
-    distance_changed(metres: float)
-        How far the mouse is from the line, for the field beside the tool.
+    kind_taken(kind: str)
+        The kind of the line that was taken: the copy is of that kind too, unless another of the
+        same shape is chosen then.
     """
 
-    distance_changed = Signal(float)
+    kind_taken = Signal(str)
 
     def __init__(
         self, source: MapSource, shared: SharedState, parent: QObject | None = None
@@ -53,6 +55,7 @@ class DrawParallel(EditingTool):
         self._line: Feature | None = None
         self._fixed_m: float | None = None
         self._rise_m = 0.0
+        self._kind: FeatureKind | None = None
         self._aside_m = 0.0
 
     @property
@@ -73,6 +76,8 @@ class DrawParallel(EditingTool):
     def fix_distance(self, metres: float | None) -> None:
         """Copy at exactly this distance; None: at the mouse."""
         self._fixed_m = metres if metres is not None and metres >= _LEAST_M else None
+        if self._fixed_m is not None and self._aside_m:
+            self._aside_m = math.copysign(self._fixed_m, self._aside_m)
         self._show()
 
     def set_rise(self, metres: float) -> None:
@@ -80,9 +85,19 @@ class DrawParallel(EditingTool):
         self._rise_m = metres
         self._show()
 
+    def makes(self, kind: FeatureKind) -> bool:
+        """Whether a copy of the line at hand can be of a kind."""
+        return self._line is not None and self._line.geometry is kind.geometry
+
+    def set_kind(self, kind: FeatureKind) -> None:
+        """Make copies of this kind from the line at hand."""
+        self._kind = kind
+        self._show()
+
     def take(self, line: Feature) -> None:
         """Take a line as if it had been clicked."""
-        self._line, self._aside_m = line, 0.0
+        self._line, self._aside_m, self._kind = line, 0.0, None
+        self.kind_taken.emit(line.kind)
         self._selection.choose_features(frozenset({line.id}))
         self.told.emit(PICK_SIDE)
 
@@ -105,7 +120,6 @@ class DrawParallel(EditingTool):
     def move(self, hit: Hit) -> None:
         if self._line is not None and hit.place is not None:
             self._aside_m = self._aside(hit.place.xyz)
-            self.distance_changed.emit(abs(self._aside_m))
             self._show()
 
     @override
@@ -121,7 +135,15 @@ class DrawParallel(EditingTool):
         # At the edge of a curb both heights are near; the rise that was set says which is meant.
         step_m = _NEAR_STEP_M if self._rise_m else _STEP_M
         vertices = grounded(places, self._source.drives(), step_m=step_m)
-        copy = replace(line, id=new_feature_id(), vertices=vertices, provenance=Provenance())
+        copy = replace(
+            line,
+            id=new_feature_id(),
+            kind=self._kind_of(line),
+            vertices=vertices,
+            # What is true of one edge needn't be of another kind's.
+            attributes=line.attributes if self._kind_of(line) == line.kind else {},
+            provenance=Provenance(),
+        )
         self.put_down()
         self.change_requested.emit(PARALLEL, Change(added=(copy,)))
         if self._source.feature(copy.id) is not None:
@@ -131,6 +153,9 @@ class DrawParallel(EditingTool):
     def put_down(self) -> None:
         self._line, self._aside_m = None, 0.0
         self._sketch.show(None)
+
+    def _kind_of(self, line: Feature) -> str:
+        return line.kind if self._kind is None else self._kind.id
 
     def _aside(self, place: Position) -> float:
         line = self._line
@@ -163,5 +188,7 @@ class DrawParallel(EditingTool):
         rise = f"  ↑{self._rise_m:+.3f} m" if self._rise_m else ""
         note = Note(places[len(places) // 2], f"{abs(self._aside_m):.3f} m{rise}")
         self._sketch.show(
-            Drawing(line.kind, Geometry.LINE, vertices[:1], vertices[1:] + ring, notes=(note,))
+            Drawing(
+                self._kind_of(line), Geometry.LINE, vertices[:1], vertices[1:] + ring, notes=(note,)
+            )
         )

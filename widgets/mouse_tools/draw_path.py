@@ -16,6 +16,7 @@ from processing.project.feature import Feature, Vertex
 from processing.text import Text
 from widgets.mouse_tools.drawing_tool import LEAST_VERTICES, TOO_FEW, DrawingTool
 from widgets.mouse_tools.legs import (
+    Drawn,
     Leg,
     Path,
     Way,
@@ -79,7 +80,8 @@ class DrawPath(DrawingTool):
         self._path = Path()
         self._base: Feature | None = None
         self._is_turned = False
-        self._dropped: Path | None = None
+        self._dropped: Drawn | None = None
+        self._asked_for: Drawn | None = None
         self._preview: Vertex | None = None
         self._bend: PathBend | None = None
         self._token = 0
@@ -177,8 +179,13 @@ class DrawPath(DrawingTool):
         if crossing is not None:
             self.told.emit(CROSSES.filled(east=crossing[0], north=crossing[1]))
             return
-        base = self._base
+        self._asked_for = self._drawn()
         self._path, self._dropped = Path(), None
+        self._ask_for(vertices)
+        self._asked_for = None
+
+    def _ask_for(self, vertices: tuple[Vertex, ...]) -> None:
+        base = self._base
         if base is None:
             self._finish(vertices)
             return
@@ -186,6 +193,17 @@ class DrawPath(DrawingTool):
         self.put_down()
         if longer != base:
             self.change_requested.emit(CONTINUE, Change(replaced=(Replacement(base, longer),)))
+
+    @override
+    def take_back(self) -> None:
+        if self._asked_for is not None:
+            self._take_up(self._asked_for)
+            self._show()
+
+    @override
+    def forget(self) -> None:
+        super().forget()
+        self._dropped = None
 
     def close(self) -> None:
         """Lead the drawing back to its first vertex and complete it."""
@@ -202,7 +220,7 @@ class DrawPath(DrawingTool):
         if self._is_following:
             self._stop_following()
         elif self._path.end is None and self._dropped is not None:
-            self._path, self._dropped = self._dropped, None
+            self._take_up(self._dropped)
             self.told.emit(RESTORED)
         elif self._base is None or self._path.legs or self._path.pending:
             self._path = self._path.without_last()
@@ -227,11 +245,22 @@ class DrawPath(DrawingTool):
     @override
     def put_down(self) -> None:
         self._stop_following()
-        if len(self._path.vertices) > 1 and self._base is None:
-            self._dropped = self._path
+        if len(self._path.vertices) > 1 and (self._base is None or self._path.legs):
+            self._dropped = self._drawn()
         self._path, self._preview, self._bend, self._base = Path(), None, None, None
         self._is_turned = self._bridges = self._completes = False
         self._show()
+
+    def _drawn(self) -> Drawn:
+        return Drawn(self._path, self._base, self._is_turned)
+
+    def _take_up(self, drawn: Drawn) -> None:
+        path, base, is_turned = drawn.path, drawn.base, drawn.is_turned
+        if base is not None and self._source.feature(base.id) != base:
+            # The line it continued is another one now: what was added is a line of its own.
+            path, base, is_turned = replace(path, start=path.start[-1:]), None, False
+        self._path, self._base, self._is_turned = path, base, is_turned
+        self._dropped = None
 
     # How pieces come about.
 

@@ -17,7 +17,7 @@ NO_POINT = Text(
     "There is no measured point here; click on a point.",
     "ここには計測点がありません。点の上をクリックしてください。",
 )
-NO_KIND = Text("Choose first what to draw.", "先に作図する地物の種類を選んでください。")
+NO_KIND = Text("Choose first what to draw.", "先に作図する地物の種別を選んでください。")
 
 LEAST_VERTICES = {Geometry.POINT: 1, Geometry.LINE: 2, Geometry.AREA: 3}
 """Fewer vertices make no feature of that shape."""

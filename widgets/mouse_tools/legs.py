@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 from processing.drafting.constructions import arc_through, spline_through
-from processing.project.feature import Position, Vertex
+from processing.project.feature import Feature, Position, Vertex
 
 
 class Way(Enum):
@@ -87,6 +87,23 @@ class Path:
             if start is not None:
                 return shorter.with_leg(spline_leg(start, last.clicked[:-1]))
         return shorter
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A drawing that was put down and can be taken up again.
+
+    Attributes
+    ----------
+    base : Feature or None
+        The line that it continues.
+    is_turned : bool
+        Whether it goes on at that line's first vertex.
+    """
+
+    path: Path
+    base: Feature | None
+    is_turned: bool
 
 
 def straight_leg(vertex: Vertex) -> Leg:

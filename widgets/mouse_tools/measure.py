@@ -5,11 +5,13 @@ from __future__ import annotations
 from PySide6.QtCore import QObject, Signal
 from typing_extensions import override
 
+from processing.drafting.crossings import crosses_itself
 from processing.drafting.measuring import Measure, measures_of
-from processing.project.catalogue import Geometry
+from processing.project.catalogue import FeatureKind, Geometry
 from processing.project.change import Change
 from processing.project.feature import AttributeValue, Feature, Vertex, new_feature_id
 from processing.text import Text
+from widgets.mouse_tools.draw_path import CROSSES
 from widgets.mouse_tools.drawing_tool import NO_POINT
 from widgets.mouse_tools.editing_tool import EditingTool
 from widgets.mouse_tools.mouse_tool import Hit
@@ -21,7 +23,7 @@ KEEP = Text("Keep a measurement", "計測結果の保存")
 NOTHING_TO_KEEP = Text("Measure something first.", "先に計測してください。")
 NO_SUCH_KIND = Text(
     "The project's catalogue has no kind “{name}” to keep it as.",
-    "プロジェクトのカタログに、保存先の種類「{name}」がありません。",
+    "プロジェクトのカタログに、保存先の種別「{name}」がありません。",
 )
 MEASUREMENT = "measurement"
 MEASURED_AREA = "measured_area"
@@ -122,10 +124,19 @@ class MeasureTool(EditingTool):
             self.told.emit(NOTHING_TO_KEEP)
             return
         name = MEASURED_AREA if self._is_closed else MEASUREMENT
-        if name not in self._source.catalogue():
+        catalogue = self._source.catalogue()
+        if name not in catalogue:
             self.told.emit(NO_SUCH_KIND.filled(name=name))
             return
-        kind = self._source.catalogue()[name]
+        crossing = None
+        if self._is_closed:
+            crossing = crosses_itself([one.xyz for one in self._vertices], is_closed=True)
+        if crossing is None:
+            self._ask_for(catalogue[name])
+        else:
+            self.told.emit(CROSSES.filled(east=crossing[0], north=crossing[1]))
+
+    def _ask_for(self, kind: FeatureKind) -> None:
         attributes: dict[str, AttributeValue] = {
             measure.id: round(measure.value, measure.decimals)
             for measure in self._measures(self._vertices)
@@ -160,5 +171,6 @@ class MeasureTool(EditingTool):
 
 
 def _short(measures: tuple[Measure, ...]) -> str:
-    """The first two measures, beside the mouse."""
-    return "  ".join(f"{one.value:.{one.decimals}f} {one.unit}".rstrip() for one in measures[:2])
+    """The first measure, beside the mouse; the bar names them all."""
+    first = measures[0]
+    return f"{first.value:.{first.decimals}f} {first.unit}".rstrip()

@@ -128,6 +128,11 @@ class MouseTool(QObject):
         return False
 
     @property
+    def ctrl_frees(self) -> bool:
+        """Whether Ctrl means this very point; where it means something else, hits snap."""
+        return True
+
+    @property
     def last_vertex(self) -> Vertex | None:
         """From where the next segment starts; None when none does."""
         return None

@@ -46,6 +46,11 @@ class MoveFeatures(EditingTool):
 
     @property
     @override
+    def ctrl_frees(self) -> bool:
+        return False  # it copies
+
+    @property
+    @override
     def is_busy(self) -> bool:
         return self._from is not None
 

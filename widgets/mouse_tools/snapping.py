@@ -117,7 +117,7 @@ class SnappingHand(MouseTool):
             self._shared.snap.show_mark(None)
             return hit
         hit = self._on_plane(hit)
-        is_free = bool(hit.modifiers & Qt.KeyboardModifier.ControlModifier)
+        is_free = self.tool.ctrl_frees and bool(hit.modifiers & Qt.KeyboardModifier.ControlModifier)
         found = None if is_free or hit.place is None else self._found(hit, hit.place)
         if found is None:
             self._shared.snap.show_mark(None)

@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, Signal
 from processing.project.catalogue import FeatureKind, Geometry
 from processing.project.feature import Feature
 from processing.text import Text
+from widgets.mouse_tools.draw_parallel import DrawParallel
 from widgets.mouse_tools.draw_path import DrawPath
 from widgets.mouse_tools.drawing_tool import DrawingTool
 from widgets.mouse_tools.legs import Way
@@ -84,6 +85,8 @@ class MouseToolbox(QObject):
             tool.change_requested.connect(self.change_requested)
             tool.told.connect(self.told)
             tool.finished.connect(self._on_tool_finished)
+            if isinstance(tool, DrawParallel):
+                tool.kind_taken.connect(self._on_parallel_kind_taken)
         self._hand_out()
 
     @property
@@ -135,6 +138,10 @@ class MouseToolbox(QObject):
     def choose_kind(self, kind: FeatureKind) -> None:
         """Draw features of this kind from now on, with a tool that can."""
         tool = self.hand.tool
+        if isinstance(tool, DrawParallel) and tool.makes(kind):
+            self._take_kind(kind)
+            tool.set_kind(kind)
+            return
         can_draw = isinstance(tool, DrawingTool) and kind.geometry in tool.draws
         if not can_draw:
             tool.settle()
@@ -160,6 +167,16 @@ class MouseToolbox(QObject):
     def complete(self) -> None:
         """End the gesture of the tool in the hand and keep what it made."""
         self.hand.complete()
+
+    def put_away(self) -> None:
+        """The project is closed: what is whole is kept, the rest is forgotten."""
+        self.hand.tool.settle()
+        for tool in self._tools.values():
+            tool.forget()
+
+    def take_back(self) -> None:
+        """The change that was asked for was refused: what was drawn is at hand again."""
+        self.hand.tool.take_back()
 
     def step_back(self) -> bool:
         """Take the last click back; says whether a gesture was under way."""
@@ -220,6 +237,10 @@ class MouseToolbox(QObject):
     def _hand_out(self) -> None:
         for view in self._views:
             view.set_mouse_tool(self.hand)
+
+    def _on_parallel_kind_taken(self, kind: str) -> None:
+        if kind in self._source.catalogue():
+            self._take_kind(self._source.catalogue()[kind])
 
     def _on_tool_finished(self) -> None:
         self.choose(POINTER)

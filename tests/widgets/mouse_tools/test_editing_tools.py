@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import Qt
@@ -11,7 +12,7 @@ from processing.project.catalogue import Geometry
 from processing.project.change import Change
 from processing.project.feature import Feature, PointReference, Vertex, new_feature_id
 from processing.text import Text
-from tests.widgets.builders import OpenMap
+from tests.widgets.builders import KINDS, OpenMap
 from widgets.mouse_tools.cut_lines import PICK_REST, PICK_TARGET, ExtendLine, SplitLine, TrimLine
 from widgets.mouse_tools.draw_parallel import DrawParallel
 from widgets.mouse_tools.edit_vertices import EditVertices
@@ -200,3 +201,32 @@ def test_a_mouse_that_rests_where_it_clicked_measures_no_leg_of_nothing() -> Non
     names = {one.id for one in measured[-1]}
     assert "slope_percent" in names
     assert "last_leg_m" not in names
+
+
+def test_a_copy_becomes_the_kind_that_is_chosen_after_the_line() -> None:
+    desk = Desk(_copier)
+    line = desk.line((0.0, 0.0, 1.0), (10.0, 0.0, 1.0))
+    tool = desk.tool
+    assert isinstance(tool, DrawParallel)
+    taken: list[str] = []
+    tool.kind_taken.connect(taken.append)
+    tool.press(Hit(Place((5.0, 0.0, 1.0)), line.id, segment=0))
+    assert taken == [line.kind]
+    upper = replace(KINDS["curb"], id="curb_upper")
+    assert tool.makes(upper)
+    assert not tool.makes(KINDS["pole"])
+    tool.set_kind(upper)
+    tool.press(Hit(Place((5.0, 0.2, 1.0))))
+    assert desk.lines[-1].kind == "curb_upper"
+    assert desk.lines[-1].attributes == {}
+
+
+def test_a_rise_lifts_the_copy() -> None:
+    desk = Desk(_copier)
+    line = desk.line((0.0, 0.0, 1.0), (10.0, 0.0, 1.0))
+    tool = desk.tool
+    assert isinstance(tool, DrawParallel)
+    tool.set_rise(0.15)
+    tool.press(Hit(Place((5.0, 0.0, 1.0)), line.id, segment=0))
+    tool.press(Hit(Place((5.0, 0.2, 1.0))))
+    assert [xyz[2] for xyz in desk.shape(desk.lines[-1].id)] == pytest.approx([1.15, 1.15])
