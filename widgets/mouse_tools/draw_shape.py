@@ -142,7 +142,7 @@ class DrawShape(DrawingTool):
                 ring = ()
             if ring:
                 coming = (*ring[1:], ring[0])
-                notes = (Note(coming[0].xyz, self._size_of(ring)),)
+                notes = (Note(preview[0].xyz, self._size_of(ring)),)
                 drawing = Drawing(self._kind.id, Geometry.LINE, ring[:1], coming, notes=notes)
                 self._sketch.show(drawing)
                 return

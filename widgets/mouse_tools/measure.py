@@ -166,7 +166,10 @@ class MeasureTool(EditingTool):
         geometry = Geometry.AREA if self._is_closed else Geometry.LINE
         notes = (Note(whole[-1].xyz, _short(measures)),) if measures else ()
         kind = MEASURED_AREA if self._is_closed else MEASUREMENT
-        self._sketch.show(Drawing(kind, geometry, self._vertices, preview, notes=notes))
+        drawn = self._vertices
+        if self._is_closed and self._is_done and len(drawn) > 2:
+            drawn += drawn[:1]
+        self._sketch.show(Drawing(kind, geometry, drawn, preview, notes=notes))
         self.measured.emit(measures)
 
 
