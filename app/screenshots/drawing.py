@@ -90,7 +90,7 @@ def spline(studio: Studio) -> None:
 def area(studio: Studio) -> None:
     """An area, corner by corner."""
     studio.look(RIGHT, at(9.0, CARRIAGEWAY_M), 6)
-    studio.letter("A")
+    studio.choose_kind("Road marking")
     corners = [at(6.0, -1.4), at(10.0, -1.4), at(10.0, -2.8)]
     studio.draw(RIGHT, corners)
     studio.hover(studio.spot(RIGHT, at(6.3, -2.8)), CONTROL)
@@ -99,6 +99,7 @@ def area(studio: Studio) -> None:
 def rectangle(studio: Studio) -> None:
     """A rectangle by three points, with its size."""
     studio.look(RIGHT, at(9.0, -0.6), 10)
+    studio.choose_kind("Grating")
     studio.letter("R")
     studio.draw(RIGHT, [at(8.0, -0.2), at(9.0, -0.2)])
     studio.hover(studio.spot(RIGHT, at(9.0, -0.6)), CONTROL)
@@ -149,8 +150,7 @@ def measure_area(studio: Studio) -> None:
 
 
 def _traced(studio: Studio, drive: str, begin: Position, end: Position, notches: int) -> None:
-    middle = tuple((a + b) / 2 for a, b in zip(begin, end, strict=True))
-    studio.look(drive, (middle[0], middle[1], middle[2]), notches)
+    studio.look(drive, begin, notches)
     studio.letter("1")
     studio.letter("T")
     studio.hand.click(studio.view, studio.spot(drive, begin))

@@ -32,7 +32,8 @@ def split(studio: Studio) -> None:
     studio.letter("X")
     studio.hand.click(studio.view, spot)
     studio.letter("S")
-    studio.hand.click(studio.view, spot + QPoint(24, 0))
+    studio.settle()
+    studio.hand.click(studio.view, spot + QPoint(40, 0))
 
 
 def extend(studio: Studio) -> None:

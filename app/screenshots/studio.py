@@ -20,6 +20,7 @@ from app.screenshots.hand import CONTROL, PLAIN, Hand
 from app.window_parts import WindowParts
 from processing.points.drive import Drive
 from processing.project.feature import Feature, PointReference, Position
+from widgets.parts.command_palette import CommandPalette
 from widgets.shared.cursor import Place
 
 _LONGEST_MS = 60_000
@@ -151,6 +152,14 @@ class Studio:
             dock.show()
             dock.raise_()
 
+    def choose_kind(self, words: str) -> None:
+        """Choose what is drawn by its name."""
+        self.letter("K", CONTROL)
+        field = self.dialog(CommandPalette).findChildren(QLineEdit)[0]
+        self.hand.type(field, words)
+        self.hand.key(field, Qt.Key.Key_Return)
+        self.tidy()
+
     # Waiting and shooting.
 
     def remember(self) -> None:
@@ -208,6 +217,9 @@ class Studio:
 
         def rests() -> bool:
             shown.append(self._grab())
+            scene = self.parts.scene_view
+            if scene.isVisible() and scene.cloud is not None and not scene.is_settled:
+                return False
             return len(shown) > _SAME_TIMES and all(
                 one == shown[-1] for one in shown[-1 - _SAME_TIMES :]
             )
