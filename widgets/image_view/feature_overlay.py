@@ -17,6 +17,7 @@ from widgets.image_view.placed_feature import (
     segments_between,
 )
 from widgets.image_view.viewport import Viewport
+from widgets.shared.crowded_marks import FEW
 from widgets.shared.feature_style import sketch_style, style_of
 from widgets.shared.screen_marks import preview_pens
 from widgets.shared.sketch import Drawing
@@ -31,6 +32,16 @@ _MOST_SMOOTH = 300
 def hollow_of(vertices: tuple[Vertex, ...]) -> NDArray[np.bool_]:
     """(n,) which vertices rest on no measured point."""
     return np.array([vertex.is_occluded for vertex in vertices], dtype=bool)
+
+
+def _segments_in(viewport: Viewport, segments: Floats) -> Floats:
+    """Those whose bounds touch the window."""
+    seen = viewport.span_with(_MARGIN_PX)
+    low = np.minimum(segments[:, :2], segments[:, 2:4])
+    high = np.maximum(segments[:, :2], segments[:, 2:4])
+    touches = (low <= (seen.right, seen.bottom)) & (high >= (seen.left, seen.top))
+    inside: Floats = segments[touches.all(axis=1)]
+    return inside
 
 
 class FeatureOverlay:
@@ -88,12 +99,14 @@ class FeatureOverlay:
         drawing: Drawing,
     ) -> None:
         """Paint what is being drawn, and thinly where the next click would lead."""
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
         style = sketch_style(catalogue, drawing.kind)
         vertices = self._places.places_of(drawing.vertices)
         shape = drawing.geometry if drawing.replaces else Geometry.LINE
-        path = path_of_segments(segments_between(vertices, shape, picture))
+        seen = _segments_in(viewport, segments_between(vertices, shape, picture))
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, len(seen) <= FEW)
+        path = path_of_segments(seen)
         self._marks.paint_line(painter, path, viewport, style, is_area=False)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
         if drawing.preview and vertices.size:
             self._paint_preview(painter, viewport, picture, drawing, vertices)
         is_point = drawing.geometry is Geometry.POINT

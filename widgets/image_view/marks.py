@@ -8,6 +8,7 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QImage, QPainter, QPainterPath, QPen
 
 from widgets.image_view.viewport import Viewport
+from widgets.shared.crowded_marks import marks_to_paint
 from widgets.shared.feature_style import FeatureStyle
 from widgets.shared.symbol_pictures import SYMBOL_PX, SymbolPictures
 
@@ -70,17 +71,20 @@ class MarkPainter:
             return
         ratio = painter.device().devicePixelRatioF()
         symbol = self._symbols.picture(style.symbol, style.colour, ratio) if is_point else None
-        is_placed = np.isfinite(places[:, 0])
         is_open = np.zeros(len(places), bool) if hollow is None else hollow
-        spots = viewport.to_screen(places[is_placed]).tolist()
-        for (x, y), is_hollow in zip(spots, is_open[is_placed].tolist(), strict=True):
+        spots = viewport.to_screen(places)
+        shown = marks_to_paint(spots, viewport.width, viewport.top + viewport.height)
+        squares: dict[bool, list[QRectF]] = {False: [], True: []}
+        for (x, y), is_hollow in zip(spots[shown].tolist(), is_open[shown].tolist(), strict=True):
             if symbol is not None:
                 _paint_picture(painter, x, y, symbol, style)
             elif is_point:
                 _paint_disc(painter, _box(x, y, _DISC_PX), style)
-            if style.has_vertices:
-                side = _RING_PX - 4 if is_point else _VERTEX_PX
-                _paint_square(painter, _box(x, y, side), style, is_open=is_point or is_hollow)
+            side = _RING_PX - 4 if is_point else _VERTEX_PX
+            squares[is_point or is_hollow].append(_box(x, y, side))
+        if style.has_vertices:
+            for is_empty, boxes in squares.items():
+                _paint_squares(painter, boxes, style, is_open=is_empty)
         painter.setBrush(Qt.BrushStyle.NoBrush)
 
 
@@ -88,12 +92,13 @@ def _box(x: float, y: float, side: float) -> QRectF:
     return QRectF(x - side / 2, y - side / 2, side, side)
 
 
-def _paint_square(painter: QPainter, box: QRectF, style: FeatureStyle, *, is_open: bool) -> None:
+def _paint_squares(
+    painter: QPainter, boxes: list[QRectF], style: FeatureStyle, *, is_open: bool
+) -> None:
     painter.setBrush(Qt.BrushStyle.NoBrush if is_open else QColor(style.colour))
-    painter.setPen(QPen(style.halo_pen().color(), 3.5))
-    painter.drawRect(box)
-    painter.setPen(QPen(QColor("#ffffff"), 1.25))
-    painter.drawRect(box)
+    for pen in (QPen(style.halo_pen().color(), 3.5), QPen(QColor("#ffffff"), 1.25)):
+        painter.setPen(pen)
+        painter.drawRects(boxes)
 
 
 def _paint_picture(

@@ -15,6 +15,7 @@ from processing.project.catalogue import Catalogue, Geometry
 from processing.text import Language
 from widgets.scene_view.map.feature_shapes import local_places, segments_of
 from widgets.scene_view.projection import Projection
+from widgets.shared.crowded_marks import FEW, marks_to_paint
 from widgets.shared.feature_style import FeatureStyle, sketch_style
 from widgets.shared.screen_marks import (
     paint_cross,
@@ -121,6 +122,7 @@ def _paint_drawing(
     places = local_places(drawing.vertices, content.origin)
     is_edited = bool(drawing.replaces)
     shape = drawing.geometry if is_edited else Geometry.LINE
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing, len(places) <= FEW)
     lines = _lines(projection, places, segments_of(shape, len(places)))
     for pen in (style.halo_pen(), style.pen()):
         painter.setPen(pen)
@@ -134,6 +136,7 @@ def _paint_drawing(
             painter.setPen(pen)
             painter.drawLines(to_preview)
     hollow = [vertex.is_occluded for vertex in drawing.vertices]
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
     _paint_vertices(painter, projection, places, style, hollow)
 
 
@@ -147,9 +150,8 @@ def _paint_vertices(
     """Squares; open ones where no measured point is."""
     pixels, _ = projection.to_screen(places)
     half = _VERTEX_PX / 2
-    for (x, y), is_hollow in zip(pixels.tolist(), hollow, strict=True):
-        if not np.isfinite(x):
-            continue
+    for index in marks_to_paint(pixels, painter.device().width(), painter.device().height()):
+        (x, y), is_hollow = pixels[index].tolist(), hollow[index]
         ink = QColor(style.colour) if is_hollow else QColor(0, 0, 0, 190)
         painter.setPen(QPen(ink, 1.5))
         painter.setBrush(Qt.BrushStyle.NoBrush if is_hollow else QColor(style.colour))
