@@ -1,0 +1,87 @@
+"""Thousands of actions of an operator: ``python -m tests.properties.long_session --actions 5000``.
+
+Prints what was done, and how much memory and how many of Qt's objects there are on the way.
+"""
+
+from __future__ import annotations
+
+import argparse
+import gc
+import random
+import resource
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QApplication
+
+from tests.properties.operator_actions import any_action
+from tests.properties.operator_session import Session, check_whole_history, imported_street
+
+_CHECKED_EACH = 50
+
+
+def main() -> int:
+    wanted = argparse.ArgumentParser(description=__doc__)
+    wanted.add_argument("--actions", type=int, default=5000)
+    wanted.add_argument("--seed", type=int, default=0)
+    wanted.add_argument("--told-each", type=int, default=500)
+    wishes = wanted.parse_args()
+    with TemporaryDirectory(prefix="zuka-session-") as folder:
+        home = Path(folder)
+        street = imported_street(home / "street.zuka")
+        choice = random.Random(wishes.seed)  # noqa: S311 - chance, no secret
+        started = time.perf_counter()
+        with Session.on(street, home / "work") as session:
+            for number in range(1, wishes.actions + 1):
+                action = any_action(choice)
+                try:
+                    session.do(action, choice)
+                    if number % _CHECKED_EACH == 0:
+                        session.check_all()
+                except BaseException:
+                    _tell(f"action {number} of seed {wishes.seed}: {action.__name__}")
+                    raise
+                if number % wishes.told_each == 0:
+                    passed = time.perf_counter() - started
+                    _tell(f"{number} actions, {passed:.0f} s, {_counted(session)}")
+            _tell(str(dict(session.done.most_common())))
+            refusals = Counter(error.what.en for error in session.operator.refused)
+            _tell(f"refused: {dict(refusals)}")
+            _tell(f"told: {len(set(session.operator.told))} different sentences")
+        steps = check_whole_history(home / "work" / "通り.zuka")
+        _tell(f"{steps} steps undone and done again; the project reopened the same")
+    return 0
+
+
+def _counted(session: Session) -> str:
+    operator = session.operator
+    operator.parts.toolbox.hand.put_down()
+    operator.settle()
+    gc.collect()
+    objects = Counter(type(one).__name__ for one in gc.get_objects() if isinstance(one, QObject))
+    widgets = len(QApplication.allWidgets())
+    all_objects = len(operator.parts.window.findChildren(QObject))
+    return (
+        f"{len(operator.features())} features, {resident_mb():.0f} MB, {widgets} widgets,"
+        f" {all_objects} objects in the window, {sum(objects.values())} known to Python,"
+        f" {len(gc.get_objects())} objects of Python"
+    )
+
+
+def resident_mb() -> float:
+    """Memory that the process has now."""
+    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+    return pages * resource.getpagesize() / 1e6
+
+
+def _tell(line: str) -> None:
+    sys.stdout.write(line + "\n")
+    sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    sys.exit(main())
