@@ -9,6 +9,8 @@ from PySide6.QtCore import QObject, Qt
 from PySide6.QtGui import QColor, QFont, QGuiApplication, QPalette
 from PySide6.QtWidgets import QApplication
 
+from app.edged_style import EdgedStyle
+
 _ACCENT = "#2f81c7"
 _FONT_PX = 13
 
@@ -78,7 +80,7 @@ class Theme(QObject):
         super().__init__(application)
         self._application = application
         self._choice = ThemeChoice.SYSTEM
-        application.setStyle("Fusion")
+        application.setStyle(EdgedStyle())
         application.setFont(_font())
         application.styleHints().colorSchemeChanged.connect(self._dress)
         self._dress()
