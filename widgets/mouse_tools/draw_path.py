@@ -10,7 +10,7 @@ from typing_extensions import override
 
 from processing.drafting.crossings import crosses_itself
 from processing.drafting.heights import grounded
-from processing.project.catalogue import FeatureKind, Geometry
+from processing.project.catalogue import Geometry
 from processing.project.change import Change, Replacement
 from processing.project.feature import Feature, Vertex
 from processing.text import Text
@@ -123,10 +123,6 @@ class DrawPath(DrawingTool):
         start = line.vertices[::-1] if at_start else line.vertices
         self._path = Path(start=start)
         self._show()
-
-    @override
-    def set_kind(self, kind: FeatureKind) -> None:
-        super().set_kind(kind)
 
     @override
     def press(self, hit: Hit) -> None:
