@@ -60,9 +60,12 @@ class FeatureStyle:
         return colour.redF(), colour.greenF(), colour.blueF()
 
     def pen(self) -> QPen:
-        """The line itself."""
+        """The line itself, for shapes in pixels of the widget.
+
+        Not a cosmetic one: that would count the screen's own pixels and be thin where these are
+        finer.
+        """
         pen = QPen(QColor(self.colour), self.width_px)
-        pen.setCosmetic(True)
         pen.setJoinStyle(Qt.PenJoinStyle.BevelJoin)
         if self.is_dashed:
             pen.setDashPattern([5.0, 3.0])
@@ -74,7 +77,6 @@ class FeatureStyle:
         Opaque, with plain joins and ends: a see-through one takes five times as long to paint.
         """
         pen = QPen(QColor(_HALO), self.width_px + 2 * self.halo_px)
-        pen.setCosmetic(True)
         pen.setJoinStyle(Qt.PenJoinStyle.BevelJoin)
         pen.setCapStyle(Qt.PenCapStyle.FlatCap)
         return pen
