@@ -24,7 +24,7 @@ from widgets.parts.command_palette import CommandPalette
 from widgets.shared.cursor import Place
 
 _LONGEST_MS = 60_000
-_REST_MS = 4_000
+_REST_MS = 15_000
 _PULSE_MS = 60
 _NEAR_M = 0.3
 _SAME_TIMES = 3
