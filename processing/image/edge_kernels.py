@@ -27,7 +27,7 @@ _MEAN_U, _MEAN_V, _ANGLE, _LENGTH, _SPREAD, _NUMBER, _FIRST, _LAST, _MEAN_A, _ME
 _PIECE_COLUMNS = 10
 _MOST_PIECES = 24
 _FEWEST_POINTS = 8
-_MOST_BINS = 300
+_MOST_BINS = 200
 _PIECE_PRICE = (
     10.0  # in squares of the noise: about ln(points) for each of a piece's three unknowns
 )

@@ -28,7 +28,7 @@ LEAST_STRENGTH_M = 0.010
 of the two surfaces (10 cm at most). Steps of 2 cm and more are well above it, joints below."""
 
 _FEWEST = 30  # points from which a direction and a profile can be told
-_ENOUGH, _MOST = 160, 500
+_ENOUGH, _MOST = 160, 300
 _LEAST_ALONG_M = 0.2
 _NEIGHBOURS = 20  # points in the circle from which a normal is found
 _NOISE_M = 0.004  # how far points of a line scanner lie off a smooth surface
@@ -104,7 +104,8 @@ def section_at(xyz: _Floats, center: _Floats) -> Section | None:
     tried[:, 0] += _TRIED_HEADINGS
     costs = _roughness(local, tried)
     best: Section | None = None
-    for start in (frame, tried[costs.argmin()]):
+    starts = (frame, tried[costs.argmin()])
+    for start in starts[: 1 if np.array_equal(*starts) else 2]:
         if _runs_with_rows(local, start):
             continue
         found = section_along(local, start, (length_needed(local, start), PATCH_M), 0)

@@ -29,6 +29,8 @@ from processing.image.edge_sections import (
     section_along,
     section_at,
 )
+from processing.image.edge_steps import Ground, Step, reach_needed, step_at
+from processing.image.points_around import neighbours
 
 if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
     from processing.points.drive import Drive
@@ -39,11 +41,16 @@ _Integers = NDArray[np.int64]
 _NONE = -1
 _TRUSTED_M = 0.25  # edges farther from the middle of a patch are left to the next patch
 _MOST_REACH_M = 2.0
+_APART_M = 0.24
 _ACROSS_AGAIN_M = (0.25, 0.15)  # half widths of the second look
 _SAME_M = 0.05
+# Of fewer points a patch is cut to splinters now and then, which only look like low edges; real
+# ones are found as steps.
+_DENSE, _LEAST_WHERE_SPARSE_M = 90, 0.06
 _COMPARABLE = 0.5
+_AS_NEAR = 0.05  # a metre along the row counts like so much off an edge
+_ON_EDGE_M = 0.05
 _LEAST_CUT = 0.2  # sine of the angle at which a row must cut an edge
-_ROWS_ASIDE = 10
 _COMPANY, _COMPANY_M = 3, 0.05  # others that lie so near a point bear it out
 
 
@@ -96,16 +103,21 @@ def edge_beside(drive: Drive, point: int, within_px: int = 8) -> EdgePlace | Non
        same (that of the least eigenvalue of the sum of n·nᵀ over the surface normals n), so they
        fall on one profile, much denser than one row.
     2. The profile is cut into straight pieces; neighbouring pieces cross on the edge.
-    3. Of the edges at least half as strong as the strongest, the nearest is taken, where the row
+    3. Where such pieces would tell nothing, since all points lie within centimetres of a plane, a
+       low step is looked for as a whole: a dropped curb.
+    4. Of the edges at least half as strong as the strongest, the nearest is taken, where the row
        cuts it. Points of the row may be 10 cm apart, so the measured point nearest to that place
        may be one of a row beside.
     """
     row = _row_around(drive, point, within_px)
-    around = neighbours(drive, point, row.reach_m + PATCH_M)
-    xyz = drive.xyz(around)
+    around, xyz = _around_row(drive, point, row.reach_m)
     edges: list[_Edge] = []
     for offset in _outward(row.xyz, row.middle):
-        edges += _edges_beside(xyz, row, row.xyz[offset], within_px)
+        ground = step_at(xyz, row.xyz[offset])
+        if isinstance(ground, Step):
+            edges += _edges_of_step(xyz, row, ground, within_px)
+        elif ground is Ground.OTHER:
+            edges += _edges_beside(xyz, row, row.xyz[offset], within_px)
         # No edge is twice as strong as these.
         if any(edge.strength_m >= _COMPARABLE * LONGEST_ARM_M for edge in edges):
             break
@@ -189,7 +201,9 @@ def _edges_beside(xyz: _Floats, row: _Row, center: _Floats, within_px: int) -> l
         return []
     near = np.hypot(section.corners[:, ACROSS], section.corners[:, HEIGHT]) <= _TRUSTED_M
     strengths = section.corners[:, STRENGTH]
-    corners = np.flatnonzero(near & (strengths >= LEAST_STRENGTH_M))
+    number = int((((xyz - center) ** 2).sum(axis=1) <= PATCH_M**2).sum())
+    least = LEAST_STRENGTH_M if number >= _DENSE else _LEAST_WHERE_SPARSE_M
+    corners = np.flatnonzero(near & (strengths >= least))
     again = {int(k): _seen_again(xyz, row, section, int(k)) for k in corners}
     if all(seen is None for seen in again.values()):
         return []
@@ -202,16 +216,36 @@ def _edges_beside(xyz: _Floats, row: _Row, center: _Floats, within_px: int) -> l
     return edges
 
 
+def _around_row(drive: Drive, point: int, reach_m: float) -> tuple[_Integers, _Floats]:
+    """Points about a row, farther where they are few, and where they are."""
+    around = neighbours(drive, point, reach_m + PATCH_M)
+    xyz = drive.xyz(around)
+    needed = reach_needed(xyz, xyz[np.searchsorted(around, point)])
+    if needed > 1.2 * PATCH_M:
+        around = neighbours(drive, point, reach_m + needed)
+        xyz = drive.xyz(around)
+    return around, xyz
+
+
+def _edges_of_step(xyz: _Floats, row: _Row, step: Step, within_px: int) -> list[_Edge]:
+    """Both edges of a step where the row cuts it; tested as a whole, they count like plain ones."""
+    again = step_at(xyz, row.nearest_on(*step.edges[0]))
+    step = again if isinstance(again, Step) else step
+    strength = max(step.height_m, _COMPARABLE * LONGEST_ARM_M)
+    passing = [_passing(row, (*edge, strength), within_px) for edge in step.edges]
+    return [edge for edge in passing if edge is not None]
+
+
 def _passing(row: _Row, seen: tuple[_Floats, _Floats, float], within_px: int) -> _Edge | None:
     """The edge, if the row cuts it within the pixels; a row that runs along it doesn't."""
     place, direction, strength = seen
     off = _off_line(row.xyz, place, direction)
-    nearest = int(off.argmin())
+    nearest = row.nearest_to(place, direction)
     first, last = max(0, nearest - 3), min(off.size - 1, nearest + 3)
     tangent = row.xyz[last, :2] - row.xyz[first, :2]
     sine = abs(tangent[0] * direction[1] - tangent[1] * direction[0])
     is_cut = sine >= _LEAST_CUT * float(np.linalg.norm(row.xyz[last] - row.xyz[first]))
-    if not is_cut or abs(row.offsets[nearest]) > within_px + 1:
+    if not (is_cut or off[nearest] <= _ON_EDGE_M) or abs(row.offsets[nearest]) > within_px + 1:
         return None
     return _Edge(place, direction, strength, float(off[row.middle]))
 
@@ -255,9 +289,14 @@ class _Row:
         away = self.xyz - self.xyz[self.middle]
         return min(_MOST_REACH_M, float(np.linalg.norm(away, axis=1).max()))
 
+    def nearest_to(self, place: _Floats, direction: _Floats) -> int:
+        """The point of the row nearest to a line; near the middle where the row runs along it."""
+        aside = np.linalg.norm(self.xyz - self.xyz[self.middle], axis=1)
+        return int((_off_line(self.xyz, place, direction) + _AS_NEAR * aside).argmin())
+
     def nearest_on(self, place: _Floats, direction: _Floats) -> _Floats:
         """(3,) where the row comes nearest to a line."""
-        nearest = int(_off_line(self.xyz, place, direction).argmin())
+        nearest = self.nearest_to(place, direction)
         return np.asarray(place + ((self.xyz[nearest] - place) @ direction) * direction)
 
 
@@ -276,56 +315,9 @@ def _outward(xyz: _Floats, middle: int) -> list[int]:
     for k in order:
         if np.linalg.norm(xyz[k] - xyz[middle]) > _MOST_REACH_M:
             break
-        if np.linalg.norm(xyz[chosen] - xyz[k], axis=1).min() >= _TRUSTED_M * 0.8:
+        if np.linalg.norm(xyz[chosen] - xyz[k], axis=1).min() >= _APART_M:
             chosen.append(int(k))
     return chosen
-
-
-def neighbours(drive: Drive, point: int, radius_m: float) -> _Integers:
-    """Points within a distance of a point, in rising order, taken from the rows around its own.
-
-    Rows are skipped where they are so close that others reach as far.
-
-    Returns
-    -------
-    (k,) int64
-    """
-    pulses = drive.columns["pulse"]
-    turns = drive.turns
-    period = turns.pulses_per_turn if turns is not None else float(drive.info.cells_per_row)
-    here, place = int(pulses[point]), drive.xyz(np.array([point]))[0]
-    span = max(2, int(period / 4))
-    stride, aside = rows_to_take(drive, point, radius_m)
-    middles = here + np.rint(period * stride * np.arange(-aside, aside + 1)).astype(np.int64)
-    edges = np.searchsorted(pulses, np.concatenate([middles - span, middles + span + 1]))
-    parts = []
-    for start, stop in edges.reshape(2, -1).T:
-        if stop > start:
-            xyz = drive.xyz(slice(int(start), int(stop)))
-            near = ((xyz - place) ** 2).sum(axis=1) <= radius_m**2
-            parts.append(np.flatnonzero(near) + start)
-    return np.unique(np.concatenate(parts)) if parts else np.empty(0, np.int64)
-
-
-def rows_to_take(drive: Drive, point: int, radius_m: float) -> tuple[int, int]:
-    """Stride between rows, and how many of them on each side reach as far as the radius."""
-    pulses = drive.columns["pulse"]
-    turns = drive.turns
-    period = turns.pulses_per_turn if turns is not None else float(drive.info.cells_per_row)
-    here, place = int(pulses[point]), drive.xyz(np.array([point]))[0]
-    span = max(2, int(period / 8))
-    stride = 1
-    while stride < 256:
-        for side in (1, -1):
-            middle = here + round(side * stride * period)
-            start, stop = np.searchsorted(pulses, [middle - span, middle + span + 1])
-            if stop > start:
-                xyz = drive.xyz(slice(int(start), int(stop)))
-                gap = float(np.linalg.norm(xyz - place, axis=1).min())
-                if gap * _ROWS_ASIDE * 2 >= radius_m:
-                    return stride, min(2 * _ROWS_ASIDE, max(2, math.ceil(radius_m / gap)))
-        stride *= 2
-    return 1, _ROWS_ASIDE
 
 
 def _off_line(xyz: _Floats, place: _Floats, direction: _Floats) -> _Floats:

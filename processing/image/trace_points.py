@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.edges import rows_to_take
+from processing.image.points_around import rows_to_take
 
 if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
     from processing.points.drive import Drive

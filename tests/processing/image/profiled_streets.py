@@ -82,16 +82,15 @@ def recorded(
     Paint: a stripe 15 cm wide whose middle is 1 m to the right of the profile's origin.
     """
     random = np.random.default_rng(seed)
-    across, up, normals = _along_profile(street)
     rows = int((street.length_m + 2 * BEYOND_M) / street.row_m)
-    row = np.repeat(np.arange(rows), across.size)
-    column = np.tile(np.arange(across.size), rows)
-    jitter = random.uniform(0, street.spacing_m, rows)[row] * 0.5
-    u = across[column] + jitter * normals[column, 1]
-    v = up[column] - jitter * normals[column, 0]
+    columns = int(_length(street) / street.spacing_m)
+    row = np.repeat(np.arange(rows), columns)
+    column = np.tile(np.arange(columns), rows)
+    jitter = random.uniform(0, street.spacing_m, rows)[row]
+    u, v, normals = _on_profile(street, column * street.spacing_m + jitter)
     along = row * street.row_m - BEYOND_M + u
     noise = random.normal(0.0, street.noise_m, u.size)
-    u, v = u + noise * normals[column, 0], v + noise * normals[column, 1]
+    u, v = u + noise * normals[:, 0], v + noise * normals[:, 1]
     kept = np.ones(u.size, np.bool_)
     if hidden is not None:
         kept = (along < hidden[0]) | (along > hidden[1])
@@ -105,12 +104,15 @@ def off_line(xyz: Floats, line: Floats) -> Floats:
     return np.asarray(np.linalg.norm(xyz[:, None] - line[None], axis=2).min(axis=1))
 
 
-def _along_profile(street: Street) -> tuple[Floats, Floats, Floats]:
-    """Places on the profile at the spacing, and normals there."""
+def _length(street: Street) -> float:
+    return float(np.linalg.norm(np.diff(np.array(street.profile), axis=0), axis=1).sum())
+
+
+def _on_profile(street: Street, s: Floats) -> tuple[Floats, Floats, Floats]:
+    """Places at some ways along the profile, and normals there."""
     corners = np.array(street.profile)
     spans = np.diff(corners, axis=0)
     lengths = np.linalg.norm(spans, axis=1)
-    s = np.arange(0.0, lengths.sum(), street.spacing_m)
     ends = np.concatenate([[0.0], np.cumsum(lengths)])
     across, up = np.interp(s, ends, corners[:, 0]), np.interp(s, ends, corners[:, 1])
     piece = np.clip(np.searchsorted(ends, s, side="right") - 1, 0, spans.shape[0] - 1)

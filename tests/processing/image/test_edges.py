@@ -13,9 +13,10 @@ from processing.image.edges import (
     edge_beside,
     highest_point,
     lowest_point,
-    neighbours,
     strongest_bend,
 )
+from processing.image.points_around import neighbours
+from processing.image.step_kernels import HEADING, JUMP, STEP, UNKNOWNS, step_kernel
 from processing.points.drive import Drive
 from tests.processing.image.profiled_streets import (
     LOWER,
@@ -27,6 +28,8 @@ from tests.processing.image.profiled_streets import (
 )
 
 Floats = NDArray[np.float64]
+
+DROPPED = ((-2.5, 0.05), (0.0, 0.0), (0.01, 0.02), (1.5, 0.08))
 
 
 def clicks(drive: Drive, street: Street, corner: Floats, aside_px: int) -> list[int]:
@@ -82,14 +85,25 @@ def test_a_click_up_to_eight_pixels_beside_a_curb_goes_to_an_edge_of_it(
     assert (off_line(found, street.edge(corner)) < 0.02).mean() >= 0.9
 
 
-def test_a_dropped_curb_of_two_centimetres_is_an_edge(tmp_path: Path) -> None:
-    street = Street(profile=((-2.5, 0.05), (0.0, 0.0), (0.01, 0.02), (1.5, 0.08)))
+@pytest.mark.parametrize("aside_px", [-6, -3, 0, 5])
+@pytest.mark.parametrize(
+    "street",
+    [
+        Street(profile=DROPPED, length_m=14.0),
+        Street(profile=DROPPED, length_m=14.0, noise_m=0.004),
+        Street(profile=DROPPED, length_m=14.0, row_m=0.17, spacing_m=0.05),
+        Street(profile=DROPPED, length_m=14.0, curvature=0.08, grade=-0.06),
+        Street(profile=((-2.5, 0.05), (0.0, 0.0), (0.03, 0.03), (1.5, 0.08)), length_m=14.0),
+    ],
+    ids=["plain", "noisy", "60 km/h", "steep bend", "platform of 3 cm"],
+)
+def test_a_dropped_curb_is_an_edge(tmp_path: Path, street: Street, aside_px: int) -> None:
     drive = recorded(tmp_path / "drive", street)
     both = np.vstack([street.edge(np.array(place)) for place in street.profile[1:3]])
-    points = clicks(drive, street, LOWER, -3)
-    found = [point for click in points if (point := strongest_bend(drive, click)) >= 0]
+    points = clicks(drive, street, LOWER, aside_px)
+    found = [place.xyz for click in points if (place := edge_beside(drive, click)) is not None]
     assert len(found) >= 0.9 * len(points)
-    assert (off_line(drive.xyz(np.array(found)), both) < 0.02).mean() >= 0.8
+    assert (off_line(np.array(found), both) < 0.02).mean() >= 0.9
 
 
 def test_a_rounded_edge_is_where_its_two_surfaces_would_meet(tmp_path: Path) -> None:
@@ -111,12 +125,31 @@ def test_the_foot_and_the_top_of_a_wall_are_edges(tmp_path: Path) -> None:
         assert (off_line(found, street.edge(corner)) < 0.02).all()
 
 
-@pytest.mark.parametrize("noise_m", [0.002, 0.004])
-def test_a_flat_road_has_no_edge(tmp_path: Path, noise_m: float) -> None:
-    street = Street(profile=((-2.5, 0.05), (0.0, 0.0), (1.5, 0.03)), noise_m=noise_m)
+def test_a_ditch_of_twenty_degrees_has_an_edge_at_its_bottom(tmp_path: Path) -> None:
+    street = Street(profile=((-1.5, 0.273), (0.0, 0.0), (1.5, 0.273)))
+    drive = recorded(tmp_path / "drive", street)
+    found = snapped(drive, clicks(drive, street, LOWER, 3))
+    assert (off_line(found, street.edge(LOWER)) < 0.02).mean() >= 0.9
+
+
+@pytest.mark.parametrize("noise_m", [0.002, 0.005])
+@pytest.mark.parametrize(
+    "profile",
+    [
+        ((-2.5, 0.0), (1.5, 0.08)),
+        ((-2.5, 0.05), (0.0, 0.0), (1.5, 0.03)),
+        ((-2.5, 0.04), (-0.5, 0.0), (0.0, -0.025), (0.5, 0.0), (1.5, 0.02)),
+        ((-2.5, 0.05), (0.0, 0.0), (0.01, 0.004), (1.5, 0.03)),
+    ],
+    ids=["plane", "kink", "gutter with a fall of 5 %", "joint of 4 mm"],
+)
+def test_a_flat_road_has_no_edge(
+    tmp_path: Path, noise_m: float, profile: tuple[tuple[float, float], ...]
+) -> None:
+    street = Street(profile=profile, noise_m=noise_m, length_m=14.0)
     drive = recorded(tmp_path / "drive", street)
     points = [point for aside in (-25, 0, 20) for point in clicks(drive, street, LOWER, aside)]
-    assert np.mean([strongest_bend(drive, point) == -1 for point in points]) >= 0.75
+    assert np.mean([strongest_bend(drive, point) == -1 for point in points]) >= 0.98
 
 
 def test_leaves_have_no_edge(tmp_path: Path) -> None:
@@ -174,3 +207,18 @@ def test_the_compiled_profile_is_the_plain_one() -> None:
     np.testing.assert_allclose(results[0][2], results[1][2], atol=1e-9)
     assert results[0][2][0, BEND] > 1.4
     assert results[0][2][1, BEND] < -1.4
+
+
+def test_the_compiled_step_is_the_plain_one() -> None:
+    random = np.random.default_rng(4)
+    across = random.uniform(-0.3, 0.3, 90)
+    up = 0.025 * np.clip(across / 0.03, 0, 1) + random.normal(0, 0.003, 90)
+    local = np.column_stack([across, random.uniform(-0.4, 0.4, 90), up])
+    plain = step_kernel.py_func  # type: ignore[attr-defined]
+    steps = np.zeros((2, UNKNOWNS))
+    assert step_kernel(local, 0.4, steps[0]) == STEP
+    assert plain(local, 0.4, steps[1]) == STEP
+    np.testing.assert_allclose(steps[0], steps[1], atol=1e-6)
+    # Seen along the edge with the upper surface on the left, that is southwards.
+    assert abs(steps[0, HEADING] - 1.5 * np.pi) < 0.05
+    assert abs(steps[0, JUMP] - 0.025) < 0.004
