@@ -62,13 +62,12 @@ def _counted(session: Session) -> str:
     operator.parts.toolbox.hand.put_down()
     operator.settle()
     gc.collect()
-    objects = Counter(type(one).__name__ for one in gc.get_objects() if isinstance(one, QObject))
     widgets = len(QApplication.allWidgets())
-    all_objects = len(operator.parts.window.findChildren(QObject))
+    objects = len(operator.parts.window.findChildren(QObject))
+    jobs = len(operator.parts.jobs.statuses)
     return (
         f"{len(operator.features())} features, {resident_mb():.0f} MB, {widgets} widgets,"
-        f" {all_objects} objects in the window, {sum(objects.values())} known to Python,"
-        f" {len(gc.get_objects())} objects of Python"
+        f" {objects} objects in the window, {jobs} jobs, {len(gc.get_objects())} objects of Python"
     )
 
 

@@ -38,7 +38,7 @@ _PLANES = ("plane-level", "plane-fitted", "plane-off", "plane-off")
 _THEMES = ("theme-light", "theme-dark", "theme-system")
 _LETTERS = ("0.15", "12", "2024-05-01", "縁石 A", "", "-3", "９９")
 _DELETE = Qt.Key.Key_Delete
-_MOST_FEATURES = 60
+_MOST_FEATURES, _MOST_COPIED = 80, 10
 
 
 # Drawing.
@@ -193,7 +193,14 @@ def choose(operator: Operator, choice: random.Random) -> None:
 
 
 def cut_and_paste(operator: Operator, choice: random.Random) -> None:
-    operator.trigger(choice.choice(("copy", "cut") if _is_full(operator) else ("copy", "paste")))
+    """A full map is emptied, so that the next day is as long as this one."""
+    if _is_full(operator):
+        operator.trigger("select-all")
+        operator.trigger("delete")
+    elif len(operator.parts.document.shared.selection.features) > _MOST_COPIED:
+        operator.trigger("select-none")
+    else:
+        operator.trigger(choice.choice(("copy", "cut", "paste", "paste")))
 
 
 def delete(operator: Operator, choice: random.Random) -> None:
