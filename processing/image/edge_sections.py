@@ -151,11 +151,11 @@ def _runs_with_rows(local: _Floats, frame: _Floats) -> bool:
     return filled < _EVENLY_FILLED * bins * (1 - math.exp(-across.size / bins))
 
 
-def length_needed(local: _Floats, frame: _Floats) -> float:
+def length_needed(local: _Floats, frame: _Floats, most_m: float = PATCH_M) -> float:
     """Half the length of edge that has enough points: the shorter, the straighter it is."""
     along = np.abs(local[:, 0] * math.cos(frame[0]) + local[:, 1] * math.sin(frame[0]))
     if along.size <= _ENOUGH:
-        return PATCH_M
+        return most_m
     return max(_LEAST_ALONG_M, float(np.partition(along, _ENOUGH)[_ENOUGH]))
 
 

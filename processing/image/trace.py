@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -23,7 +22,7 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 TOLERANCE_M = 0.01
-"""The polyline through the points stays this near to all points that were followed."""
+"""The polyline stays this near to all places where the line was found."""
 
 _NOTHING = Text("", "")
 _NO_LINE = Text(
@@ -32,11 +31,10 @@ _NO_LINE = Text(
 )
 _SPARSE = Text("The points become sparse here.", "ここで点がまばらになっています。")
 _LOST = Text("The edge can't be made out here.", "ここで縁を判別できなくなりました。")
-_ALONG_M = 0.15
-_ON_LINE_M = 0.005
-_FARTHEST_M = 0.02
 _FEW_POINTS = 12
+_REACHED_M, _LOOKED_AHEAD_M = 1.0, 0.75
 _MOST_STARTS = 4
+_UNSEEN_M = 0.10  # a line that isn't found at one click passes it by so much, maybe
 
 
 @dataclass(frozen=True)
@@ -46,8 +44,11 @@ class Traced:
     Attributes
     ----------
     points : (k,) int64
-        Measured points of the drive along the line, the start first; the polyline through them
-        stays within `TOLERANCE_M` of all that were followed.
+        For each vertex the measured point nearest to it, the start first.
+    xyz : (k, 3) float64
+        Vertices on the fitted line, m, project CRS; the polyline through them stays within
+        `TOLERANCE_M` of every place where the line was found. On the far side of a street
+        measured points lie several cm apart.
     is_complete : bool
         Whether it leads to the end.
     reason : Text
@@ -55,6 +56,7 @@ class Traced:
     """
 
     points: _Integers
+    xyz: _Floats
     is_complete: bool
     reason: Text
 
@@ -76,24 +78,32 @@ def trace(drive: Drive, start: int, end: int, *, across_gaps: bool = False) -> T
     2. Every 25 cm the profile across the line is cut anew from the points of several rows, and
        the place where its two surfaces cross is found; the cheapest chain of such places leads
        from the start to the end.
-    3. The measured points nearest to the places are the line.
     """
     if start == end:
-        return Traced(np.array([start]), is_complete=True, reason=_NOTHING)
+        return _only(drive, start, _NOTHING)
     cloud = PointsBetween(drive, start, end)
     goal = drive.xyz(np.array([end]))[0] - cloud.origin
     line = _line_at_both((EdgeFollower(cloud), _marking_follower(drive, cloud)), goal)
     if line is None:
-        return Traced(np.array([start]), is_complete=False, reason=_NO_LINE)
+        return _only(drive, start, _NO_LINE)
     places, is_complete = _places_between(line, goal, across_gaps=across_gaps)
     if not places:
-        return Traced(np.array([start]), is_complete=False, reason=_reason(cloud, np.zeros(3)))
-    followed = _points_along(cloud, places)
-    ends = [np.array([start]), followed, np.array([end] if is_complete else [], np.int64)]
-    points = _without_repeats(np.concatenate(ends))
-    kept = _thinned(drive.xyz(points))
-    reason = _NOTHING if is_complete else _reason(cloud, places[-1].ahead(0.5).xyz)
-    return Traced(points[kept], is_complete, reason)
+        return _only(drive, start, _reason(cloud, np.zeros(3)))
+    beside = [_beside(places[0], np.zeros(3))]
+    last = [_beside(places[-1], goal)] if is_complete else []
+    line_xyz = np.array(beside + _between(places, beside[0], goal) + last)
+    line_xyz = line_xyz[_thinned(line_xyz)]
+    points = np.array([cloud.nearest(xyz) for xyz in line_xyz], dtype=np.int64)
+    points[0] = start
+    if is_complete:
+        points[-1] = end
+    reason = _NOTHING if is_complete else _reason(cloud, places[-1].ahead(_LOOKED_AHEAD_M).xyz)
+    return Traced(points, line_xyz + cloud.origin, is_complete, reason)
+
+
+def _only(drive: Drive, start: int, reason: Text) -> Traced:
+    points = np.array([start])
+    return Traced(points, drive.xyz(points), reason is _NOTHING, reason)
 
 
 @dataclass(frozen=True)
@@ -112,31 +122,23 @@ def _marking_follower(drive: Drive, cloud: PointsBetween) -> MarkingFollower:
 
 def _line_at_both(followers: Sequence[Follower], goal: _Floats) -> _Line | None:
     """What passes both points; or one of them, where nothing is found at the other."""
-    only_one: _Line | None = None
+    here = np.zeros(3)
     for follower in followers:
-        starts, ends = follower.places_at(np.zeros(3)), follower.places_at(goal)
+        starts, ends = follower.places_at(here), follower.places_at(goal)
         either_way = [*ends, *(follower.turned(place) for place in ends)]
-        kind = _kind_at_both(starts, either_way, goal)
-        if kind is not None:
-            return _Line(
-                follower, _of_kind(follower, starts, kind), _of_kind(follower, either_way, kind)
+        kinds = sorted({place.look[0] for place in (*starts, *either_way)})
+        if kinds:
+            kind = min(
+                kinds, key=lambda kind: _off(starts, kind, here) + _off(either_way, kind, goal)
             )
-        if only_one is None and bool(starts) != bool(ends):
-            kind = (starts or ends)[0].look[0]
-            only_one = _Line(
-                follower, _of_kind(follower, starts, kind), _of_kind(follower, ends, kind)
-            )
-    return only_one
+            return _Line(follower, _of_kind(follower, starts, kind), _of_kind(follower, ends, kind))
+    return None
 
 
-def _kind_at_both(starts: Sequence[Place], ends: Sequence[Place], goal: _Floats) -> float | None:
-    """The kind of line that passes nearest to both."""
-    pairs = [
-        (off_line(np.zeros(3), first) + off_line(goal, last), first.look[0])
-        for first, last in itertools.product(starts, ends)
-        if first.look[0] == last.look[0]
-    ]
-    return min(pairs)[1] if pairs else None
+def _off(places: Sequence[Place], kind: float, xyz: _Floats) -> float:
+    """How far the nearest line of a kind passes a place."""
+    of_kind = (off_line(xyz, place) for place in places if place.look[0] == kind)
+    return min(of_kind, default=_UNSEEN_M)
 
 
 def _of_kind(follower: Follower, places: Sequence[Place], kind: float) -> tuple[Place, ...]:
@@ -165,30 +167,25 @@ def _places_between(line: _Line, goal: _Floats, *, across_gaps: bool) -> tuple[l
     return places, is_complete
 
 
-def _points_along(cloud: PointsBetween, places: Sequence[Place]) -> _Integers:
-    """The measured points that lie best on the line, one for each place where one does."""
-    points, offs = [], []
-    for place in places:
-        near = cloud.near(place.xyz, _ALONG_M)
-        if near.size:
-            away = cloud.xyz[near] - place.xyz
-            along = away @ place.direction
-            off_all = np.linalg.norm(away - along[:, None] * place.direction, axis=1)
-            best = int(off_all.argmin())
-            points.append(int(cloud.points[near[best]]))
-            offs.append(float(off_all[best]))
-    # One that lies well tells more than its neighbours that lie beside the line.
-    kept = []
-    for k, off in enumerate(offs):
-        least = min(offs[max(0, k - 2) : k + 3])
-        if off <= max(_ON_LINE_M, least) and off <= _FARTHEST_M:
-            kept.append(points[k])
-    return np.array(kept, dtype=np.int64)
+def _beside(place: Place, xyz: _Floats) -> _Floats:
+    """(3,) where the line through a place passes another, if it isn't far."""
+    along = float((xyz - place.xyz) @ place.direction)
+    return place.ahead(max(-_REACHED_M, min(_REACHED_M, along))).xyz
 
 
-def _without_repeats(points: _Integers) -> _Integers:
-    _, first = np.unique(points, return_index=True)
-    return np.asarray(points[np.sort(first)])
+def _between(places: Sequence[Place], start: _Floats, goal: _Floats) -> list[_Floats]:
+    """Places that lie ahead of the start and before the end."""
+    first, last = places[0].direction, places[-1].direction
+    return [
+        place.xyz
+        for place in places
+        if (_is_far(place.xyz - start) or (place.xyz - start) @ first > 0)
+        and (_is_far(goal - place.xyz) or (goal - place.xyz) @ last > 0)
+    ]
+
+
+def _is_far(away: _Floats) -> bool:
+    return float(np.linalg.norm(away)) > _REACHED_M
 
 
 def _thinned(xyz: _Floats) -> _Integers:

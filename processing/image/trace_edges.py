@@ -23,6 +23,7 @@ from processing.image.edge_sections import (
     section_along,
     section_at,
 )
+from processing.image.edge_steps import LONGER_M, Step, step_at
 from processing.image.trace_points import PointsBetween
 from processing.image.trace_search import Place, off_line
 
@@ -33,7 +34,8 @@ _LOOKED_AROUND_M = (0.0, 0.3, 0.6)
 _ACROSS_M = (0.25, 0.12)
 _UNLIKE = math.radians(30.0)
 _MOST_UNLIKE = 3.0
-_MOST_POINTS = 400
+_ALIKE = 0.3
+_MOST_POINTS, _FEW_POINTS = 400, 90
 
 
 class EdgeFollower:
@@ -64,41 +66,49 @@ class EdgeFollower:
 
     def places_near(self, expected: Place, slack_m: float) -> Sequence[tuple[Place, float]]:
         """Edges of the same kind within so much of an expected one, with how unlike they look."""
-        local = self._cloud.xyz[self._cloud.near(expected.xyz, PATCH_M)] - expected.xyz
+        local = self._around(expected.xyz)
         if not local.size:
             return []
-        local = np.ascontiguousarray(local[:: max(1, local.shape[0] // _MOST_POINTS)])
         frame = np.array([expected.heading_rad, expected.grade, expected.curvature])
         # A narrow profile where what stands or rises beside the edge spoils the wide one.
         for across in _ACROSS_M:
-            reach = (length_needed(local, frame), across + slack_m)
+            reach = (length_needed(local, frame, LONGER_M), across + slack_m)
             section = section_along(local, frame, reach, 0)
             found = [] if section is None else _like(_places_of(section), expected, slack_m)
             if found:
-                return found
-        return []
+                break
+        if found and min(unlike for _, unlike in found) <= _ALIKE:
+            return found
+        step = step_at(local, np.zeros(3))
+        if isinstance(step, Step):
+            found += _like(_places_of_step(step, expected.heading_rad), expected, slack_m)
+        return found
+
+    def _around(self, xyz: _Floats) -> _Floats:
+        """Points about a place, about it; of a longer piece where they are few."""
+        near = self._cloud.near(xyz, PATCH_M)
+        if near.size < _FEW_POINTS:
+            near = self._cloud.near(xyz, LONGER_M)
+        local = self._cloud.xyz[near] - xyz
+        return np.ascontiguousarray(local[:: max(1, local.shape[0] // _MOST_POINTS)])
 
     def _edges_about(self, center: _Floats, xyz: _Floats) -> list[Place]:
-        section = section_at(self._cloud.xyz[self._cloud.near(center, PATCH_M)], center)
-        if section is None:
-            return []
+        step = step_at(self._cloud.xyz[self._cloud.near(center, LONGER_M)], center)
+        if isinstance(step, Step):
+            places = _places_of_step(step, step.heading_rad)
+        else:
+            section = section_at(self._cloud.xyz[self._cloud.near(center, PATCH_M)], center)
+            places = [] if section is None else _places_of(section)
         near = 2 * _BESIDE_M + float(np.linalg.norm(center - xyz))
         return [
             place
-            for place in _places_of(section)
+            for place in places
             if off_line(xyz, place) <= _BESIDE_M and np.linalg.norm(place.xyz - xyz) <= near
         ]
 
     def turned(self, place: Place) -> Place:
         """The same edge for the opposite direction."""
-        kind, before, after = place.look
-        return Place(
-            place.xyz,
-            place.heading_rad + math.pi,
-            -place.grade,
-            -place.curvature,
-            (kind, -after, -before),
-        )
+        return _turned(place)
 
 
 def _places_of(section: Section) -> list[Place]:
@@ -108,6 +118,29 @@ def _places_of(section: Section) -> list[Place]:
             look = (math.copysign(1.0, corner[BEND]), float(corner[BEFORE]), float(corner[AFTER]))
             places.append(Place(xyz, section.heading_rad, section.grade, section.curvature, look))
     return places
+
+
+def _places_of_step(step: Step, heading_rad: float) -> list[Place]:
+    """Both edges of a step, in that one of its directions that is nearer to a heading."""
+    is_turned = math.cos(step.heading_rad - heading_rad) < 0
+    lower, face, upper = step.slopes_rad
+    looks = ((1.0, lower, face), (-1.0, face, upper))
+    places = []
+    for xyz, grade, look in zip((step.lower, step.upper), step.grades, looks, strict=True):
+        place = Place(xyz, step.heading_rad, grade, 0.0, look)
+        places.append(_turned(place) if is_turned else place)
+    return places
+
+
+def _turned(place: Place) -> Place:
+    kind, before, after = place.look
+    return Place(
+        place.xyz,
+        place.heading_rad + math.pi,
+        -place.grade,
+        -place.curvature,
+        (kind, -after, -before),
+    )
 
 
 def _difference(look: tuple[float, ...], other: tuple[float, ...]) -> float:

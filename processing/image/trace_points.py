@@ -19,6 +19,7 @@ _CELL_M = 0.25
 _BESIDE_M = 1.5  # rows so far before the start and beyond the end are taken in
 _DETOUR, _DETOUR_M = 1.3, 4.0
 _AT_ONCE = 1_000_000
+_LOOKED_AROUND_M = (0.1, 0.5)
 
 
 class PointsBetween:
@@ -53,6 +54,15 @@ class PointsBetween:
         self.xyz = np.ascontiguousarray(xyz[order])
         counts = np.bincount(flat, minlength=int(self._shape.prod()))
         self._starts = np.concatenate([[0], np.cumsum(counts)])
+
+    def nearest(self, xyz: _Floats) -> int:
+        """The point of the drive nearest to a place about `origin`."""
+        for radius in _LOOKED_AROUND_M:
+            near = self.near(xyz, radius)
+            if near.size:
+                away = ((self.xyz[near] - xyz) ** 2).sum(axis=1)
+                return int(self.points[near[away.argmin()]])
+        return int(self.points[((self.xyz - xyz) ** 2).sum(axis=1).argmin()])
 
     def near(self, xyz: _Floats, radius_m: float) -> _Integers:
         """Places in `points` of those within a distance.

@@ -159,7 +159,7 @@ def followed_lines(drive: Drive, lines: list[TrueLine], what: str) -> Score:
             began = time.perf_counter()
             traced = trace(drive, start, end)
             seconds += time.perf_counter() - began
-            distances = _off_polyline(wanted, xyz[traced.points])
+            distances = _off_polyline(wanted, traced.xyz)
             length += len(wanted) * _STEP_M
             good += float((distances <= _FOLLOWED_M).sum()) * _STEP_M
             number, whole = number + 1, whole + int(traced.is_complete)

@@ -9,7 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
-from processing.image.trace import trace
+from processing.image.trace import Traced, trace
 from processing.points.drive import Drive
 from processing.project.feature import PointReference, Vertex
 from processing.text import Text
@@ -73,15 +73,17 @@ def tracing_work(
 
     def work() -> TracedLine:
         points = [_point_of(drive, vertex) for vertex in through]
-        found: list[int] = []
-        for start, end in itertools.pairwise(points):
+        found: list[Vertex] = []
+        for (start, end), clicked in zip(itertools.pairwise(points), through[1:], strict=True):
             if start < 0 or end < 0:
-                return TracedLine(_vertices(drive, found), is_complete=False, reason=_NOT_MEASURED)
+                return TracedLine(tuple(found), is_complete=False, reason=_NOT_MEASURED)
             traced = trace(drive, start, end, across_gaps=across_gaps)
-            found.extend(traced.points.tolist()[1:])
+            vertices = _vertices(drive, traced)[1:]
             if not traced.is_complete:
-                return TracedLine(_vertices(drive, found), is_complete=False, reason=traced.reason)
-        return TracedLine(_vertices(drive, found), is_complete=True, reason=Text("", ""))
+                return TracedLine((*found, *vertices), is_complete=False, reason=traced.reason)
+            # What was clicked stays where it was clicked: a hold finds its clicks again by them.
+            found += [*vertices[:-1], clicked]
+        return TracedLine(tuple(found), is_complete=True, reason=Text("", ""))
 
     return work
 
@@ -98,11 +100,10 @@ def _point_of(drive: Drive, vertex: Vertex) -> int:
     return drive.nearest_point(np.array(vertex.xyz), _SAME_EDGE_M)
 
 
-def _vertices(drive: Drive, points: list[int]) -> tuple[Vertex, ...]:
-    if not points:
-        return ()
-    places = drive.xyz(np.array(points, dtype=np.int64)).tolist()
-    return tuple(
+def _vertices(drive: Drive, traced: Traced) -> list[Vertex]:
+    return [
         Vertex((east, north, up), PointReference(drive.id, point))
-        for (east, north, up), point in zip(places, points, strict=True)
-    )
+        for (east, north, up), point in zip(
+            traced.xyz.tolist(), traced.points.tolist(), strict=True
+        )
+    ]

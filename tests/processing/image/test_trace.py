@@ -28,9 +28,9 @@ def traced(drive: Drive, line: Floats, *, across_gaps: bool = False) -> Traced:
     return trace(drive, start, end, across_gaps=across_gaps)
 
 
-def followed_share(drive: Drive, result: Traced, line: Floats, within_m: float = 0.03) -> float:
+def followed_share(result: Traced, line: Floats, within_m: float = 0.03) -> float:
     """Share of a line that lies within a distance of the polyline."""
-    xyz = drive.xyz(result.points)
+    xyz = result.xyz
     if len(xyz) < 2:
         return 0.0
     dense = [
@@ -61,8 +61,8 @@ def test_a_curb_edge_is_followed_between_two_clicks(
     result = traced(drive, line)
     assert result.is_complete
     assert result.reason.en == ""
-    assert followed_share(drive, result, line) >= 0.95
-    assert followed_share(drive, result, line, 0.02) >= 0.8
+    assert followed_share(result, line) >= 0.95
+    assert followed_share(result, line, 0.02) >= 0.8
 
 
 def test_the_way_back_is_as_good(tmp_path: Path) -> None:
@@ -71,7 +71,7 @@ def test_the_way_back_is_as_good(tmp_path: Path) -> None:
     line = street.edge(UPPER)
     result = traced(drive, line[::-1])
     assert result.is_complete
-    assert followed_share(drive, result, line) >= 0.95
+    assert followed_share(result, line) >= 0.95
 
 
 def test_a_dropped_curb_of_two_centimetres_is_followed(tmp_path: Path) -> None:
@@ -79,7 +79,7 @@ def test_a_dropped_curb_of_two_centimetres_is_followed(tmp_path: Path) -> None:
     drive = recorded(tmp_path / "drive", street)
     line = street.edge(np.array([0.0, 0.0]))
     result = traced(drive, line, across_gaps=True)
-    assert followed_share(drive, result, line) >= 0.9
+    assert followed_share(result, line) >= 0.9
 
 
 def test_the_points_are_measured_ones_and_begin_and_end_with_the_clicks(tmp_path: Path) -> None:
@@ -119,7 +119,7 @@ def test_it_bridges_a_parked_car_when_told(tmp_path: Path) -> None:
     line = street.edge(UPPER)
     result = traced(drive, line, across_gaps=True)
     assert result.is_complete
-    assert followed_share(drive, result, line, 0.05) >= 0.95
+    assert followed_share(result, line, 0.05) >= 0.95
     seen = np.concatenate([line[:800], line[1250:]])
     assert (off_line(drive.xyz(result.points), seen) < 0.03).mean() >= 0.9
 
@@ -130,7 +130,7 @@ def test_a_hole_of_half_a_metre_does_not_stop_it(tmp_path: Path) -> None:
     line = street.edge(LOWER)
     result = traced(drive, line)
     assert result.is_complete
-    assert followed_share(drive, result, line) >= 0.95
+    assert followed_share(result, line) >= 0.95
 
 
 @pytest.mark.parametrize("across", [-1.0, -0.925, -1.075], ids=["middle", "left", "right"])
@@ -142,7 +142,7 @@ def test_a_marking_is_followed_along_the_line_that_was_clicked(
     line = street.edge(np.array([across, 0.02]))
     result = traced(drive, line)
     assert result.is_complete
-    assert followed_share(drive, result, line) >= 0.9
+    assert followed_share(result, line) >= 0.9
 
 
 def test_on_a_flat_road_without_paint_there_is_nothing_to_follow(tmp_path: Path) -> None:
