@@ -20,7 +20,7 @@ NEAR_M = 0.3
 """How far a vertex may be from the measured point that stands for it in another drive."""
 
 _UNKNOWN, _NONE = -2, -1
-_MOST_SEARCHED = 10_000
+_MOST_SEARCHED = 100_000
 
 
 class FeaturePlaces:
@@ -103,12 +103,7 @@ class FeaturePlaces:
             return np.full((len(vertices), 2), np.nan)
         points = _own_points(picture, vertices)
         for index in np.flatnonzero(points == _UNKNOWN):
-            key = (picture.drive.id, vertices[index])
-            if key not in self._searched:
-                if len(self._searched) > _MOST_SEARCHED:
-                    self._searched.clear()
-                self._searched[key] = _nearest(picture, vertices[index])
-            points[index] = self._searched[key]
+            points[index] = self._point_for(picture, vertices[index])
         return _places(picture, points)
 
     def search(self, for_s: float, near: tuple[float, float]) -> bool:
@@ -130,7 +125,7 @@ class FeaturePlaces:
                 np.empty(0, np.int64) if points is None else np.flatnonzero(points == _UNKNOWN)
             )
             if feature is not None and points is not None and unknown.size:
-                points[unknown[0]] = _nearest(picture, feature.vertices[unknown[0]])
+                points[unknown[0]] = self._point_for(picture, feature.vertices[unknown[0]])
                 continue
             if not self._waiting.done():
                 break
@@ -138,6 +133,15 @@ class FeaturePlaces:
                 found.append(feature)
         self._place_known(picture, found)
         return bool(found)
+
+    def _point_for(self, picture: Picture, vertex: Vertex) -> int:
+        """The nearest point, remembered: what was searched to be shown is dragged at once."""
+        key = (picture.drive.id, vertex)
+        if key not in self._searched:
+            if len(self._searched) > _MOST_SEARCHED:
+                self._searched.clear()
+            self._searched[key] = _nearest(picture, vertex)
+        return self._searched[key]
 
     def _place(self, features: Iterable[Feature]) -> None:
         picture = self._picture
