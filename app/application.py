@@ -219,15 +219,15 @@ def _panels(parts: WindowParts) -> tuple[Panel, ...]:
     processing, attributes = Text("Processing", "処理"), Text("Attributes", "属性")
     jobs, table = Text("Jobs", "ジョブ"), Text("Table of features", "地物一覧")
     return (
-        Panel("layers", layers, parts.layers_panel, _LEFT, 220, 600),
-        Panel("project", project, parts.project_tree, _LEFT, 220, 200, narrow_behind="layers"),
-        Panel("attributes", attributes, parts.attribute_panel, _RIGHT, 260, 420),
+        Panel("layers", layers, parts.layers_panel, _LEFT, 212, 600),
+        Panel("project", project, parts.project_tree, _LEFT, 212, 200, narrow_behind="layers"),
+        Panel("attributes", attributes, parts.attribute_panel, _RIGHT, 248, 420),
         Panel(
             "processing",
             processing,
             parts.processing_panel,
             _RIGHT,
-            260,
+            248,
             380,
             narrow_behind="attributes",
         ),
@@ -236,7 +236,7 @@ def _panels(parts: WindowParts) -> tuple[Panel, ...]:
             jobs,
             parts.jobs_panel,
             _RIGHT,
-            260,
+            248,
             380,
             behind="processing",
             narrow_behind="attributes",

@@ -24,6 +24,7 @@ from app.theme import ThemeChoice
 from processing.text import Language
 
 ON_STREET: Mapping[str, Callable[[Studio], None]] = {**FRAME, **DRAWING, **EDITING, **FORMS}
+NOTHING_OPEN: Mapping[str, Callable[[Studio], None]] = WITHOUT_STREET
 _LANGUAGES: Mapping[str, tuple[Language, ...]] = {
     "en": ("en",),
     "ja": ("ja",),
@@ -38,7 +39,7 @@ def main(arguments: Sequence[str]) -> int:
     parser.add_argument("--language", choices=tuple(_LANGUAGES), default="both")
     parser.add_argument("--size", type=_size, default=(1366, 768), metavar="WIDTHxHEIGHT")
     parser.add_argument("--theme", choices=("light", "dark"), default="light")
-    known = (*ON_STREET, *WITHOUT_STREET)
+    known = (*ON_STREET, *NOTHING_OPEN)
     parser.add_argument("--only", nargs="+", choices=known, default=known, metavar="NAME")
     chosen = parser.parse_args(arguments)
     chosen.out.mkdir(parents=True, exist_ok=True)
@@ -65,7 +66,7 @@ def take_pictures(studio: Studio, names: Sequence[str]) -> None:
             studio.shoot(name)
             studio.restore()
     studio.parts.document.close()
-    for name, make in WITHOUT_STREET.items():
+    for name, make in NOTHING_OPEN.items():
         if name in names:
             make(studio)
             studio.shoot(name)

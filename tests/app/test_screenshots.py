@@ -8,7 +8,7 @@ import pytest
 from PySide6.QtGui import QImage
 
 from app.actions.tool_entries import TOOL_ENTRIES
-from app.screenshots.__main__ import ON_STREET, WITHOUT_STREET, main
+from app.screenshots.__main__ import NOTHING_OPEN, ON_STREET, main
 
 
 def test_a_picture_shows_the_whole_window_in_the_language_asked_for(tmp_path: Path) -> None:
@@ -34,7 +34,7 @@ def test_what_can_not_be_made_is_refused(
 
 
 def test_every_tool_has_a_picture() -> None:
-    shown = {name.partition("-")[2] for name in {**ON_STREET, **WITHOUT_STREET}}
+    shown = {name.partition("-")[2] for name in {**ON_STREET, **NOTHING_OPEN}}
     other_names = {
         "select": "box",
         "edit": "vertices",
