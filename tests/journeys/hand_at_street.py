@@ -2,28 +2,21 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
-from PySide6.QtGui import QMouseEvent, QWheelEvent
-from PySide6.QtWidgets import QApplication
+from PySide6.QtCore import QPoint, QPointF, Qt
 from pytestqt.qtbot import QtBot
 
 from app.window_parts import WindowParts
 from processing.points.drive import Drive
 from processing.project.feature import PointReference
+from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
+from widgets.image_view.minimap import Minimap
 from widgets.mouse_tools.draw_path import DrawPath
 from widgets.shared.cursor import Place
 
-Floats = NDArray[np.float64]
-
 LEFT = Qt.MouseButton.LeftButton
-NO_KEYS = Qt.KeyboardModifier.NoModifier
 _MARGIN_PX = 60
 _LEAST_ZOOM = 1.5
 """Screen pixels of a pixel of the image across the road: an edge can be aimed at."""
@@ -32,37 +25,9 @@ _TRACE_MS = 20_000
 _MOST_STOPS = 6
 
 
-@dataclass(frozen=True)
-class TrueStreet:
-    """What stands on a street.
-
-    Attributes
-    ----------
-    curbs : tuple of (drive name, kind, (n, 3) float64)
-    signs : tuple of (drive name, centre, size in m, degrees clockwise from north it faces)
-    trees : tuple of (drive name, foot, diameter in m)
-    """
-
-    curbs: tuple[tuple[str, str, Floats], ...]
-    signs: tuple[tuple[str, Floats, float, float], ...]
-    trees: tuple[tuple[str, Floats, float], ...]
-
-    @staticmethod
-    def read(path: Path) -> TrueStreet:
-        stored = json.loads(path.read_text(encoding="utf-8"))
-        return TrueStreet(
-            tuple((one["drive"], one["kind"], np.array(one["line"])) for one in stored["curbs"]),
-            tuple(
-                (one["drive"], np.array(one["centre"]), one["size_m"], one["facing_deg"])
-                for one in stored["signs"]
-            ),
-            tuple((one["drive"], np.array(one["foot"]), one["dbh_m"]) for one in stored["trees"]),
-        )
-
-
 @dataclass
 class Hand:
-    """Mouse and keyboard of a window; every press, turn of the wheel and key counts as one."""
+    """Mouse and keyboard of a window; every click, turn of the wheel and key counts as one."""
 
     bot: QtBot
     parts: WindowParts
@@ -93,32 +58,20 @@ class Hand:
     def click(self, spot: QPoint, modifiers: Qt.KeyboardModifier = NO_KEYS) -> None:
         """Bring the mouse to a pixel and click."""
         self.actions += 1
-        event = QMouseEvent(
-            QEvent.Type.MouseMove,
-            QPointF(spot),
-            QPointF(self.view.mapToGlobal(spot)),
-            Qt.MouseButton.NoButton,
-            Qt.MouseButton.NoButton,
-            modifiers,
-        )
-        QApplication.sendEvent(self.view, event)
+        move_mouse(self.view, spot, keys=modifiers)
         self.bot.mouseClick(self.view, LEFT, modifiers, spot)
+
+    def double_click(self, spot: QPoint) -> None:
+        """Click and complete; a double click is one action of the hand."""
+        self.actions += 1
+        move_mouse(self.view, spot)
+        self.bot.mouseClick(self.view, LEFT, NO_KEYS, spot)
+        self.bot.mouseDClick(self.view, LEFT, NO_KEYS, spot)
 
     def wheel(self, notches: int, modifiers: Qt.KeyboardModifier = NO_KEYS) -> None:
         """Turn the wheel in the middle of the image."""
         self.actions += 1
-        spot = self.view.rect().center()
-        event = QWheelEvent(
-            QPointF(spot),
-            QPointF(self.view.mapToGlobal(spot)),
-            QPoint(),
-            QPoint(0, 120 * notches),
-            Qt.MouseButton.NoButton,
-            modifiers,
-            Qt.ScrollPhase.NoScrollPhase,
-            False,
-        )
-        QApplication.sendEvent(self.view, event)
+        turn_wheel(self.view, self.view.rect().center(), notches, modifiers)
 
     def look_at(self, drive: Drive) -> None:
         """Choose a drive in the tree, and see all of it."""
@@ -126,53 +79,80 @@ class Hand:
         if settings.drive_id != drive.id:
             self.actions += 1
             self.parts.project_tree.drive_chosen.emit(drive.id)
-            self.key(Qt.Key.Key_Home)
         while self.view.viewport.zoom_v < _LEAST_ZOOM:
-            self.wheel(3)
+            self.wheel(5)
 
     def spot(self, drive: Drive, point: int) -> QPoint:
-        """Where a point's pixel is; the wheel brings it into the window."""
+        """Where a point's pixel is, brought into the window by the minimap and by dragging."""
         place = Place(
             tuple(drive.xyz(np.array([point]))[0].tolist()), PointReference(drive.id, point)
         )
-        shift = Qt.KeyboardModifier.ShiftModifier
-        for _ in range(100):
-            at = self.view.position_of(place)
-            assert at is not None
-            if at.x() < _MARGIN_PX:
-                self.wheel(1, shift)
-            elif at.x() > self.view.width() - _MARGIN_PX:
-                self.wheel(-1, shift)
-            else:
-                return at.toPoint()
-        message = f"point {point} doesn't come into the window"
-        raise AssertionError(message)
+        at = self._position(place)
+        if not _MARGIN_PX <= at.x() <= self.view.width() - _MARGIN_PX:
+            self._jump_along(drive, point)
+            at = self._position(place)
+        viewport = self.view.viewport
+        if not viewport.top + _MARGIN_PX <= at.y() <= viewport.bottom - _MARGIN_PX:
+            self._pull_down(viewport.top + viewport.height / 2 - at.y())
+            at = self._position(place)
+        assert self.view.rect().contains(at.toPoint())
+        return at.toPoint()
+
+    def _position(self, place: Place) -> QPointF:
+        at = self.view.position_of(place)
+        assert at is not None
+        return at
+
+    def _is_seen(self, drive: Drive, point: int) -> bool:
+        places = drive.xyz(np.array([point]))[0].tolist()
+        at = self._position(Place(tuple(places), PointReference(drive.id, point)))
+        return bool(_MARGIN_PX <= at.x() <= self.view.width() - _MARGIN_PX)
+
+    def _jump_along(self, drive: Drive, point: int) -> None:
+        """Click in the strip that shows the whole drive."""
+        image = self.view.picture.image
+        row = int(image.pixel_of(np.array([point]))[0][0])
+        minimap = self.view.findChild(Minimap)
+        self.actions += 1
+        spot = QPoint(round((row + 0.5) / image.rows * minimap.width()), minimap.height() // 2)
+        self.bot.mouseClick(minimap, LEFT, NO_KEYS, spot)
+
+    def _pull_down(self, pixels: float) -> None:
+        """Drag the picture up or down with the middle button."""
+        self.actions += 1
+        start = self.view.rect().center()
+        end = start + QPoint(0, round(pixels))
+        middle = Qt.MouseButton.MiddleButton
+        self.bot.mousePress(self.view, middle, NO_KEYS, start)
+        move_mouse(self.view, end, middle)
+        self.bot.mouseRelease(self.view, middle, NO_KEYS, end)
 
     def trace(self, drive: Drive, kind_key: str, start: int, end: int) -> None:
         """Follow an edge between two points; where it stops, click on beyond."""
         self.look_at(drive)
-        self.letter(kind_key)
-        self.letter("t")
+        if not self._is_seen(drive, start) and self._is_seen(drive, end):
+            start, end = end, start  # nobody goes back to where the last line began
+        toolbox = self.parts.toolbox
+        if toolbox.kind is None or toolbox.kind.key != kind_key:
+            self.letter(kind_key)
+        if toolbox.name != "trace":
+            self.letter("t")
         tool = self.parts.toolbox.tool
         assert isinstance(tool, DrawPath)
         self.click(self.spot(drive, start))
         for _ in range(_MOST_STOPS):
-            self.click(self.spot(drive, end))
+            self.double_click(self.spot(drive, end))
             self.bot.waitUntil(lambda: not tool.is_following, timeout=_TRACE_MS)
-            drawing = self.parts.document.shared.sketch.drawing
-            assert drawing is not None
-            last = np.array(drawing.vertices[-1].xyz)
-            if np.linalg.norm(last - drive.xyz(np.array([end]))[0]) < 0.1:
-                break
-        self.key(Qt.Key.Key_Return)
+            if self.parts.document.shared.sketch.drawing is None:
+                return
+        message = f"the trace to point {end} doesn't arrive"
+        raise AssertionError(message)
 
-    def put_point(self, drive: Drive, kind_id: str, points: Sequence[int]) -> None:
-        """Click points as features of a kind that is chosen by name once."""
+    def put_point(self, drive: Drive, kind_id: str, point: int) -> None:
+        """Click a point as a feature of a kind that is chosen by name once."""
         self.look_at(drive)
         self._choose_kind(kind_id)
-        control = Qt.KeyboardModifier.ControlModifier
-        for point in points:
-            self.click(self.spot(drive, point), control)
+        self.click(self.spot(drive, point), Qt.KeyboardModifier.ControlModifier)
 
     def _choose_kind(self, kind_id: str) -> None:
         kind = self.parts.document.catalogue()[kind_id]

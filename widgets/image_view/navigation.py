@@ -31,11 +31,19 @@ _ZOOMS = {
 
 
 def viewport_on(picture: Picture, before: Picture | None, viewport: Viewport) -> Viewport:
-    """What is shown when a picture comes: the same points of the same drive, or its beginning."""
+    """What is shown when a picture comes.
+
+    The same points of the same drive; of another drive what it measured at the same time, as
+    large as before: the other scanner of the same street; otherwise its beginning.
+    """
     width, height = picture.size
     shown = viewport.showing((width, height), picture.stretch)
-    if before is None or before.drive.id != picture.drive.id:
+    if before is None:
         return shown.with_start()
+    if before.drive.id != picture.drive.id:
+        row = _row_at_the_same_time(picture, before, viewport)
+        share = viewport.centre[1] / max(before.size[1], 1)
+        return shown.with_start() if row < 0 else shown.centred_on(row + 0.5, share * height)
     row, _ = before.pixel_at(*viewport.centre)
     row = min(max(row, 0), max(before.image.rows - 1, 0))
     first = min(int(before.image.row_starts[row]), max(picture.image.drive_count - 1, 0))
@@ -44,6 +52,17 @@ def viewport_on(picture: Picture, before: Picture | None, viewport: Viewport) ->
     if picture.rows_go_right:
         return shown.centred_on(float(place[0]), height / 2)
     return shown.centred_on(width / 2, float(place[1]))
+
+
+def _row_at_the_same_time(picture: Picture, before: Picture, viewport: Viewport) -> int:
+    """The row measured when that in the middle of the picture before was; −1 where none was."""
+    if not (picture.rows_go_right and before.rows_go_right and picture.image.rows):
+        return -1
+    row = min(max(before.pixel_at(*viewport.centre)[0], 0), max(before.image.rows - 1, 0))
+    moment, times = before.image.row_times[row], picture.image.row_times
+    if not times[0] <= moment <= times[-1]:
+        return -1
+    return int(np.searchsorted(times, moment))
 
 
 class Navigation:
