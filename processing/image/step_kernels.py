@@ -29,26 +29,25 @@ _LINEAR = 6
 
 LEAST_STEP_M = 0.012
 """Lower steps aren't told from joints of slabs."""
-MOST_STEP_M = 0.13
+MOST_STEP_M = 0.25
 """Higher ones have a face of their own in a profile."""
 
 ACROSS_M = 0.30
 """Half the width of what is looked at."""
 
 _FEWEST, _FEWEST_BESIDE = 18, 7
-_HEADINGS = 36
-_FINER = math.radians(2.5)
+_HEADINGS, _FINER = 36, math.radians(2.5)
 _BIN_M, _BINS = 0.01, 60
 _MOST_CUTS = 18  # bins between face and place: a surface of 12 cm is left on either side
 _NOISE_M, _LEAST_NOISE_M, _MOST_NOISE_M = 0.004, 0.003, 0.008
-_OFF_PLANE_M, _MOST_OFF_PLANE = 0.12, 0.25
+_OFF_PLANE_M, _MOST_OFF_PLANE = 0.20, 0.25
 _TRIED = 0.5  # steps so much lower and less sure in the scan are fitted: a face isn't sharp
-_LEAST_WEIGHT = 0.6  # mean weight of the points in the fit; with normal noise it is 0.8
+_LEAST_WEIGHT = 0.7  # mean weight of the points in the fit; with normal noise it is 0.8
 _FLAT_NOISES, _PLAIN = 1.6, 0.97  # noises off the surface; share of the points on it
 _LEAST_KINK = 0.2  # what bends more is left to the profile
 _LEAST_JUMP, _LEAST_SURE = 2.5, 5.5  # in noises; in standard deviations of the jump
-_FACE_M, _FACE_SURE_M = 0.025, 0.015  # widths of faces in plan
-_NARROWEST_M, _WIDEST_M = 0.004, 0.06
+_FACE_M, _FACE_SURE_M = 0.025, 0.015  # widths of low faces in plan
+_NARROWEST_M, _WIDEST_M, _BESIDE_FACE_M = 0.003, 0.15, 0.05
 _PLACE_SURE_M, _HEADING_SURE, _TWIST_SURE = 0.03, 0.10, 0.3
 _COARSENESS = (3.0, 2.0, 1.5, 1.0, 1.0, 1.0, 1.0, 1.0)
 _STEEPEST = 0.30  # of the surfaces beside a step
@@ -123,10 +122,7 @@ def _near_plane(local: _Floats, surface: _Floats) -> int:
             row[0], row[1], row[2] = 1.0, local[i, 0], local[i, 1]
             off = local[i, 2] - plane[0] - plane[1] * row[1] - plane[2] * row[2]
             weight = 1 / (1 + (off / scale) ** 2)
-            for j in range(3):
-                right[j] += weight * row[j] * local[i, 2]
-                for k in range(3):
-                    matrix[j, k] += weight * row[j] * row[k]
+            _add(matrix, right, row, weight, local[i, 2])
         for j in range(3):
             matrix[j, j] += 1e-6
         if not _solve(matrix, right, plane, 3):
@@ -271,7 +267,7 @@ def fit_step(surface: _Floats, along: float, step: _Floats, fit: _Floats) -> Non
         Is made better.
     fit : (3,)
         Is filled: how far points lie off the step, m; how sure the jump is, in its standard
-        deviations; the mean weight of the points, less where some lie far off.
+        deviations; the mean weight of the points, or of those near the face if it is less.
 
     Notes
     -----
@@ -286,27 +282,28 @@ def fit_step(surface: _Floats, along: float, step: _Floats, fit: _Floats) -> Non
         right[:] = 0.0
         coarse = noise * _COARSENESS[turn]
         weights, squares, number = 1e-9, 0.0, 1e-9
+        face_weights, face_number = 0.0, 0
         cos, sin = math.cos(step[HEADING]), math.sin(step[HEADING])
         for i in range(surface.shape[0]):
             a = surface[i, 0] * cos + surface[i, 1] * sin
             u = surface[i, 1] * cos - surface[i, 0] * sin
             if abs(a) > along or abs(u) > ACROSS_M:
                 continue
-            slope = _row_of(step, a, u, row)
+            slope = _row_of(step, a, u, surface[i, 2], row)
             off = (surface[i, 2] - row[PLACE]) / math.sqrt(1 + slope * slope)
             row[PLACE] = -slope
             weight = 1 / (1 + (off / (2 * coarse)) ** 2)
             weights += weight
             number += 1
+            if -_BESIDE_FACE_M < u - step[PLACE] < step[WIDTH] + _BESIDE_FACE_M:
+                face_weights += weight
+                face_number += 1
             squares += weight * off * off
             factor = weight / (noise * noise * (1 + slope * slope))
             off *= math.sqrt(1 + slope * slope)
-            for j in range(UNKNOWNS):
-                right[j] += factor * row[j] * off
-                for k in range(UNKNOWNS):
-                    matrix[j, k] += factor * row[j] * row[k]
+            _add(matrix, right, row, factor, off)
         _hold(matrix, right, PLACE, begin - step[PLACE], _PLACE_SURE_M)
-        _hold(matrix, right, WIDTH, _FACE_M - step[WIDTH], _FACE_SURE_M)
+        _hold(matrix, right, WIDTH, _FACE_M - step[WIDTH], max(_FACE_SURE_M, step[JUMP] / 2))
         _hold(matrix, right, HEADING, heading - step[HEADING], _HEADING_SURE)
         _hold(matrix, right, TWIST, -step[TWIST], _TWIST_SURE)
         for j in range(UNKNOWNS):
@@ -323,6 +320,16 @@ def fit_step(surface: _Floats, along: float, step: _Floats, fit: _Floats) -> Non
     _solve(matrix, right, change, UNKNOWNS)
     fit[0], fit[1] = math.sqrt(squares / weights), step[JUMP] / math.sqrt(change[JUMP])
     fit[2] = weights / number
+    if face_number >= _FEWEST_BESIDE:
+        fit[2] = min(fit[2], face_weights / face_number)
+
+
+@kernel
+def _add(matrix: _Floats, right: _Floats, row: _Floats, weight: float, off: float) -> None:
+    for j in range(row.size):
+        right[j] += weight * row[j] * off
+        for k in range(row.size):
+            matrix[j, k] += weight * row[j] * row[k]
 
 
 @kernel
@@ -332,26 +339,32 @@ def _hold(matrix: _Floats, right: _Floats, unknown: int, away: float, sure: floa
 
 
 @kernel
-def _row_of(step: _Floats, a: float, u: float, row: _Floats) -> float:
-    """Derivatives of the height at a place; its slope across. The place's holds the height."""
-    beyond = u - step[PLACE]
+def _row_of(step: _Floats, a: float, u: float, v: float, row: _Floats) -> float:
+    """Derivatives of the height of the nearest surface at a place; gives its slope across.
+
+    That of the place holds the height. Noise moves points of an upright face across, where they
+    lie far above or below the surfaces beside it, so those go to the face.
+    """
+    beyond, width = u - step[PLACE], step[WIDTH]
     row[:] = 0.0
     row[BASE], row[GRADE] = 1.0, a
-    height = step[BASE] + step[GRADE] * a
-    if beyond < 0:
-        slope = step[LEFT]
-        row[LEFT] = beyond
-        height += slope * beyond
-    elif beyond < step[WIDTH]:
-        jump, share = step[JUMP] + step[TWIST] * a, beyond / step[WIDTH]
-        slope = jump / step[WIDTH]
-        row[JUMP], row[TWIST], row[WIDTH] = share, share * a, -slope * share
-        height += slope * beyond
-    else:
+    base, jump = step[BASE] + step[GRADE] * a, step[JUMP] + step[TWIST] * a
+    slope, height = step[LEFT], base + step[LEFT] * beyond
+    if beyond >= width / 2:
         slope = step[RIGHT]
-        row[JUMP], row[TWIST], row[RIGHT] = 1.0, a, beyond - step[WIDTH]
+        height = base + jump + slope * (beyond - width)
+    face = jump / width
+    foot = (beyond * width + (v - base) * jump) / (width * width + jump * jump)
+    off_face = (v - base - face * beyond) ** 2 / (1 + face * face)
+    if 0 < foot < 1 and (0 < beyond < width or off_face < (v - height) ** 2 / (1 + slope * slope)):
+        # By the foot, not by the place across: noise across would make steep faces less steep.
+        slope, height = face, base + face * beyond
+        row[JUMP], row[TWIST], row[WIDTH] = foot, foot * a, -face * foot
+    elif beyond < width / 2:
+        row[LEFT] = beyond
+    else:
+        row[JUMP], row[TWIST], row[RIGHT] = 1.0, a, beyond - width
         row[WIDTH] = -slope
-        height += step[JUMP] + step[TWIST] * a + slope * (beyond - step[WIDTH])
     row[HEADING] = -slope * a
     row[PLACE] = height
     return float(slope)

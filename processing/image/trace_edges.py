@@ -35,6 +35,7 @@ _ACROSS_M = (0.25, 0.12)
 _UNLIKE = math.radians(30.0)
 _MOST_UNLIKE = 3.0
 _ALIKE = 0.3
+_SEEN_M = 0.2
 _MOST_POINTS, _FEW_POINTS = 400, 90
 
 
@@ -77,12 +78,12 @@ class EdgeFollower:
             found = [] if section is None else _like(_places_of(section), expected, slack_m)
             if found:
                 break
-        if found and min(unlike for _, unlike in found) <= _ALIKE:
-            return found
-        step = step_at(local, np.zeros(3))
-        if isinstance(step, Step):
-            found += _like(_places_of_step(step, expected.heading_rad), expected, slack_m)
-        return found
+        if not found or min(unlike for _, unlike in found) > _ALIKE:
+            step = step_at(local, np.zeros(3))
+            if isinstance(step, Step):
+                found += _like(_places_of_step(step, expected.heading_rad), expected, slack_m)
+        # A long piece would lead on beyond the last points.
+        return [one for one in found if self._cloud.near(one[0].xyz, _SEEN_M).size]
 
     def _around(self, xyz: _Floats) -> _Floats:
         """Points about a place, about it; of a longer piece where they are few."""

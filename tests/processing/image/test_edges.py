@@ -106,6 +106,26 @@ def test_a_dropped_curb_is_an_edge(tmp_path: Path, street: Street, aside_px: int
     assert (off_line(np.array(found), both) < 0.02).mean() >= 0.9
 
 
+@pytest.mark.parametrize(
+    "profile",
+    [
+        ((-2.5, 0.05), (0.0, 0.0), (0.01, 0.10), (1.5, 0.13)),
+        ((-2.5, 0.05), (0.0, 0.0), (0.02, 0.20), (1.5, 0.23)),
+        ((-2.5, 0.05), (0.0, 0.0), (0.0, 0.15), (1.5, 0.18)),
+        ((-2.5, 0.05), (0.0, 0.0), (0.10, 0.12), (1.5, 0.15)),
+    ],
+    ids=["10 cm", "20 cm", "upright", "bevelled"],
+)
+def test_both_edges_of_every_form_of_curb_are_met(
+    tmp_path: Path, profile: tuple[tuple[float, float], ...]
+) -> None:
+    street = Street(profile=profile, noise_m=0.005)
+    drive = recorded(tmp_path / "drive", street)
+    for corner in (np.array(profile[1]), np.array(profile[2])):
+        found = snapped(drive, clicks(drive, street, corner, 0))
+        assert (off_line(found, street.edge(corner)) < 0.02).mean() >= 0.85
+
+
 def test_a_rounded_edge_is_where_its_two_surfaces_would_meet(tmp_path: Path) -> None:
     angles = np.radians(np.linspace(180, 90, 8))
     rounding = [(0.03 + 0.03 * np.cos(a), 0.12 + 0.03 * np.sin(a)) for a in angles]

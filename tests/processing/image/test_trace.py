@@ -108,7 +108,7 @@ def test_it_stops_at_a_parked_car_and_says_so(tmp_path: Path) -> None:
     result = traced(drive, line)
     assert not result.is_complete
     assert result.reason.en == "The points become sparse here."
-    last = drive.xyz(result.points[-1:])
+    last = result.xyz[-1:]
     assert off_line(last, line)[0] < 0.02
     assert np.linalg.norm(last - line[800]) < 0.7
 
@@ -121,7 +121,7 @@ def test_it_bridges_a_parked_car_when_told(tmp_path: Path) -> None:
     assert result.is_complete
     assert followed_share(result, line, 0.05) >= 0.95
     seen = np.concatenate([line[:800], line[1250:]])
-    assert (off_line(drive.xyz(result.points), seen) < 0.03).mean() >= 0.9
+    assert (off_line(result.xyz, seen) < 0.03).mean() >= 0.9
 
 
 def test_a_hole_of_half_a_metre_does_not_stop_it(tmp_path: Path) -> None:
