@@ -55,6 +55,7 @@ class DrawShape(DrawingTool):
         self._shape = shape
         self._clicked: tuple[Vertex, ...] = ()
         self._preview: Vertex | None = None
+        self._asked: tuple[Vertex, ...] = ()
 
     @property
     @override
@@ -80,6 +81,7 @@ class DrawShape(DrawingTool):
         except UserError as refusal:  # three points in one line make no shape
             self.told.emit(refusal.what)
             return
+        self._asked = self._clicked
         self._complete_with(ring)
 
     @override
@@ -95,6 +97,11 @@ class DrawShape(DrawingTool):
     @override
     def put_down(self) -> None:
         self._clicked, self._preview = (), None
+        self._show()
+
+    @override
+    def take_back(self) -> None:
+        self._clicked = self._asked
         self._show()
 
     def _ring(self, clicked: tuple[Vertex, ...]) -> tuple[Vertex, ...]:

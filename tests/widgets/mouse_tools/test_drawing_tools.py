@@ -345,3 +345,15 @@ def test_three_points_in_one_line_make_no_circle_and_say_so() -> None:
     for x in (0.0, 1.0, 2.0):
         tool.press(Hit(Place((x, 0.0, 1.0))))
     assert len(told) == 1
+
+
+def test_a_refused_shape_has_its_first_clicks_again() -> None:
+    source = OpenMap()
+    tool = DrawShape(source, source.shared, Shape.CIRCLE)
+    tool.set_kind(KINDS["lid"])
+    tool.change_requested.connect(lambda *_: tool.take_back())
+    for place in (A, B, C):
+        tool.press(Hit(place))
+    drawing = source.shared.sketch.drawing
+    assert drawing is not None
+    assert [vertex.xyz for vertex in drawing.vertices] == [A.xyz, B.xyz]
