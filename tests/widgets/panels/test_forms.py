@@ -165,7 +165,7 @@ def test_run_asks_for_the_chosen_tool_with_its_parameters(
 
 
 def test_a_tool_that_cannot_run_says_why(panel: ProcessingPanel) -> None:
-    reason = Text("The drive has no turns.", "ドライブに回転がありません。")
+    reason = Text("The drive has no turns.", "走行データに回転がありません。")
     panel.ask_reasons_from(lambda tool: reason if tool == next(iter(TOOLS)) else None)
     panel.show_tool(next(iter(TOOLS)))
     assert not run_button(panel).isEnabled()
