@@ -97,11 +97,11 @@ def step_at(xyz: _Floats, center: _Floats) -> Step | Ground:
     """
     local = xyz - center
     needed = _length_needed(local)
-    found = _step_along(local, center, max(_SHORTEST_M, min(LONGEST_M, needed)))
-    if needed <= LONGEST_M or isinstance(found, Step):
-        return found
-    longer = _step_along(local, center, LONGER_M)
-    return longer if isinstance(longer, Step) else found
+    if needed > LONGEST_M:
+        found = _step_along(local, center, LONGER_M)
+        if found is not Ground.OTHER:
+            return found
+    return _step_along(local, center, max(_SHORTEST_M, min(LONGEST_M, needed)))
 
 
 def reach_needed(xyz: _Floats, center: _Floats) -> float:
