@@ -30,8 +30,6 @@ _LINEAR = 6
 LEAST_STEP_M = 0.012
 """Lower steps aren't told from joints of slabs."""
 MOST_STEP_M = 0.25
-"""Higher ones have a face of their own in a profile."""
-
 ACROSS_M = 0.30
 """Half the width of what is looked at."""
 
@@ -255,53 +253,23 @@ def _normal_equations(sums: _Floats, cut: int, matrix: _Floats, right: _Floats) 
 
 @kernel
 def fit_step(surface: _Floats, along: float, step: _Floats, fit: _Floats) -> None:
-    """Make a nearly known step better.
+    """Make a nearly known step better by Gauss-Newton steps over all unknowns.
+
+    Face, place and heading are held by what is known of them: few points lie on a face of 2 cm.
 
     Parameters
     ----------
-    surface : (n, 3)
-        Points, m.
-    along : float
-        Half the length of edge that is looked at, m.
     step : (UNKNOWNS,)
         Is made better.
     fit : (3,)
-        Is filled: how far points lie off the step, m; how sure the jump is, in its standard
+        How far points lie off the step, m; how sure the jump is, in its standard
         deviations; the mean weight of the points, or of those near the face if it is less.
-
-    Notes
-    -----
-    Gauss-Newton steps over all unknowns. Face, place and heading are held by what is known of
-    them, since few points lie on a face of 2 cm and now and then none.
     """
     begin, heading, noise = step[PLACE], step[HEADING], _NOISE_M
-    matrix, right = np.zeros((UNKNOWNS, UNKNOWNS)), np.zeros(UNKNOWNS)
-    row, change = np.zeros(UNKNOWNS), np.zeros(UNKNOWNS)
-    for turn in range(len(_COARSENESS)):
-        matrix[:] = 0.0
-        right[:] = 0.0
-        coarse = noise * _COARSENESS[turn]
-        weights, squares, number = 1e-9, 0.0, 1e-9
-        face_weights, face_number = 0.0, 0
-        cos, sin = math.cos(step[HEADING]), math.sin(step[HEADING])
-        for i in range(surface.shape[0]):
-            a = surface[i, 0] * cos + surface[i, 1] * sin
-            u = surface[i, 1] * cos - surface[i, 0] * sin
-            if abs(a) > along or abs(u) > ACROSS_M:
-                continue
-            slope = _row_of(step, a, u, surface[i, 2], row)
-            off = (surface[i, 2] - row[PLACE]) / math.sqrt(1 + slope * slope)
-            row[PLACE] = -slope
-            weight = 1 / (1 + (off / (2 * coarse)) ** 2)
-            weights += weight
-            number += 1
-            if -_BESIDE_FACE_M < u - step[PLACE] < step[WIDTH] + _BESIDE_FACE_M:
-                face_weights += weight
-                face_number += 1
-            squares += weight * off * off
-            factor = weight / (noise * noise * (1 + slope * slope))
-            off *= math.sqrt(1 + slope * slope)
-            _add(matrix, right, row, factor, off)
+    system, change, sums = np.zeros((UNKNOWNS + 1, UNKNOWNS)), np.zeros(UNKNOWNS), np.zeros(5)
+    matrix, right = system[:UNKNOWNS], system[UNKNOWNS]
+    for coarseness in _COARSENESS:
+        _sum_rows(surface, (along, noise, coarseness), step, system, sums)
         _hold(matrix, right, PLACE, begin - step[PLACE], _PLACE_SURE_M)
         _hold(matrix, right, WIDTH, _FACE_M - step[WIDTH], max(_FACE_SURE_M, step[JUMP] / 2))
         _hold(matrix, right, HEADING, heading - step[HEADING], _HEADING_SURE)
@@ -314,14 +282,47 @@ def fit_step(surface: _Floats, along: float, step: _Floats, fit: _Floats) -> Non
         for j in range(UNKNOWNS):
             step[j] += change[j]
         step[WIDTH] = min(_WIDEST_M, max(_NARROWEST_M, step[WIDTH]))
-        noise = max(_LEAST_NOISE_M, min(_MOST_NOISE_M, math.sqrt(squares / weights)))
+        fit[0] = math.sqrt(sums[2] / (sums[1] + 1e-9))
+        noise = max(_LEAST_NOISE_M, min(_MOST_NOISE_M, fit[0]))
     right[:] = 0.0
     right[JUMP] = 1.0
     _solve(matrix, right, change, UNKNOWNS)
-    fit[0], fit[1] = math.sqrt(squares / weights), step[JUMP] / math.sqrt(change[JUMP])
-    fit[2] = weights / number
-    if face_number >= _FEWEST_BESIDE:
-        fit[2] = min(fit[2], face_weights / face_number)
+    fit[1], fit[2] = step[JUMP] / math.sqrt(change[JUMP]), sums[1] / max(sums[0], 1.0)
+    if sums[3] >= _FEWEST_BESIDE:
+        fit[2] = min(fit[2], sums[4] / sums[3])
+
+
+@kernel
+def _sum_rows(
+    surface: _Floats,
+    limits: tuple[float, float, float],
+    step: _Floats,
+    system: _Floats,
+    sums: _Floats,
+) -> None:
+    """Normal equations; number, weights, squares of all points, number and weights at the face."""
+    along, noise, coarseness = limits
+    row = np.empty(UNKNOWNS)
+    system[:] = 0.0
+    sums[:] = 0.0
+    cos, sin = math.cos(step[HEADING]), math.sin(step[HEADING])
+    for i in range(surface.shape[0]):
+        a = surface[i, 0] * cos + surface[i, 1] * sin
+        u = surface[i, 1] * cos - surface[i, 0] * sin
+        if abs(a) > along or abs(u) > ACROSS_M:
+            continue
+        slope = _row_of(step, a, u, surface[i, 2], row)
+        off, steepness = surface[i, 2] - row[PLACE], 1 + slope * slope
+        row[PLACE] = -slope
+        weight = 1 / (1 + off * off / (steepness * (2 * noise * coarseness) ** 2))
+        sums[0] += 1
+        sums[1] += weight
+        sums[2] += weight * off * off / steepness
+        if -_BESIDE_FACE_M < u - step[PLACE] < step[WIDTH] + _BESIDE_FACE_M:
+            sums[3] += 1
+            sums[4] += weight
+        factor = weight / (noise * noise * steepness)
+        _add(system[:UNKNOWNS], system[UNKNOWNS], row, factor, off)
 
 
 @kernel
