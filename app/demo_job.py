@@ -25,7 +25,7 @@ from processing.project.export import FORMATS, ExportRequest
 from processing.project.feature import Feature, PointReference
 from processing.project.project import is_project
 from processing.text import Text
-from processing.tools.registry import TOOLS
+from processing.tools.registry import POINT_TOOLS
 from resources import path_of
 from widgets.shared.cursor import Place
 
@@ -124,7 +124,7 @@ class _DemoJob:
 
     def run_tools(self) -> None:
         for drive in self._document.drives():
-            for tool in TOOLS.values():
+            for tool in POINT_TOOLS.values():
                 self._run(tool.id, drive.id, tool.parameters())
 
     def show_and_shoot(self) -> None:

@@ -18,7 +18,9 @@ from processing.points.ordering import read_stretch
 from processing.text import Text
 from processing.tools.blocks import POINTS_PER_BLOCK, blocks_of, results_of
 from processing.tools.registry import TOOLS
-from processing.tools.tool import Needs, PointBlock, PointResult, Tool
+from processing.tools.tool import CandidateResult, Needs, PointBlock, PointResult, Tool
+
+RunResult = PointResult | CandidateResult
 
 
 @dataclass(frozen=True)
@@ -41,8 +43,8 @@ class RunRequest:
 
 def run(
     request: RunRequest, monitor: Monitor, *, points_per_block: int = POINTS_PER_BLOCK
-) -> PointResult:
-    """Run a tool on a whole drive, block by block; the drive itself isn't changed.
+) -> RunResult:
+    """Run a tool on a whole drive; the drive itself isn't changed.
 
     Parameters
     ----------
@@ -51,9 +53,9 @@ def run(
 
     Returns
     -------
-    PointResult
-        A column for every point of the drive; :meth:`processing.points.columns.Columns.add`
-        stores it.
+    PointResult or CandidateResult
+        A column for every point of the drive, which
+        :meth:`processing.points.columns.Columns.add` stores; or what the tool found.
 
     Raises
     ------
@@ -66,21 +68,24 @@ def run(
     """
     tool = tool_of(request.tool)
     check_needs(tool, request.drive)
-    image = _image_of(request.drive)
-    results = results_of(tool, image.row_starts)
-    total = max(request.drive.count, 1)
     text = Text("{tool}: {name}", "{tool}: {name}").filled(
         tool=tool.name, name=request.drive.info.name
     )
-    for block in blocks_of(image.row_starts, tool.overlap_rows, points_per_block):
-        monitor.check()
-        monitor.report(float(image.row_starts[block.rows.start]) / total, text)
-        points = _block_of(request.drive, image, block.rows_with_overlap)
-        results.add(block, tool.compute(points, request.parameters, monitor))
     monitor.check()
-    result = results.finished()
+    monitor.report(0.0, text)
+    result: RunResult
+    if tool.find is not None:
+        result = tool.find(request.drive, request.parameters, monitor)
+    else:
+        result = _columns(tool, request, monitor, points_per_block)
+    monitor.check()
     monitor.report(1.0, text)
     return result
+
+
+def columns_of(result: RunResult) -> Mapping[str, NDArray[Any]]:
+    """The columns of a result, by name; none where it holds candidates."""
+    return result.columns if isinstance(result, PointResult) else {}
 
 
 def tool_of(name: str) -> Tool:
@@ -144,6 +149,21 @@ _NEEDS: Mapping[Needs, _Need] = {
         ),
     ),
 }
+
+
+def _columns(
+    tool: Tool, request: RunRequest, monitor: Monitor, points_per_block: int
+) -> PointResult:
+    """What a tool says about every point, block by block."""
+    image = _image_of(request.drive)
+    results = results_of(tool, image.row_starts)
+    total = max(request.drive.count, 1)
+    for block in blocks_of(image.row_starts, tool.overlap_rows, points_per_block):
+        monitor.check()
+        monitor.report(float(image.row_starts[block.rows.start]) / total)
+        points = _block_of(request.drive, image, block.rows_with_overlap)
+        results.add(block, tool.compute(points, request.parameters, monitor))
+    return results.finished()
 
 
 def _image_of(drive: Drive) -> PointCloudImage:

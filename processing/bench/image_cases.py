@@ -15,9 +15,9 @@ from processing.image.kinds import ImageKind
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
-from processing.runner import RunRequest, run
+from processing.runner import RunRequest, columns_of, run
 from processing.text import Text
-from processing.tools.registry import TOOLS
+from processing.tools.registry import POINT_TOOLS
 
 _POINTS = 10_000_000
 _REPEATS = 5
@@ -56,9 +56,9 @@ def measure_switch() -> Measurement:
     some seconds after the import.
     """
     with _large_drive() as drive:
-        for tool in TOOLS.values():
+        for tool in POINT_TOOLS.values():
             request = RunRequest(tool.id, drive, tool.parameters())
-            for name, values in run(request, SilentMonitor()).columns.items():
+            for name, values in columns_of(run(request, SilentMonitor())).items():
                 drive.columns.add(name, values)
         image = drive.image(ImageKind.TRAJECTORY_CENTER)
         rows = range(min(image.rows, _SCREEN[1]))

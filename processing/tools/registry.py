@@ -9,3 +9,6 @@ from processing.tools.segments import SEGMENTS
 from processing.tools.tool import Tool
 
 TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in (NORMALS, SEGMENTS)}
+
+POINT_TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in TOOLS.values() if tool.outputs}
+"""Those that say something about every point."""

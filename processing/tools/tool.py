@@ -1,7 +1,8 @@
 """Tool: one processing method, declared once.
 
 The form in the processing panel, ``zuka tools``, ``zuka run``, batch jobs and the manual are made
-from this declaration. A tool is a pure function of a block of points: no file, no view, no global.
+from this declaration. A tool is a pure function, of a block of points where it says something about
+every point, of a drive where it finds things: no project, no view, no global.
 """
 
 from __future__ import annotations
@@ -9,14 +10,18 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.grid import PixelGrid
 from processing.monitor import Monitor
+from processing.points.drive import Drive
 from processing.text import Text
+
+CandidateValue = str | float | int | bool | None
+CandidateGeometry = Literal["point", "line", "area"]
 
 
 class Needs(Enum):
@@ -64,8 +69,55 @@ class PointResult:
     columns: Mapping[str, NDArray[Any]] = field(default_factory=dict)  # dtype is the column's own
 
 
+@dataclass(frozen=True)
+class Candidate:
+    """One thing that a tool believes to have found; a person decides.
+
+    Attributes
+    ----------
+    kind : str
+        Id of a kind of the catalogue.
+    geometry : {"point", "line", "area"}
+        How ``xyz`` is read: one place, an open line, a ring (its first place not repeated).
+    xyz : (n, 3) float64
+        m, project CRS.
+    points : (n,) int64
+        The measured point that each place rests on, by its index in the drive; −1: none.
+    confidence : float
+        0 to 1: the share of such candidates that is expected to be right.
+    attributes : mapping
+        By the ids of the kind's attribute fields; others are kept too.
+    """
+
+    kind: str
+    geometry: CandidateGeometry
+    xyz: NDArray[np.float64]
+    points: NDArray[np.int64]
+    confidence: float
+    attributes: Mapping[str, CandidateValue] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class CandidateResult:
+    """What a tool found on a drive.
+
+    Attributes
+    ----------
+    candidates : tuple of Candidate
+        In the order of the street, where there is one.
+    """
+
+    candidates: tuple[Candidate, ...] = ()
+
+
 # A tool's parameters are its own frozen dataclass, so the runner can't know their type.
 Compute = Callable[[PointBlock, Any, Monitor], PointResult]
+Find = Callable[[Drive, Any, Monitor], CandidateResult]
+
+
+def nothing_per_point(_block: PointBlock, _parameters: object, _monitor: Monitor) -> PointResult:
+    """The ``compute`` of a tool that finds candidates."""
+    return PointResult()
 
 
 @dataclass(frozen=True)
@@ -80,7 +132,7 @@ class OutputColumn:
 
 @dataclass(frozen=True)
 class Tool:
-    """One processing method.
+    """One processing method: it says something about every point, or it finds candidates.
 
     Attributes
     ----------
@@ -88,11 +140,16 @@ class Tool:
         The name on the command line and in provenance.
     version : int
         Raised when the same input and parameters give another result.
+    compute : callable
+        Columns of a block's points.
+    outputs : tuple of OutputColumn
+        What ``compute`` gives per point.
     overlap_rows : int
         Rows of the image that a block needs beyond its own on either side; −1: the tool can't be
         cut into blocks and gets the recording whole.
-    outputs : tuple of OutputColumn
-        What it gives per point.
+    find : callable or None
+        Candidates on a whole drive, of which it reads a stretch at a time; None for a tool that
+        says something about points. It reports its own progress.
     """
 
     id: str
@@ -101,7 +158,8 @@ class Tool:
     group: Text
     needs: Needs
     parameters: type[Any]  # a frozen dataclass of fields from processing.tools.parameters
-    compute: Compute
-    outputs: tuple[OutputColumn, ...]
-    overlap_rows: int
+    compute: Compute = nothing_per_point
+    outputs: tuple[OutputColumn, ...] = ()
+    overlap_rows: int = 0
     version: int = 1
+    find: Find | None = None

@@ -20,8 +20,8 @@ from processing.project.dropped_files import request_of_files
 from processing.project.feature import Feature
 from processing.project.importing import import_drives
 from processing.project.project import Project
-from processing.runner import RunRequest, run
-from processing.tools.registry import TOOLS
+from processing.runner import RunRequest, columns_of, run
+from processing.tools.registry import POINT_TOOLS
 from resources import path_of
 from tests.properties.operator_actions import Action
 from tests.properties.operator_hands import Operator
@@ -38,9 +38,9 @@ def imported_street(folder: Path) -> Path:
         request = request_of_files((path_of("sample_street"),), "")
         found = import_drives(request, project.temporary_folder(), SilentMonitor())
         for drive in project.adopt_drives(found):
-            for tool in TOOLS.values():
+            for tool in POINT_TOOLS.values():
                 result = run(RunRequest(tool.id, drive, tool.parameters()), SilentMonitor())
-                for name, values in result.columns.items():
+                for name, values in columns_of(result).items():
                     drive.columns.add(name, values)
     return folder
 

@@ -14,11 +14,11 @@ from processing.monitor import SilentMonitor
 from processing.points.columns import COLUMN_TYPES, ColumnWriter
 from processing.points.drive import Drive
 from processing.points.drive_info import read_drive_info, write_drive_info
-from processing.runner import RunRequest, check_needs, run, tool_of
+from processing.runner import RunRequest, check_needs, columns_of, run, tool_of
 from processing.text import Text
 from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.parameters import parameters_of
-from processing.tools.registry import TOOLS
+from processing.tools.registry import POINT_TOOLS, TOOLS
 from processing.tools.segments import SEGMENTS, SegmentsParameters
 from processing.tools.tool import Needs
 from tests.processing.image.recordings import small_drive
@@ -61,13 +61,13 @@ def without_turns(drive: Drive) -> Drive:
     return Drive(drive.folder)
 
 
-@pytest.mark.parametrize("name", list(TOOLS))
+@pytest.mark.parametrize("name", list(POINT_TOOLS))
 def test_a_tool_gives_what_it_declares_and_the_drive_can_store_it(drive: Drive, name: str) -> None:
     tool = TOOLS[name]
     result = run(RunRequest(name, drive, tool.parameters()), SilentMonitor())
-    assert set(result.columns) == {output.name for output in tool.outputs}
+    assert set(columns_of(result)) == {output.name for output in tool.outputs}
     for output in tool.outputs:
-        values = result.columns[output.name]
+        values = columns_of(result)[output.name]
         shape = (drive.count,) if output.width == 1 else (drive.count, output.width)
         assert values.shape == shape
         assert values.dtype == output.dtype
@@ -76,12 +76,12 @@ def test_a_tool_gives_what_it_declares_and_the_drive_can_store_it(drive: Drive, 
         np.testing.assert_array_equal(drive.columns[output.name], values)
 
 
-@pytest.mark.parametrize("name", list(TOOLS))
+@pytest.mark.parametrize("name", list(POINT_TOOLS))
 def test_a_tool_runs_on_a_cloud_without_turns(drive: Drive, name: str) -> None:
     flat = without_turns(drive)
     assert flat.image_kinds == (ImageKind.TOP_VIEW,)
     result = run(RunRequest(name, flat, TOOLS[name].parameters()), SilentMonitor())
-    assert all(len(values) == flat.count for values in result.columns.values())
+    assert all(len(values) == flat.count for values in columns_of(result).values())
 
 
 def test_progress_rises_to_one_and_says_what_is_done(drive: Drive) -> None:
@@ -126,7 +126,7 @@ def test_a_drive_without_delivered_classes_can_be_processed(drive: Drive) -> Non
     (drive.folder / "classification.bin").unlink()
     again = Drive(drive.folder)
     result = run(RunRequest("segments", again, SegmentsParameters()), SilentMonitor())
-    assert result.columns["segment"].max() > 0
+    assert columns_of(result)["segment"].max() > 0
 
 
 def test_a_drive_without_points_gives_empty_columns(drive: Drive) -> None:
@@ -138,7 +138,7 @@ def test_a_drive_without_points_gives_empty_columns(drive: Drive) -> None:
             path.unlink()
     write_drive_info(drive.folder, dataclasses.replace(read_drive_info(drive.folder), count=0))
     result = run(RunRequest("normals", Drive(drive.folder), NormalsParameters()), SilentMonitor())
-    assert result.columns["normal"].shape == (0, 3)
+    assert columns_of(result)["normal"].shape == (0, 3)
 
 
 def test_contradicting_distances_are_refused(drive: Drive) -> None:
@@ -160,8 +160,8 @@ def test_every_tool_explains_its_parameters_in_both_languages() -> None:
 
 def test_many_blocks_give_the_same_as_one(drive: Drive) -> None:
     request = RunRequest("segments", drive, SegmentsParameters())
-    whole = run(request, SilentMonitor()).columns["segment"]
+    whole = columns_of(run(request, SilentMonitor()))["segment"]
     watching = Watching()
-    cut = run(request, watching, points_per_block=500).columns["segment"]
+    cut = columns_of(run(request, watching, points_per_block=500))["segment"]
     np.testing.assert_array_equal(cut, whole)
     assert len(watching.fractions) > 5
