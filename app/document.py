@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,8 @@ from PySide6.QtCore import QObject, Signal
 
 from app.adoption import Adoption
 from app.jobs import JobQueue, Lane
+from app.long_work import export_work, import_work, imported_words, run_work
+from app.run_storing import FinishedRun
 from app.undo import UndoStack
 from processing.errors import OutOfRange, UserError
 from processing.image.kinds import ImageKind
@@ -20,14 +22,15 @@ from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.change import Change
-from processing.project.export import ExportRequest, export
+from processing.project.export import ExportRequest
 from processing.project.feature import Feature
-from processing.project.importing import ImportRequest, import_drives
+from processing.project.found_features import FoundFeatures
+from processing.project.importing import ImportRequest
 from processing.project.project import Project
-from processing.runner import RunRequest, run
+from processing.project.runs import Run
+from processing.runner import RunRequest
 from processing.text import Text
 from processing.tools.registry import TOOLS
-from processing.tools.tool import PointResult
 from resources import path_of
 from widgets.shared.cursor import Cursor
 from widgets.shared.map_changes import MapChanges
@@ -109,6 +112,14 @@ class Document(QObject):
     def feature(self, id: str) -> Feature | None:  # noqa: A002 - the word of the trade
         """One feature, or None."""
         return None if self._project is None else self._project.features.get(id)
+
+    def runs(self) -> tuple[Run, ...]:
+        """The runs of tools, the first one first."""
+        try:
+            return () if self._project is None else self._project.runs.all()
+        except UserError as error:
+            self.refused.emit(error)
+            return ()
 
     def catalogue(self) -> Catalogue:
         """The project's feature kinds, or the bundled ones when nothing is open."""
@@ -229,16 +240,7 @@ class Document(QObject):
 
     def _import(self, request: ImportRequest, otherwise: Callable[[], None]) -> str:
         project = self._needed()
-        into = project.temporary_folder()
-
-        def work(monitor: Monitor) -> tuple[Path, ...]:
-            folders = import_drives(request, into, monitor)
-            for folder in folders:
-                _prepare_tiles(folder)
-            return folders
-
-        names = ", ".join(path.name for path in request.inputs[:3])
-        title = Text("Import {names}", "{names} のインポート").filled(names=names)
+        title, work = import_work(request, project.temporary_folder())
         return self._adoption.start(project, title, work, self._adopt_drives, otherwise=otherwise)
 
     def start_run(
@@ -246,18 +248,27 @@ class Document(QObject):
     ) -> str:
         """Run a tool on a drive in the background; gives the job's id."""
         drive = self.drive(drive_id)
-        request = RunRequest(tool, drive, parameters)
+        title, work = run_work(RunRequest(tool, drive, parameters))
 
-        def work(monitor: Monitor) -> PointResult:
-            return run(request, monitor)
+        def take(done: FinishedRun) -> None:
+            if done.found is None:
+                self._store_columns(drive, done.columns)
+            else:
+                self.store_run(done.found)
 
-        def take(result: PointResult) -> None:
-            self._store_columns(drive, result)
-
-        title = Text("{tool}: {name}", "{tool}: {name}").filled(
-            tool=TOOLS[tool].name, name=drive.info.name
-        )
         return self._adoption.start(self._needed(), title, work, take, lane=lane)
+
+    def store_run(self, found: FoundFeatures) -> bool:
+        """Put a run and its candidates on the map as one undoable step; says whether it could."""
+
+        def push() -> Change:
+            if found.change.is_empty:
+                self._needed().runs.add(found.run)
+            self.undo_stack.push(found.run.summary, found.change, run=found.run)
+            self.told.emit(found.run.summary)
+            return found.change
+
+        return self._changed(push)
 
     def do_at_hand(self, work: Callable[[], object], take: Callable[[object | None], None]) -> None:
         """Do a moment's work for the tool in the hand; it gets None where that failed."""
@@ -277,14 +288,7 @@ class Document(QObject):
     def export(self, request: ExportRequest) -> str:
         """Write the map to files in the background; gives the job's id."""
         project = self._needed()
-        features = tuple(project.features.all())
-        catalogue, crs = project.catalogue, project.crs
-        request = replace(
-            request, never=tuple(path for drive in project.drives for path in drive.delivered_files)
-        )
-
-        def work(monitor: Monitor) -> tuple[Path, ...]:
-            return export(features, catalogue, crs, request, monitor)
+        title, work = export_work(project, request)
 
         def take(paths: tuple[Path, ...]) -> None:
             self.told.emit(
@@ -294,7 +298,7 @@ class Document(QObject):
                 ).filled(count=len(paths), folder=request.folder)
             )
 
-        return self._adoption.start(project, Text("Export", "書き出し"), work, take)
+        return self._adoption.start(project, title, work, take)
 
     def _needed(self) -> Project:
         if self._project is None:
@@ -314,14 +318,7 @@ class Document(QObject):
         self._show_first_image()
         self.shared.map_changes.drives_changed.emit()
         self._prepare_drives()
-        points = sum(drive.count for drive in drives)
-        told = Text("Imported {points:,} points", "{points:,}点をインポートしました")
-        if not project.crs:
-            told = Text(
-                "Imported {points:,} points; no file names their reference system (Ctrl+R)",
-                "{points:,}点をインポートしました。座標参照系の記載がありません（Ctrl+R）",
-            )
-        self.told.emit(told.filled(points=points))
+        self.told.emit(imported_words(drives, project.crs))
 
     def _prepare_drives(self) -> None:
         """Find in the background what attributes show, so that switching to them is quick."""
@@ -332,8 +329,8 @@ class Document(QObject):
                 if not all(drive.columns.has(column.name) for column in tool.outputs):
                     self.start_run(tool.id, drive.id, tool.parameters(), lane=Lane.PREPARED)
 
-    def _store_columns(self, drive: Drive, result: PointResult) -> None:
-        for name, values in result.columns.items():
+    def _store_columns(self, drive: Drive, columns: Mapping[str, NDArray[Any]]) -> None:
+        for name, values in columns.items():
             drive.columns.add(name, values)
         self.tiles.drop(drive.id)
         self.shared.map_changes.drive_columns_changed.emit(drive.id)
@@ -385,13 +382,6 @@ def _changed_meanwhile() -> UserError:
         Text("the map", "地図"),
         Text("Do your edit again.", "もう一度編集してください。"),
     )
-
-
-def _prepare_tiles(folder: Path) -> None:
-    """Note where the tiles of the first image are, so that the window need not look for them."""
-    drive = Drive(folder)
-    if drive.count:
-        drive.image(drive.image_kinds[0]).pyramid.prepare()
 
 
 def _best_kind(drive: Drive, wanted: ImageKind) -> ImageKind:

@@ -6,6 +6,7 @@ from PySide6.QtCore import QObject, Signal
 
 from processing.project.change import Change
 from processing.project.project import Project
+from processing.project.runs import Run
 from processing.text import Text
 
 
@@ -37,10 +38,10 @@ class UndoStack(QObject):
         self._project = project
         self.changed.emit()
 
-    def push(self, label: Text, change: Change) -> None:
-        """Apply a change and remember it."""
+    def push(self, label: Text, change: Change, *, run: Run | None = None) -> None:
+        """Apply a change and remember it, with the run that it comes from."""
         if self._project is not None and not change.is_empty:
-            self._project.features.apply(label, change)
+            self._project.features.apply(label, change, run=run)
             self.changed.emit()
 
     def undo(self) -> Change | None:

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TypeVar
 
-from app.cli.opened import opened_drives, terminal_monitor
+from app.cli.opened import opened_input, terminal_monitor
 from app.cli.output import print_lines
 from processing.errors import OutOfRange
 from processing.formats.png import write_png
@@ -24,8 +24,8 @@ def command(arguments: argparse.Namespace) -> int:
     kind = _word(arguments.kind, {kind.value: kind for kind in ImageKind})
     attribute = _word(arguments.attribute, {name: name for name in ATTRIBUTES})
     monitor = terminal_monitor()
-    with opened_drives(arguments, monitor) as drives:
-        for number, drive in enumerate(drives):
+    with opened_input(arguments, monitor) as opened:
+        for number, drive in enumerate(opened.drives):
             path = _path_of(arguments.output, number, drive)
             rows, columns = write_image(drive, kind, attribute, path)
             print_lines(f"{path}: {rows} x {columns}")

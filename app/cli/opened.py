@@ -6,15 +6,18 @@ import argparse
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
 from app.language import system_language
 from processing.errors import MissingInput
 from processing.monitor import Monitor, TerminalMonitor
 from processing.points.drive import Drive
+from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.project import Project, is_project
 from processing.text import Text
+from resources import path_of
 
 
 def terminal_monitor() -> Monitor:
@@ -22,9 +25,26 @@ def terminal_monitor() -> Monitor:
     return TerminalMonitor(language=system_language())
 
 
+@dataclass(frozen=True)
+class OpenedInput:
+    """What a command works on.
+
+    Attributes
+    ----------
+    crs : str
+        ``EPSG:n``, or empty when unknown.
+    catalogue : Catalogue
+        The project's own, or the one that comes with the program.
+    """
+
+    drives: tuple[Drive, ...]
+    crs: str
+    catalogue: Catalogue
+
+
 @contextmanager
-def opened_drives(arguments: argparse.Namespace, monitor: Monitor) -> Iterator[tuple[Drive, ...]]:
-    """The drives of ``arguments.inputs``; what was imported for it is removed afterwards.
+def opened_input(arguments: argparse.Namespace, monitor: Monitor) -> Iterator[OpenedInput]:
+    """What ``arguments.inputs`` name; what was imported for it is removed afterwards.
 
     Raises
     ------
@@ -46,13 +66,15 @@ def opened_drives(arguments: argparse.Namespace, monitor: Monitor) -> Iterator[t
             )
         project = Project.open(inputs[0], writing=False)
         try:
-            yield project.drives
+            yield OpenedInput(project.drives, project.crs, project.catalogue)
         finally:
             project.close()
         return
     with tempfile.TemporaryDirectory(prefix="zuka-") as folder:
         folders = import_drives(request_of(arguments), Path(folder) / "drives", monitor)
-        yield tuple(Drive(path) for path in folders)
+        drives = tuple(Drive(path) for path in folders)
+        crs = next((drive.info.crs for drive in drives if drive.info.crs), "")
+        yield OpenedInput(drives, crs, read_catalogue(path_of("catalogue/level500.toml")))
 
 
 def request_of(arguments: argparse.Namespace) -> ImportRequest:

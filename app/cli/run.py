@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import argparse
+from datetime import UTC, datetime
+from pathlib import Path
 
-from app.cli.opened import opened_drives, terminal_monitor
+from app.cli.opened import OpenedInput, opened_input, terminal_monitor
 from app.cli.output import print_lines
 from processing.errors import OutOfRange
-from processing.monitor import PartMonitor
+from processing.monitor import Monitor, PartMonitor
+from processing.project.feature import Feature
+from processing.project.feature_files import check_ending, write_feature_file
+from processing.project.found_features import found_features
 from processing.project.point_results import write_point_results
-from processing.runner import RunRequest, run, tool_of
+from processing.runner import RunRequest, RunResult, run, tool_of
 from processing.text import Text
 from processing.tools.parameters import filled_in
+from processing.tools.tool import CandidateResult, PointResult, Tool
 
 _RUNNING = 0.8
 
@@ -20,18 +26,40 @@ def command(arguments: argparse.Namespace) -> int:
     """Run a tool on every drive of the input and write its result."""
     tool = tool_of(arguments.tool)
     parameters = filled_in(tool.parameters, _settings(arguments.set))
-    _check_output(arguments)
+    _check_output(tool, arguments.output)
     monitor = terminal_monitor()
-    with opened_drives(arguments, monitor) as drives:
-        results = []
-        for number, drive in enumerate(drives):
-            share = _RUNNING / len(drives)
+    with opened_input(arguments, monitor) as opened:
+        columns: list[PointResult] = []
+        features: list[Feature] = []
+        for number, drive in enumerate(opened.drives):
+            share = _RUNNING / len(opened.drives)
             part = PartMonitor(monitor, number * share, (number + 1) * share)
-            results.append((drive, run(RunRequest(tool.id, drive, parameters), part)))
+            started = datetime.now(UTC)
+            result: RunResult = run(RunRequest(tool.id, drive, parameters), part)
+            if isinstance(result, CandidateResult):
+                times = {"started": started, "finished": datetime.now(UTC)}
+                found = found_features(result, tool, parameters, drive.id, **times)
+                features.extend(found.change.added)
+            else:
+                columns.append(result)
         writing = PartMonitor(monitor, _RUNNING, 1.0)
-        paths = write_point_results(results, arguments.output, writing)
+        if tool.find is not None:
+            paths = _write_features(features, opened, arguments.output, writing)
+        else:
+            pairs = list(zip(opened.drives, columns, strict=True))
+            paths = write_point_results(pairs, arguments.output, writing)
     print_lines(*(str(path) for path in paths))
     return 0
+
+
+def _write_features(
+    features: list[Feature], opened: OpenedInput, output: Path, monitor: Monitor
+) -> tuple[Path, ...]:
+    delivered = [path for drive in opened.drives for path in drive.delivered_files]
+    write_feature_file(
+        output, features, opened.catalogue, opened.crs, monitor=monitor, never=delivered
+    )
+    return (output,)
 
 
 def _settings(words: list[str]) -> dict[str, str]:
@@ -48,10 +76,12 @@ def _settings(words: list[str]) -> dict[str, str]:
     return settings
 
 
-def _check_output(arguments: argparse.Namespace) -> None:
-    if arguments.output.suffix.lower() not in (".las", ".laz"):
+def _check_output(tool: Tool, output: Path) -> None:
+    if tool.find is not None:
+        check_ending(output)
+    elif output.suffix.lower() not in (".las", ".laz"):
         raise OutOfRange(
             Text("Point results are LAS or LAZ files.", "点の処理結果はLASまたはLAZです。"),
-            Text.same(str(arguments.output)),
+            Text.same(str(output)),
             Text("Give a name ending in .las or .laz.", ".las または .laz の名前にしてください。"),
         )

@@ -15,6 +15,7 @@ from processing.project.catalogue import Catalogue, FeatureKind, Geometry
 from processing.project.change import Change
 from processing.project.feature import Feature, PointReference, Vertex, new_feature_id
 from processing.project.importing import ImportRequest, import_drives
+from processing.project.runs import Run
 from processing.text import Text
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from widgets.mouse_tools.draw_path import DrawPath
@@ -63,6 +64,7 @@ class OpenMap:
     stored: dict[str, Feature] = field(default_factory=dict)
     applied: list[tuple[Text, Change]] = field(default_factory=list)
     told: list[Text] = field(default_factory=list)
+    all_runs: tuple[Run, ...] = ()
 
     def drives(self) -> tuple[Drive, ...]:
         return self.all_drives
@@ -78,6 +80,9 @@ class OpenMap:
 
     def feature(self, id: str) -> Feature | None:
         return self.stored.get(id)
+
+    def runs(self) -> tuple[Run, ...]:
+        return self.all_runs
 
     def catalogue(self) -> Catalogue:
         return KINDS

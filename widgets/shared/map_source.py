@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from processing.points.drive import Drive
 from processing.project.catalogue import Catalogue
 from processing.project.feature import Feature
+from processing.project.runs import Run
 
 
 class MapSource(Protocol):
@@ -30,6 +31,9 @@ class MapSource(Protocol):
 
     def feature(self, id: str) -> Feature | None:  # noqa: A002 - the word of the trade
         """One feature, or None."""
+
+    def runs(self) -> tuple[Run, ...]:
+        """The runs of tools, the first one first; those whose candidates are gone, too."""
 
     def catalogue(self) -> Catalogue:
         """The feature kinds."""

@@ -1,0 +1,75 @@
+"""What the document has done in the background: the work itself, and what is said of it.
+
+Each function gives a job's title and its work; the work touches neither the project nor a widget.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from app.run_storing import FinishedRun, finished_run
+from processing.monitor import Monitor
+from processing.points.drive import Drive
+from processing.project.export import ExportRequest, export
+from processing.project.importing import ImportRequest, import_drives
+from processing.project.project import Project
+from processing.runner import RunRequest, tool_of
+from processing.text import Text
+
+
+def import_work(
+    request: ImportRequest, into: Path
+) -> tuple[Text, Callable[[Monitor], tuple[Path, ...]]]:
+    """Delivered files become temporary drive folders below ``into``."""
+
+    def work(monitor: Monitor) -> tuple[Path, ...]:
+        folders = import_drives(request, into, monitor)
+        for folder in folders:
+            _prepare_tiles(folder)
+        return folders
+
+    names = ", ".join(path.name for path in request.inputs[:3])
+    return Text("Import {names}", "{names} のインポート").filled(names=names), work
+
+
+def run_work(request: RunRequest) -> tuple[Text, Callable[[Monitor], FinishedRun]]:
+    """A tool is run on a drive."""
+    title = Text("{tool}: {name}", "{tool}: {name}").filled(
+        tool=tool_of(request.tool).name, name=request.drive.info.name
+    )
+    return title, lambda monitor: finished_run(request, monitor)
+
+
+def export_work(
+    project: Project, request: ExportRequest
+) -> tuple[Text, Callable[[Monitor], tuple[Path, ...]]]:
+    """The map as it is now is written to files."""
+    features = tuple(project.features.all())
+    catalogue, crs = project.catalogue, project.crs
+    delivered = tuple(path for drive in project.drives for path in drive.delivered_files)
+    request = replace(request, never=delivered)
+
+    def work(monitor: Monitor) -> tuple[Path, ...]:
+        return export(features, catalogue, crs, request, monitor)
+
+    return Text("Export", "書き出し"), work
+
+
+def imported_words(drives: Sequence[Drive], crs: str) -> Text:
+    """What is said after an import into a project of this reference system."""
+    told = Text("Imported {points:,} points", "{points:,}点をインポートしました")
+    if not crs:
+        told = Text(
+            "Imported {points:,} points; no file names their reference system (Ctrl+R)",
+            "{points:,}点をインポートしました。座標参照系の記載がありません（Ctrl+R）",
+        )
+    return told.filled(points=sum(drive.count for drive in drives))
+
+
+def _prepare_tiles(folder: Path) -> None:
+    """Note where the tiles of the first image are, so that the window need not look for them."""
+    drive = Drive(folder)
+    if drive.count:
+        drive.image(drive.image_kinds[0]).pyramid.prepare()

@@ -1,0 +1,119 @@
+"""What a tool found, as candidates of the map with the run they come from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+
+import numpy as np
+
+from processing.project.catalogue import Geometry
+from processing.project.change import Change
+from processing.project.feature import (
+    AttributeValue,
+    Feature,
+    PointReference,
+    Provenance,
+    Status,
+    Vertex,
+    new_feature_id,
+)
+from processing.project.runs import Run, new_run_id
+from processing.text import Text
+from processing.tools.parameters import parameters_of
+from processing.tools.tool import Candidate, CandidateResult, Tool
+
+_FOUND = Text("{tool}: {count} candidates", "{tool}: 候補{count}件")
+_FOUND_ONE = Text("{tool}: 1 candidate", "{tool}: 候補1件")
+_NOTHING = Text("{tool}: nothing found", "{tool}: 何も見つかりませんでした")
+_LEAST = {"point": 1, "line": 2, "area": 3}
+
+
+@dataclass(frozen=True)
+class FoundFeatures:
+    """One run and its candidates, to be stored in one step.
+
+    Attributes
+    ----------
+    run : Run
+        Its ``summary`` is the step's line in the undo menu.
+    change : Change
+        Adds the candidates; empty when nothing was found.
+    """
+
+    run: Run
+    change: Change
+
+
+def found_features(
+    result: CandidateResult,
+    tool: Tool,
+    parameters: object,
+    drive: str,
+    *,
+    started: datetime,
+    finished: datetime,
+) -> FoundFeatures:
+    """Candidates as features with status *candidate*, and the run that is their provenance.
+
+    Parameters
+    ----------
+    parameters : object
+        An instance of the tool's own parameter class.
+    drive : str
+        Id of the drive that ``Candidate.points`` are counted in.
+    started, finished : datetime
+        With their time zone.
+
+    Raises
+    ------
+    ValueError
+        A candidate has a coordinate that is no number, or too few places: a defect of the tool.
+    """
+    given = parameter_values(tool, parameters)
+    run = Run(
+        id=new_run_id(),
+        tool=tool.id,
+        version=tool.version,
+        parameters=given,
+        drives=(drive,),
+        started=started,
+        finished=finished,
+        summary=summary_of(tool, len(result.candidates)),
+    )
+    features = tuple(_feature(one, run, drive) for one in result.candidates)
+    return FoundFeatures(run, Change(added=features))
+
+
+def parameter_values(tool: Tool, parameters: object) -> Mapping[str, AttributeValue]:
+    """A tool's parameters by name, as they are stored."""
+    declared = parameters_of(tool.parameters)
+    return {parameter.id: getattr(parameters, parameter.id) for parameter in declared}
+
+
+def summary_of(tool: Tool, count: int) -> Text:
+    """What came of a run: “Curbs: 214 candidates”."""
+    text = _FOUND if count > 1 else (_FOUND_ONE if count else _NOTHING)
+    return text.filled(tool=tool.name, count=f"{count:,}")
+
+
+def _feature(candidate: Candidate, run: Run, drive: str) -> Feature:
+    xyz = np.asarray(candidate.xyz, np.float64)
+    if len(xyz) < _LEAST[candidate.geometry] or not np.isfinite(xyz).all():
+        message = f"{run.tool} gave a candidate without a place: {candidate.geometry} {xyz}"
+        raise ValueError(message)
+    vertices = tuple(
+        Vertex((x, y, z), PointReference(drive, point) if point >= 0 else None)
+        for (x, y, z), point in zip(xyz.tolist(), candidate.points.tolist(), strict=True)
+    )
+    confidence = min(max(float(candidate.confidence), 0.0), 1.0)
+    return Feature(
+        id=new_feature_id(),
+        kind=candidate.kind,
+        geometry=Geometry(candidate.geometry),
+        vertices=vertices,
+        attributes=dict(candidate.attributes),
+        status=Status.CANDIDATE,
+        provenance=Provenance(run.tool, run.version, run.parameters, confidence, run.id),
+    )
