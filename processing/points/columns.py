@@ -167,6 +167,10 @@ class Columns:
             finally:
                 temporary.unlink(missing_ok=True)
 
+    def hold(self, name: str, values: NDArray[Any]) -> None:
+        """Let a column be these values, in memory only: (n,) or (n, k), not to be changed."""
+        self._maps[name] = values
+
     def release(self, name: str) -> None:
         """Forget the map of a column; arrays already handed out stay valid."""
         self._maps.pop(name, None)

@@ -1,4 +1,4 @@
-"""Change: what becomes of the map's features, as a value with an inverse.
+"""Change: what becomes of features and of points' labels, as a value with an inverse.
 
 Every edit is one, undo is the inverse sent the same way, and history is a list of them.
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from processing.project.feature import Feature
+from processing.project.label_change import LabelChange
 
 
 @dataclass(frozen=True)
@@ -20,19 +21,20 @@ class Replacement:
 
 @dataclass(frozen=True)
 class Change:
-    """Features added, replaced and removed in one step.
+    """Features added, replaced and removed, and points labelled, in one step.
 
-    A feature is named at most once in a change.
+    A feature is named at most once in a change, and a point too.
     """
 
     added: tuple[Feature, ...] = ()
     replaced: tuple[Replacement, ...] = ()
     removed: tuple[Feature, ...] = ()
+    labels: tuple[LabelChange, ...] = ()
 
     @property
     def is_empty(self) -> bool:
         """Whether nothing changes."""
-        return not (self.added or self.replaced or self.removed)
+        return not (self.added or self.replaced or self.removed or self.labels)
 
     @property
     def feature_ids(self) -> tuple[str, ...]:
@@ -49,4 +51,5 @@ class Change:
             added=self.removed,
             replaced=tuple(Replacement(pair.after, pair.before) for pair in self.replaced),
             removed=self.added,
+            labels=tuple(one.inverse() for one in self.labels),
         )

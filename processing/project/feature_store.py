@@ -7,13 +7,15 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from processing.errors import UserError
 from processing.project.catalogue import Catalogue
 from processing.project.change import Change
 from processing.project.database import Database
 from processing.project.database_errors import changed_elsewhere, damaged
 from processing.project.feature import Feature
 from processing.project.feature_rows import COLUMNS, feature_of, row_of
-from processing.project.history import History
+from processing.project.history import History, Standing
+from processing.project.label_layer import LabelLayer
 from processing.project.map_extent import Bounds, extent_after, extent_of
 from processing.project.runs import Run, write_run
 from processing.text import Text
@@ -31,7 +33,12 @@ _MOST_IDS_TOLD = 3
 
 
 class FeatureStore:
-    """Features by id, in the order in which they were first drawn.
+    """Features by id, in the order in which they were first drawn; and points' labels with them.
+
+    Parameters
+    ----------
+    labels : LabelLayer
+        Written when the database has a change.
 
     Raises
     ------
@@ -40,12 +47,19 @@ class FeatureStore:
     """
 
     def __init__(
-        self, database: Database, history: History, catalogue: Catalogue, srs_id: int
+        self,
+        database: Database,
+        history: History,
+        catalogue: Catalogue,
+        srs_id: int,
+        *,
+        labels: LabelLayer,
     ) -> None:
         self._database = database
         self._history = history
         self._catalogue = catalogue
         self._srs_id = srs_id
+        self._labels = labels
         self._features = self._stored()
         self._extent = self._stored_extent()
 
@@ -93,7 +107,7 @@ class FeatureStore:
             if run is not None:
                 write_run(connection, run)
             standing = self._history.append(connection, label, change)
-        self._history.stands(standing)
+        self._follow(change, standing, 1)
         return change.inverse()
 
     def undo(self) -> Change | None:
@@ -163,8 +177,19 @@ class FeatureStore:
             raise changed_elsewhere(self._database.path, ", ".join(misfits[:_MOST_IDS_TOLD]))
         with self._written(change) as connection:
             standing = self._history.step(connection, by)
-        self._history.stands(standing)
+        self._follow(change, standing, by)
         return change
+
+    def _follow(self, change: Change, standing: Standing, by: int) -> None:
+        """Take over what the database has; where label files can't, it is taken back."""
+        self._history.stands(standing)
+        try:
+            self._labels.write(change.labels)
+        except UserError:
+            with self._written(change.inverse()) as connection:
+                standing = self._history.step(connection, -by)
+            self._history.stands(standing)
+            raise
 
     def _misfits(self, change: Change) -> list[str]:
         """Ids that the change names twice or takes for something else than is stored."""
@@ -177,12 +202,14 @@ class FeatureStore:
         return [
             *(pair.before.id for pair in change.replaced if pair.before.id != pair.after.id),
             *(id_ for id_, feature in expected.items() if self._features.get(id_) != feature),
+            *self._labels.misfits(change.labels),
         ]
 
     @contextmanager
     def _written(self, change: Change) -> Iterator[sqlite3.Connection]:
         """A transaction that writes the change and the body; memory follows when it is through."""
         extent = extent_after(change, self._features, self._extent)
+        self._labels.prepare(change.labels)
         with self._database.transaction() as connection:
             if self._database.was_changed_elsewhere():
                 self._compare()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import sqlite3
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from processing.project.change import Change
 from processing.project.database import Database
 from processing.project.database_errors import damaged
 from processing.project.feature_rows import change_from_json, change_to_json
+from processing.project.label_change import LabelChange
+from processing.project.label_rows import PENDING, labels_at, write_labels, write_pending
 from processing.project.project_settings import ProjectSettings, write_setting
 from processing.text import Text
 
@@ -39,6 +41,7 @@ class History:
     def __init__(self, database: Database, settings: ProjectSettings) -> None:
         self._database = database
         position = settings.whole(_POSITION)
+        self._pending = settings.whole(PENDING)
         with database.snapshot() as connection:
             self._standing = _standing_at(connection, position)
 
@@ -87,6 +90,19 @@ class History:
         """
         return self._change(self.position + 1)
 
+    def pending_labels(self) -> tuple[LabelChange, ...]:
+        """What points had to get by the step that was done last before the project was opened.
+
+        Raises
+        ------
+        BadFile
+            It is damaged.
+        """
+        change = self._change(self._pending)
+        if change is None:
+            return ()
+        return (change if self._pending <= self.position else change.inverse()).labels
+
     def append(self, connection: sqlite3.Connection, label: Text, change: Change) -> Standing:
         """Write a change behind the last one, in the caller's transaction; redo is gone.
 
@@ -101,6 +117,8 @@ class History:
             "INSERT INTO zuka_history VALUES (?, ?, ?, ?)",
             (place, label.en, label.ja, change_to_json(change)),
         )
+        write_labels(connection, place, change.labels)
+        write_pending(connection, place)
         write_setting(connection, _POSITION, place)
         return Standing(place, label, None)
 
@@ -113,6 +131,7 @@ class History:
             For :meth:`stands` once the transaction is through.
         """
         position = self.position + by
+        write_pending(connection, max(position, self.position))
         write_setting(connection, _POSITION, position)
         return _standing_at(connection, position)
 
@@ -123,7 +142,10 @@ class History:
     def _change(self, place: int) -> Change | None:
         rows = self._database.rows("SELECT change FROM zuka_history WHERE place = ?", (place,))
         try:
-            return change_from_json(str(rows[0][0])) if rows else None
+            if not rows:
+                return None
+            labels = labels_at(self._database, place)
+            return replace(change_from_json(str(rows[0][0])), labels=labels)
         except (ValueError, KeyError, TypeError, IndexError) as error:
             raise damaged(self._database.path, f"zuka_history.place {place}: {error}") from error
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UNCHANGED, InUse, MissingInput, OutOfRange, told_as_user_error
+from processing.errors import UNCHANGED, MissingInput, OutOfRange, told_as_user_error
 from processing.points.drive import Drive
 from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.catalogue_adoption import CatalogueFile
@@ -22,6 +22,8 @@ from processing.project.database_errors import damaged
 from processing.project.drive_folders import DRIVES, TEMPORARY, DriveFolders
 from processing.project.feature_store import FeatureStore
 from processing.project.history import History
+from processing.project.label_layer import LabelLayer
+from processing.project.new_folder import UNFINISHED, database_files, refuse_occupied
 from processing.project.project_lock import LOCK_FILES, ProjectLock
 from processing.project.project_settings import ProjectSettings, write_setting
 from processing.project.reference_system import (
@@ -34,7 +36,6 @@ from processing.text import Text
 from resources import path_of
 
 _DATABASE = "project.gpkg"
-_UNFINISHED = "unfinished.gpkg"
 _ORIGIN_STEP_M = 100.0
 _CRS, _ORIGIN = "crs", "origin"
 
@@ -66,13 +67,15 @@ class Project:
             with self._database.snapshot():
                 self.settings = ProjectSettings(self._database)
                 self.history = History(self._database, self.settings)
+                labels = LabelLayer(self.drive)
                 self.features = FeatureStore(
-                    self._database, self.history, self.catalogue, self._srs_number()
+                    self._database, self.history, self.catalogue, self._srs_number(), labels=labels
                 )
                 self.runs = Runs(self._database)
                 self._folders = DriveFolders(folder, self._database, self.settings)
                 self._origin = self._stored_origin()
             self._drives = {id_: Drive(self._folders.path_of(id_)) for id_ in self._folders.ids}
+            labels.correct(self.history.pending_labels(), writing=writing)
             if writing:
                 self._folders.remove_leftovers()
                 self._catalogue.correct_layers(self.features, self._database)
@@ -100,12 +103,12 @@ class Project:
         folder = folder.absolute()
         system = reference_system(crs) if crs else ""
         with told_as_user_error(folder):
-            _refuse_occupied(folder)
+            refuse_occupied(folder)
             folder.mkdir(parents=True, exist_ok=True)
         lock = ProjectLock(folder)
         try:
             # The database takes its name when it is whole: until then there is no project.
-            _make_database(folder / _UNFINISHED, folder / _DATABASE, system)
+            _make_database(folder / UNFINISHED, folder / _DATABASE, system)
         except BaseException:
             lock.release()
             Project.remove_new(folder)
@@ -146,7 +149,7 @@ class Project:
         """
         for name in (DRIVES, TEMPORARY):
             shutil.rmtree(folder / name, ignore_errors=True)
-        for name in (*_database_files(_DATABASE), *_database_files(_UNFINISHED), *LOCK_FILES):
+        for name in (*database_files(_DATABASE), *database_files(UNFINISHED), *LOCK_FILES):
             with suppress(OSError):
                 (folder / name).unlink(missing_ok=True)
         with suppress(OSError):
@@ -358,27 +361,6 @@ def _make_database(unfinished: Path, path: Path, crs: str) -> None:
             database.close()
     with told_as_user_error(path):
         unfinished.rename(path)
-
-
-def _refuse_occupied(folder: Path) -> None:
-    """Refuse a folder with anything but what a killed :meth:`Project.create` left there."""
-    leftovers = {*_database_files(_UNFINISHED), *LOCK_FILES}
-    if folder.is_dir() and {one.name for one in folder.iterdir()} <= leftovers:
-        for name in _database_files(_UNFINISHED):
-            (folder / name).unlink(missing_ok=True)
-    elif folder.exists():
-        raise InUse(
-            Text("There is something else in this place.", "この場所には別のものがあります。"),
-            Text.same(str(folder)),
-            Text(
-                "Choose another name for the project.",
-                "別のプロジェクト名を選んでください。",
-            ),
-        )
-
-
-def _database_files(name: str) -> tuple[str, ...]:
-    return name, f"{name}-journal", f"{name}-wal", f"{name}-shm"
 
 
 def _origin_of(drive: Drive) -> NDArray[np.float64]:

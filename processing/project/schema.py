@@ -75,6 +75,19 @@ def _add_occluded(connection: sqlite3.Connection) -> None:
     connection.execute("ALTER TABLE features ADD COLUMN occluded TEXT NOT NULL DEFAULT '[]'")
 
 
+def _add_history_labels(connection: sqlite3.Connection) -> None:
+    """Points whose labels a step of the history changed; packed, since they are millions."""
+    connection.execute(
+        "CREATE TABLE zuka_history_labels (place INTEGER NOT NULL, number INTEGER NOT NULL,"
+        " drive TEXT NOT NULL, count INTEGER NOT NULL, points BLOB NOT NULL, before BLOB NOT NULL,"
+        " after BLOB NOT NULL, PRIMARY KEY (place, number))"
+    )
+    connection.execute(
+        "INSERT INTO gpkg_extensions VALUES ('zuka_history_labels', NULL, 'zuka_project',"
+        " 'Tables of the program Zuka', 'read-write')"
+    )
+
+
 def _make_first_tables(connection: sqlite3.Connection) -> None:
     for statement in (_GEOPACKAGE + _FIRST_TABLES).split(";\n"):
         if statement.strip():
@@ -83,7 +96,7 @@ def _make_first_tables(connection: sqlite3.Connection) -> None:
     connection.execute(f"PRAGMA user_version = {GEOPACKAGE_VERSION}")
 
 
-MIGRATIONS: tuple[Step, ...] = (_make_first_tables, _add_occluded)
+MIGRATIONS: tuple[Step, ...] = (_make_first_tables, _add_occluded, _add_history_labels)
 """The step from each schema version to the next, from an empty file on."""
 
 

@@ -1,0 +1,100 @@
+"""The column of labels: read where it may be missing, and written in place, point by point."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.errors import told_as_user_error
+from processing.points.columns import column_path
+from processing.points.drive import Drive
+
+LABEL = "label"
+CODES = 256
+_BLOCK = 1 << 20
+
+
+def labels_of(drive: Drive, points: NDArray[np.int64]) -> NDArray[np.uint8]:
+    """Labels of points, 0 without; a copy of the points' shape.
+
+    Raises
+    ------
+    BadFile
+        The column is not as long as the drive has points.
+    """
+    if not drive.columns.has(LABEL):
+        return np.zeros(points.shape, np.uint8)
+    labels: NDArray[np.uint8] = np.asarray(drive.columns[LABEL])[points]
+    return labels
+
+
+def make_column(drive: Drive) -> None:
+    """Let a drive have a column of labels, on which the disk's room is spent from now on.
+
+    Raises
+    ------
+    BadFile
+        The column is there, and not as long as the drive has points.
+    NoSpace
+        There is no room; the drive is as it was.
+    """
+    if not drive.columns.has(LABEL):
+        drive.columns.add(LABEL, np.zeros(drive.count, np.uint8))
+    elif drive.columns[LABEL].shape != (drive.count,):
+        message = "a column is mapped in another shape than it has"
+        raise RuntimeError(message)
+
+
+def write_labels(drive: Drive, points: NDArray[np.int64], codes: NDArray[np.uint8]) -> None:
+    """Write labels of points into the column that :func:`make_column` made.
+
+    Parameters
+    ----------
+    points : (n,) int64
+        Rising.
+    codes : (n,) uint8
+
+    Raises
+    ------
+    MissingInput, NoSpace
+        The file can't be written; some of the points may have been.
+    """
+    path = column_path(drive.folder, LABEL)
+    with told_as_user_error(path), path.open("rb+", buffering=0) as file:
+        for start, part in _by_block(points):
+            file.seek(start)
+            block = bytearray(file.read(_BLOCK))
+            np.frombuffer(block, np.uint8)[points[part] - start] = codes[part]
+            file.seek(start)
+            _write_all(file.fileno(), block)
+
+
+def flush(drive: Drive) -> None:
+    """Wait until what was written is on the disk.
+
+    Raises
+    ------
+    MissingInput, NoSpace
+        It can't be written.
+    """
+    path = column_path(drive.folder, LABEL)
+    with told_as_user_error(path), path.open("rb+") as file:
+        os.fsync(file.fileno())
+
+
+def _by_block(points: NDArray[np.int64]) -> Iterator[tuple[int, slice]]:
+    """First byte of each block that holds points, and which points they are."""
+    blocks = points // _BLOCK
+    firsts = np.concatenate([[0], np.flatnonzero(np.diff(blocks)) + 1, [points.size]])
+    for first, end in zip(firsts[:-1].tolist(), firsts[1:].tolist(), strict=True):
+        if end > first:
+            yield int(blocks[first]) * _BLOCK, slice(first, end)
+
+
+def _write_all(descriptor: int, block: bytearray) -> None:
+    left = memoryview(block)
+    while left:
+        left = left[os.write(descriptor, left) :]

@@ -1,0 +1,112 @@
+"""LabelLayer: the labels of all drives, which follow the history of the map."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+
+import numpy as np
+
+from processing.errors import BadFile, UserError
+from processing.labels.label_column import LABEL, flush, labels_of, make_column, write_labels
+from processing.points.drive import Drive
+from processing.project.label_change import LabelChange
+
+DriveOf = Callable[[str], Drive]
+
+
+class LabelLayer:
+    """Writes labels into the drives' columns after the database says that they are so.
+
+    Parameters
+    ----------
+    drive_of : callable
+        From an id to the open drive; KeyError when there is none.
+    """
+
+    def __init__(self, drive_of: DriveOf) -> None:
+        self._drive_of = drive_of
+        self._unflushed: dict[str, Drive] = {}
+
+    def misfits(self, labels: Sequence[LabelChange]) -> list[str]:
+        """Drives that are gone, or whose points have other labels than a change takes them for."""
+        found = {one.drive for one in labels if not self._fits(one)}
+        for number, one in enumerate(labels):
+            for other in labels[:number]:
+                if one.drive == other.drive and one.drive not in found:
+                    shared = np.intersect1d(one.unpacked_points(), other.unpacked_points())
+                    found |= {one.drive} if shared.size else set()
+        return sorted(found)
+
+    def prepare(self, labels: Sequence[LabelChange]) -> None:
+        """Let the disk have all that was written, and room for what comes.
+
+        Raises
+        ------
+        NoSpace, MissingInput, BadFile
+            Nothing was changed but that a drive may have an empty column of labels.
+        """
+        for drive_id, drive in tuple(self._unflushed.items()):
+            flush(drive)
+            del self._unflushed[drive_id]
+        for one in labels:
+            make_column(self._drive_of(one.drive))
+
+    def write(self, labels: Sequence[LabelChange]) -> None:
+        """Write what a change gives the points.
+
+        Raises
+        ------
+        NoSpace, MissingInput, BadFile
+            The labels are as they were, as far as the disk still takes anything.
+        """
+        try:
+            self._write(labels)
+        except UserError:
+            with suppress(UserError):
+                self._write([one.inverse() for one in labels])
+            raise
+
+    def correct(self, labels: Sequence[LabelChange], *, writing: bool) -> None:
+        """Let points have what a change gives them, where a killed program left that undone.
+
+        A column that is damaged, or a drive that is gone, is left as it is: using it tells.
+
+        Parameters
+        ----------
+        writing : bool
+            False: in memory only.
+        """
+        for one in labels:
+            with suppress(UserError, KeyError):
+                drive, points = self._drive_of(one.drive), one.unpacked_points()
+                codes = one.codes_after()
+                if (labels_of(drive, points) == codes).all():
+                    continue
+                if writing:
+                    make_column(drive)
+                    write_labels(drive, points, codes)
+                    self._unflushed[one.drive] = drive
+                else:
+                    corrected = labels_of(drive, np.arange(drive.count))
+                    corrected[points] = codes
+                    drive.columns.hold(LABEL, corrected)
+
+    def _write(self, labels: Sequence[LabelChange]) -> None:
+        for one in labels:
+            drive = self._drive_of(one.drive)
+            self._unflushed[one.drive] = drive
+            write_labels(drive, one.unpacked_points(), one.codes_after())
+
+    def _fits(self, label: LabelChange) -> bool:
+        try:
+            drive = self._drive_of(label.drive)
+        except KeyError:
+            return False
+        points = label.unpacked_points()
+        if points.size and points[-1] >= drive.count:
+            return False
+        try:
+            return bool((labels_of(drive, points) == label.codes_before()).all())
+        except BadFile:
+            return True  # it says nothing against the change; preparing to write tells
