@@ -1,0 +1,308 @@
+"""A section as DXF: its ground line with heights, what crosses it, grid, scales and title.
+
+Drawn in metres: x is the offset to the right of the section's middle, y the height above the
+datum line times the vertical exaggeration.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from io import TextIOWrapper
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from processing.errors import OutOfRange, Unsuitable
+from processing.formats.dxf import DxfVersion
+from processing.formats.dxf_text import dxf_text, label_text
+from processing.formats.safe_write import written_safely
+from processing.section.profile import Crossing, Profile
+from processing.text import Language, Text
+
+GROUND_LAYER, POINT_LAYER = "断面_地盤線", "断面_点群"
+GRID_LAYER, TEXT_LAYER, TITLE_LAYER = "断面_方眼", "断面_文字", "断面_表題"
+
+_LAYERS: Mapping[str, int] = {  # AutoCAD colour indices
+    GROUND_LAYER: 7,
+    POINT_LAYER: 8,
+    GRID_LAYER: 9,
+    TEXT_LAYER: 7,
+    TITLE_LAYER: 7,
+}
+_ENCODINGS: Mapping[str, str] = {"R2000": "cp932", "R2018": "utf-8"}
+_STYLE, _FONT, _FONT_FAMILY = "JAPANESE", "msgothic.ttc", "MS Gothic"
+
+_TEXT_M = 0.0025
+"""Height of texts on paper."""
+
+_GRID_M = 0.01
+"""Lines of the grid are at least so far apart on paper."""
+
+_MARGIN_M = 0.5
+"""So much is shown below and above what is drawn."""
+
+_STEPS = tuple(step * 10.0**power for power in range(-2, 4) for step in (1.0, 2.0, 5.0))
+
+
+@dataclass(frozen=True)
+class ProfileLook:
+    """How a profile is drawn.
+
+    Attributes
+    ----------
+    scale : int
+        The drawing is to be printed 1 : scale in plan; texts and grid follow it.
+    exaggeration : float
+        How many times heights are drawn larger than offsets.
+    has_points : bool
+        Whether the measured points are drawn below the ground line.
+    version : {"R2000", "R2018"}
+        AC1015 in cp932, or AC1032 in UTF-8.
+    language : {"en", "ja"}
+        Of the texts.
+    """
+
+    scale: int = 100
+    exaggeration: float = 1.0
+    has_points: bool = True
+    version: DxfVersion = "R2018"
+    language: Language = "ja"
+
+
+def write_profile_dxf(
+    path: Path, profile: Profile, look: ProfileLook | None = None, *, never: Iterable[Path] = ()
+) -> None:
+    """Draw a section.
+
+    Parameters
+    ----------
+    never : iterable of Path
+        Files that must not be overwritten.
+
+    Raises
+    ------
+    OutOfRange
+        A scale isn't positive.
+    Unsuitable
+        The section shows no ground.
+    UserError
+        What :func:`processing.formats.safe_write.written_safely` raises.
+    """
+    look = look or ProfileLook()
+    if not (look.scale > 0 and look.exaggeration > 0 and math.isfinite(look.exaggeration)):
+        raise OutOfRange(
+            Text("A profile can't be drawn at this scale.", "この縮尺では断面図を作図できません。"),
+            Text.same(f"1:{look.scale}, ×{look.exaggeration}"),
+            Text("Give positive numbers.", "正の値を指定してください。"),
+        )
+    if not profile.ground:
+        raise Unsuitable(
+            Text("The section shows no ground.", "断面内に地盤の点がありません。"),
+            profile.title,
+            Text(
+                "Make the section wider, or place it where points were measured.",
+                "断面の幅を広げるか、点が計測されている位置に断面を移してください。",
+            ),
+        )
+    sheet = _Sheet(profile, look)
+    sheet.draw()
+    encoding = _ENCODINGS[look.version]
+    with (
+        written_safely(path, never=never) as temporary,
+        temporary.open("wb") as file,
+        TextIOWrapper(file, encoding, "dxfreplace", "\r\n") as text,
+    ):
+        sheet.doc.write(text)
+
+
+class _Sheet:
+    """A drawing being filled."""
+
+    def __init__(self, profile: Profile, look: ProfileLook) -> None:
+        from ezdxf import units
+        from ezdxf.filemanagement import new
+
+        self._profile = profile
+        self._look = look
+        self._encoding = _ENCODINGS[look.version]
+        self.doc = new(look.version)
+        self.doc.encoding = "cp932"  # the code page that even UTF-8 files name
+        self.doc.units = units.M
+        self.doc.header["$MEASUREMENT"] = 1
+        style = self.doc.styles.add(_STYLE, font=_FONT)
+        style.set_extended_font_data(_FONT_FAMILY)
+        for layer, colour in _LAYERS.items():
+            self.doc.layers.add(layer, color=colour)
+        self._space = self.doc.modelspace()
+        self._text_m = _TEXT_M * look.scale
+        ground = np.concatenate(profile.ground)
+        heights = [*ground[:, 1].tolist(), *(one.height_m for one in profile.crossings)]
+        self._step_x = _step(_GRID_M * look.scale)
+        self._step_y = _step(_GRID_M * look.scale / look.exaggeration)
+        self._left = _floor(min(ground[0, 0], self._least_offset), self._step_x)
+        self._right = -_floor(-max(ground[-1, 0], self._most_offset), self._step_x)
+        self._datum = _floor(min(heights) - _MARGIN_M, self._step_y)
+        self._top = -_floor(-max(heights) - _MARGIN_M, self._step_y)
+
+    @property
+    def _least_offset(self) -> float:
+        return min((one.offset_m for one in self._profile.crossings), default=math.inf)
+
+    @property
+    def _most_offset(self) -> float:
+        return max((one.offset_m for one in self._profile.crossings), default=-math.inf)
+
+    def draw(self) -> None:
+        """Draw everything."""
+        self._draw_grid()
+        if self._look.has_points:
+            self._draw_points()
+        for part in self._profile.ground:
+            places = [(x, self._y(height)) for x, height in part.tolist()]
+            self._space.add_lwpolyline(places, dxfattribs={"layer": GROUND_LAYER})
+        for crossing in self._profile.crossings:
+            self._draw_crossing(crossing)
+        self._draw_title()
+        low, high = (self._left, self._below(4)), (self._right, self._y(self._top))
+        self.doc.header["$EXTMIN"], self.doc.header["$EXTMAX"] = (*low, 0.0), (*high, 0.0)
+        middle = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
+        self.doc.set_modelspace_vport(max(high[1] - low[1], (high[0] - low[0]) / 2) * 1.2, middle)
+
+    def _y(self, height_m: float) -> float:
+        return (height_m - self._datum) * self._look.exaggeration
+
+    def _below(self, lines: float) -> float:
+        return -lines * 1.8 * self._text_m
+
+    def _draw_grid(self) -> None:
+        top = self._y(self._top)
+        for number in range(round((self._top - self._datum) / self._step_y) + 1):
+            height = self._datum + number * self._step_y
+            self._line((self._left, self._y(height)), (self._right, self._y(height)))
+            words = f"{height:.{_decimals(self._step_y)}f}"
+            place = self._left - self._text_m / 2, self._y(height)
+            self._write(words if number else f"DL={words}", place, "MIDDLE_RIGHT")
+        for number in range(round((self._right - self._left) / self._step_x) + 1):
+            offset = self._left + number * self._step_x
+            self._line((offset, 0.0), (offset, top))
+            words = f"{offset:.{_decimals(self._step_x)}f}"
+            self._write(words, (offset, self._below(0.7)), "MIDDLE_CENTER")
+            ground_m = self._profile.ground_at(offset)
+            if ground_m is not None:
+                place = offset, self._below(1.3)
+                self._write(f"{ground_m:.3f}", place, "MIDDLE_RIGHT", rotation_deg=90.0)
+        names = {0.7: Text("Offset", "離れ"), 2.4: Text("Ground", "地盤高")}
+        for lines, name in names.items():
+            place = self._left - 1.5 * self._text_m, self._below(lines)
+            self._write(self._said(name), place, "MIDDLE_RIGHT")
+
+    def _draw_points(self) -> None:
+        for offset, height in self._profile.points.tolist():
+            if self._datum <= height <= self._top and self._left <= offset <= self._right:
+                self._space.add_point((offset, self._y(height)), dxfattribs={"layer": POINT_LAYER})
+
+    def _draw_crossing(self, crossing: Crossing) -> None:
+        layer = crossing.layer
+        if layer not in self.doc.layers:
+            self._check_encodable(layer)
+            self.doc.layers.add(layer, color=crossing.aci)
+        looks = {"layer": layer}
+        place = crossing.offset_m, self._y(crossing.height_m)
+        head = place[0], place[1] + 4 * self._text_m
+        self._space.add_circle(place, self._text_m / 2, dxfattribs=looks)
+        self._space.add_line((place[0], place[1] + self._text_m / 2), head, dxfattribs=looks)
+        words = f"{self._said(crossing.name)} {crossing.height_m:.3f}"
+        head = head[0], head[1] + self._text_m / 2
+        self._write(words, head, "MIDDLE_LEFT", layer=layer, rotation_deg=90.0)
+
+    def _draw_title(self) -> None:
+        look, cut = self._look, self._profile.cut
+        heights = look.scale / look.exaggeration
+        lines = [
+            self._said(self._profile.title),
+            self._said(
+                Text(
+                    "Plan 1:{scale}, heights 1:{heights:g}; DL={datum} m; slab {width:.2f} m",
+                    "縮尺 横1:{scale} 縦1:{heights:g}　DL={datum} m　断面の幅 {width:.2f} m",
+                ).filled(
+                    scale=look.scale,
+                    heights=heights,
+                    datum=f"{self._datum:.{_decimals(self._step_y)}f}",
+                    width=cut.width_m,
+                )
+            ),
+            self._said(
+                Text(
+                    "Offset 0 at E {e:.3f}, N {n:.3f}; to the right at {azimuth:.4f}° from north",
+                    "離れ0の位置 東距 {e:.3f} 北距 {n:.3f}　右方向の方位角 {azimuth:.4f}°",
+                ).filled(e=cut.middle[0], n=cut.middle[1], azimuth=_azimuth_deg(cut.direction))
+            ),
+        ]
+        if self._profile.station_m is not None:
+            station = Text("Station {m:.3f} m", "測点 {m:.3f} m")
+            lines.insert(1, self._said(station.filled(m=self._profile.station_m)))
+        for number, words in enumerate(reversed([line for line in lines if line])):
+            place = self._left, self._y(self._top) - self._below(number + 1)
+            self._write(words, place, "LEFT", layer=TITLE_LAYER)
+
+    def _line(self, start: tuple[float, float], end: tuple[float, float]) -> None:
+        self._space.add_line(start, end, dxfattribs={"layer": GRID_LAYER})
+
+    def _write(
+        self,
+        words: str,
+        place: tuple[float, float],
+        align: str,
+        *,
+        layer: str = TEXT_LAYER,
+        rotation_deg: float = 0.0,
+    ) -> None:
+        from ezdxf.enums import TextEntityAlignment
+
+        attributes: dict[str, Any] = {
+            "layer": layer,
+            "style": _STYLE,
+            "height": self._text_m,
+            "rotation": rotation_deg,
+        }
+        written = label_text(words, self._encoding)
+        if written:
+            text = self._space.add_text(written, dxfattribs=attributes)
+            text.set_placement(place, align=TextEntityAlignment[align])
+
+    def _said(self, text: Text) -> str:
+        return text.spoken(self._look.language)
+
+    def _check_encodable(self, layer: str) -> None:
+        if dxf_text(layer, self._encoding) != layer:
+            raise Unsuitable(
+                Text(
+                    "The layer's name has characters that Shift_JIS (cp932) lacks.",
+                    "画層名にShift_JIS（cp932）で表せない文字があります。",
+                ),
+                Text.same(layer),
+                Text(
+                    "Export as DXF 2018, or change the layer in the catalogue.",
+                    "DXF 2018で書き出すか、カタログの画層名を変更してください。",
+                ),
+            )
+
+
+def _step(least: float) -> float:
+    """The smallest of 1, 2, 5 × 10^k metres that is not less."""
+    return next((step for step in _STEPS if step >= least * 0.999), _STEPS[-1])
+
+
+def _floor(value: float, step: float) -> float:
+    return math.floor(value / step) * step
+
+
+def _decimals(step: float) -> int:
+    return max(0, -math.floor(math.log10(step) + 1e-9))
+
+
+def _azimuth_deg(direction: tuple[float, float]) -> float:
+    return math.degrees(math.atan2(*direction)) % 360.0

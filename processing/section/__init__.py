@@ -1,0 +1,1 @@
+"""Sections: cuts through the recording, stations along a line, and what a cut shows."""

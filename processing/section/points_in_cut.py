@@ -1,0 +1,185 @@
+"""Points within a cut, found by the tiles' bounds and the rows below them; no other index."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.image.point_image_kernels import PixelLayout
+from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
+from processing.image.tiles import TileKey
+from processing.kernels import kernel
+from processing.section.cut import Cut
+
+if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
+    from processing.points.drive import Drive
+
+_Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
+
+MOST_POINTS = 300_000
+"""More points than this make a section no clearer."""
+
+
+@dataclass(frozen=True)
+class SectionPoints:
+    """Points of one drive as a section sees them.
+
+    Attributes
+    ----------
+    drive_id : str
+    points : (n,) int64
+        Indices in the drive, by rising offset.
+    section : (n, 3) float64
+        Offset, height, distance from the plane, m (:meth:`Cut.to_section`).
+    """
+
+    drive_id: str
+    points: _Integers
+    section: _Floats
+
+
+def points_in_cut(drive: Drive, cut: Cut, most: int = MOST_POINTS) -> _Integers:
+    """The measured points within a cut, at any height.
+
+    Parameters
+    ----------
+    most : int
+        Of more points than this every so many are given, in the order of their measurement.
+
+    Returns
+    -------
+    (n,) int64
+        Indices in the drive, rising.
+    """
+    if drive.count == 0:
+        return np.empty(0, np.int64)
+    image = drive.image(drive.image_kinds[-1])
+    stretches = _stretches(image.layout, _tiles_touched(drive, cut))
+    found = np.empty(int((stretches[:, 1] - stretches[:, 0]).sum()), np.int64)
+    count = _inside_kernel(
+        np.asarray(drive.columns["xyz"]),
+        np.array(drive.info.scale[:2]),
+        stretches,
+        _plan_of(drive, cut),
+        found,
+    )
+    inside = np.sort(found[:count])
+    return inside if count <= most else inside[np.arange(most) * count // most]
+
+
+def section_points(drive: Drive, cut: Cut, most: int = MOST_POINTS) -> SectionPoints:
+    """The points within a cut with their places in it, sorted by offset."""
+    points = points_in_cut(drive, cut, most)
+    section = cut.to_section(drive.xyz(points))
+    order = np.argsort(section[:, 0], kind="stable")
+    return SectionPoints(drive.id, points[order], section[order])
+
+
+def ground_near(drive: Drive, cut: Cut) -> int:
+    """The measured point of the ground nearest to a cut's middle in plan; −1 where none is.
+
+    Looked for within a metre to either side, below the middle: as a trajectory runs above the
+    road. The ground is the median height there.
+    """
+    near = section_points(drive, replace(cut, half_length_m=1.0))
+    below = near.section[:, 1] <= cut.middle[2]
+    if not below.any():
+        return -1
+    section, points = near.section[below], near.points[below]
+    ground_m = float(np.median(section[:, 1]))
+    from_middle = section - np.array([0.0, ground_m, 0.0])
+    return int(points[(from_middle**2).sum(axis=1).argmin()])
+
+
+def _tiles_touched(drive: Drive, cut: Cut) -> _Integers:
+    """(k, 4): first and end row, first and end column of the finest tiles that a cut touches."""
+    pyramid = drive.image(drive.image_kinds[-1]).pyramid
+    rows, columns = pyramid.shape(0)
+    table = pyramid.table[: rows * columns]
+    filled = np.flatnonzero(table[:, COUNT] > 0)
+    low, high = table[filled, LOWEST][:, :2], table[filled, HIGHEST][:, :2]
+    corners = cut.outline
+    touches = (low <= corners.max(axis=0)).all(axis=1) & (high >= corners.min(axis=0)).all(axis=1)
+    middles, halves = (low + high) / 2 - np.array(cut.middle[:2]), (high - low) / 2
+    sizes = ((cut.direction, cut.half_length_m), (cut.normal, cut.width_m / 2))
+    for axis, half in sizes:
+        touches &= np.abs(middles @ np.array(axis)) <= halves @ np.abs(axis) + half
+    touched = filled[touches]
+    windows = np.empty((touched.size, 4), np.int64)
+    for line, number in enumerate(touched.tolist()):
+        tile = TileKey(0, *divmod(number, columns))
+        of_rows, of_columns = pyramid.rows_columns(tile)
+        windows[line] = of_rows.start, of_rows.stop, of_columns.start, of_columns.stop
+    return windows
+
+
+def _stretches(layout: PixelLayout, windows: _Integers) -> _Integers:
+    """(m, 2): first and end of the consecutive points of each row of the tiles."""
+    stretches = np.empty((int((windows[:, 1] - windows[:, 0]).sum()), 2), np.int64)
+    _stretches_kernel(layout, windows, stretches)
+    return stretches
+
+
+def _plan_of(drive: Drive, cut: Cut) -> _Floats:
+    """The cut about the drive's offset: east, north, direction, half length, half width."""
+    offset = drive.info.offset
+    east, north = cut.middle[0] - offset[0], cut.middle[1] - offset[1]
+    return np.array([east, north, *cut.direction, cut.half_length_m, cut.width_m / 2])
+
+
+@kernel
+def _stretches_kernel(layout: PixelLayout, windows: _Integers, stretches: _Integers) -> None:
+    line = 0
+    for k in range(windows.shape[0]):
+        for row in range(windows[k, 0], windows[k, 1]):
+            for side in range(2):
+                column = windows[k, 2 + side]
+                least = column * layout.spans[row] + layout.origins[row] * layout.per_span
+                pulse = -(-least // (2 * layout.per_span))
+                low, high = layout.row_starts[row], layout.row_starts[row + 1]
+                while low < high:
+                    middle = (low + high) // 2
+                    if layout.pulses[middle] < pulse:
+                        low = middle + 1
+                    else:
+                        high = middle
+                stretches[line, side] = low
+            line += 1
+
+
+@kernel
+def _inside_kernel(
+    integers: NDArray[np.int32],
+    scale: _Floats,
+    stretches: _Integers,
+    plan: _Floats,
+    found: _Integers,
+) -> int:
+    """Points of stretches within a cut; gives their number."""
+    count = 0
+    for k in range(stretches.shape[0]):
+        for i in range(stretches[k, 0], stretches[k, 1]):
+            east = integers[i, 0] * scale[0] - plan[0]
+            north = integers[i, 1] * scale[1] - plan[1]
+            if abs(north * plan[2] - east * plan[3]) > plan[5]:
+                continue
+            if abs(east * plan[2] + north * plan[3]) <= plan[4]:
+                found[count] = i
+                count += 1
+    return count
+
+
+def warm_up() -> None:
+    """Compile the kernels for mapped columns, which are read-only."""
+    xyz, numbers = np.zeros((1, 3), np.int32), np.zeros(2, np.int64)
+    for array in (xyz, numbers):
+        array.flags.writeable = False
+    layout = PixelLayout(numbers, numbers, numbers, numbers, 1)
+    stretches = np.array([[0, 1]])
+    _stretches_kernel(layout, np.array([[0, 1, 0, 1]]), stretches)
+    plan = np.array([0.0, 0.0, 1.0, 0.0, 1.0, 1.0])
+    _inside_kernel(xyz, np.ones(2), np.array([[0, 1]]), plan, np.empty(1, np.int64))

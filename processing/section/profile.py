@@ -1,0 +1,203 @@
+"""Profile: what a section shows, reduced to what is drawn: its ground line and what crosses it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from processing.section.cut import Cut
+from processing.section.points_in_cut import section_points
+from processing.text import Text
+
+if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
+    from processing.points.drive import Drive
+
+Floats = NDArray[np.float64]
+
+BIN_M = 0.05
+"""The ground line has a place for each so many metres."""
+
+_LAYER_M = 0.05
+"""Points so far above the lowest of their bin are the same surface."""
+
+_LOWEST_SHARE = 0.05
+"""Of the points of a bin so many may be stray ones below the ground."""
+
+_GAP_M = 0.5
+"""Over wider gaps the ground line is interrupted."""
+
+_MOST_POINTS = 20_000
+
+
+@dataclass(frozen=True)
+class DrawnLine:
+    """A line of the map that may cross a section.
+
+    Attributes
+    ----------
+    name : Text
+        What it is.
+    layer : str
+        Of the drawing.
+    aci : int
+        AutoCAD colour index.
+    xyz : (n, 3) float64
+        Its places, m, project CRS; one place for a point.
+    is_closed : bool
+        Whether it leads back to the first.
+    """
+
+    name: Text
+    layer: str
+    aci: int
+    xyz: Floats
+    is_closed: bool = False
+
+
+@dataclass(frozen=True)
+class Crossing:
+    """Where a line of the map passes through a section.
+
+    Attributes
+    ----------
+    offset_m : float
+        To the right of the section's middle.
+    height_m : float
+        As in the project.
+    """
+
+    name: Text
+    layer: str
+    aci: int
+    offset_m: float
+    height_m: float
+
+
+@dataclass(frozen=True)
+class Profile:
+    """A section to be drawn.
+
+    Attributes
+    ----------
+    cut : Cut
+    ground : tuple of (k, 2) float64
+        Offsets and heights of the ground line, from left to right; a part for each stretch
+        without gap.
+    points : (n, 2) float64
+        Offsets and heights of measured points in the slab, thinned.
+    crossings : tuple of Crossing
+        From left to right.
+    station_m : float or None
+        Along the line that the section belongs to.
+    title : Text
+    """
+
+    cut: Cut
+    ground: tuple[Floats, ...]
+    points: Floats
+    crossings: tuple[Crossing, ...] = ()
+    station_m: float | None = None
+    title: Text = Text("", "")
+
+    def ground_at(self, offset_m: float) -> float | None:
+        """Height of the ground line; None in its gaps and beyond its ends."""
+        for part in self.ground:
+            if part[0, 0] <= offset_m <= part[-1, 0]:
+                return float(np.interp(offset_m, part[:, 0], part[:, 1]))
+        return None
+
+
+def profile_of(
+    cut: Cut,
+    drives: Iterable[Drive],
+    lines: Sequence[DrawnLine] = (),
+    *,
+    station_m: float | None = None,
+    title: Text = Text.same(""),
+) -> Profile:
+    """What a cut shows of some drives and of the map.
+
+    Parameters
+    ----------
+    lines : sequence of DrawnLine
+        Of the whole map, or those near the cut.
+    """
+    found = [section_points(drive, cut).section for drive in drives]
+    section = np.concatenate([np.empty((0, 3)), *found])
+    stride = max(1, -(-len(section) // _MOST_POINTS))
+    crossings = [crossing for line in lines for crossing in crossings_of(cut, line)]
+    return Profile(
+        cut=cut,
+        ground=ground_line(section[:, 0], section[:, 1]),
+        points=section[::stride, :2].copy(),
+        crossings=tuple(sorted(crossings, key=lambda one: one.offset_m)),
+        station_m=station_m,
+        title=title,
+    )
+
+
+def ground_line(offsets_m: ArrayLike, heights_m: ArrayLike) -> tuple[Floats, ...]:
+    """The lower surface of points in a section.
+
+    Parameters
+    ----------
+    offsets_m, heights_m : (n,) float64
+
+    Returns
+    -------
+    tuple of (k, 2) float64
+        One place per bin of ``BIN_M`` that holds points; a part for each stretch whose gaps are
+        at most half a metre.
+
+    Notes
+    -----
+    1. Of each bin the lowest twentieth of the points is left out as stray.
+    2. The median of what lies within 5 cm above the lowest that is left is the ground, and so is
+       the median of the offsets of these points.
+    """
+    offsets = np.asarray(offsets_m, dtype=np.float64)
+    heights = np.asarray(heights_m, dtype=np.float64)
+    numbers = np.floor(offsets / BIN_M).astype(np.int64)
+    order = np.lexsort((heights, numbers))
+    numbers, offsets, heights = numbers[order], offsets[order], heights[order]
+    firsts = np.flatnonzero(np.diff(numbers, prepend=numbers[:1] - 1))
+    places = []
+    for start, stop in zip(firsts, [*firsts[1:], numbers.size], strict=True):
+        lowest = start + int((stop - start) * _LOWEST_SHARE)
+        end = int(np.searchsorted(heights[lowest:stop], heights[lowest] + _LAYER_M, "right"))
+        layer = slice(lowest, lowest + end)
+        places.append((np.median(offsets[layer]), np.median(heights[layer])))
+    line = np.array(places).reshape(-1, 2)
+    gaps = np.flatnonzero(np.diff(line[:, 0]) > _GAP_M) + 1
+    return tuple(part for part in np.split(line, gaps) if len(part) > 1)
+
+
+def crossings_of(cut: Cut, line: DrawnLine) -> list[Crossing]:
+    """Where a line passes through the plane of a cut; a point counts within the slab."""
+    section = cut.to_section(line.xyz)
+    if len(section) == 1:
+        places = section[cut.holds(section), :2]
+    else:
+        if line.is_closed:
+            section = np.concatenate([section, section[:1]])
+        places = plane_crossings(section)
+    inside = np.abs(places[:, 0]) <= cut.half_length_m
+    return [
+        Crossing(line.name, line.layer, line.aci, offset, height)
+        for offset, height in places[inside].tolist()
+    ]
+
+
+def plane_crossings(section: Floats) -> Floats:
+    """Offsets and heights (k, 2) at which a line of the section, (n, 3), passes its plane."""
+    before, after = section[:-1], section[1:]
+    # A vertex in the plane belongs to the side that leaves it, so that it counts once.
+    passes = (before[:, 2] <= 0) != (after[:, 2] <= 0)
+    start, end = before[passes], after[passes]
+    shares = start[:, 2] / (start[:, 2] - end[:, 2])
+    places: Floats = start[:, :2] + shares[:, None] * (end[:, :2] - start[:, :2])
+    return places
