@@ -1,0 +1,70 @@
+"""ReviewQueue: candidates in the order in which they are judged, and where one goes next."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from processing.project.feature import Status
+
+
+class ReviewQueue:
+    """The features of the runs under review; decided ones stay in their places.
+
+    Parameters
+    ----------
+    ids : sequence of str
+        In the order of the review.
+    statuses : sequence of Status
+        Of each.
+    """
+
+    def __init__(self, ids: Sequence[str] = (), statuses: Sequence[Status] = ()) -> None:
+        self._ids = list(ids)
+        self._places = {id_: place for place, id_ in enumerate(self._ids)}
+        self._statuses = dict(zip(self._ids, statuses, strict=True))
+        self._counts = Counter(self._statuses.values())
+
+    def __len__(self) -> int:
+        return len(self._ids)
+
+    def __contains__(self, id_: str) -> bool:
+        return id_ in self._statuses
+
+    def count(self, status: Status) -> int:
+        """How many features have a status."""
+        return self._counts[status]
+
+    def status(self, id_: str) -> Status | None:
+        """What a feature was when it was last told of; None for one that isn't in the queue."""
+        return self._statuses.get(id_)
+
+    def place(self, id_: str) -> int:
+        """A feature's place, counted from 1; 0 for one that isn't in the queue."""
+        return self._places.get(id_, -1) + 1
+
+    def took(self, id_: str, status: Status) -> None:
+        """A feature of the queue has this status now."""
+        self._counts[self._statuses[id_]] -= 1
+        self._counts[status] += 1
+        self._statuses[id_] = status
+
+    def without(self, ids: set[str]) -> ReviewQueue:
+        """The queue after some features are gone."""
+        left = [id_ for id_ in self._ids if id_ not in ids]
+        return ReviewQueue(left, [self._statuses[id_] for id_ in left])
+
+    def undecided(self, after: str = "") -> Iterator[str]:
+        """Ids that nobody has judged, those behind a feature first, then from the beginning.
+
+        The feature itself comes at the very end.
+        """
+        start = self.place(after)
+        for id_ in (*self._ids[start:], *self._ids[:start]):
+            if self._statuses[id_] is Status.CANDIDATE:
+                yield id_
+
+    def before(self, id_: str) -> str:
+        """The feature in the place before, judged or not; empty at the beginning."""
+        place = self.place(id_)
+        return self._ids[place - 2] if place > 1 else ""
