@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.cameras.calibration import CameraOffset, with_offsets
 from processing.cameras.image_list import ImageList
 from processing.cameras.image_store import read_images
+from processing.cameras.offset_store import read_offsets, write_offsets
 from processing.errors import BadFile, Unsuitable, told_as_user_error
 from processing.image.kinds import ImageKind
 from processing.image.nearest import nearest_point
@@ -41,8 +44,8 @@ class Drive:
 
     Attributes
     ----------
-    images : ImageList or None
-        Camera images taken on this drive.
+    delivered_images : ImageList or None
+        Camera images taken on this drive, oriented as they were delivered.
 
     Raises
     ------
@@ -54,7 +57,9 @@ class Drive:
         self._folder = folder
         self.info: DriveInfo = read_drive_info(folder)
         self.columns = Columns(folder, self.info.count)
-        self.images: ImageList | None = read_images(folder)
+        self.delivered_images: ImageList | None = read_images(folder)
+        self._offsets = read_offsets(folder)
+        self._images: ImageList | None = None
         self._check_columns()
         self.turns: Turns | None = read_turns(folder)
         self._trajectory: Trajectory | None = None
@@ -87,6 +92,30 @@ class Drive:
         if self._trajectory is None and path.is_file():
             self._trajectory = _read_trajectory(path)
         return self._trajectory
+
+    @property
+    def images(self) -> ImageList | None:
+        """Camera images taken on this drive, with the offsets of their cameras; None without."""
+        if self._images is None and self.delivered_images is not None:
+            self._images = with_offsets(self.delivered_images, self._offsets, self.trajectory)
+        return self._images
+
+    @property
+    def camera_offsets(self) -> Mapping[str, CameraOffset]:
+        """Offsets by :func:`processing.cameras.calibration.camera_of`."""
+        return dict(self._offsets)
+
+    def keep_camera_offsets(self, offsets: Mapping[str, CameraOffset]) -> None:
+        """Keep other offsets in the drive's folder; `images` follows them.
+
+        Raises
+        ------
+        NoSpace
+            The disk is full or refuses the write; the offsets stay as they were.
+        """
+        write_offsets(self._folder, offsets)
+        self._offsets = dict(offsets)
+        self._images = None
 
     @property
     def image_kinds(self) -> tuple[ImageKind, ...]:

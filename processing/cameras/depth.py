@@ -1,0 +1,283 @@
+"""DepthPicture: how far away what an image shows is, from the measured points around it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from processing.cameras.camera import Camera
+from processing.cameras.choice import pixels_per_radian
+from processing.cameras.depth_kernels import front_kernel, hidden_kernel
+from processing.cameras.image_list import CameraImage
+from processing.cameras.surroundings import SizedPoints, Surroundings
+
+if TYPE_CHECKING:  # a drive knows its cameras, so importing it here would be a circle
+    from processing.points.drive import Drive
+
+REACH_M = 60.0
+TOLERANCE_M = 0.2
+"""What lies this much behind a surface is hidden by it; 1 % of the range comes to it."""
+
+_CELLS_ACROSS = 200
+_LEAST_CELL_PX = 2.0
+_GROWTH = 1.4
+_MOST_CELLS = 8.0
+_CLICK_M = 0.15
+
+
+@dataclass(frozen=True)
+class SeenPoint:
+    """A measured point that an image shows.
+
+    Attributes
+    ----------
+    drive : str
+        Id of its drive.
+    point : int
+        Its index there.
+    xyz : tuple of float
+        m, project CRS.
+    off_px : float
+        How far from the asked place it is shown.
+    range_m : float
+        From the perspective centre.
+    """
+
+    drive: str
+    point: int
+    xyz: tuple[float, float, float]
+    off_px: float
+    range_m: float
+
+
+class DepthPicture:
+    """The surfaces that one image shows, as a coarse grid of distances.
+
+    Parameters
+    ----------
+    image : CameraImage
+    drives : sequence of Drive
+    reach_m : float
+        Points farther away are left out.
+    check : callable, optional
+        Called between tiles while the picture is made; raises to stop.
+
+    Attributes
+    ----------
+    cell_px : float
+        Side of a cell, pixels of the image.
+    front_m : (h, w) float32
+        Distance of the nearest surface in each cell; infinite where nothing was measured.
+
+    Notes
+    -----
+    Steps: the tiles of all drives that the camera may look at are read, each at the level at
+    which its points are about as dense as the cells; every point covers a square as large as the
+    distance to its neighbours, so that surfaces are closed; the nearest one wins. Single points
+    without neighbours, noise and what is classified as moving hide nothing.
+    """
+
+    def __init__(
+        self,
+        image: CameraImage,
+        drives: Sequence[Drive],
+        *,
+        reach_m: float = REACH_M,
+        check: Callable[[], None] | None = None,
+    ) -> None:
+        self.camera = Camera(image)
+        self.cell_px = max(_LEAST_CELL_PX, image.width_px / _CELLS_ACROSS)
+        shape = (
+            int(np.ceil(image.height_px / self.cell_px)),
+            int(np.ceil(image.width_px / self.cell_px)),
+        )
+        self.front_m = np.full(shape, np.inf, np.float32)
+        self._number = np.full(shape, -1, np.int32)
+        self._surroundings = Surroundings(self.camera, drives, reach_m)
+        self._per_radian = pixels_per_radian(image)
+        self._points: list[NDArray[np.int64]] = []
+        self._drives: list[int] = []
+        self._starts = [0]
+        for drive, points in self._surroundings.seen(self.cell_px, check):
+            self._add(drive, points)
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing was measured in the image."""
+        return not np.isfinite(self.front_m).any()
+
+    def hides(self, xyz: ArrayLike) -> NDArray[np.bool_]:
+        """Which places lie behind a surface, as this image sees them.
+
+        Parameters
+        ----------
+        xyz : (n, 3) float64
+            m, project CRS.
+
+        Returns
+        -------
+        (n,) bool
+            False for places outside the image.
+        """
+        places = np.asarray(xyz, dtype=np.float64).reshape(-1, 3)
+        return self.hides_at(self.camera.pixels_of(places), self.camera.distances_to(places))
+
+    def hides_at(
+        self,
+        pixels: NDArray[np.float64],
+        ranges: NDArray[np.float64],
+        tolerance_m: float = TOLERANCE_M,
+    ) -> NDArray[np.bool_]:
+        """The same for places given by (n, 2) pixels and (n,) distances, m."""
+        hidden = np.zeros(ranges.size, np.bool_)
+        hidden_kernel(self._cells(pixels), ranges, self.front_m, (tolerance_m, 0.01), hidden)
+        return hidden
+
+    def quick_point_at(self, pixel: tuple[float, float]) -> SeenPoint | None:
+        """The front point of a pixel's cell: near enough for a mouse that moves."""
+        column, row = self._cells(np.array([pixel]))[0]
+        number = int(self._number[row, column]) if column >= 0 else -1
+        if number < 0:
+            return None
+        part = int(np.searchsorted(self._starts, number, side="right")) - 1
+        drive = self._drives[part]
+        return self._seen_point(drive, int(self._points[part][number - self._starts[part]]), pixel)
+
+    def point_at(self, pixel: tuple[float, float], within_px: float = 8.0) -> SeenPoint | None:
+        """The measured point that a pixel shows.
+
+        Parameters
+        ----------
+        pixel : (float, float)
+            Column and row.
+        within_px : float
+            Farther from the pixel no point is taken, but where they are sparser than that.
+
+        Returns
+        -------
+        SeenPoint or None
+            Of the surface that the line of sight meets first the point nearest to it; where it
+            meets none, the point shown nearest to the pixel, with nothing in front of it.
+
+        Notes
+        -----
+        All measured points near the line are looked at, not only those of the grid. A point is
+        met when the line passes it nearer than to its neighbours.
+        """
+        ray = self.camera.rays_of(np.array([pixel]))[0]
+        best: tuple[float, int, int] | None = None
+        parts = [
+            (drive, near)
+            for drive, points in self._surroundings.along(
+                ray, self._farthest(pixel), within_px / self._per_radian
+            )
+            if (near := _near_ray(points, ray, within_px / self._per_radian)) is not None
+        ]
+        first = min((part.first_met for _, part in parts), default=np.inf)
+        if not np.isfinite(first):
+            # Between surfaces: the nearest one aside, if it isn't behind another there.
+            first = self._nearest_aside([part for _, part in parts])
+        for drive, part in parts:
+            found = part.nearest_at(first)
+            if found is not None and (best is None or found[0] < best[0]):
+                best = (found[0], drive, found[1])
+        return None if best is None else self._seen_point(best[1], best[2], pixel)
+
+    def _add(self, drive: int, points: SizedPoints) -> None:
+        kept = points.has_company
+        away, sizes = points.away[kept], points.sizes[kept].astype(np.float64)
+        if not sizes.size:
+            return
+        pixels = self.camera.pixels_of(away + np.array(self.camera.image.xyz))
+        ranges = np.sqrt((away * away).sum(axis=1))
+        radii = _GROWTH * sizes / 2 * self._per_radian / (ranges * self.cell_px)
+        ranges[ranges > self._surroundings.reach_m] = np.inf
+        number = np.full(self.front_m.shape, -1, np.int32)
+        front_kernel(
+            pixels / self.cell_px, ranges, np.minimum(radii, _MOST_CELLS), self.front_m, number
+        )
+        taken = number >= 0
+        self._number[taken] = number[taken] + self._starts[-1]
+        self._points.append(points.points[kept])
+        self._drives.append(drive)
+        self._starts.append(self._starts[-1] + sizes.size)
+
+    def _cells(self, pixels: NDArray[np.float64]) -> NDArray[np.int64]:
+        """(n, 2) column and row of cells; −1 outside the image."""
+        inside = self.camera.shows(pixels)
+        cells = np.floor(np.where(inside[:, None], pixels, 0.0) / self.cell_px).astype(np.int64)
+        cells[~inside] = -1
+        return cells
+
+    def _farthest(self, pixel: tuple[float, float]) -> float:
+        """How far a click at a pixel may reach: a little beyond the surfaces around it."""
+        column, row = self._cells(np.array([pixel]))[0]
+        if column < 0:
+            return self._surroundings.reach_m
+        around = self.front_m[max(0, row - 1) : row + 2, max(0, column - 1) : column + 2]
+        farthest = float(around.max())
+        return min(self._surroundings.reach_m, farthest * 1.1 + 1.0)
+
+    def _nearest_aside(self, parts: list[_NearRay]) -> float:
+        nearest = min(
+            (part for part in parts if part.aside.size),
+            key=lambda part: float(part.angles.min()),
+            default=None,
+        )
+        if nearest is None:
+            return float("inf")
+        return float(nearest.ranges[int(nearest.angles.argmin())])
+
+    def _seen_point(self, drive: int, point: int, pixel: tuple[float, float]) -> SeenPoint:
+        own = self._surroundings.drives[drive]
+        xyz = own.xyz(np.array([point]))
+        off = float(np.linalg.norm(self.camera.pixels_of(xyz)[0] - pixel))
+        easting, northing, height = xyz[0].tolist()
+        distance = float(self.camera.distances_to(xyz)[0])
+        return SeenPoint(own.id, point, (easting, northing, height), off, distance)
+
+
+@dataclass(frozen=True)
+class _NearRay:
+    """Points near a line of sight: (k,) each; ranges along it, distances and angles aside."""
+
+    points: NDArray[np.int64]
+    ranges: NDArray[np.float64]
+    aside: NDArray[np.float64]
+    sizes: NDArray[np.float32]
+
+    @property
+    def angles(self) -> NDArray[np.float64]:
+        return np.asarray(self.aside / self.ranges)
+
+    @property
+    def first_met(self) -> float:
+        """Where the line meets a surface first; infinite where it meets none."""
+        is_met = self.aside <= self.sizes * (_GROWTH / 2)
+        return float(np.min(self.ranges[is_met], initial=np.inf))
+
+    def nearest_at(self, first: float) -> tuple[float, int] | None:
+        """The point nearest to the line among those about so far away: angle and index."""
+        slack = np.maximum(_CLICK_M, 2.0 * self.sizes)
+        there = np.flatnonzero(np.abs(self.ranges - first) <= slack)
+        if not there.size:
+            return None
+        angles = self.angles[there]
+        best = int(angles.argmin())
+        return float(angles[best]), int(self.points[there[best]])
+
+
+def _near_ray(points: SizedPoints, ray: NDArray[np.float64], aside_rad: float) -> _NearRay | None:
+    ranges = points.away @ ray
+    square = (points.away * points.away).sum(axis=1) - ranges * ranges
+    # Where points are sparse, the ones that stand for the surface there may be farther aside.
+    reach = np.maximum(ranges * aside_rad, points.sizes * (_GROWTH / 2))
+    near = np.flatnonzero((ranges > 0) & (square <= reach * reach))
+    if not near.size:
+        return None
+    aside = np.sqrt(np.maximum(square[near], 0.0))
+    return _NearRay(points.points[near], ranges[near], aside, points.sizes[near])
