@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from PySide6.QtGui import QPainter
 
 from processing.project.catalogue import Catalogue, Geometry
-from processing.project.feature import Position, Status, Vertex
+from processing.project.feature import Position, Vertex
 from widgets.image_view.feature_places import FeaturePlaces
 from widgets.image_view.marks import MarkPainter
 from widgets.image_view.picture import Picture, Span
@@ -21,6 +21,7 @@ from widgets.shared.crowded_marks import FEW
 from widgets.shared.feature_style import sketch_style, style_of
 from widgets.shared.screen_marks import preview_pens
 from widgets.shared.sketch import Drawing
+from widgets.shared.view_settings import ViewSettings
 
 Floats = NDArray[np.float64]
 
@@ -50,23 +51,21 @@ class FeatureOverlay:
     Parameters
     ----------
     places : FeaturePlaces
+    settings : ViewSettings
+        What is shown.
     """
 
-    def __init__(self, places: FeaturePlaces) -> None:
+    def __init__(self, places: FeaturePlaces, settings: ViewSettings) -> None:
         self._places = places
+        self._settings = settings
         self._marks = MarkPainter()
         self.selected: frozenset[str] = frozenset()
-        self.hidden_kinds: frozenset[str] = frozenset()
 
     def shown_in(self, span: Span, replaced: str = "") -> list[PlacedFeature]:
         """The features that touch a part of the picture and are shown, the chosen ones last."""
         found = self._places.within(span)
         shown = [
-            one
-            for one in found
-            if one.feature.kind not in self.hidden_kinds
-            and one.feature.status is not Status.REJECTED
-            and one.feature.id != replaced
+            one for one in found if one.feature.id != replaced and self._settings.shows(one.feature)
         ]
         return sorted(shown, key=lambda one: one.feature.id in self.selected)
 

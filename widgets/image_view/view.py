@@ -89,7 +89,7 @@ class ImageView(QWidget):
         self._viewport = Viewport()
         self._images = TileImages(tiles)
         self._places = FeaturePlaces(source)
-        self._overlay = FeatureOverlay(self._places)
+        self._overlay = FeatureOverlay(self._places, shared.view_settings)
         self._hits = HitFinder(self._overlay, shared.snap)
         self._gesture = Gesture(self._hits, shared.cursor)
         self._navigation = Navigation()
@@ -121,7 +121,8 @@ class ImageView(QWidget):
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
         shared.view_settings.look_changed.connect(self._on_settings_look_changed)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
-        shared.view_settings.hidden_kinds_changed.connect(self._on_settings_hidden_kinds_changed)
+        shared.view_settings.hidden_kinds_changed.connect(self.update)
+        shared.view_settings.shows_rejected_changed.connect(self.update)
         shared.sketch.changed.connect(self.update)
         shared.snap.mark_changed.connect(self.update)
         shared.snap.modes_changed.connect(self._show_mouse)
@@ -352,10 +353,6 @@ class ImageView(QWidget):
         if picture is not None:
             self._look_through(viewport_on(picture, before, self._viewport))
         self._search.go_on()
-        self.update()
-
-    def _on_settings_hidden_kinds_changed(self) -> None:
-        self._overlay.hidden_kinds = self._shared.view_settings.hidden_kinds
         self.update()
 
     def _on_minimap_place_chosen(self, u: float) -> None:

@@ -10,10 +10,10 @@ from PySide6.QtGui import QPolygonF
 from widgets.mouse_tools.gesture import REACH_PX
 from widgets.mouse_tools.mouse_tool import Boxed, Hit, Ray
 from widgets.scene_view.map.feature_hits import feature_at, features_within
-from widgets.scene_view.map.feature_shapes import FlatShapes, flattened
 from widgets.scene_view.points.point_finder import FoundPoint, PointFinder
 from widgets.scene_view.points.scene_tile import DrawnTile
 from widgets.scene_view.projection import Projection
+from widgets.shared.feature_shapes import FlatShapes, flattened
 from widgets.shared.outlines import are_inside
 
 Floats = NDArray[np.float64]

@@ -13,9 +13,9 @@ from typing_extensions import override
 
 from processing.project.catalogue import Catalogue, Geometry
 from processing.text import Language
-from widgets.scene_view.map.feature_shapes import local_places, segments_of
 from widgets.scene_view.projection import Projection
 from widgets.shared.crowded_marks import FEW, marks_to_paint
+from widgets.shared.feature_shapes import local_places, segments_of
 from widgets.shared.feature_style import FeatureStyle, sketch_style
 from widgets.shared.screen_marks import (
     paint_cross,

@@ -108,6 +108,7 @@ class SceneView(QWidget):
         shared.view_settings.look_changed.connect(self._on_settings_look_changed)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
         shared.view_settings.hidden_kinds_changed.connect(self._map_refresh.start)
+        shared.view_settings.shows_rejected_changed.connect(self._map_refresh.start)
         shared.sketch.changed.connect(self._on_sketch_changed)
         shared.snap.mark_changed.connect(self._paint_overlay)
         hand.camera_moved.connect(self.look_from)

@@ -18,6 +18,7 @@ CURSOR_COLOUR = QColor("#ffd23f")
 _UNKNOWN_KIND = "#d0d0d0"
 _REJECTED = "#8a8a8a"
 _PLAIN_PX = 1.75
+_REJECTED_PX = 1.0
 _CHOSEN_PX = 2.5
 _HALO_PX = 1.25
 _HALO = "#0b0d10"
@@ -35,8 +36,6 @@ class FeatureStyle:
         On the screen, at any zoom.
     is_dashed : bool
         Nobody has agreed to it yet.
-    is_shown : bool
-        Rejected features are not.
     has_vertices : bool
         Whether vertices are marked by squares.
     halo_px : float
@@ -48,7 +47,6 @@ class FeatureStyle:
     colour: str
     width_px: float = _PLAIN_PX
     is_dashed: bool = False
-    is_shown: bool = True
     has_vertices: bool = False
     halo_px: float = _HALO_PX
     symbol: str = ""
@@ -92,11 +90,11 @@ def style_of(catalogue: Catalogue, feature: Feature, *, is_selected: bool) -> Fe
     is_candidate = feature.status is Status.CANDIDATE
     is_rejected = feature.status is Status.REJECTED
     confidence = min(max(feature.provenance.confidence, 0.0), 1.0)
+    plain_px = _REJECTED_PX if is_rejected else _PLAIN_PX
     return FeatureStyle(
         colour=_REJECTED if is_rejected else colour_of_kind(catalogue, feature.kind),
-        width_px=_CHOSEN_PX if is_selected else _PLAIN_PX,
+        width_px=_CHOSEN_PX if is_selected else plain_px,
         is_dashed=is_candidate,
-        is_shown=not is_rejected,
         has_vertices=is_selected,
         halo_px=_HALO_PX * (0.4 + 1.2 * confidence) if is_candidate else _HALO_PX,
         symbol=catalogue[feature.kind].symbol if feature.kind in catalogue else "",

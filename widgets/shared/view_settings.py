@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import QObject, Signal
 
 from processing.image.kinds import ImageKind
+from processing.project.feature import Feature, Status
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ class ViewSettings(QObject):
     look_changed = Signal(object)  # PointLook
     image_changed = Signal()  # another drive or another kind of image
     hidden_kinds_changed = Signal()
+    shows_rejected_changed = Signal()
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -42,6 +44,7 @@ class ViewSettings(QObject):
         self._drive_id = ""
         self._image_kind = ImageKind.TRAJECTORY_CENTER
         self._hidden_kinds: frozenset[str] = frozenset()
+        self._shows_rejected = False
 
     @property
     def look(self) -> PointLook:
@@ -62,6 +65,17 @@ class ViewSettings(QObject):
     def hidden_kinds(self) -> frozenset[str]:
         """Feature kinds that are not drawn."""
         return self._hidden_kinds
+
+    @property
+    def shows_rejected(self) -> bool:
+        """Whether rejected features are drawn, thin and grey."""
+        return self._shows_rejected
+
+    def shows(self, feature: Feature) -> bool:
+        """Whether a feature is drawn: its kind isn't hidden, nor was it rejected and unwanted."""
+        if feature.kind in self._hidden_kinds:
+            return False
+        return self._shows_rejected or feature.status is not Status.REJECTED
 
     def change_look(
         self,
@@ -94,3 +108,9 @@ class ViewSettings(QObject):
         if kinds != self._hidden_kinds:
             self._hidden_kinds = kinds
             self.hidden_kinds_changed.emit()
+
+    def set_shows_rejected(self, wanted: bool) -> None:  # noqa: FBT001 - a slot of a checked action
+        """Draw rejected features, or don't."""
+        if wanted != self._shows_rejected:
+            self._shows_rejected = wanted
+            self.shows_rejected_changed.emit()

@@ -10,13 +10,16 @@ from PySide6.QtGui import QPolygonF
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature, Status, Vertex, new_feature_id
 from widgets.scene_view.camera import Camera
-from widgets.scene_view.map.feature_hits import FeatureHit, feature_at, features_within
-from widgets.scene_view.map.feature_shapes import FeatureShapes, flattened, segments_of
+from widgets.scene_view.map.feature_hits import feature_at, features_within
 from widgets.scene_view.projection import Projection
+from widgets.shared.feature_hits import FeatureHit
+from widgets.shared.feature_shapes import FeatureShapes, flattened, segments_of
+from widgets.shared.view_settings import ViewSettings
 
 ORIGIN = np.array([-11_000.0, -35_000.0, 100.0])
 CAMERA = Camera((0.0, 0.0, 0.0), heading_deg=0.0, pitch_deg=0.0, angle_deg=90.0)
 VIEW = Projection(CAMERA, 1000, 1000)
+SHOWN = ViewSettings()
 
 
 def feature(geometry: Geometry, *pixels: tuple[float, float], **fields: object) -> Feature:
@@ -30,7 +33,7 @@ def hit(
     features: list[Feature], x: float, y: float, selected: frozenset[str] = frozenset()
 ) -> FeatureHit:
     shapes = FeatureShapes(ORIGIN, features)
-    return feature_at(flattened(shapes.seen(frozenset())), VIEW, (x, y), selected)
+    return feature_at(flattened(shapes.seen(SHOWN.shows)), VIEW, (x, y), selected)
 
 
 def test_a_vertex_is_hit_within_eight_pixels() -> None:
@@ -65,9 +68,19 @@ def test_hidden_rejected_and_edited_features_are_not_there() -> None:
     shown = feature(Geometry.POINT, (500, 500))
     rejected = feature(Geometry.POINT, (500, 500), status=Status.REJECTED)
     shapes = FeatureShapes(ORIGIN, [shown, rejected])
-    assert [one.feature for one in shapes.seen(frozenset())] == [shown]
-    assert shapes.seen(frozenset({"kind"})) == ()
-    assert shapes.seen(frozenset(), shown.id) == ()
+    assert [one.feature for one in shapes.seen(SHOWN.shows)] == [shown]
+    assert shapes.seen(SHOWN.shows, shown.id) == ()
+    settings = ViewSettings()
+    settings.hide_kinds(frozenset({"kind"}))
+    assert shapes.seen(settings.shows) == ()
+
+
+def test_rejected_features_are_there_on_request() -> None:
+    rejected = feature(Geometry.POINT, (500, 500), status=Status.REJECTED)
+    settings = ViewSettings()
+    settings.set_shows_rejected(True)
+    (shape,) = FeatureShapes(ORIGIN, [rejected]).seen(settings.shows)
+    assert shape.feature == rejected
 
 
 def test_features_that_changed_are_replaced_or_forgotten() -> None:
@@ -75,23 +88,23 @@ def test_features_that_changed_are_replaced_or_forgotten() -> None:
     shapes = FeatureShapes(ORIGIN, [point])
     moved = point.with_vertices((Vertex((-10_990.0, -34_990.0, 100.0)),))
     shapes.replace(point.id, moved)
-    (shape,) = shapes.seen(frozenset())
+    (shape,) = shapes.seen(SHOWN.shows)
     assert shape.local_xyz == pytest.approx(np.array([[10.0, 10.0, 0.0]]))
     shapes.replace(point.id, None)
-    assert shapes.seen(frozenset()) == ()
+    assert shapes.seen(SHOWN.shows) == ()
 
 
 def test_a_box_holds_what_lies_wholly_inside() -> None:
     inside = feature(Geometry.LINE, (300, 300), (400, 400))
     across = feature(Geometry.LINE, (300, 300), (900, 400))
-    flat = flattened(FeatureShapes(ORIGIN, [inside, across]).seen(frozenset()))
+    flat = flattened(FeatureShapes(ORIGIN, [inside, across]).seen(SHOWN.shows))
     box = QPolygonF(QRectF(250, 250, 300, 300))
     assert features_within(flat, VIEW, box) == {inside.id}
 
 
 def test_a_feature_behind_the_camera_is_in_no_box() -> None:
     behind = Feature("b", "kind", Geometry.POINT, (Vertex((-11_000.0, -35_010.0, 100.0)),))
-    flat = flattened(FeatureShapes(ORIGIN, [behind]).seen(frozenset()))
+    flat = flattened(FeatureShapes(ORIGIN, [behind]).seen(SHOWN.shows))
     assert features_within(flat, VIEW, QPolygonF(QRectF(0, 0, 1000, 1000))) == frozenset()
 
 

@@ -15,8 +15,8 @@ from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
 from processing.project.catalogue import Geometry
-from widgets.scene_view.map.feature_shapes import FeatureShape
 from widgets.scene_view.vtk_arrays import as_vtk, cloud_of, lines_of
+from widgets.shared.feature_shapes import FeatureShape
 from widgets.shared.feature_style import FeatureStyle
 
 Floats = NDArray[np.float64]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from widgets.scene_view.map.feature_shapes import FeatureShapes, FlatShapes, flattened
+from widgets.shared.feature_shapes import FeatureShapes, FlatShapes, flattened
 from widgets.shared.feature_style import style_of
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
@@ -53,7 +53,7 @@ class MapLayer:
         """Draw what is to be seen, once there is a stage."""
         drawing = self._shared.sketch.drawing
         self.replaced = "" if drawing is None else drawing.replaces
-        seen = self._shapes.seen(self._shared.view_settings.hidden_kinds, self.replaced)
+        seen = self._shapes.seen(self._shared.view_settings.shows, self.replaced)
         self.flat = flattened(seen)
         if stage is None:
             return

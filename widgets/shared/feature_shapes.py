@@ -1,15 +1,15 @@
-"""FeatureShapes: the map's features as places about the view's origin, ready to project."""
+"""FeatureShapes: the map's features as places about a local origin, ready to project."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.project.catalogue import Geometry
-from processing.project.feature import Feature, Status, Vertex
+from processing.project.feature import Feature, Vertex
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -81,14 +81,12 @@ class FeatureShapes:
         """One feature, or None."""
         return self._shapes.get(id_)
 
-    def seen(self, hidden_kinds: frozenset[str], replaced: str = "") -> tuple[FeatureShape, ...]:
-        """Those that are drawn: neither rejected, nor of a hidden kind, nor being edited."""
+    def seen(
+        self, shows: Callable[[Feature], bool], replaced: str = ""
+    ) -> tuple[FeatureShape, ...]:
+        """Those that are drawn: all that the settings show but the one that is being edited."""
         return tuple(
-            shape
-            for id_, shape in self._shapes.items()
-            if id_ != replaced
-            and shape.feature.kind not in hidden_kinds
-            and shape.feature.status is not Status.REJECTED
+            shape for id_, shape in self._shapes.items() if id_ != replaced and shows(shape.feature)
         )
 
     def _shape(self, feature: Feature) -> FeatureShape:
