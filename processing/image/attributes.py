@@ -32,6 +32,9 @@ if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a cir
 SHOWN_RADIUS_M = 0.2
 """Neighbourhood of normals and shapes that are made for the screen."""
 
+_UNLABELLED_SHARE = 0.7
+"""How bright points without a label are: the street is seen, and labels stand out."""
+
 _Colours = NDArray[np.uint8]
 _Points = NDArray[np.int64]
 
@@ -74,8 +77,7 @@ ATTRIBUTES: Mapping[str, Attribute] = {
         Attribute(
             "label",
             Text("Label by hand", "手動ラベル"),
-            ("label",),
-            Text("Label some points first.", "先に点にラベルを付けてください。"),
+            ("intensity",),
         ),
         Attribute("class", Text("Class", "クラス"), ("classification",)),
     )
@@ -95,7 +97,8 @@ def colours(
     attribute : str
         A key of `ATTRIBUTES`.
     low_percent, high_percent : float
-        Percentiles of the drive at the dark and the bright end; intensity and height only.
+        Percentiles of the drive at the dark and the bright end; of intensity, which labels lie on
+        too, and of height only.
 
     Returns
     -------
@@ -215,8 +218,14 @@ def _color(drive: Drive, points: _Points) -> _Colours:
     return seen.colours
 
 
-def _label(drive: Drive, points: _Points) -> _Colours:
-    return np.asarray(class_colours()[drive.columns["label"][points]])
+def _label(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
+    """Colours of classes over the intensity, so that one sees the street while painting."""
+    shown = (_intensity(drive, points, low, high) * _UNLABELLED_SHARE).astype(np.uint8)
+    if drive.columns.has("label"):
+        labels = drive.columns["label"][points]
+        is_labelled = labels > 0
+        shown[is_labelled] = class_colours()[labels[is_labelled]]
+    return shown
 
 
 def _class(drive: Drive, points: _Points) -> _Colours:
@@ -226,12 +235,12 @@ def _class(drive: Drive, points: _Points) -> _Colours:
 _STRETCHED: Mapping[str, Callable[[Drive, _Points, float, float], _Colours]] = {
     "intensity": _intensity,
     "height": _height,
+    "label": _label,
 }
 _PLAIN: Mapping[str, Callable[[Drive, _Points], _Colours]] = {
     "normal": _normal,
     "shape": _shape,
     "segment": _segment,
     "color": _color,
-    "label": _label,
     "class": _class,
 }

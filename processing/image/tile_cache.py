@@ -14,6 +14,7 @@ from processing.errors import UserError
 from processing.image.attributes import colours
 from processing.image.kinds import ImageKind
 from processing.image.tiles import TileKey
+from processing.image.touched_tiles import TouchedTiles
 from processing.points.drive import Drive
 
 LIMIT_BYTES = 256 * 2**20
@@ -173,6 +174,29 @@ class TileCache:
                 self._held_bytes -= self._tiles.pop(request).size_bytes
             for refused in [refused for refused in self._refusals if refused[0] == drive_id]:
                 del self._refusals[refused]
+
+    def drop_touched(self, drive: Drive, attribute: str, points: NDArray[np.int64]) -> None:
+        """Forget the tiles of one attribute that show some points: those changed.
+
+        Parameters
+        ----------
+        points : (n,) int64
+        """
+        with self._changed:
+            # What is being made now may show points as they were.
+            self._ages[drive.id] = self._ages.get(drive.id, 0) + 1
+            self._refusals.pop((drive.id, attribute), None)
+            mine = [
+                one for one in self._tiles if (one.drive_id, one.attribute) == (drive.id, attribute)
+            ]
+        touched = {
+            kind: TouchedTiles(drive.image(kind), points) for kind in {one.kind for one in mine}
+        }
+        with self._changed:
+            for request in mine:
+                if request.key in touched[request.kind]:
+                    pixels = self._tiles.pop(request, None)
+                    self._held_bytes -= pixels.size_bytes if pixels is not None else 0
 
     def close(self) -> None:
         """Stop the loaders and wait for them; nothing is told afterwards."""

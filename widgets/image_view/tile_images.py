@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from processing.errors import UserError
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.tiles import TileKey
+from processing.image.touched_tiles import TouchedTiles
 from widgets.image_view.picture import Picture
 from widgets.shared.feature_style import ACCENT
 from widgets.shared.view_settings import PointLook
@@ -65,6 +66,7 @@ class TileImages(QObject):
         self._made: OrderedDict[_Slot, _Made] = OrderedDict()
         self._bytes = 0
         self._chosen = np.empty(0, np.int64)
+        self._chosen_in: Picture | None = None
         self._age = 0
         self._is_complete = False
         self._version = 0
@@ -94,13 +96,28 @@ class TileImages(QObject):
 
     def tint(self, points: NDArray[np.int64]) -> None:
         """Mark points of the drive shown, (n,) sorted."""
-        if points.size or self._chosen.size:
-            self._chosen = points
+        before, was_in = self._chosen, self._chosen_in
+        self._chosen, self._chosen_in = points, self._picture
+        if not points.size and not before.size:
+            return
+        if was_in is self._picture:
+            self.make_touched_anew(np.setxor1d(before, points, assume_unique=True))
+        else:
             self._age += 1
 
     def make_anew(self) -> None:
         """What tiles show has changed; the old pictures stay until the new ones are there."""
         self._age += 1
+
+    def make_touched_anew(self, points: NDArray[np.int64]) -> None:
+        """What tiles show of these points of the drive shown has changed."""
+        picture = self._picture
+        if picture is None or not points.size:
+            return
+        shown, touched = (picture.drive.id, picture.image.kind), TouchedTiles(picture.image, points)
+        for slot, made in self._made.items():
+            if slot[:2] != shown or slot[2] in touched:
+                self._made[slot] = replace(made, token=())
 
     def forget(self) -> None:
         """Drop all pictures."""

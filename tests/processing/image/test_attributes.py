@@ -107,14 +107,28 @@ def test_results_of_tools_are_shown_where_they_are_stored(drive: Drive) -> None:
 
 
 def test_what_is_missing_is_said_with_what_to_do(drive: Drive) -> None:
-    assert available(drive) == ("intensity", "height", "normal", "shape", "class")
-    for attribute in ("segment", "color", "label"):
+    assert available(drive) == ("intensity", "height", "normal", "shape", "label", "class")
+    for attribute in ("segment", "color"):
         with pytest.raises(Unsuitable) as refusal:
             colours(drive, np.array([0]), attribute, 2, 98)
         assert refusal.value.where.en == drive.info.name
         assert refusal.value.remedy.ja
     with pytest.raises(KeyError):
         colours(drive, np.array([0]), "smell", 2, 98)
+
+
+def test_points_without_a_label_show_the_street_in_grey_below_the_labels(drive: Drive) -> None:
+    points = np.arange(100)
+    grey = colours(drive, points, "intensity", 2, 98)
+    without = colours(drive, points, "label", 2, 98)
+    assert (without == (grey * 0.7).astype(np.uint8)).all()
+    labels = np.zeros(drive.count, np.uint8)
+    labels[:50:2] = 6
+    drive.columns.add("label", labels)
+    shown = colours(drive, points, "label", 2, 98)
+    assert (shown[:50:2] == class_colours()[6]).all()
+    assert (shown[1:50:2] == without[1:50:2]).all()
+    assert (shown[50:] == without[50:]).all()
 
 
 @pytest.mark.parametrize("bits", [8, 16])

@@ -12,6 +12,8 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache
 from processing.image.tile_choice import Camera3D
+from processing.image.tiles import TileKey
+from processing.image.touched_tiles import TouchedTiles
 from processing.points.drive import Drive
 from widgets.scene_view.points.budget import FrameBudget
 from widgets.scene_view.points.scene_tile import DrawnTile, SceneTile, TileId, shown_tiles
@@ -124,11 +126,19 @@ class Cloud(QObject):
 
     def mark(self, points: Mapping[str, NDArray[np.int64]]) -> None:
         """Mark chosen points: drive id to sorted indices."""
-        marked = dict(points)
-        touched = set(marked) | set(self._marked)
-        self._marked = marked
+        before, self._marked = self._marked, dict(points)
+        none = np.empty(0, np.int64)
+        touched = {
+            drive_id: self._touched(
+                drive_id,
+                np.setxor1d(
+                    before.get(drive_id, none), self._marked.get(drive_id, none), assume_unique=True
+                ),
+            )
+            for drive_id in {*before, *self._marked}
+        }
         for tile in self._stage.tiles.tiles.values():
-            if tile.id.drive_id in touched:
+            if tile.id.key in touched.get(tile.id.drive_id, ()):
                 self._stage.tiles.put(tile, self._colours_of(tile))
         self._tell()
 
@@ -138,6 +148,17 @@ class Cloud(QObject):
             tile: look for tile, look in self._looks.items() if tile.drive_id != drive_id
         }
         self._wish_again()
+
+    def refresh_labels(self, drive_id: str, points: NDArray[np.int64]) -> None:
+        """Labels of points changed: get the colours of the tiles that show them again."""
+        if self._look.attribute == "label":
+            touched = self._touched(drive_id, points)
+            self._looks = {
+                tile: look
+                for tile, look in self._looks.items()
+                if tile.drive_id != drive_id or tile.key not in touched
+            }
+            self._wish_again()
 
     def set_shading(self, *, is_on: bool) -> None:
         """Turn eye-dome lighting on or off."""
@@ -162,6 +183,14 @@ class Cloud(QObject):
         self._rest.stop()
         self._portions.stop()
         self._feed.close()
+
+    def _touched(
+        self, drive_id: str, points: NDArray[np.int64]
+    ) -> TouchedTiles | tuple[TileKey, ...]:
+        for drive, kind in self._drives:
+            if drive.id == drive_id:
+                return TouchedTiles(drive.image(kind), points)
+        return ()
 
     def _wish_again(self) -> None:
         self._is_chosen = False
