@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
@@ -51,6 +53,10 @@ class Minimap(QWidget):
         """What tiles show has changed."""
         self._images.make_anew()
         self.update()
+
+    def show_labels(self, drive_id: str, points: NDArray[np.int64]) -> None:
+        """The labels of these points of a drive have changed."""
+        self._images.show_labels(drive_id, points)
 
     def mark(self, left: float, right: float) -> None:
         """Mark the part from one place to another, picture coordinates."""

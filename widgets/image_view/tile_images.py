@@ -119,6 +119,20 @@ class TileImages(QObject):
             if slot[:2] != shown or slot[2] in touched:
                 self._made[slot] = replace(made, token=())
 
+    def show_labels(self, drive_id: str, points: NDArray[np.int64]) -> None:
+        """The labels of these points of a drive have changed."""
+        picture, touched = self._picture, None
+        if picture is not None and picture.drive.id == drive_id and self._look.attribute == "label":
+            touched = TouchedTiles(picture.image, points)
+        for slot, made in self._made.items():
+            is_old = made.token[:1] == ("label",) and slot[0] == drive_id
+            if picture is not None and touched is not None and slot[1] is picture.image.kind:
+                is_old &= slot[2] in touched
+            if is_old:
+                self._made[slot] = replace(made, token=())
+        if touched is not None:
+            self.changed.emit()
+
     def forget(self) -> None:
         """Drop all pictures."""
         self._made.clear()

@@ -231,9 +231,8 @@ class SceneView(QWidget):
 
     @override
     def paintEvent(self, event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(BACKGROUND))
-        painter.end()
+        with QPainter(self) as painter:
+            painter.fillRect(self.rect(), QColor(BACKGROUND))
 
     # What others tell.
 
@@ -252,6 +251,7 @@ class SceneView(QWidget):
         self._hand.is_enabled = True
         self._cloud.changed.connect(self._on_cloud_changed)
         self._cloud.settled.connect(self.sharpened)
+        self._shared.map_changes.labels_changed.connect(self._cloud.refresh_labels)
         self._cloud.use(self._drives.with_kinds, self._drives.origin)
         self._cloud.colour(self._shared.view_settings.look)
         self._cloud.mark(self._shared.selection.points)
