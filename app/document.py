@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 
 from app.adoption import Adoption
 from app.jobs import JobQueue, Lane
+from app.label_news import tell_labels
 from app.long_work import export_work, import_work, imported_words, run_work
 from app.run_storing import FinishedRun
 from app.undo import UndoStack
@@ -347,6 +348,8 @@ class Document(QObject):
         selection = self.shared.selection
         selection.choose_features(selection.features - removed)
         self.shared.map_changes.features_changed.emit(change.feature_ids)
+        labels = tuple((self.drive(one.drive), one) for one in change.labels)
+        tell_labels(labels, self.tiles, self.shared.map_changes)
         return True
 
     def _replace_by(self, make: Callable[[], Project]) -> bool:

@@ -1,0 +1,18 @@
+"""What a change of labels means for what is shown: told tile by tile, so that it is seen at once."""
+
+from __future__ import annotations
+
+from processing.image.tile_cache import TileCache
+from processing.points.drive import Drive
+from processing.project.label_change import LabelChange
+from widgets.shared.map_changes import MapChanges
+
+
+def tell_labels(
+    labels: tuple[tuple[Drive, LabelChange], ...], tiles: TileCache, map_changes: MapChanges
+) -> None:
+    """Drop the tiles whose points have other labels now, and tell the views."""
+    for drive, label in labels:
+        points = label.unpacked_points()
+        tiles.drop_touched(drive, "label", points)
+        map_changes.labels_changed.emit(drive.id, points)
