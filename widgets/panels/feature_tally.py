@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from processing.project.feature import Feature
+from processing.project.feature import Feature, Status
 from widgets.shared.map_source import MapSource
 
 
@@ -16,6 +16,23 @@ class RunOfTool:
 
     tool: str
     run: str
+
+
+@dataclass(frozen=True)
+class RunTally:
+    """How many features of a run there are, by what was decided."""
+
+    candidates: int
+    accepted: int
+    rejected: int
+
+    @property
+    def total(self) -> int:
+        """All of them."""
+        return self.candidates + self.accepted + self.rejected
+
+
+_Entry = tuple[str, RunOfTool, Status]
 
 
 class FeatureTally:
@@ -28,31 +45,47 @@ class FeatureTally:
 
     def __init__(self, source: MapSource) -> None:
         self._source = source
-        self._entries: dict[str, tuple[str, RunOfTool]] = {}
+        self._entries: dict[str, _Entry] = {}
+        self._kinds: Counter[str] = Counter()
+        self._runs: Counter[tuple[RunOfTool, Status]] = Counter()
 
     @property
     def by_kind(self) -> Counter[str]:
         """Features of each kind."""
-        return Counter(kind for kind, _ in self._entries.values())
+        return +self._kinds
 
     @property
-    def by_run(self) -> Counter[RunOfTool]:
-        """Features of each run; those drawn by hand are of none."""
-        return Counter(run for _, run in self._entries.values() if run.run)
+    def by_run(self) -> dict[RunOfTool, RunTally]:
+        """Features of each run, by what was decided; those drawn by hand are of none."""
+        runs = dict.fromkeys(run for (run, _), count in self._runs.items() if count and run.run)
+        return {run: RunTally(*(self._runs[run, status] for status in _STATUSES)) for run in runs}
 
     def read_all(self) -> None:
         """Count all features."""
         self._entries = {feature.id: _entry(feature) for feature in self._source.features()}
+        self._kinds = Counter(kind for kind, _, _ in self._entries.values())
+        self._runs = Counter((run, status) for _, run, status in self._entries.values())
 
     def read(self, ids: Iterable[str]) -> None:
         """Count these features again."""
         for id_ in ids:
             feature = self._source.feature(id_)
-            if feature is None:
-                self._entries.pop(id_, None)
-            else:
+            before = self._entries.pop(id_, None)
+            if before is not None:
+                self._count(before, -1)
+            if feature is not None:
                 self._entries[id_] = _entry(feature)
+                self._count(self._entries[id_], 1)
+
+    def _count(self, entry: _Entry, by: int) -> None:
+        kind, run, status = entry
+        self._kinds[kind] += by
+        self._runs[run, status] += by
 
 
-def _entry(feature: Feature) -> tuple[str, RunOfTool]:
-    return feature.kind, RunOfTool(feature.provenance.tool, feature.provenance.run)
+_STATUSES = (Status.CANDIDATE, Status.ACCEPTED, Status.REJECTED)
+
+
+def _entry(feature: Feature) -> _Entry:
+    origin = RunOfTool(feature.provenance.tool, feature.provenance.run)
+    return feature.kind, origin, feature.status

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtCore import QPoint, QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QLabel,
     QStackedWidget,
@@ -14,8 +14,7 @@ from PySide6.QtWidgets import (
 
 from processing.points.drive import Drive
 from processing.text import Language
-from processing.tools.registry import TOOLS
-from widgets.panels.feature_tally import FeatureTally
+from widgets.panels.project_runs import RUN, ProjectRuns
 from widgets.panels.tree_items import children_of
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
@@ -24,7 +23,7 @@ _DRIVE = Qt.ItemDataRole.UserRole
 
 
 class ProjectTree(QWidget):
-    """What the project holds; a click on a drive shows it.
+    """What the project holds; a click on a drive shows it, a run has a menu.
 
     Parameters
     ----------
@@ -35,9 +34,14 @@ class ProjectTree(QWidget):
     Signals
     -------
     drive_chosen(id: str)
+    review_requested(run: str)
+        The candidates of a run are to be judged.
+    change_requested(label: Text, change: Change)
     """
 
     drive_chosen = Signal(str)
+    review_requested = Signal(str)
+    change_requested = Signal(object, object)
 
     def __init__(
         self,
@@ -55,6 +59,11 @@ class ProjectTree(QWidget):
         self._tree.setIndentation(12)
         self._tree.itemClicked.connect(self._on_tree_item_chosen)
         self._tree.itemActivated.connect(self._on_tree_item_chosen)
+        self._tree.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+        self._tree.customContextMenuRequested.connect(self._on_tree_menu_requested)
+        self._runs = ProjectRuns(source, shared.view_settings, self._tree, language)
+        self._runs.review_requested.connect(self.review_requested)
+        self._runs.change_requested.connect(self.change_requested)
         empty = QLabel(self.tr("Drives appear here once a project is open."), self)
         empty.setWordWrap(True)
         empty.setEnabled(False)
@@ -69,15 +78,15 @@ class ProjectTree(QWidget):
         shared.map_changes.drives_changed.connect(self.refresh)
         shared.map_changes.features_changed.connect(self._on_map_features_changed)
         self._settings.image_changed.connect(self._mark_shown)
-        self._tally = FeatureTally(source)
         self.refresh()
 
     def refresh(self) -> None:
         """Read the project again."""
-        self._tally.read_all()
+        self._runs.read_all()
         self._show()
 
     def _show(self) -> None:
+        self._runs.forget()
         self._tree.clear()
         drives = self._source.drives()
         folder = self._folder(self.tr("Drives"))
@@ -86,7 +95,8 @@ class ProjectTree(QWidget):
             item.setData(0, _DRIVE, drive.id)
             item.setToolTip(0, self._facts(drive))
         self._add_images(drives)
-        self._add_runs()
+        if not self._runs.is_empty:
+            self._runs.add_to(self._folder(self.tr("Runs")))
         self._tree.expandAll()
         self._pages.setCurrentIndex(1 if drives else 0)
         self._mark_shown()
@@ -100,17 +110,6 @@ class ProjectTree(QWidget):
             count = 0 if drive.images is None else len(drive.images)
             words = self.tr("{name}: %n image(s)", "", count).format(name=drive.info.name)
             QTreeWidgetItem(folder, [words])
-
-    def _add_runs(self) -> None:
-        runs = self._tally.by_run
-        if not runs:
-            return
-        folder = self._folder(self.tr("Runs"))
-        for run, count in runs.items():
-            name = TOOLS[run.tool].name.spoken(self._language) if run.tool in TOOLS else run.tool
-            words = self.tr("{name}: %n feature(s)", "", count).format(name=name)
-            item = QTreeWidgetItem(folder, [words])
-            item.setToolTip(0, run.run)
 
     def _folder(self, title: str) -> QTreeWidgetItem:
         folder = QTreeWidgetItem(self._tree, [title])
@@ -151,10 +150,15 @@ class ProjectTree(QWidget):
                     self._tree.setCurrentItem(item)
 
     def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
-        before = self._tally.by_run
-        self._tally.read(ids)
-        if self._tally.by_run != before:
+        if self._runs.took(ids):
             self._show()
+
+    def _on_tree_menu_requested(self, spot: QPoint) -> None:
+        item = self._tree.itemAt(spot)
+        run = None if item is None else item.data(0, RUN)
+        menu = self._runs.menu_of(str(run)) if run else None
+        if menu is not None:
+            menu.popup(self._tree.viewport().mapToGlobal(spot))
 
     def _on_tree_item_chosen(self, item: QTreeWidgetItem) -> None:
         drive_id = item.data(0, _DRIVE)

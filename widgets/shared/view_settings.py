@@ -36,7 +36,9 @@ class ViewSettings(QObject):
     look_changed = Signal(object)  # PointLook
     image_changed = Signal()  # another drive or another kind of image
     hidden_kinds_changed = Signal()
+    hidden_runs_changed = Signal()
     shows_rejected_changed = Signal()
+    shown_features_changed = Signal()  # what `shows` says, for whichever reason
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -44,6 +46,7 @@ class ViewSettings(QObject):
         self._drive_id = ""
         self._image_kind = ImageKind.TRAJECTORY_CENTER
         self._hidden_kinds: frozenset[str] = frozenset()
+        self._hidden_runs: frozenset[str] = frozenset()
         self._shows_rejected = False
 
     @property
@@ -67,13 +70,18 @@ class ViewSettings(QObject):
         return self._hidden_kinds
 
     @property
+    def hidden_runs(self) -> frozenset[str]:
+        """Ids of runs whose features are not drawn."""
+        return self._hidden_runs
+
+    @property
     def shows_rejected(self) -> bool:
         """Whether rejected features are drawn, thin and grey."""
         return self._shows_rejected
 
     def shows(self, feature: Feature) -> bool:
-        """Whether a feature is drawn: its kind isn't hidden, nor was it rejected and unwanted."""
-        if feature.kind in self._hidden_kinds:
+        """Whether a feature is drawn: not if its kind or run is hidden, or it was rejected."""
+        if feature.kind in self._hidden_kinds or feature.provenance.run in self._hidden_runs:
             return False
         return self._shows_rejected or feature.status is not Status.REJECTED
 
@@ -108,9 +116,18 @@ class ViewSettings(QObject):
         if kinds != self._hidden_kinds:
             self._hidden_kinds = kinds
             self.hidden_kinds_changed.emit()
+            self.shown_features_changed.emit()
 
     def set_shows_rejected(self, wanted: bool) -> None:  # noqa: FBT001 - a slot of a checked action
         """Draw rejected features, or don't."""
         if wanted != self._shows_rejected:
             self._shows_rejected = wanted
             self.shows_rejected_changed.emit()
+            self.shown_features_changed.emit()
+
+    def hide_runs(self, runs: frozenset[str]) -> None:
+        """Hide the features of exactly these runs."""
+        if runs != self._hidden_runs:
+            self._hidden_runs = runs
+            self.hidden_runs_changed.emit()
+            self.shown_features_changed.emit()
