@@ -28,6 +28,8 @@ from app.settings import Settings
 from app.shortcut_editing import give_keys
 from app.theme import Theme
 from app.translation import Translation
+from app.view_area import ViewArea
+from app.view_docks import View, ViewDocks
 from app.window_change import WindowChange
 from app.window_contents import Contents, Panel
 from app.window_parts import LastingParts, WindowParts
@@ -158,6 +160,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         toolbox=lasting.toolbox,
         image_view=image_view,
         scene_view=scene_view,
+        view_docks=ViewDocks((View("scene", Text.same("3D"), scene_view),), language),
         image_bar=image_bar,
         drawing_bar=DrawingBar(shared, hints, language),
         message_bar=message_bar,
@@ -175,12 +178,11 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
 
 def _furnish(parts: WindowParts, files: FileActions, change: WindowChange) -> None:
     """Put the widgets into the window, with all that one can do with them."""
-    views = (parts.image_view, parts.scene_view)
-    parts.toolbox.use_views(views)
+    parts.toolbox.use_views((parts.image_view, parts.scene_view))
     contents = Contents(
         language=parts.language,
         start_page=parts.start_page,
-        views=views,
+        views=ViewArea(parts.image_view, parts.view_docks),
         tools=parts.image_bar,
         header=parts.drawing_bar,
         message=parts.message_bar,

@@ -11,19 +11,18 @@ from PySide6.QtWidgets import (
     QDockWidget,
     QMainWindow,
     QMenuBar,
-    QSplitter,
     QStackedWidget,
     QToolBar,
     QToolButton,
-    QVBoxLayout,
     QWidget,
 )
 from typing_extensions import override
 
 from app.actions.action import Action
 from app.settings import WindowLayout
+from app.view_area import ViewArea
 from app.window_actions import WindowActions
-from app.window_contents import Contents, Panel, PlainToolBar
+from app.window_contents import Contents, Panel, PlainToolBar, stacked
 from processing.text import Language, Text
 
 _ICON_PX = 20
@@ -33,6 +32,7 @@ _NARROW_PX = 1800
 _COLUMN_PX = 244
 _LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
 _BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
+_HOLDS_NOTHING = "the window holds nothing yet"
 
 
 class MainWindow(QMainWindow):
@@ -56,7 +56,7 @@ class MainWindow(QMainWindow):
         self._panels: tuple[Panel, ...] = ()
         self._toolbar: QToolBar | None = None
         self._tools: QAction | None = None
-        self._splitter = QSplitter(Qt.Orientation.Vertical)
+        self._area: ViewArea | None = None
         self._pages = QStackedWidget()
         self._is_open = False
         self._docks_when_open: QByteArray | None = None
@@ -83,14 +83,26 @@ class MainWindow(QMainWindow):
             Before it holds anything.
         """
         if self._actions is None:
-            message = "the window holds nothing yet"
-            raise ValueError(message)
+            raise ValueError(_HOLDS_NOTHING)
         return self._actions
 
     @property
     def are_views_beside(self) -> bool:
         """Whether the views stand beside each other."""
-        return self._splitter.orientation() == Qt.Orientation.Horizontal
+        return self.area.is_beside
+
+    @property
+    def area(self) -> ViewArea:
+        """The views in its middle.
+
+        Raises
+        ------
+        ValueError
+            Before it holds anything.
+        """
+        if self._area is None:
+            raise ValueError(_HOLDS_NOTHING)
+        return self._area
 
     def hold(self, contents: Contents) -> None:
         """Hold this in place of what there was, which is deleted, and stand as before.
@@ -100,23 +112,22 @@ class MainWindow(QMainWindow):
         What belongs to the contents and is no widget of theirs may have ``centralWidget()`` for
         a parent, so that it goes with them.
         """
-        views = self._splitter.saveState() if self._actions is not None else QByteArray()
+        views = None if self._area is None else self._area.keep()
         self._let_go()
-        self._splitter = QSplitter(Qt.Orientation.Vertical)
-        for view in contents.views:
-            self._splitter.addWidget(view)
-        self._splitter.restoreState(views)
+        self._area = contents.views
         self._pages = QStackedWidget()
         self._pages.addWidget(contents.start_page)
-        self._pages.addWidget(_stacked(contents.header, self._splitter))
+        self._pages.addWidget(stacked(contents.header, contents.views))
         # The old widget is deleted by Qt in each of these.
-        self.setCentralWidget(_stacked(contents.message, self._pages))
+        self.setCentralWidget(stacked(contents.message, self._pages))
         self.setMenuBar(QMenuBar(self))
         self.setStatusBar(contents.status)
         self._toolbar = PlainToolBar(self.tr("Tools"), self)
         self._toolbar.setObjectName("toolbar")
         self._toolbar.setIconSize(QSize(_ICON_PX, _ICON_PX))
         self.addToolBar(self._toolbar)
+        if views is not None:
+            contents.views.restore(views)
         self._actions = WindowActions(self, self._toolbar, contents.language)
 
     def add_actions(self, actions: Sequence[Action]) -> None:
@@ -162,6 +173,7 @@ class MainWindow(QMainWindow):
         if self._tools is not None:
             self._tools.setVisible(is_open)
         self._pages.setCurrentIndex(1 if is_open else 0)
+        self.area.show_apart(is_shown=is_open)
         if is_open and was_open:
             return
         for dock in self._docks.values():
@@ -174,22 +186,18 @@ class MainWindow(QMainWindow):
         """Name the window after the project."""
         self.setWindowTitle(f"{name} – Zuka" if name else self.tr("Zuka"))
 
-    def stand_side_by_side(self, *, beside: bool) -> None:
-        """Put the views beside each other, or one above the other."""
-        turned = Qt.Orientation.Horizontal if beside else Qt.Orientation.Vertical
-        self._splitter.setOrientation(turned)
-
     def layout_to_keep(self) -> WindowLayout:
         """How the window stands, to be given to :meth:`restore_layout`."""
         self._remember_docks()
         docks = self.saveState() if self._docks_when_open is None else self._docks_when_open
-        return WindowLayout(self.saveGeometry(), docks, self._splitter.saveState())
+        return WindowLayout(self.saveGeometry(), docks, self.area.keep())
 
     def restore_layout(self, layout: WindowLayout) -> None:
         """Stand as it was left; called while no project is open."""
         self.restoreGeometry(layout.geometry)
         self._docks_when_open = layout.docks
-        self._splitter.restoreState(layout.views)
+        self.area.restore(layout.views)
+        self.area.show_apart(is_shown=False)
         if _BESIDE in self.actions_made:
             self.actions_made[_BESIDE].setChecked(self.are_views_beside)
 
@@ -286,15 +294,3 @@ class MainWindow(QMainWindow):
             return
         for dock in self._in_front:
             dock.raise_()
-
-
-def _stacked(*widgets: QWidget) -> QWidget:
-    """Lines above the last widget, which fills the rest."""
-    whole = QWidget()
-    column = QVBoxLayout(whole)
-    column.setContentsMargins(0, 0, 0, 0)
-    column.setSpacing(0)
-    for line in widgets[:-1]:
-        column.addWidget(line)
-    column.addWidget(widgets[-1], 1)
-    return whole

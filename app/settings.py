@@ -12,6 +12,7 @@ from PySide6.QtCore import QByteArray, QSettings
 
 from app.language import system_language
 from app.theme import ThemeChoice
+from app.view_area import AreaLayout
 from processing.text import Language
 from widgets.parts.recent_project import RecentProject
 
@@ -32,13 +33,13 @@ class WindowLayout:
         Its place on the screen.
     docks : QByteArray
         Docks and toolbar as they are while a project is open.
-    views : QByteArray
-        How the views share the middle; empty for their usual shares.
+    views : AreaLayout
+        How the views share the middle.
     """
 
     geometry: QByteArray
     docks: QByteArray
-    views: QByteArray
+    views: AreaLayout
 
 
 class Settings:
@@ -126,23 +127,37 @@ class Settings:
     def layout(self) -> WindowLayout | None:
         """The window's layout as it was left; None before it was left once."""
         geometry, docks = self._store.value("geometry"), self._store.value("state")
-        views = self._store.value("views")
         if isinstance(geometry, QByteArray) and isinstance(docks, QByteArray):
-            return WindowLayout(
-                geometry, docks, views if isinstance(views, QByteArray) else QByteArray()
+            views = AreaLayout(
+                self._bytes("views"),
+                self._bytes("view_docks"),
+                self._says("views_apart"),
+                self._says("image_hidden"),
             )
+            return WindowLayout(geometry, docks, views)
         return None
 
     def remember_layout(self, layout: WindowLayout) -> None:
         """Keep the window's layout for the next start."""
         self._store.setValue("geometry", layout.geometry)
         self._store.setValue("state", layout.docks)
-        self._store.setValue("views", layout.views)
+        self._store.setValue("views", layout.views.shares)
+        self._store.setValue("view_docks", layout.views.docks)
+        self._store.setValue("views_apart", layout.views.is_apart)
+        self._store.setValue("image_hidden", layout.views.is_image_hidden)
 
     def _keep_recent(self, projects: list[RecentProject]) -> None:
         self._store.setValue(_RECENT, [str(project.folder) for project in projects])
         times = ["" if one.opened_at is None else one.opened_at.isoformat() for one in projects]
         self._store.setValue(_OPENED_AT, times)
+
+    def _bytes(self, name: str) -> QByteArray:
+        stored = self._store.value(name)
+        return stored if isinstance(stored, QByteArray) else QByteArray()
+
+    def _says(self, name: str) -> bool:
+        # In the file it is a word.
+        return str(self._store.value(name, "")).lower() == "true"
 
     def _strings(self, name: str) -> list[str]:
         stored = self._store.value(name, [])

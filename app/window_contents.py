@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QPaintEvent
-from PySide6.QtWidgets import QStatusBar, QToolBar, QWidget
+from PySide6.QtWidgets import QStatusBar, QToolBar, QVBoxLayout, QWidget
 from typing_extensions import override
 
+from app.view_area import ViewArea
 from processing.text import Language, Text
 
 
@@ -53,8 +53,8 @@ class Contents:
     ----------
     start_page : QWidget
         Shown while nothing is open.
-    views : sequence of QWidget
-        From top to bottom.
+    views : ViewArea
+        Fill the middle while a project is open.
     tools : QWidget
         Stands at the end of the toolbar, while a project is open.
     header : QWidget
@@ -67,7 +67,7 @@ class Contents:
 
     language: Language
     start_page: QWidget
-    views: Sequence[QWidget]
+    views: ViewArea
     tools: QWidget
     header: QWidget
     message: QWidget
@@ -84,3 +84,15 @@ class PlainToolBar(QToolBar):
     @override
     def paintEvent(self, event: QPaintEvent) -> None:
         """Paint nothing: the window's ground is there already."""
+
+
+def stacked(*widgets: QWidget) -> QWidget:
+    """Lines above the last widget, which fills the rest."""
+    whole = QWidget()
+    column = QVBoxLayout(whole)
+    column.setContentsMargins(0, 0, 0, 0)
+    column.setSpacing(0)
+    for line in widgets[:-1]:
+        column.addWidget(line)
+    column.addWidget(widgets[-1], 1)
+    return whole

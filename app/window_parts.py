@@ -9,6 +9,7 @@ from app.jobs import JobQueue
 from app.main_window import MainWindow
 from app.settings import Settings
 from app.theme import Theme
+from app.view_docks import ViewDocks
 from processing.text import Language
 from widgets.image_view.view import ImageView
 from widgets.mouse_tools.toolbox import MouseToolbox
@@ -53,6 +54,7 @@ class WindowParts:
     toolbox: MouseToolbox
     image_view: ImageView
     scene_view: SceneView
+    view_docks: ViewDocks
     image_bar: ImageBar
     drawing_bar: DrawingBar
     message_bar: MessageBar

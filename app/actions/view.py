@@ -79,7 +79,7 @@ def _standings(parts: WindowParts) -> tuple[Action, ...]:
 
     def toggle_beside() -> None:
         action = parts.window.actions_by_id["side-by-side"]
-        parts.window.stand_side_by_side(beside=action.isChecked())
+        parts.window.area.stand_side_by_side(beside=action.isChecked())
 
     return (
         Action(

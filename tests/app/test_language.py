@@ -123,7 +123,7 @@ def test_what_is_looked_at_is_looked_at_again(qtbot: QtBot, street: WindowParts)
     street.image_view.center_on(place)
     street.scene_view.look_from_above()
     street.scene_view.set_shading(is_on=False)
-    street.window.stand_side_by_side(beside=True)
+    street.window.area.stand_side_by_side(beside=True)
     street.processing_panel.show_tool("segments")
     qtbot.wait(0)
     before = street.image_view.viewport

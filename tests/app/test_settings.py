@@ -8,6 +8,7 @@ import pytest
 from PySide6.QtCore import QByteArray, QSettings
 
 from app.settings import Settings, WindowLayout
+from app.view_area import AreaLayout
 
 
 @pytest.fixture
@@ -90,4 +91,4 @@ def test_a_layout_of_the_version_before_is_read(file: Path) -> None:
     before.setValue("state", QByteArray(b"s"))
     before.sync()
     kept = Settings(file).layout
-    assert kept == WindowLayout(QByteArray(b"g"), QByteArray(b"s"), QByteArray())
+    assert kept == WindowLayout(QByteArray(b"g"), QByteArray(b"s"), AreaLayout())

@@ -187,7 +187,7 @@ def test_a_panel_that_was_closed_stays_closed_at_the_next_start(
 ) -> None:
     assert parts.document.create(tmp_path / "p.zuka", "EPSG:6677")
     parts.window.actions_by_id["panel-jobs"].trigger()
-    parts.window.stand_side_by_side(beside=True)
+    parts.window.area.stand_side_by_side(beside=True)
     qtbot.wait(0)
     parts = start()
     assert parts.document.open(tmp_path / "p.zuka")
