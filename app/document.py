@@ -249,7 +249,8 @@ class Document(QObject):
     ) -> str:
         """Run a tool on a drive in the background; gives the job's id."""
         drive = self.drive(drive_id)
-        title, work = run_work(RunRequest(tool, drive, parameters))
+        beside = tuple(other for other in self.drives() if other is not drive)
+        title, work = run_work(RunRequest(tool, drive, parameters, beside))
 
         def take(done: FinishedRun) -> None:
             if done.found is None:

@@ -34,11 +34,14 @@ class RunRequest:
     drive : Drive
     parameters : object
         An instance of the tool's own parameter class.
+    beside : tuple of Drive
+        Other drives of the same street; the result is about ``drive`` alone.
     """
 
     tool: str
     drive: Drive
     parameters: object
+    beside: tuple[Drive, ...] = ()
 
 
 def run(
@@ -148,6 +151,17 @@ _NEEDS: Mapping[Needs, _Need] = {
             "走行軌跡と一緒に走行データをインポートし直してください。",
         ),
     ),
+    Needs.IMAGES: (
+        lambda drive: bool(drive.images),
+        Text(
+            "“{tool}” needs camera images, which this drive doesn't have.",
+            "「{tool}」にはカメラ画像が必要ですが、この走行データにはありません。",
+        ),
+        Text(
+            "Import the drive again together with the list of its images.",
+            "画像一覧と一緒に走行データをインポートし直してください。",
+        ),
+    ),
 }
 
 
@@ -158,11 +172,14 @@ def _columns(
     image = _image_of(request.drive)
     results = results_of(tool, image.row_starts)
     total = max(request.drive.count, 1)
+    compute = tool.compute
+    if tool.compute_of is not None:
+        compute = tool.compute_of(request.drive, request.beside, request.parameters)
     for block in blocks_of(image.row_starts, tool.overlap_rows, points_per_block):
         monitor.check()
         monitor.report(float(image.row_starts[block.rows.start]) / total)
         points = _block_of(request.drive, image, block.rows_with_overlap)
-        results.add(block, tool.compute(points, request.parameters, monitor))
+        results.add(block, compute(points, request.parameters, monitor))
     return results.finished()
 
 

@@ -35,7 +35,8 @@ def command(arguments: argparse.Namespace) -> int:
             share = _RUNNING / len(opened.drives)
             part = PartMonitor(monitor, number * share, (number + 1) * share)
             started = datetime.now(UTC)
-            result: RunResult = run(RunRequest(tool.id, drive, parameters), part)
+            beside = tuple(other for other in opened.drives if other is not drive)
+            result: RunResult = run(RunRequest(tool.id, drive, parameters, beside), part)
             if isinstance(result, CandidateResult):
                 times = {"started": started, "finished": datetime.now(UTC)}
                 found = found_features(result, tool, parameters, drive.id, **times)

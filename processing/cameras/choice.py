@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,11 +55,11 @@ class ImageChoice:
 
     Parameters
     ----------
-    images : sequence of CameraImage
+    images : iterable of CameraImage
         In one reference system.
     """
 
-    def __init__(self, images: Sequence[CameraImage]) -> None:
+    def __init__(self, images: Iterable[CameraImage]) -> None:
         self.images = tuple(images)
         self.cameras = tuple(Camera(image) for image in self.images)
         self._centres = np.array([image.xyz for image in self.images]).reshape(-1, 3)

@@ -1,6 +1,7 @@
-"""Colours of points from camera images: for each point the best image that looks at it.
+"""Colours of points from camera images, quickly for the screen: the best image of each point.
 
-What hides a point from the camera isn't considered.
+What hides a point from the camera isn't considered here; :mod:`processing.cameras.seen_colours`
+does that.
 """
 
 from __future__ import annotations
@@ -8,13 +9,15 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.cameras.camera import Camera
+from processing.cameras.choice import pixels_per_radian
 from processing.cameras.image_list import CameraImage, ImageList
+from processing.cameras.image_pixels import ImagePixels, read_pixels
+from processing.errors import UserError
 
 WITHIN_S = 6.0
 """Images taken up to this long before or after a point was measured may show it."""
@@ -61,13 +64,33 @@ def colours_from_images(
         candidates = _images_near(images, middle_s, xyz[points].mean(axis=0))
         best, best_pixels = _best_images(xyz[points], candidates)
         for number in np.unique(best[best >= 0]):
-            pixels = _read(candidates[number].path, _reduction(candidates[number]))
+            pixels = _read(candidates[number])
             if pixels is None:
                 continue
             chosen = np.flatnonzero(best == number)
-            colours[points[chosen]] = _picked(pixels, candidates[number], best_pixels[chosen])
+            colours[points[chosen]] = pixels.colours_at(best_pixels[chosen])
             is_seen[points[chosen]] = True
     return SeenColours(colours, is_seen)
+
+
+def penalties(
+    camera: Camera, xyz: NDArray[np.float64], distances: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """How badly an image shows places: small for many pixels a metre and near the axis.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        m, project CRS.
+    distances : (n,) float64
+        From the perspective centre, m.
+    """
+    footprint = distances / pixels_per_radian(camera.image)
+    if camera.image.projection == "equirectangular":
+        return footprint
+    # The axis is −z of the camera: the last row of its rotation, turned round.
+    depth = (xyz - np.array(camera.image.xyz)) @ -camera.rotation[2]
+    return np.asarray(footprint * distances / np.maximum(depth, 1e-6))
 
 
 def _by_time(time: NDArray[np.float64]) -> Iterator[tuple[NDArray[np.int64], float]]:
@@ -100,54 +123,17 @@ def _best_images(
     for number, image in enumerate(candidates):
         camera = Camera(image)
         pixels = camera.pixels_of(xyz)
-        score = camera.distances_to(xyz)
-        if image.projection == "perspective":
-            # The axis is −z of the camera: the last row of its rotation, turned round.
-            depth = (xyz - np.array(image.xyz)) @ -camera.rotation[2]
-            score = score * score / np.maximum(depth, 1e-6)
+        score = penalties(camera, xyz, camera.distances_to(xyz))
         is_better = camera.shows(pixels) & (score < best_score)
         best[is_better], best_score[is_better] = number, score[is_better]
         best_pixels[is_better] = pixels[is_better]
     return best, best_pixels
 
 
-def _picked(
-    pixels: NDArray[np.uint8], image: CameraImage, places: NDArray[np.float64]
-) -> NDArray[np.uint8]:
-    """Colours at places given in pixels of the whole image."""
-    height, width = pixels.shape[:2]
-    columns = (places[:, 0] * (width / image.width_px)).astype(np.int64)
-    rows = (places[:, 1] * (height / image.height_px)).astype(np.int64)
-    rows, columns = np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)
-    return np.asarray(pixels[rows, columns])
-
-
-def _reduction(image: CameraImage) -> int:
-    """By how much an image may be made smaller and still be fine enough for points: 1, 2, 4, 8."""
-    reduction = 1
-    while reduction < 8 and image.width_px * image.height_px > _READ_PIXELS * reduction**2:
-        reduction *= 2
-    return reduction
-
-
 @lru_cache(maxsize=_KEPT_IMAGES)
-def _read(path: Path, reduction: int) -> NDArray[np.uint8] | None:
-    """An image, (h, w, 3) red green blue; None if unreadable.
-
-    Image files stay where they were delivered and may be missing on this machine.
-    """
-    import cv2
-
-    flags = {
-        1: cv2.IMREAD_COLOR,
-        2: cv2.IMREAD_REDUCED_COLOR_2,
-        4: cv2.IMREAD_REDUCED_COLOR_4,
-        8: cv2.IMREAD_REDUCED_COLOR_8,
-    }
+def _read(image: CameraImage) -> ImagePixels | None:
+    """An image; None if unreadable: files stay where they were delivered and may be missing."""
     try:
-        # Not cv2.imread: it can't open names outside the system's code page on Windows.
-        content = np.fromfile(path, np.uint8)
-    except OSError:
+        return read_pixels(image, _READ_PIXELS)
+    except UserError:
         return None
-    pixels = cv2.imdecode(content, flags[reduction]) if content.size else None
-    return None if pixels is None else np.ascontiguousarray(pixels[:, :, ::-1])

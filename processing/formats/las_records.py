@@ -16,7 +16,10 @@ PROMOTED = {0: 6, 1: 6, 2: 7, 3: 7, 4: 9, 5: 10}
 HIGHEST_OLD_CLASS = 31
 _ANGLE_STEP_DEG = 0.006
 _TIME_FORMATS = frozenset({1, 3, 4, 5})
-_COLOR_AT = {2: 20, 3: 28, 5: 28}
+COLORED = {0: 2, 1: 3, 4: 5, 6: 7, 9: 10}
+"""The format that holds the same and a colour."""
+
+_COLOR_AT = {2: 20, 3: 28, 5: 28, 7: 30, 8: 30, 10: 30}
 _WAVE_AT = {4: (28, 30), 5: (34, 38)}
 _WAVE_SIZE = 29
 
@@ -101,6 +104,24 @@ def with_class(
         records[:, 16] = classes
     else:
         records[:, 15] = (records[:, 15] & np.uint8(0xE0)) | classes
+    return records
+
+
+def with_room_for_color(records: NDArray[np.uint8], point_format: int) -> NDArray[np.uint8]:
+    """Records of a format without colour as records of its sister in :data:`COLORED`, black."""
+    room = RECORD_SIZES[COLORED[point_format]] - RECORD_SIZES[point_format]
+    at = _COLOR_AT[COLORED[point_format]]
+    black = np.zeros((records.shape[0], room), np.uint8)
+    return np.concatenate([records[:, :at], black, records[:, at:]], axis=1)
+
+
+def with_color(
+    records: NDArray[np.uint8], point_format: int, colors: NDArray[np.uint16]
+) -> NDArray[np.uint8]:
+    """The records, changed in place, with these (n, 3) red, green, blue."""
+    at = _COLOR_AT[point_format]
+    own = np.ascontiguousarray(colors, dtype="<u2").view(np.uint8).reshape(-1, 6)
+    records[:, at : at + 6] = own
     return records
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +17,7 @@ from processing.formats.las import read_records
 from processing.formats.las_header import RECORD_SIZES, read_header
 from processing.formats.las_output import LasFrame, frame_of, new_frame
 from processing.formats.las_records import (
+    COLORED,
     HIGHEST_OLD_CLASS,
     PROMOTED,
     ExtraDimension,
@@ -24,6 +26,8 @@ from processing.formats.las_records import (
     promoted,
     records_of,
     with_class,
+    with_color,
+    with_room_for_color,
 )
 from processing.formats.point_files import is_las, read_chunks, read_info
 from processing.formats.safe_write import written_safely
@@ -35,7 +39,9 @@ Columns = Mapping[str, NDArray[Any]]
 Results = Columns | Callable[[int, int], Columns]
 
 _CHUNK_POINTS = 1_000_000
-_CLASS = "classification"
+_CLASS, _COLOR = "classification", "color"
+_OF_RECORDS = (_CLASS, _COLOR)
+_FIRST_COLORED_MINOR = 2
 
 
 @dataclass(frozen=True)
@@ -46,6 +52,8 @@ class _Plan:
     ----------
     promoted_from : int
         Point format of the source to be promoted; -1: stays.
+    room_in : int
+        Point format, after that, whose records get room for a colour; -1: none is needed.
     dimensions : tuple of ExtraDimension
         Those of the results, placed behind the standard part of the output's records.
     """
@@ -55,6 +63,7 @@ class _Plan:
     point_size: int
     records: Iterator[NDArray[np.uint8]]
     promoted_from: int
+    room_in: int
     dimensions: tuple[ExtraDimension, ...]
     is_las: bool
 
@@ -72,7 +81,8 @@ def write_results(source: Path, output: Path, results: Results, monitor: Monitor
     output : Path
         ``.las`` or ``.laz``.
     results : mapping, or callable
-        ``classification`` (n,) uint8 replaces the classes; any other name (n,) of an integer or
+        ``classification`` (n,) uint8 replaces the classes, ``color`` (n, 3) uint16 the colours,
+        for which the next point format that has them is taken; any other name (n,) of an integer or
         floating type becomes an extra dimension, or replaces the one of this name and type.
         Arrays are in the file's order; or a function of ``start, stop`` that gives the part of
         these points, of length 0 when both are 0.
@@ -126,19 +136,27 @@ def _plan_of(source: Path, part: Callable[[int, int], Columns]) -> _Plan:
         promoted_from = -1
     else:
         header = read_header(source)
-        promote = header.point_format in PROMOTED and _needs_promotion(part, header.count)
+        is_too_old = _COLOR in part(0, 0) and header.minor < _FIRST_COLORED_MINOR
+        promote = header.point_format in PROMOTED and (
+            is_too_old or _needs_promotion(part, header.count)
+        )
         frame = frame_of(header, promote=promote)
         promoted_from = header.point_format if promote else -1
         extra = header.point_size - RECORD_SIZES[header.point_format]
         size, count = RECORD_SIZES[frame.point_format] + extra, header.count
         records = read_records(header, _CHUNK_POINTS)
-    given = {name: values for name, values in part(0, 0).items() if name != _CLASS}
+    room_in = -1
+    if _COLOR in part(0, 0) and frame.point_format in COLORED:
+        room_in = frame.point_format
+        frame = dataclasses.replace(frame, point_format=COLORED[room_in])
+        size += RECORD_SIZES[frame.point_format] - RECORD_SIZES[room_in]
+    given = {name: values for name, values in part(0, 0).items() if name not in _OF_RECORDS}
     old = extra_dimensions(frame.extra_bytes(), size - RECORD_SIZES[frame.point_format])
     new, dimensions = _placed(given, old)
     if len(new) > len(old):
         frame = frame.with_extra_bytes(b"".join(_described(frame, old, new)))
     size = RECORD_SIZES[frame.point_format] + sum(dimension.size for dimension in new)
-    return _Plan(frame, count, size, records, promoted_from, dimensions, is_las(source))
+    return _Plan(frame, count, size, records, promoted_from, room_in, dimensions, is_las(source))
 
 
 def _needs_promotion(part: Callable[[int, int], Columns], count: int) -> bool:
@@ -215,13 +233,18 @@ def _write_points(
 
 def _with_results(source: NDArray[np.uint8], plan: _Plan, results: Columns) -> NDArray[np.uint8]:
     kept = source if plan.promoted_from < 0 else promoted(source, plan.promoted_from)
+    if plan.room_in >= 0:
+        kept = with_room_for_color(kept, plan.room_in)
     records = np.zeros((kept.shape[0], plan.point_size), dtype=np.uint8)
     records[:, : kept.shape[1]] = kept
     if _CLASS in results:
         classes = np.asarray(results[_CLASS], dtype=np.uint8)
         records = with_class(records, plan.frame.point_format, classes)
+    if _COLOR in results:
+        colors = np.asarray(results[_COLOR], dtype=np.uint16)
+        records = with_color(records, plan.frame.point_format, colors)
     standard = RECORD_SIZES[plan.frame.point_format]
-    others = [values for name, values in results.items() if name != _CLASS]
+    others = [values for name, values in results.items() if name not in _OF_RECORDS]
     for dimension, values in zip(plan.dimensions, others, strict=True):
         own = np.ascontiguousarray(values, dtype=f"<{dimension.dtype}")
         begin = standard + dimension.at

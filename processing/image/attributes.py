@@ -131,7 +131,8 @@ def available(drive: Drive) -> tuple[str, ...]:
 
 def _lacks(drive: Drive, attribute: Attribute) -> bool:
     if attribute.id == "color":
-        return not drive.columns.has("color") and not drive.images
+        has_colours = drive.columns.has("color") or drive.columns.has("seen_color")
+        return not has_colours and not drive.images
     return not all(drive.columns.has(name) for name in attribute.needs)
 
 
@@ -204,6 +205,20 @@ def _segment(drive: Drive, points: _Points) -> _Colours:
 
 
 def _color(drive: Drive, points: _Points) -> _Colours:
+    """What the tool “colour” saw; elsewhere the delivered colours, or those of the images."""
+    if not (drive.columns.has("seen_color") and drive.columns.has("is_seen")):
+        return _other_color(drive, points)
+    shown = np.array(drive.columns["seen_color"][points], dtype=np.uint8)
+    is_seen = drive.columns["is_seen"][points] > 0
+    if is_seen.all():
+        return shown
+    has_delivered = drive.columns.has("color")
+    unseen = points[~is_seen]
+    shown[~is_seen] = _other_color(drive, unseen) if has_delivered else UNKNOWN_COLOUR
+    return shown
+
+
+def _other_color(drive: Drive, points: _Points) -> _Colours:
     if drive.columns.has("color"):
         # Some deliveries fill only the lower eight of the sixteen bits.
         brightest = max(

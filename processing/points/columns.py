@@ -32,6 +32,8 @@ COLUMN_TYPES: Mapping[str, tuple[str, int]] = {
     "normal": ("i1", 3),
     "shape": ("u1", 3),
     "segment": ("<i4", 1),
+    "seen_color": ("u1", 3),
+    "is_seen": ("u1", 1),
     "label": ("u1", 1),
 }
 """Column name to dtype and values per point."""

@@ -23,6 +23,10 @@ _PARTS = {
 }
 """Columns of three small integers: the names of their parts in files, and what makes them 1."""
 
+_COLOR, _SEEN = "color", "is_seen"
+_SIXTEEN_BITS = np.uint16(257)
+"""Makes the brightest of 8 bits the brightest of 16."""
+
 
 def write_point_results(
     results: Sequence[tuple[Drive, PointResult]], output: Path, monitor: Monitor
@@ -96,9 +100,25 @@ def _in_file_order(
             places = indices[own]
             for name, values in result.columns.items():
                 for part, part_values in _spread(name, values[stretch][own]):
-                    whole = found.setdefault(part, np.zeros(count, part_values.dtype))
+                    shape = (count, *part_values.shape[1:])
+                    whole = found.setdefault(part, np.zeros(shape, part_values.dtype))
                     whole[places] = part_values
+            _keep_delivered(found, drive, stretch, (own, places))
     return found
+
+
+def _keep_delivered(
+    found: dict[str, NDArray[Any]],
+    drive: Drive,
+    stretch: slice,
+    chosen: tuple[NDArray[np.bool_], NDArray[np.int64]],
+) -> None:
+    """Where no camera saw a point it keeps the colour that it was delivered with."""
+    if _COLOR not in found or not drive.columns.has(_COLOR):
+        return
+    own, places = chosen
+    is_unseen = found[_SEEN][places] == 0
+    found[_COLOR][places[is_unseen]] = drive.columns[_COLOR][stretch][own][is_unseen]
 
 
 def _points_of_file(results: Sequence[tuple[Drive, PointResult]], source: Path) -> int:
@@ -108,6 +128,8 @@ def _points_of_file(results: Sequence[tuple[Drive, PointResult]], source: Path) 
 
 
 def _spread(name: str, values: NDArray[Any]) -> list[tuple[str, NDArray[Any]]]:
+    if name == "seen_color":
+        return [(_COLOR, values.astype(np.uint16) * _SIXTEEN_BITS)]
     if name not in _PARTS:
         return [(name, values)]
     parts, one = _PARTS[name]

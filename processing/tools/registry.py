@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from processing.tools.colour import COLOUR
 from processing.tools.normals import NORMALS
 from processing.tools.segments import SEGMENTS
 from processing.tools.tool import Tool
 
-TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in (NORMALS, SEGMENTS)}
+TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in (NORMALS, SEGMENTS, COLOUR)}
 
 POINT_TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in TOOLS.values() if tool.outputs}
 """Those that say something about every point."""

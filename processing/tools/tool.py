@@ -31,6 +31,7 @@ class Needs(Enum):
     PIXELS = "pixels"
     TURNS = "turns"
     TRAJECTORY = "trajectory"
+    IMAGES = "images"
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,8 @@ class CandidateResult:
 # A tool's parameters are its own frozen dataclass, so the runner can't know their type.
 Compute = Callable[[PointBlock, Any, Monitor], PointResult]
 Find = Callable[[Drive, Any, Monitor], CandidateResult]
+# A drive, the other drives of its street, the tool's parameters.
+ComputeOf = Callable[[Drive, tuple[Drive, ...], Any], Compute]
 
 
 def nothing_per_point(_block: PointBlock, _parameters: object, _monitor: Monitor) -> PointResult:
@@ -147,6 +150,9 @@ class Tool:
     overlap_rows : int
         Rows of the image that a block needs beyond its own on either side; −1: the tool can't be
         cut into blocks and gets the recording whole.
+    compute_of : callable or None
+        Makes ``compute`` for one drive, where a block needs more than its own points: camera
+        images, or what stands around them.
     find : callable or None
         Candidates on a whole drive, of which it reads a stretch at a time; None for a tool that
         says something about points. It reports its own progress.
@@ -162,4 +168,5 @@ class Tool:
     outputs: tuple[OutputColumn, ...] = ()
     overlap_rows: int = 0
     version: int = 1
+    compute_of: ComputeOf | None = None
     find: Find | None = None
