@@ -16,6 +16,7 @@ from app.actions.draw import draw_actions
 from app.actions.edit import edit_actions
 from app.actions.file import FileActions
 from app.actions.help import HelpActions
+from app.actions.layouts import adopt_view_toggles, layout_actions
 from app.actions.process import process_actions
 from app.actions.tool_entries import TOOL_ENTRIES
 from app.actions.view import view_actions
@@ -202,12 +203,14 @@ def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -
     actions = (
         *files.actions(),
         *edit_actions(parts),
+        *layout_actions(parts),
         *view_actions(parts, change.speak),
         *draw_actions(parts),
         *process_actions(parts),
         *help_.actions(),
     )
     parts.window.add_actions(actions)
+    adopt_view_toggles(parts)
     parts.window.show_in_corner("language-en" if parts.language == "ja" else "language-ja")
     parts.start_page.open_requested.connect(files.choose_project)
     parts.start_page.import_requested.connect(files.choose_import)

@@ -87,11 +87,6 @@ class MainWindow(QMainWindow):
         return self._actions
 
     @property
-    def are_views_beside(self) -> bool:
-        """Whether the views stand beside each other."""
-        return self.area.is_beside
-
-    @property
     def area(self) -> ViewArea:
         """The views in its middle.
 
@@ -161,6 +156,12 @@ class MainWindow(QMainWindow):
             self._docks[panel.id] = dock
             self._adopt_toggle(panel, dock)
 
+    def show_panel(self, id_: str) -> None:
+        """Bring a panel to the front."""
+        dock = self._docks[id_]
+        dock.show()
+        dock.raise_()
+
     def give_keys(self, keys: Mapping[str, tuple[str, ...]]) -> None:
         """Let actions be reached by these keys from now on."""
         self.actions_made.give_keys(keys)
@@ -199,7 +200,7 @@ class MainWindow(QMainWindow):
         self.area.restore(layout.views)
         self.area.show_apart(is_shown=False)
         if _BESIDE in self.actions_made:
-            self.actions_made[_BESIDE].setChecked(self.are_views_beside)
+            self.actions_made[_BESIDE].setChecked(self.area.is_beside)
 
     @override
     def changeEvent(self, event: QEvent) -> None:

@@ -106,6 +106,7 @@ class ViewDocks(QMainWindow):
 
     def __init__(self, views: Sequence[View], language: Language) -> None:
         super().__init__(None, Qt.WindowType.Widget)
+        self._views = tuple(views)
         self._standing: _Standing | None = None
         self._docks: dict[str, QDockWidget] = {}
         self.setDockNestingEnabled(True)
@@ -131,9 +132,11 @@ class ViewDocks(QMainWindow):
         """Whether the views stand in a window beside their own."""
         return self.isWindow()
 
-    def toggles(self) -> dict[str, QAction]:
-        """Qt's own actions that show and hide each view, by the view's id."""
-        return {id_: dock.toggleViewAction() for id_, dock in self._docks.items()}
+    def toggles(self) -> dict[str, tuple[Text, QAction]]:
+        """Title of each view and Qt's own action that shows and hides it, by the view's id."""
+        return {
+            view.id: (view.title, self._docks[view.id].toggleViewAction()) for view in self._views
+        }
 
     def show_view(self, id_: str) -> None:
         """Bring a view to the front."""

@@ -96,6 +96,7 @@ MENUS: tuple[tuple[str, Text], ...] = (
 """Menus from left to right."""
 
 SUBMENUS: Mapping[str, Text] = {
+    "view/layouts": Text("Layouts", "レイアウト"),
     "view/theme": Text("Theme", "配色"),
     # Both words, so that who can't read the language spoken finds it.
     "view/language": Text("Language / 言語", "言語 / Language"),

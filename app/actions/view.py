@@ -88,7 +88,7 @@ def _standings(parts: WindowParts) -> tuple[Action, ...]:
             toggle_beside,
             "view",
             is_checkable=True,
-            is_checked=parts.window.are_views_beside,
+            is_checked=parts.window.area.is_beside,
             hint=Text(
                 "The image and 3D beside each other instead of one above the other.",
                 "画像と3Dを上下ではなく左右に並べます。",

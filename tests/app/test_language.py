@@ -135,7 +135,7 @@ def test_what_is_looked_at_is_looked_at_again(qtbot: QtBot, street: WindowParts)
     assert street.scene_view.camera == camera
     assert shared.cursor.place == place
     assert (shared.view_settings.drive_id, shared.view_settings.image_kind) == (drive, kind)
-    assert street.window.are_views_beside
+    assert street.window.area.is_beside
     assert street.window.actions_by_id["side-by-side"].isChecked()
     assert street.processing_panel.tool == "segments"
     scene = street.scene_view

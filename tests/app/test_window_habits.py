@@ -194,7 +194,7 @@ def test_a_panel_that_was_closed_stays_closed_at_the_next_start(
     qtbot.wait(0)
     hidden = {name: parts.window.findChild(QWidget, name).isHidden() for name in ("jobs", "layers")}
     assert hidden == {"jobs": True, "layers": False}
-    assert parts.window.are_views_beside
+    assert parts.window.area.is_beside
     assert parts.window.actions_by_id["side-by-side"].isChecked()
 
 
