@@ -6,7 +6,7 @@ is at work and emits a change when the gesture ends. It never knows which view w
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 
@@ -78,13 +78,28 @@ class Boxed:
     features : frozenset of str
         Ids of the features that lie wholly inside.
     points : mapping of str to (n,) int64
-        Drive id to measured points inside.
+        Drive id to measured points inside that are drawn.
     modifiers : Qt.KeyboardModifier
+    find_every : callable or None
+        Looks up what :meth:`every` gives; None where all points inside are drawn.
     """
 
     features: frozenset[str]
     points: Mapping[str, NDArray[np.int64]]
     modifiers: Qt.KeyboardModifier = field(default=Qt.KeyboardModifier.NoModifier)
+    find_every: Callable[[], Mapping[str, NDArray[np.int64]]] | None = None
+
+    def every(self) -> Mapping[str, NDArray[np.int64]]:
+        """All measured points inside, drawn or not, but for those that a view clips off.
+
+        Looked up when asked, with the picture as it was when the outline was drawn.
+
+        Returns
+        -------
+        mapping of str to (n,) int64
+            Drive id to rising indices; a drive without points inside is missing.
+        """
+        return self.points if self.find_every is None else self.find_every()
 
 
 class MouseTool(QObject):

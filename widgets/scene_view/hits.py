@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, Qt
@@ -52,7 +54,7 @@ class SceneHits:
         return self._hit(self._drawn_point(position), position, modifiers)
 
     def enclosed(self, outline: QPolygonF, modifiers: Qt.KeyboardModifier) -> Boxed:
-        """The features wholly inside an outline, and the drawn points inside it."""
+        """The features wholly inside an outline, the drawn points inside it, and all of them."""
         points: dict[str, list[NDArray[np.int64]]] = {}
         for one in self.drawn:
             pixels, _ = self.projection.to_screen(one.tile.local_xyz)
@@ -60,7 +62,13 @@ class SceneHits:
             if inside.size:
                 points.setdefault(one.tile.id.drive_id, []).append(inside)
         joined = {drive: np.unique(np.concatenate(parts)) for drive, parts in points.items()}
-        return Boxed(features_within(self.flat, self.projection, outline), joined, modifiers)
+        corners = np.array([(corner.x(), corner.y()) for corner in outline.toList()])
+        return Boxed(
+            features_within(self.flat, self.projection, outline),
+            joined,
+            modifiers,
+            find_every=partial(self._finder.enclosed, self.projection, corners),
+        )
 
     def place_under(self, position: QPointF) -> Floats:
         """(3,): the drawn point under a pixel, or what is at the distance looked at.

@@ -106,6 +106,20 @@ class Projection:
         place: Floats = np.array(self.camera.position) + self.ray(x, y) * depth_m
         return place
 
+    @cached_property
+    def matrix(self) -> Floats:
+        """(3, 4) float64: from metres about the origin, and 1, to x·depth, y·depth and depth."""
+        right, up, forward = self._axes
+        middle_x, middle_y = self.width_px / 2, self.height_px / 2
+        rows = np.stack(
+            [
+                middle_x * forward + self.focal_px * right,
+                middle_y * forward - self.focal_px * up,
+                forward,
+            ]
+        )
+        return np.column_stack([rows, -rows @ np.array(self.camera.position)])
+
     def metres_per_px(self, depth_m: float) -> float:
         """Size of a pixel at a depth."""
         return depth_m / self.focal_px

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.enclosed_points import Sight, points_enclosed
 from processing.image.kinds import ImageKind
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.image.tiles import TileKey, TilePyramid
@@ -16,7 +17,7 @@ from processing.points.drive import Drive
 from processing.project.feature import PointReference
 from widgets.scene_view.points.picking import Pickable, TilePoints, pick
 from widgets.scene_view.points.scene_tile import DrawnTile, TileId
-from widgets.scene_view.projection import Projection
+from widgets.scene_view.projection import NEAR_M, Projection
 from widgets.shared.cursor import Place
 
 Floats = NDArray[np.float64]
@@ -102,6 +103,29 @@ class PointFinder:
         low = np.array([one.low for one in tiles], dtype=np.float64)
         high = np.array([one.high for one in tiles], dtype=np.float64)
         return self._found(Pickable(low, high, points_of), projection, x, y)
+
+    def enclosed(self, projection: Projection, outline: Floats) -> dict[str, NDArray[np.int64]]:
+        """All measured points that are seen inside an outline, drawn or not.
+
+        Parameters
+        ----------
+        outline : (k, 2) float64
+            Corners, pixels of the widget.
+
+        Returns
+        -------
+        dict of str to (n,) int64
+            Drive id to rising indices; only drives that have some.
+        """
+        sight = Sight(projection.matrix, self._origin, NEAR_M)
+        found = {}
+        for drive, kind in self._drives.values():
+            image = drive.image(kind)
+            if image.pyramid.is_ready:
+                points = points_enclosed(drive, image, sight, outline)
+                if points.size:
+                    found[drive.id] = points
+        return found
 
     def _found(
         self, tiles: Pickable, projection: Projection, x: float, y: float
