@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from widgets.shared.cursor import Cursor
+from widgets.shared.label_palette import LabelPalette
 from widgets.shared.map_changes import MapChanges
 from widgets.shared.selection import Selection
 from widgets.shared.sketch import Sketch
@@ -22,3 +23,4 @@ class SharedState:
     view_settings: ViewSettings
     sketch: Sketch
     snap: SnapState
+    labels: LabelPalette = field(default_factory=LabelPalette)

@@ -1,0 +1,163 @@
+"""Which points a stroke means: those about a brush, those of connected segments."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.errors import Unsuitable
+from processing.image.point_image import PointCloudImage
+from processing.kernels import kernel
+from processing.points.drive import Drive
+from processing.text import Text
+
+_Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
+
+SEGMENT = "segment"
+_POINTS_AT_ONCE = 4_000_000
+_FIRST_ROOM = 1 << 14
+
+
+def points_under_brush(drive: Drive, start: _Floats, end: _Floats, radius_m: float) -> _Integers:
+    """All measured points as near as a radius to the straight way of a brush.
+
+    Parameters
+    ----------
+    start, end : (3,) float64
+        m, project CRS; the same for a click.
+    radius_m : float
+        In space: on a wall as on the road.
+
+    Returns
+    -------
+    (n,) int64
+        Rising.
+
+    Notes
+    -----
+    1. The tiles whose bounds come near the way are looked up in the image's pyramid.
+    2. The rows of those tiles are runs of points; each point in them is measured.
+    """
+    if drive.count == 0:
+        return np.empty(0, np.int64)
+    image = _ready_image(drive)
+    stretches = _stretches_near(image, np.stack([start, end]), radius_m)
+    integers, scale = np.asarray(drive.columns["xyz"]), np.array(drive.info.scale)
+    # The way in the integers' own units, so that no coordinate is computed for a point far off.
+    way = (np.stack([start, end]) - np.array(drive.info.offset)) / scale
+    room = np.empty(_FIRST_ROOM, np.int64)
+    count = _near_way_kernel(integers, scale, stretches, (way, radius_m), room)
+    if count > room.size:
+        room = np.empty(count, np.int64)
+        _near_way_kernel(integers, scale, stretches, (way, radius_m), room)
+    return room[:count]
+
+
+def segments_of(drive: Drive, points: _Integers) -> NDArray[np.int32]:
+    """Numbers of the connected segments that points belong to; negative ones are none.
+
+    Raises
+    ------
+    Unsuitable
+        The drive has no segments yet.
+    """
+    if not drive.columns.has(SEGMENT):
+        raise Unsuitable(
+            Text("The drive has no segments yet.", "この走行データにはセグメントがありません。"),
+            Text.same(drive.info.name),
+            Text(
+                "Wait until they are found, or run the tool “Segments”.",
+                "検出が終わるのを待つか、「セグメント分割」を実行してください。",
+            ),
+        )
+    return np.asarray(drive.columns[SEGMENT][points])
+
+
+def points_of_segment(drive: Drive, segment: int) -> _Integers:
+    """All points of a connected segment, rising: (n,) int64.
+
+    Raises
+    ------
+    Unsuitable
+        The drive has no segments.
+    """
+    segments_of(drive, np.empty(0, np.int64))
+    column = drive.columns[SEGMENT]
+    found = [
+        start + np.flatnonzero(column[start : start + _POINTS_AT_ONCE] == segment)
+        for start in range(0, drive.count, _POINTS_AT_ONCE)
+    ]
+    return np.concatenate(found) if found else np.empty(0, np.int64)
+
+
+def _ready_image(drive: Drive) -> PointCloudImage:
+    """The image whose tiles are known already, or else that of the first kind."""
+    images = [drive.image(kind) for kind in drive.image_kinds]
+    return next((image for image in images if image.pyramid.is_ready), images[0])
+
+
+def _stretches_near(image: PointCloudImage, way: _Floats, radius_m: float) -> _Integers:
+    """(k, 2) first and last + 1 points of the rows of tiles that come near a way."""
+    pyramid = image.pyramid
+    low, high = way.min(axis=0) - radius_m, way.max(axis=0) + radius_m
+    waiting, rows = [pyramid.top], set()
+    while waiting:
+        key = waiting.pop()
+        bounds = pyramid.bounds(key)
+        if bounds is None or (bounds[0] > high).any() or (bounds[1] < low).any():
+            continue
+        if key.level:
+            waiting.extend(pyramid.children(key))
+        else:
+            covered, _ = pyramid.rows_columns(key)
+            rows.add((covered.start, covered.stop))
+    starts = image.row_starts
+    stretches = [(int(starts[first]), int(starts[stop])) for first, stop in sorted(rows)]
+    return np.array(stretches, dtype=np.int64).reshape(-1, 2)
+
+
+@kernel
+def _near_way_kernel(
+    integers: NDArray[np.int32],
+    scale: _Floats,
+    stretches: _Integers,
+    near: tuple[_Floats, float],
+    found: _Integers,
+) -> int:
+    """Points of stretches that lie near a way; gives how many, also of those without room."""
+    way, radius = near
+    start, along = way[0], way[1] - way[0]
+    length = 0.0
+    for j in range(3):
+        length += (along[j] * scale[j]) ** 2
+    count = 0
+    for k in range(stretches.shape[0]):
+        for i in range(stretches[k, 0], stretches[k, 1]):
+            share = 0.0
+            if length > 0.0:
+                for j in range(3):
+                    share += (integers[i, j] - start[j]) * along[j] * scale[j] * scale[j]
+                share = min(max(share / length, 0.0), 1.0)
+            square = 0.0
+            for j in range(3):
+                away = (integers[i, j] - start[j] - share * along[j]) * scale[j]
+                square += away * away
+            if square <= radius * radius:
+                if count < found.size:
+                    found[count] = i
+                count += 1
+    return count
+
+
+def way_is_short(start: _Floats, end: _Floats, radius_m: float) -> bool:
+    """Whether a brush went over the surface between two places, and did not jump off it."""
+    return math.dist(start, end) <= max(10 * radius_m, 2.0)
+
+
+def warm_up() -> None:
+    """Compile the kernel."""
+    near, room = (np.zeros((2, 3)), 1.0), np.empty(1, np.int64)
+    _near_way_kernel(np.zeros((1, 3), np.int32), np.ones(3), np.array([[0, 1]]), near, room)

@@ -1,0 +1,42 @@
+"""PaintOutline: labels all measured points inside a rectangle or a lasso, in any view."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject
+from typing_extensions import override
+
+from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit
+from widgets.mouse_tools.paint_tool import PaintTool
+from widgets.mouse_tools.tracing import AtHand
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+
+
+class PaintOutline(PaintTool):
+    """A drag draws the outline; what the view shows inside it gets the label.
+
+    Parameters
+    ----------
+    shape : DragShape
+        A box or a lasso.
+    """
+
+    def __init__(
+        self,
+        source: MapSource,
+        shared: SharedState,
+        at_hand: AtHand,
+        shape: DragShape,
+        parent: QObject | None = None,
+    ) -> None:
+        super().__init__(source, shared, at_hand, parent)
+        self._shape = shape
+
+    @override
+    def drag_shape(self, hit: Hit) -> DragShape:
+        return self._shape
+
+    @override
+    def choose_box(self, boxed: Boxed) -> None:
+        self._begin()
+        self._paint(boxed.points)
