@@ -13,6 +13,9 @@ from widgets.mouse_tools.edit_vertices import EditVertices
 from widgets.mouse_tools.measure import MeasureTool
 from widgets.mouse_tools.mouse_tool import DragShape
 from widgets.mouse_tools.move_features import MoveFeatures
+from widgets.mouse_tools.paint_brush import PaintBrush
+from widgets.mouse_tools.paint_outline import PaintOutline
+from widgets.mouse_tools.paint_segments import PaintSegments
 from widgets.mouse_tools.select import Select
 from widgets.mouse_tools.toolbox import MouseToolbox
 
@@ -37,5 +40,9 @@ def make_toolbox(document: Document) -> MouseToolbox:
         "trim": TrimLine(document, shared),
         "measure": MeasureTool(document, shared),
         "measure-area": MeasureTool(document, shared, is_closed=True),
+        "paint-brush": PaintBrush(document, shared, at_hand),
+        "paint-rectangle": PaintOutline(document, shared, at_hand, DragShape.BOX),
+        "paint-lasso": PaintOutline(document, shared, at_hand, DragShape.LASSO),
+        "paint-segment": PaintSegments(document, shared, at_hand),
     }
     return MouseToolbox(document, shared, tools)

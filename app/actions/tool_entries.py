@@ -202,6 +202,54 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
         Text("Area and perimeter by clicks.", "面積と周長をクリックで計測します。"),
         toolbar=0,
     ),
+    ToolEntry(
+        "paint-brush",
+        Text("Paint labels", "ラベルを塗る"),
+        "B",
+        "mdi6.brush",
+        Text(
+            "Drag over points to give them the chosen class; [ and ] change the brush.",
+            "点の上をドラッグして、選んだクラスのラベルを付けます。[ と ] でブラシの大きさを変更。",
+        ),
+        toolbar=4,
+        menu="draw/labels",
+    ),
+    ToolEntry(
+        "paint-rectangle",
+        Text("Label a rectangle", "矩形内にラベルを付ける"),
+        "Shift+B",
+        "mdi6.select-drag",
+        Text(
+            "All measured points inside a box that is dragged.",
+            "ドラッグした矩形内のすべての計測点にラベルを付けます。",
+        ),
+        toolbar=0,
+        menu="draw/labels",
+    ),
+    ToolEntry(
+        "paint-lasso",
+        Text("Label inside a lasso", "投げ縄内にラベルを付ける"),
+        "Ctrl+B",
+        "mdi6.lasso",
+        Text(
+            "Draw round the points to label, in the image, the section or 3D.",
+            "画像・断面・3Dで、ラベルを付ける点を囲みます。",
+        ),
+        toolbar=0,
+        menu="draw/labels",
+    ),
+    ToolEntry(
+        "paint-segment",
+        Text("Label segments", "セグメントにラベルを付ける"),
+        "W",
+        "mdi6.auto-fix",
+        Text(
+            "Click a segment, or drag over several: each is labelled as a whole.",
+            "セグメントをクリック、またはドラッグして、触れたセグメント全体にラベルを付けます。",
+        ),
+        toolbar=0,
+        menu="draw/labels",
+    ),
 )
 
 SNAP_HINTS: Mapping[SnapMode, Text] = {
