@@ -106,6 +106,7 @@ SUBMENUS: Mapping[str, Text] = {
     "draw/kinds": Text("Kinds by number key", "数字キーの種別"),
     "draw/snap": Text("Snap", "スナップ"),
     "draw/plane": Text("Working plane", "作業平面"),
+    "draw/labels": Text("Labels of points", "点のラベル"),
 }
 """Menus within menus; each stands where its first action stands."""
 

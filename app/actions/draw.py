@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from app.actions.action import Action, map_action
+from app.actions.labels import choose_class, label_actions
 from app.actions.tool_entries import SNAP_HINTS, TOOL_ENTRIES, ToolEntry
 from app.map_edits import MapEdits
 from app.window_parts import WindowParts
@@ -28,6 +29,7 @@ def draw_actions(parts: WindowParts) -> tuple[Action, ...]:
         *_kind_actions(parts),
         *_snap_actions(parts),
         *_plane_actions(parts),
+        *label_actions(parts),
     )
 
 
@@ -116,7 +118,7 @@ def _kind_actions(parts: WindowParts) -> tuple[Action, ...]:
     def drawing(key: str) -> Callable[[], None]:
         def choose() -> None:
             kind = document.catalogue().of_key(key)
-            if kind is not None:
+            if not choose_class(parts, key) and kind is not None:
                 toolbox.choose_kind(kind)
 
         return choose

@@ -28,7 +28,7 @@ NOTHING_THERE = Text("No point there gets another label.", "ラベルが変わ�
 _LABELLED = Text("{count:,} points: {name}", "{count:,}点: {name}")
 _ERASED = Text("{count:,} points without label", "{count:,}点のラベルを消去")
 _LABEL_POINTS = Text("Label points: {name}", "点のラベル: {name}")
-_ERASE = Text("Erase labels", "ラベルの消去")
+ERASE = Text("Erase labels", "ラベルの消去")
 _MANY_POINTS = 200_000
 """More than so many are worked on beside the window."""
 
@@ -210,7 +210,7 @@ class PaintTool(MouseTool):
     def _ask_for(self, painted: Painted, changes: tuple[LabelChange, ...]) -> None:
         code = painted.rule.code
         if changes:
-            name = _LABEL_POINTS.filled(name=class_name(code)) if code else _ERASE
+            name = _LABEL_POINTS.filled(name=class_name(code)) if code else ERASE
             self.change_requested.emit(name, Change(labels=changes))
             count = sum(one.count for one in changes)
             words = _LABELLED if code else _ERASED
