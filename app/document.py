@@ -31,7 +31,8 @@ from processing.project.project import Project
 from processing.project.runs import Run
 from processing.runner import RunRequest
 from processing.text import Text
-from processing.tools.registry import TOOLS
+from processing.tools.normals import NORMALS
+from processing.tools.segments import SEGMENTS
 from resources import path_of
 from widgets.shared.cursor import Cursor
 from widgets.shared.map_changes import MapChanges
@@ -327,7 +328,7 @@ class Document(QObject):
         for drive in self.drives():
             if drive.count > _MOST_PREPARED:
                 continue
-            for tool in TOOLS.values():
+            for tool in (NORMALS, SEGMENTS):
                 if not all(drive.columns.has(column.name) for column in tool.outputs):
                     self.start_run(tool.id, drive.id, tool.parameters(), lane=Lane.PREPARED)
 

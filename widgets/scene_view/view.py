@@ -105,6 +105,7 @@ class SceneView(QWidget):
         shared.map_changes.features_changed.connect(self._on_map_features_changed)
         shared.map_changes.drives_changed.connect(self._on_map_drives_changed)
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
+        shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
         shared.view_settings.look_changed.connect(self._on_settings_look_changed)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
         shared.view_settings.shown_features_changed.connect(self._map_refresh.start)
@@ -250,7 +251,6 @@ class SceneView(QWidget):
         self._hand.is_enabled = True
         self._cloud.changed.connect(self._on_cloud_changed)
         self._cloud.settled.connect(self.sharpened)
-        self._shared.map_changes.labels_changed.connect(self._cloud.refresh_labels)
         self._cloud.use(self._drives.with_kinds, self._drives.origin)
         self._cloud.colour(self._shared.view_settings.look)
         self._cloud.mark(self._shared.selection.points)
@@ -302,6 +302,10 @@ class SceneView(QWidget):
     def _on_map_drive_columns_changed(self, drive_id: str) -> None:
         if self._cloud is not None:
             self._cloud.refresh(drive_id)
+
+    def _on_map_labels_changed(self, drive_id: str, points: NDArray[np.int64]) -> None:
+        if self._cloud is not None:
+            self._cloud.refresh_labels(drive_id, points)
 
     def _on_settings_look_changed(self) -> None:
         if self._cloud is not None:
