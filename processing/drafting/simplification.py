@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.drafting.crossings import crosses_itself
+from processing.drafting.needed_places import from_chord, needed_places
 from processing.drafting.polyline import Polyline
 from processing.project.feature import Position
 
@@ -44,7 +45,7 @@ def kept_places(
     line = Polyline.of(positions, is_closed=is_closed)
     crosses = crosses_itself(positions, is_closed=is_closed) is not None
     for _ in range(_MOST_TRIES):
-        kept = _ring(line.xyz, tolerance_m) if is_closed else _needed(line.xyz, tolerance_m)
+        kept = _ring(line.xyz, tolerance_m) if is_closed else needed_places(line.xyz, tolerance_m)
         simpler = [positions[place] for place in kept]
         if crosses or crosses_itself(simpler, is_closed=is_closed) is None:
             return kept
@@ -59,45 +60,17 @@ def _ring(xyz: Floats, tolerance_m: float) -> Kept:
     if start == stop:
         return np.arange(len(xyz))
     order = np.roll(np.arange(len(xyz)), -start)
-    there = _needed(xyz[start : stop + 1], tolerance_m) + start
+    there = needed_places(xyz[start : stop + 1], tolerance_m) + start
     back = order[
-        _needed(xyz[np.append(order[stop - start :], start)], tolerance_m)[:-1] + stop - start
+        needed_places(xyz[np.append(order[stop - start :], start)], tolerance_m)[:-1] + stop - start
     ]
     kept = np.union1d(there, back)
     if kept.size < 3:
         # A ring has an inside: the place furthest from the line through the other two stays.
-        distances = _from_chord(xyz, xyz[start], xyz[stop])
+        distances = from_chord(xyz, xyz[start], xyz[stop])
         kept = np.union1d(kept, [int(distances.argmax())])
     return kept if kept.size >= 3 else np.arange(len(xyz))
 
 
 def _farthest(xyz: Floats, place: int) -> int:
     return int(((xyz - xyz[place]) ** 2).sum(axis=1).argmax())
-
-
-def _needed(xyz: Floats, tolerance_m: float) -> Kept:
-    """Indices of the places of an open line that stay, both ends among them."""
-    is_kept = np.zeros(len(xyz), np.bool_)
-    is_kept[[0, -1]] = True
-    waiting = [(0, len(xyz) - 1)]
-    while waiting:
-        start, stop = waiting.pop()
-        if stop - start < 2:
-            continue
-        distances = _from_chord(xyz[start + 1 : stop], xyz[start], xyz[stop])
-        worst = int(distances.argmax())
-        if distances[worst] > tolerance_m:
-            middle = start + 1 + worst
-            is_kept[middle] = True
-            waiting += [(start, middle), (middle, stop)]
-    return np.flatnonzero(is_kept)
-
-
-def _from_chord(xyz: Floats, start: Floats, end: Floats) -> Floats:
-    """(k,): distances of places from a straight piece in space."""
-    step = end - start
-    square = float(step @ step)
-    away = xyz - start
-    along = (away @ step / square).clip(0, 1) if square > 0 else np.zeros(len(xyz))
-    distances: Floats = np.linalg.norm(away - along[:, None] * step, axis=1)
-    return distances

@@ -7,9 +7,10 @@ from collections.abc import Mapping
 from processing.tools.colour import COLOUR
 from processing.tools.normals import NORMALS
 from processing.tools.segments import SEGMENTS
+from processing.tools.template import TEMPLATE
 from processing.tools.tool import Tool
 
-TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in (NORMALS, SEGMENTS, COLOUR)}
+TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in (NORMALS, SEGMENTS, COLOUR, TEMPLATE)}
 
 POINT_TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in TOOLS.values() if tool.outputs}
 """Those that say something about every point."""

@@ -1,0 +1,1 @@
+"""Templates: a profile drawn once in a section, fitted along the street."""
