@@ -1,4 +1,4 @@
-"""What a change of labels means for what is shown: told tile by tile, so that it is seen at once."""
+"""A change of labels told to the views tile by tile, so that it is seen at once."""
 
 from __future__ import annotations
 

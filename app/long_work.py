@@ -49,10 +49,10 @@ def export_work(
     features = tuple(project.features.all())
     catalogue, crs = project.catalogue, project.crs
     delivered = tuple(path for drive in project.drives for path in drive.delivered_files)
-    request = replace(request, never=delivered)
+    request, drives = replace(request, never=delivered), project.drives
 
     def work(monitor: Monitor) -> tuple[Path, ...]:
-        return export(features, catalogue, crs, request, monitor)
+        return export(features, catalogue, crs, request, monitor, drives=drives)
 
     return Text("Export", "書き出し"), work
 

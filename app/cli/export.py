@@ -36,7 +36,14 @@ def command(arguments: argparse.Namespace) -> int:
     )
     try:
         features = tuple(project.features.all())
-        paths = export(features, project.catalogue, project.crs, request, terminal_monitor())
+        paths = export(
+            features,
+            project.catalogue,
+            project.crs,
+            request,
+            terminal_monitor(),
+            drives=project.drives,
+        )
     finally:
         project.close()
     print_lines(*(str(path) for path in paths))

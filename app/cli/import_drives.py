@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 
 from app.cli.opened import request_of, terminal_monitor
 from app.cli.output import print_lines
@@ -27,9 +28,8 @@ def command(arguments: argparse.Namespace) -> int:
         project = Project.open(arguments.project)
     finished = False
     try:
-        folders = import_drives(
-            request_of(arguments), project.temporary_folder(), terminal_monitor()
-        )
+        request = replace(request_of(arguments), labels=arguments.labels)
+        folders = import_drives(request, project.temporary_folder(), terminal_monitor())
         drives = project.adopt_drives(folders)
         finished = True
     finally:

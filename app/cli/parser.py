@@ -81,6 +81,12 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
     importing = commands.add_parser("import", help="make delivered files a project's drives")
     importing.add_argument("project", type=Path, metavar="PROJECT")
     _add_inputs(importing)
+    importing.add_argument(
+        "--labels",
+        choices=["label", "classification"],
+        default="label",
+        help="where labels of points come from: an extra dimension, or the delivered classes",
+    )
     importing.set_defaults(module="import_drives")
     running = commands.add_parser("run", help="run a processing tool on files")
     running.add_argument("tool", metavar="TOOL")

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from processing.errors import told_as_user_error
 from processing.formats.las_crs import crs_of
-from processing.formats.las_header import LasHeader, damaged, read_header
+from processing.formats.las_header import RECORD_SIZES, LasHeader, damaged, read_header
+from processing.formats.las_records import extra_dimensions
 from processing.formats.laz_chunks import read_chunk_table
 from processing.formats.point_chunk import PointChunk, PointFileInfo
 from processing.text import Text
@@ -33,6 +34,7 @@ _ALWAYS = (
     "scan_angle_deg",
 )
 _EXTRA_BYTES_SIZE = 192
+_LABEL = "label"
 _ANGLE_STEP_DEG = 0.006
 _LONGEST_TIME_S = 1e11
 _FAR_OUTSIDE_M = 10_000.0
@@ -98,9 +100,12 @@ def read_chunks(path: Path, chunk_points: int = 1_000_000) -> Iterator[PointChun
         limits of its integers, or 10 km and ten extents outside the header's box, is damage.
     """
     header = read_header(path)
-    first = 0
-    for records in read_records(header, chunk_points, _NEEDED_LAYERS):
+    label_at, first = _label_at(header), 0
+    layers = _NEEDED_LAYERS | (lazrs.SELECTIVE_DECOMPRESS_ALL_EXTRA_BYTES if label_at else 0)
+    for records in read_records(header, chunk_points, layers):
         chunk = PointChunk(_columns(records, header.point_format))
+        if label_at:
+            chunk.columns[_LABEL] = records[:, label_at].copy()
         _check_places(chunk.columns["xyz"], header, first)
         yield chunk
         first += chunk.count
@@ -274,6 +279,14 @@ def _first_time(header: LasHeader) -> float:
         data = file.read(8)
     time = struct.unpack("<d", data)[0] if len(data) == 8 else float("nan")
     return float(time) if abs(time) < _LONGEST_TIME_S else float("nan")
+
+
+def _label_at(header: LasHeader) -> int:
+    """Byte of an extra dimension for labels of one byte, as exporting writes it; 0 without."""
+    vlr, standard = header.vlr("LASF_Spec", 4), RECORD_SIZES[header.point_format]
+    described = extra_dimensions(b"" if vlr is None else vlr.data, header.point_size - standard)
+    own = (one for one in described if (one.name, one.dtype) == (_LABEL, "u1"))
+    return next((standard + one.at for one in own), 0)
 
 
 def _extra_dimensions(header: LasHeader) -> tuple[str, ...]:

@@ -72,7 +72,8 @@ class PointChunk:
         ``xyz`` (n, 3) int32; ``intensity``, ``scanner`` uint16; ``return_number``,
         ``number_of_returns``, ``classification``, ``user_data`` uint8; and where the file has
         them ``time`` float64 (s, NaN where it is no time), ``scan_angle_deg`` float32, ``color``
-        (n, 3) uint16, ``origin`` (n, 3) float64 (where the scanner was, m).
+        (n, 3) uint16, ``origin`` (n, 3) float64 (where the scanner was, m), ``label`` uint8
+        (painted by hand, from an extra dimension of LAS).
     """
 
     # Any: the columns differ in type.

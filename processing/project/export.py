@@ -16,8 +16,10 @@ from processing.formats.ledger_columns import TableStyle
 from processing.formats.ledger_csv import write_features, write_ledger, write_vertices
 from processing.formats.safe_write import written_safely
 from processing.monitor import Monitor, PartMonitor, SilentMonitor
+from processing.points.drive import Drive
 from processing.project.catalogue import Catalogue, Geometry
 from processing.project.feature import Feature, Status
+from processing.project.label_export import write_labelled_points
 from processing.text import Language, Text
 
 _LEAST_VERTICES = {Geometry.POINT: 1, Geometry.LINE: 2, Geometry.AREA: 3}
@@ -68,6 +70,7 @@ class _Job:
     catalogue: Catalogue
     crs: str
     request: ExportRequest
+    drives: tuple[Drive, ...]
 
 
 Writer = Callable[[_Job, Callable[[str], Path], Monitor], None]
@@ -88,6 +91,8 @@ def export(
     crs: str,
     request: ExportRequest,
     monitor: Monitor | None = None,
+    *,
+    drives: tuple[Drive, ...] = (),
 ) -> tuple[Path, ...]:
     """Write the map's accepted features in each format that is asked for.
 
@@ -102,6 +107,8 @@ def export(
         Written in their order; rejected ones never, candidates if the request says so.
     crs : str
         ``EPSG:n``; empty where it is not known: the files then say so, nothing is guessed.
+    drives : tuple of Drive
+        Whose points are written with their labels.
 
     Returns
     -------
@@ -125,7 +132,7 @@ def export(
     wanted = tuple(feature for feature in features if _is_wanted(feature, request))
     for feature in wanted:
         _check_feature(feature, catalogue)
-    job = _Job(wanted, catalogue, crs, request)
+    job = _Job(wanted, catalogue, crs, request, drives)
     paths: list[Path] = []
     with ExitStack() as whole:
 
@@ -177,6 +184,10 @@ def _write_geojson(job: _Job, place: Callable[[str], Path], monitor: Monitor) ->
     write_geojson(place(f"{_STEM}.geojson"), job.features, crs=job.crs, monitor=monitor)
 
 
+def _write_points(job: _Job, place: Callable[[str], Path], monitor: Monitor) -> None:
+    write_labelled_points(job.drives, place, monitor)
+
+
 FORMATS: Mapping[str, ExportFormat] = {
     one.id: one
     for one in (
@@ -184,6 +195,7 @@ FORMATS: Mapping[str, ExportFormat] = {
         ExportFormat("csv", Text("Ledgers (CSV)", "台帳（CSV）"), _write_csv),
         ExportFormat("gpkg", Text("GIS (GeoPackage)", "GIS（GeoPackage）"), _write_geopackage),
         ExportFormat("geojson", Text("GIS (GeoJSON)", "GIS（GeoJSON）"), _write_geojson),
+        ExportFormat("las", Text("Labelled points (LAS)", "ラベル付き点群（LAS）"), _write_points),
     )
 }
 """What can be handed in, by name."""

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,9 @@ _READING = 0.7
 _HASHED_BYTES = 1 << 20
 
 
+Labels = Literal["label", "classification"]
+
+
 @dataclass(frozen=True)
 class ImportRequest:
     """What to import.
@@ -48,12 +51,16 @@ class ImportRequest:
         Trajectory files; camera image lists.
     crs : str
         ``EPSG:n``; empty to take the files' own.
+    labels : "label" or "classification"
+        What becomes of the points' labels: the extra dimension of this name, where there is one;
+        or the delivered classes.
     """
 
     inputs: tuple[Path, ...]
     trajectories: tuple[Path, ...] = ()
     images: tuple[Path, ...] = ()
     crs: str = ""
+    labels: Labels = "label"
 
 
 def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple[Path, ...]:
@@ -87,8 +94,12 @@ def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple
             ways = pool.submit(read_trajectories, request.trajectories, delivery.crs)
             checksums = [pool.submit(_checksum, info.path) for info in files]
             reading = _AlsoWatching(PartMonitor(monitor, 0.0, _READING), ways)
-            keeps_angles = not request.trajectories
-            writers = _read_all(delivery, files, into, reading, angles=keeps_angles)
+            way = _ReadWay(
+                keeps_angles=not request.trajectories,
+                has_labels=any("label" in info.attributes for info in files),
+                labels=request.labels,
+            )
+            writers = _read_all(delivery, files, into, reading, way=way)
             trajectories = ways.result()
             sources = tuple(
                 _source_file(info, checksum)
@@ -115,13 +126,31 @@ def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple
 
 
 @dataclass(frozen=True)
+class _ReadWay:
+    """What is wanted of all files: scan angles, labels; whether a file has labels."""
+
+    keeps_angles: bool
+    has_labels: bool
+    labels: Labels
+
+    def wanted(self, chunk: PointChunk) -> dict[str, NDArray[Any]]:
+        """The columns of a chunk; points of files without labels have none of them."""
+        columns = chunk.columns
+        if self.labels == "classification":
+            columns["label"] = columns["classification"]
+        elif self.has_labels and "label" not in columns:
+            columns["label"] = np.zeros(chunk.count, np.uint8)
+        return columns
+
+
+@dataclass(frozen=True)
 class _ReadPlan:
-    """How one file is read: its number, where its drives go, whether scan angles are wanted."""
+    """How one file is read: its number, where its drives go, what is wanted."""
 
     file: DeliveredFile
     source: int
     folder_stem: Path
-    keeps_angles: bool
+    way: _ReadWay
 
 
 class _AlsoWatching:
@@ -146,7 +175,7 @@ def _read_all(
     into: Path,
     monitor: Monitor,
     *,
-    angles: bool,
+    way: _ReadWay,
 ) -> list[RecordingWriter]:
     total = sum(info.count for info in files)
     if total == 0:
@@ -165,7 +194,7 @@ def _read_all(
             own: list[RecordingWriter] = []
             for file in group:
                 part = PartMonitor(monitor, done / total, (done + file.info.count) / total)
-                plan = _ReadPlan(file, files.index(file.info), into / f"{len(writers)}", angles)
+                plan = _ReadPlan(file, files.index(file.info), into / f"{len(writers)}", way)
                 _read_file(plan, own, part)
                 done += file.info.count
             writers += own
@@ -184,8 +213,9 @@ def _read_file(plan: _ReadPlan, writers: list[RecordingWriter], monitor: Monitor
     for chunk in _read_ahead(read_chunks(info.path, _CHUNK_POINTS)):
         monitor.check()
         indices = np.arange(start, start + chunk.count, dtype=np.int64)
-        for scanner, chosen in _by_scanner(chunk.columns, plan.file.scanner_column):
-            columns, own = chunk.columns, indices
+        wanted = plan.way.wanted(chunk)
+        for scanner, chosen in _by_scanner(wanted, plan.file.scanner_column):
+            columns, own = wanted, indices
             if chosen is not None:
                 columns = {name: values[chosen] for name, values in columns.items()}
                 own = indices[chosen]
@@ -193,7 +223,8 @@ def _read_file(plan: _ReadPlan, writers: list[RecordingWriter], monitor: Monitor
             writer = next(taking, None)
             if writer is None:
                 folder = plan.folder_stem.with_name(f"{plan.folder_stem.name}-{len(writers)}")
-                writer = RecordingWriter(folder, lattice, scanner, keeps_angles=plan.keeps_angles)
+                angles = plan.way.keeps_angles
+                writer = RecordingWriter(folder, lattice, scanner, keeps_angles=angles)
                 writers.append(writer)
             writer.add(columns, lattice, plan.source, own)
         start += chunk.count
