@@ -1,31 +1,26 @@
-"""Marks: lines, vertices, symbols and the cursor's cross, in screen pixels at any zoom."""
+"""MarkPainter: lines, vertices and symbols of the picture, in screen pixels at any zoom."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QBrush, QColor, QImage, QPainter, QPainterPath, QPen
+from PySide6.QtGui import QBrush, QColor, QPainter, QPainterPath, QPen
 
 from widgets.image_view.viewport import Viewport
-from widgets.shared.crowded_marks import marks_to_paint
+from widgets.shared.feature_marks import FeatureMarks
 from widgets.shared.feature_style import FeatureStyle
-from widgets.shared.symbol_pictures import SYMBOL_PX, SymbolPictures
 
 Floats = NDArray[np.float64]
 
-_VERTEX_PX = 7.0
-_DISC_PX = 9.0
-_RING_PX = 28.0
 _FILL_ALPHA = 34
 
 
 class MarkPainter:
-    """Paints features; makes each pen and each symbol once."""
+    """Paints features; makes each pen once."""
 
     def __init__(self) -> None:
         self._pens: dict[FeatureStyle, tuple[QPen, QPen]] = {}
-        self._symbols = SymbolPictures()
+        self._marks = FeatureMarks()
 
     def paint_line(
         self,
@@ -67,59 +62,5 @@ class MarkPainter:
         hollow : (n,) bool or None
             Vertices whose squares are open: no measured point is there.
         """
-        if not (is_point or style.has_vertices):
-            return
-        ratio = painter.device().devicePixelRatioF()
-        symbol = self._symbols.picture(style.symbol, style.colour, ratio) if is_point else None
-        is_open = np.zeros(len(places), bool) if hollow is None else hollow
         spots = viewport.to_screen(places)
-        shown = marks_to_paint(spots, viewport.width, viewport.top + viewport.height)
-        squares: dict[bool, list[QRectF]] = {False: [], True: []}
-        for (x, y), is_hollow in zip(spots[shown].tolist(), is_open[shown].tolist(), strict=True):
-            if symbol is not None:
-                _paint_picture(painter, x, y, symbol, style)
-            elif is_point:
-                _paint_disc(painter, _box(x, y, _DISC_PX), style)
-            side = _RING_PX - 4 if is_point else _VERTEX_PX
-            squares[is_point or is_hollow].append(_box(x, y, side))
-        if style.has_vertices:
-            for is_empty, boxes in squares.items():
-                _paint_squares(painter, boxes, style, is_open=is_empty)
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-
-
-def _box(x: float, y: float, side: float) -> QRectF:
-    return QRectF(x - side / 2, y - side / 2, side, side)
-
-
-def _paint_squares(
-    painter: QPainter, boxes: list[QRectF], style: FeatureStyle, *, is_open: bool
-) -> None:
-    painter.setBrush(Qt.BrushStyle.NoBrush if is_open else QColor(style.colour))
-    for pen in (QPen(style.halo_pen().color(), 3.5), QPen(QColor("#ffffff"), 1.25)):
-        painter.setPen(pen)
-        painter.drawRects(boxes)
-
-
-def _paint_picture(
-    painter: QPainter, x: float, y: float, symbol: QImage, style: FeatureStyle
-) -> None:
-    """A survey symbol; candidates stand in a dashed ring."""
-    painter.drawImage(QPointF(x - SYMBOL_PX / 2, y - SYMBOL_PX / 2), symbol)
-    if style.is_dashed:
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        ring = _box(x, y, _RING_PX)
-        for pen in (QPen(style.halo_pen().color(), 1.0 + 2 * style.halo_px), style.pen()):
-            painter.setPen(pen)
-            painter.drawEllipse(ring)
-
-
-def _paint_disc(painter: QPainter, box: QRectF, style: FeatureStyle) -> None:
-    """What stands for a kind without a symbol; candidates have an open one."""
-    halo = style.halo_pen().color()
-    painter.setPen(QPen(halo, 2.0 + 2 * style.halo_px))
-    painter.setBrush(halo)
-    painter.drawEllipse(box)
-    painter.setPen(QPen(QColor(style.colour), 2.0))
-    painter.setBrush(Qt.BrushStyle.NoBrush if style.is_dashed else QColor(style.colour))
-    painter.drawEllipse(box)
+        self._marks.paint(painter, spots, style, is_point=is_point, hollow=hollow)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,10 +29,17 @@ class FeatureShape:
     feature: Feature
     local_xyz: Floats
 
-    @property
+    @cached_property
     def segments(self) -> Integers:
         """(m, 2): vertices at both ends; an area's last one leads back to its first vertex."""
         return segments_of(self.feature.geometry, len(self.local_xyz))
+
+    @cached_property
+    def bounds(self) -> Floats:
+        """(2, 3): lowest and highest of the vertices; infinite without any."""
+        if not len(self.local_xyz):
+            return np.array([[np.inf] * 3, [-np.inf] * 3])
+        return np.stack([self.local_xyz.min(axis=0), self.local_xyz.max(axis=0)])
 
 
 @dataclass(frozen=True)

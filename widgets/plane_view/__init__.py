@@ -1,0 +1,1 @@
+"""What the views share that show the map on a plane: section, camera and map."""

@@ -1,0 +1,216 @@
+"""FeaturePainter: the map's features in a plane view, in the same looks as in the image."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
+
+from processing.project.catalogue import Catalogue, Geometry
+from processing.project.feature import Status
+from widgets.plane_view.line_pieces import as_lines, cut_to, dashed, thinned
+from widgets.plane_view.projected_map import PlaneFeatures, ProjectedShape
+from widgets.plane_view.viewport import PlaneViewport
+from widgets.shared.feature_marks import FeatureMarks
+from widgets.shared.feature_style import FeatureStyle, style_of
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+MARGIN_PX = 16.0
+_MOST_SMOOTH = 4_000
+"""More pieces than these are painted without smoothed edges."""
+_MOST_WHOLE = 12_000
+"""More pieces than these are thinned to whole pixels."""
+_FILL_ALPHA = 34
+_LEAST_FILL_PX = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Looks:
+    """How the features are drawn: once for each choice, not once for each picture.
+
+    Attributes
+    ----------
+    styles : list of FeatureStyle
+        In the order in which they are painted.
+    style_of : (features,) int64
+        Into ``styles``.
+    areas : list of (number of the style, ProjectedShape)
+    points : list of (number of the style, numbers of vertices)
+    with_vertices : list of (number of the style, ProjectedShape)
+    """
+
+    styles: list[FeatureStyle]
+    style_of: Integers
+    areas: list[tuple[int, ProjectedShape]]
+    points: list[tuple[int, Integers]]
+    with_vertices: list[tuple[int, ProjectedShape]]
+
+
+class FeaturePainter:
+    """Paints features; remembers the looks of those painted last."""
+
+    def __init__(self) -> None:
+        self._marks = FeatureMarks()
+        self._looks: _Looks | None = None
+        self._looks_of: tuple[PlaneFeatures, Catalogue, frozenset[str]] | None = None
+
+    def paint(
+        self,
+        painter: QPainter,
+        features: PlaneFeatures,
+        viewport: PlaneViewport,
+        catalogue: Catalogue,
+        selected: frozenset[str],
+    ) -> None:
+        """Paint all features: areas, lines, points and the vertices of the chosen ones."""
+        looks = self._looks_for(features, catalogue, selected)
+        _paint_areas(painter, looks, viewport)
+        _paint_lines(painter, features, looks, viewport)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
+        spots = viewport.to_screen(features.places)
+        spots[~features.is_near] = np.nan
+        for number, vertices in looks.points:
+            self._marks.paint(painter, spots[vertices], looks.styles[number], is_point=True)
+        for number, one in looks.with_vertices:
+            own = np.where(one.is_near[:, None], viewport.to_screen(one.places), np.nan)
+            hollow = np.array([vertex.is_occluded for vertex in one.shape.feature.vertices])
+            self._marks.paint(painter, own, looks.styles[number], is_point=False, hollow=hollow)
+
+    def _looks_for(
+        self, features: PlaneFeatures, catalogue: Catalogue, selected: frozenset[str]
+    ) -> _Looks:
+        key = (features, catalogue, selected)
+        known = self._looks_of
+        if self._looks is None or known is None or not _is_same(known, key):
+            self._looks, self._looks_of = _looks_of(*key), key
+        return self._looks
+
+
+def _is_same(
+    one: tuple[PlaneFeatures, Catalogue, frozenset[str]],
+    other: tuple[PlaneFeatures, Catalogue, frozenset[str]],
+) -> bool:
+    return one[0] is other[0] and one[1] is other[1] and one[2] == other[2]
+
+
+def _looks_of(features: PlaneFeatures, catalogue: Catalogue, selected: frozenset[str]) -> _Looks:
+    order: dict[FeatureStyle, tuple[bool, bool]] = {}
+    own_styles = []
+    for one in features.shapes:
+        feature = one.shape.feature
+        style = style_of(catalogue, feature, is_selected=feature.id in selected)
+        order.setdefault(style, (feature.id in selected, feature.status is not Status.REJECTED))
+        own_styles.append(style)
+    styles = sorted(order, key=lambda style: order[style])
+    numbers = {style: number for number, style in enumerate(styles)}
+    style_numbers = np.array([numbers[style] for style in own_styles], dtype=np.int64)
+    areas, with_vertices = [], []
+    points: dict[int, list[int]] = {}
+    firsts = features.flat.first_vertices.tolist()
+    for index, one in enumerate(features.shapes):
+        number = int(style_numbers[index])
+        geometry = one.shape.feature.geometry
+        if geometry is Geometry.POINT:
+            points.setdefault(number, []).append(firsts[index])
+            continue
+        if geometry is Geometry.AREA and one.is_whole:
+            areas.append((number, one))
+        if styles[number].has_vertices:
+            with_vertices.append((number, one))
+    return _Looks(
+        styles,
+        style_numbers,
+        areas,
+        [(number, np.array(points[number], dtype=np.int64)) for number in sorted(points)],
+        with_vertices,
+    )
+
+
+def _paint_areas(painter: QPainter, looks: _Looks, viewport: PlaneViewport) -> None:
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=False)
+    window = QRectF(0, 0, viewport.width, viewport.height)
+    for number, one in looks.areas:
+        bounds = one.bounds
+        if bounds is None:
+            continue
+        (left, top), (right, bottom) = viewport.to_screen(bounds.reshape(2, 2)).tolist()
+        box = QRectF(left, top, right - left, bottom - top)
+        if min(box.width(), box.height()) < _LEAST_FILL_PX or not box.intersects(window):
+            continue
+        ring = QPolygonF(list(map(QPointF, *viewport.to_screen(one.pieces[:, 0]).T.tolist())))
+        if not window.adjusted(-8e3, -8e3, 8e3, 8e3).contains(box):
+            ring = ring.intersected(QPolygonF(window))  # Qt goes wrong beyond 32,767 px
+        fill = QColor(looks.styles[number].colour)
+        fill.setAlpha(_FILL_ALPHA)
+        painter.setBrush(fill)
+        painter.drawPolygon(ring)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+
+
+def _paint_lines(
+    painter: QPainter, features: PlaneFeatures, looks: _Looks, viewport: PlaneViewport
+) -> None:
+    low = np.array([-MARGIN_PX, -MARGIN_PX])
+    high = np.array([viewport.width + MARGIN_PX, viewport.height + MARGIN_PX])
+    pixels = viewport.to_screen(features.pieces)
+    pieces, numbers, starts = cut_to(pixels, low, high)
+    styles = looks.style_of[features.piece_owners[numbers]]
+    is_smooth = len(pieces) <= _MOST_SMOOTH
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing, is_smooth)
+    begins = starts
+    if any(style.is_dashed for style in looks.styles):
+        begins = starts + _begins(pixels, features.piece_owners)[numbers]
+    for number, style in enumerate(looks.styles):
+        own = np.flatnonzero(styles == number)
+        if own.size:
+            dashes = dashed(pieces[own], begins[own]) if style.is_dashed else None
+            paint_pieces(painter, pieces[own], style, dashes, is_many=len(pieces) > _MOST_WHOLE)
+
+
+def paint_pieces(
+    painter: QPainter,
+    pieces: Floats,
+    style: FeatureStyle,
+    dashes: Floats | None = None,
+    *,
+    is_many: bool = False,
+) -> None:
+    """Paint the pieces of lines: the dark halo below, then the line or its dashes.
+
+    Parameters
+    ----------
+    pieces : (k, 2, 2) float64
+        px, within the window.
+    dashes : (d, 2, 2) float64 or None
+    is_many : bool
+        Thin what is shorter than a pixel.
+    """
+    lines = as_lines(thinned(pieces) if is_many else pieces)
+    halo = style.halo_pen()
+    halo.setCapStyle(Qt.PenCapStyle.SquareCap)
+    painter.setPen(halo)
+    painter.drawLines(lines)
+    pen = QPen(QColor(style.colour), style.width_px)
+    if dashes is not None:
+        pen.setCapStyle(Qt.PenCapStyle.FlatCap)
+        lines = as_lines(thinned(dashes) if is_many else dashes)
+    painter.setPen(pen)
+    painter.drawLines(lines)
+
+
+def _begins(pixels: Floats, owners: Integers) -> Floats:
+    """(k,) how far along its feature each piece begins, px."""
+    lengths: Floats = np.nan_to_num(np.hypot(*(pixels[:, 1] - pixels[:, 0]).T))
+    before = np.cumsum(lengths) - lengths
+    if not len(owners):
+        return before
+    is_first = np.concatenate([[True], owners[1:] != owners[:-1]])
+    first_of = np.flatnonzero(is_first)[np.cumsum(is_first) - 1]
+    begins: Floats = before - before[first_of]
+    return begins

@@ -1,0 +1,124 @@
+"""What changes with every move of the mouse: the sketch, the cursor, the mark of a snap."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtGui import QPainter
+
+from processing.project.catalogue import Catalogue, Geometry
+from processing.project.feature import Position, Vertex
+from processing.text import Language
+from widgets.plane_view.feature_painter import MARGIN_PX, paint_pieces
+from widgets.plane_view.lay import Lay
+from widgets.plane_view.line_pieces import as_lines, cut_to
+from widgets.plane_view.projected_map import pieces_of
+from widgets.plane_view.viewport import PlaneViewport
+from widgets.shared.crowded_marks import FEW
+from widgets.shared.cursor import Place
+from widgets.shared.feature_marks import FeatureMarks
+from widgets.shared.feature_shapes import local_places, segments_of
+from widgets.shared.feature_style import sketch_style
+from widgets.shared.screen_marks import paint_cross, paint_note, paint_snap, preview_pens
+from widgets.shared.sketch import Drawing
+from widgets.shared.snap_state import SNAP_NAMES, SnapMark
+
+Floats = NDArray[np.float64]
+
+_NO_ORIGIN = np.zeros(3)
+
+
+@dataclass(frozen=True)
+class LiveContent:
+    """What there is to paint.
+
+    Attributes
+    ----------
+    cursor, cursor_before : Place or None
+        Where the shared cursor is and was.
+    """
+
+    catalogue: Catalogue
+    drawing: Drawing | None
+    cursor: Place | None
+    cursor_before: Place | None
+    snap: SnapMark | None
+    language: Language
+
+
+class LivePainter:
+    """Paints over the still picture."""
+
+    def __init__(self) -> None:
+        self._marks = FeatureMarks()
+
+    def paint(
+        self, painter: QPainter, lay: Lay, viewport: PlaneViewport, content: LiveContent
+    ) -> None:
+        """Paint the sketch, then the cursor, the notes and where the next click would land."""
+        drawing = content.drawing
+        if drawing is not None:
+            self._paint_drawing(painter, lay, viewport, content.catalogue, drawing)
+        cursor, before = content.cursor, content.cursor_before
+        spot = None if cursor is None else spot_of(lay, viewport, cursor.xyz)
+        if spot is not None:
+            trail = None if before is None else spot_of(lay, viewport, before.xyz)
+            paint_cross(painter, spot, trail)
+        for note in () if drawing is None else drawing.notes:
+            at = spot_of(lay, viewport, note.xyz)
+            if at is not None:
+                paint_note(painter, at, note)
+        snap = content.snap
+        at = None if snap is None else spot_of(lay, viewport, snap.xyz)
+        if snap is not None and at is not None:
+            paint_snap(painter, at, snap.mode, SNAP_NAMES[snap.mode].spoken(content.language))
+
+    def _paint_drawing(
+        self,
+        painter: QPainter,
+        lay: Lay,
+        viewport: PlaneViewport,
+        catalogue: Catalogue,
+        drawing: Drawing,
+    ) -> None:
+        style = sketch_style(catalogue, drawing.kind)
+        xyz = local_places(drawing.vertices, _NO_ORIGIN)
+        shape = drawing.geometry if drawing.replaces else Geometry.LINE
+        pieces = _pieces(lay, viewport, xyz, shape)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, len(pieces) <= FEW)
+        paint_pieces(painter, pieces, style)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
+        if drawing.preview and len(xyz):
+            lines = as_lines(_pieces(lay, viewport, _preview_of(drawing), Geometry.LINE))
+            for pen in preview_pens():
+                painter.setPen(pen)
+                painter.drawLines(lines)
+        if len(xyz):
+            hollow = np.array([vertex.is_occluded for vertex in drawing.vertices])
+            spots = viewport.to_screen(lay.to_plane(xyz))
+            is_point = drawing.geometry is Geometry.POINT
+            self._marks.paint(painter, spots, style, is_point=is_point, hollow=hollow)
+
+
+def spot_of(lay: Lay, viewport: PlaneViewport, xyz: Position) -> tuple[float, float] | None:
+    """Where a place is in the widget; None where it isn't shown."""
+    x, y = viewport.to_screen(lay.to_plane(np.array([xyz], dtype=np.float64)))[0].tolist()
+    return (x, y) if np.isfinite(x) and np.isfinite(y) else None
+
+
+def _pieces(lay: Lay, viewport: PlaneViewport, xyz: Floats, shape: Geometry) -> Floats:
+    """(k, 2, 2) px within the window."""
+    pieces, _ = pieces_of(lay, xyz, segments_of(shape, len(xyz)))
+    low = np.array([-MARGIN_PX, -MARGIN_PX])
+    high = np.array([viewport.width + MARGIN_PX, viewport.height + MARGIN_PX])
+    return cut_to(viewport.to_screen(pieces), low, high)[0]
+
+
+def _preview_of(drawing: Drawing) -> Floats:
+    """(n, 3): from the last vertex over what is coming; of an area, back to its first one."""
+    way: list[Vertex] = [drawing.vertices[-1], *drawing.preview]
+    if drawing.geometry is Geometry.AREA and len(drawing.vertices) > 1:
+        way.append(drawing.vertices[0])
+    return local_places(way, _NO_ORIGIN)
