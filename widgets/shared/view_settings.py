@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject, Signal
 
 from processing.image.kinds import ImageKind
 from processing.project.feature import Feature, Status
+from widgets.shared.image_lay import ImageLay
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,7 @@ class ViewSettings(QObject):
         self._hidden_kinds: frozenset[str] = frozenset()
         self._hidden_runs: frozenset[str] = frozenset()
         self._shows_rejected = False
+        self._image_lay = ImageLay()
 
     @property
     def look(self) -> PointLook:
@@ -63,6 +65,11 @@ class ViewSettings(QObject):
     def image_kind(self) -> ImageKind:
         """The kind of point-cloud image shown."""
         return self._image_kind
+
+    @property
+    def image_lay(self) -> ImageLay:
+        """Which way the street runs in the image."""
+        return self._image_lay
 
     @property
     def hidden_kinds(self) -> frozenset[str]:
@@ -110,6 +117,12 @@ class ViewSettings(QObject):
         if (drive_id, kind) != (self._drive_id, self._image_kind):
             self._drive_id, self._image_kind = drive_id, kind
             self.image_changed.emit()
+
+    def lay_image(self, lay: ImageLay) -> None:
+        """Let the street run this way in the image."""
+        if lay != self._image_lay:
+            self._image_lay = lay
+            self.image_lay_changed.emit()
 
     def hide_kinds(self, kinds: frozenset[str]) -> None:
         """Hide exactly these feature kinds."""
