@@ -89,9 +89,7 @@ def _names_of(sources: Sequence[Path]) -> list[str]:
     return names
 
 
-def _in_file_order(
-    drives: Sequence[Drive], source: str, monitor: Monitor
-) -> tuple[_Codes, _Codes]:
+def _in_file_order(drives: Sequence[Drive], source: str, monitor: Monitor) -> tuple[_Codes, _Codes]:
     """Labels and delivered classes of all points of a file, in its order."""
     mine = [
         (drive, number, one.points)

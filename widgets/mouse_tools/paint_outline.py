@@ -13,7 +13,7 @@ from widgets.shared.shared_state import SharedState
 
 
 class PaintOutline(PaintTool):
-    """A drag draws the outline; what the view shows inside it gets the label.
+    """A drag draws the outline; all measured points inside it get the label, drawn or not.
 
     Parameters
     ----------
@@ -39,4 +39,8 @@ class PaintOutline(PaintTool):
     @override
     def choose_box(self, boxed: Boxed) -> None:
         self._begin()
-        self._paint(boxed.points)
+        self._show_stroke(boxed.points)
+        if boxed.find_every is None:
+            self._paint(boxed.points)
+        else:
+            self._paint_later(boxed.every)
