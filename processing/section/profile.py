@@ -27,6 +27,10 @@ _LAYER_M = 0.05
 _LOWEST_SHARE = 0.05
 """Of the points of a bin so many may be stray ones below the ground."""
 
+_AROUND = 5
+_SPIKE_M = 0.3
+"""A bin so far above the median of five on either side is no ground."""
+
 _GAP_M = 0.5
 """Over wider gaps the ground line is interrupted."""
 
@@ -156,10 +160,14 @@ def ground_line(offsets_m: ArrayLike, heights_m: ArrayLike) -> tuple[Floats, ...
     Notes
     -----
     1. Of each bin the lowest twentieth of the points is left out as stray.
-    2. The median of what lies within 5 cm above the lowest that is left is the ground, and so is
-       the median of the offsets of these points.
+    2. The median of what lies within 5 cm above the lowest that is left is the bin's height, and
+       so is the median of the offsets of these points.
+    3. A bin that stands out of the median of those around it is what hides the ground there: a
+       leaf, a thin pole.
     """
     offsets = np.asarray(offsets_m, dtype=np.float64)
+    if not offsets.size:
+        return ()
     heights = np.asarray(heights_m, dtype=np.float64)
     numbers = np.floor(offsets / BIN_M).astype(np.int64)
     order = np.lexsort((heights, numbers))
@@ -171,9 +179,19 @@ def ground_line(offsets_m: ArrayLike, heights_m: ArrayLike) -> tuple[Floats, ...
         end = int(np.searchsorted(heights[lowest:stop], heights[lowest] + _LAYER_M, "right"))
         layer = slice(lowest, lowest + end)
         places.append((np.median(offsets[layer]), np.median(heights[layer])))
-    line = np.array(places).reshape(-1, 2)
+    line = _without_spikes(np.array(places).reshape(-1, 2))
     gaps = np.flatnonzero(np.diff(line[:, 0]) > _GAP_M) + 1
     return tuple(part for part in np.split(line, gaps) if len(part) > 1)
+
+
+def _without_spikes(line: Floats) -> Floats:
+    around = min(_AROUND, (len(line) - 1) // 2)
+    if around < 1:
+        return line
+    heights = np.pad(line[:, 1], around, mode="reflect")
+    windows = np.lib.stride_tricks.sliding_window_view(heights, 2 * around + 1)
+    stands_out = line[:, 1] > np.median(windows, axis=1) + _SPIKE_M
+    return line[~stands_out]
 
 
 def crossings_of(cut: Cut, line: DrawnLine) -> list[Crossing]:

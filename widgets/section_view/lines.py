@@ -1,0 +1,172 @@
+"""SectionLines: the lines that sections stand on: trajectories and what is drawn."""
+
+from __future__ import annotations
+
+import numpy as np
+from PySide6.QtCore import QObject
+
+from processing.errors import UserError
+from processing.points.drive import Drive
+from processing.project.catalogue import Geometry
+from processing.project.feature import Feature, Position
+from processing.section.stations import Stations
+from widgets.mouse_tools.near_features import NearFeatures
+from widgets.section_view.standing import CutLine, Standing
+from widgets.shared.cursor import Place
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+
+_LINE_REACH_M = 0.5
+"""A drawn line is under the mouse within so much in plan; and so high above or below."""
+
+_HEIGHT_REACH_M = 1.5
+_TRAJECTORY_REACH_M = 1.0
+_SAME_PASS_M = 60.0
+_START_M = 10.0
+
+
+class SectionLines(QObject):
+    """Finds lines and where places stand on them; keeps their stations.
+
+    Parameters
+    ----------
+    source : MapSource
+    shared : SharedState
+    """
+
+    def __init__(
+        self, source: MapSource, shared: SharedState, parent: QObject | None = None
+    ) -> None:
+        super().__init__(parent)
+        self._source = source
+        self._shared = shared
+        self._near = NearFeatures(source, shared.map_changes, self)
+        self._drawn: dict[str, tuple[Feature, CutLine | None]] = {}
+        self._driven: dict[str, CutLine | None] = {}
+        shared.map_changes.drives_changed.connect(self._on_drives_changed)
+        shared.map_changes.features_changed.connect(self._on_features_changed)
+
+    @property
+    def has_trajectory(self) -> bool:
+        """Whether any drive has a trajectory that leads somewhere."""
+        return any(self.trajectory(drive) is not None for drive in self._source.drives())
+
+    def drawn(self, feature_id: str) -> CutLine | None:
+        """A drawn line or the outline of an area; None where there is none with a length."""
+        feature = self._source.feature(feature_id)
+        if feature is None or feature.geometry is Geometry.POINT:
+            return None
+        known = self._drawn.get(feature_id)
+        if known is None or known[0] is not feature:
+            known = self._drawn[feature_id] = feature, _line_of(feature)
+        return known[1]
+
+    def trajectory(self, drive: Drive) -> CutLine | None:
+        """The trajectory of a drive; None where it has none or never moved."""
+        if drive.id not in self._driven:
+            self._driven[drive.id] = _driven_line(drive)
+        return self._driven[drive.id]
+
+    def standing_at(self, line: CutLine, place: Place) -> Standing:
+        """Where the section across a line goes through a place."""
+        between = None
+        if line.drive and place.measured is not None and place.measured.drive == line.drive:
+            between = self._pass_of(line, place.measured.point)
+        return Standing(line, line.stations.through(place.xyz, between), through=place.xyz)
+
+    def across_trajectory(self, place: Place) -> Standing | None:
+        """Where a section across the nearest trajectory goes through a place.
+
+        That of the place's own drive goes before others.
+        """
+        drives = self._source.drives()
+        if place.measured is not None:
+            drives = tuple(one for one in drives if one.id == place.measured.drive) or drives
+        lines = [line for drive in drives if (line := self.trajectory(drive)) is not None]
+        if not lines:
+            others = [self.trajectory(drive) for drive in self._source.drives()]
+            lines = [line for line in others if line is not None]
+        found = [self.standing_at(line, place) for line in lines]
+        return min(found, key=lambda one: _distance(one, place), default=None)
+
+    def start(self) -> Standing | None:
+        """Near the beginning of the drive that the image view shows, or of the first one."""
+        chosen = self._shared.view_settings.drive_id
+        drives = sorted(self._source.drives(), key=lambda drive: drive.id != chosen)
+        for drive in drives:
+            line = self.trajectory(drive)
+            if line is not None:
+                return Standing(line, min(_START_M, line.stations.length_m / 2))
+        return None
+
+    def under(self, place: Place) -> Standing | None:
+        """The line under a place, drawn ones before trajectories; None where none is near."""
+        best: tuple[float, CutLine] | None = None
+        for line in self._near_lines(place):
+            stations = line.stations
+            station_m = stations.nearest(place.xyz)
+            away = stations.distance(place.xyz, station_m)
+            above = place.xyz[2] - stations.place_at(station_m)[2]
+            is_near = away <= _LINE_REACH_M and abs(above) <= _HEIGHT_REACH_M
+            if is_near and (best is None or away < best[0]):
+                best = away, line
+        if best is not None:
+            return self.standing_at(best[1], place)
+        driven = self.across_trajectory(place)
+        is_near = driven is not None and _distance(driven, place) <= _TRAJECTORY_REACH_M
+        return driven if is_near else None
+
+    def at_hand(self) -> str:
+        """Id of the chosen line, or else of the one at the cursor; empty when there is none."""
+        for id_ in sorted(self._shared.selection.features):
+            if self.drawn(id_) is not None:
+                return id_
+        place = self._shared.cursor.place
+        found = None if place is None else self.under(place)
+        return "" if found is None else found.line.feature
+
+    def near(self, place: Position, reach_m: float) -> list[Feature]:
+        """The features that are shown and whose bounds come within reach of a place."""
+        settings = self._shared.view_settings
+        return [feature for feature in self._near.within(place, reach_m) if settings.shows(feature)]
+
+    def _near_lines(self, place: Place) -> list[CutLine]:
+        found = [self.drawn(feature.id) for feature in self.near(place.xyz, _LINE_REACH_M)]
+        return [line for line in found if line is not None]
+
+    def _pass_of(self, line: CutLine, point: int) -> tuple[float, float] | None:
+        """The stretch that was driven about the time of a point: streets are driven twice."""
+        drive = self._source.drive(line.drive)
+        station = line.stations.station_at_time(float(drive.columns["time"][point]))
+        return None if station is None else (station - _SAME_PASS_M, station + _SAME_PASS_M)
+
+    def _on_drives_changed(self) -> None:
+        self._drawn.clear()
+        self._driven.clear()
+
+    def _on_features_changed(self, ids: tuple[str, ...]) -> None:
+        for id_ in ids:
+            self._drawn.pop(id_, None)
+
+
+def _line_of(feature: Feature) -> CutLine | None:
+    places = np.array([vertex.xyz for vertex in feature.vertices])
+    try:
+        stations = Stations(places, is_closed=feature.geometry is Geometry.AREA)
+    except UserError:  # a line without length is no line to cut across
+        return None
+    return CutLine(feature.id, "", stations)
+
+
+def _driven_line(drive: Drive) -> CutLine | None:
+    trajectory = drive.trajectory
+    if trajectory is None:
+        return None
+    try:
+        return CutLine("", drive.id, Stations.of_trajectory(trajectory))
+    except UserError:  # the vehicle never moved
+        return None
+
+
+def _distance(standing: Standing, place: Place) -> float:
+    return standing.line.stations.distance(place.xyz, standing.station_m)

@@ -1,0 +1,59 @@
+"""LiveLine: the line that the mouse is over in any view, told now and then while it moves."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from widgets.section_view.lines import SectionLines
+from widgets.shared.cursor import Cursor, Place
+
+_EVERY_MS = 25
+
+
+class LiveLine(QObject):
+    """Looks for the line under the mouse at most every 25 ms.
+
+    Parameters
+    ----------
+    cursor : Cursor
+    lines : SectionLines
+
+    Attributes
+    ----------
+    is_on : bool
+        Whether anything is told.
+
+    Signals
+    -------
+    found(standing: Standing)
+        A section through what the mouse is over; nothing is told over no line.
+    """
+
+    found = Signal(object)
+
+    def __init__(self, cursor: Cursor, lines: SectionLines, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._lines = lines
+        self._place: Place | None = None
+        self.is_on = True
+        self._wait = QTimer(self, singleShot=True, interval=_EVERY_MS)
+        self._wait.timeout.connect(self._on_wait_timeout)
+        cursor.hovered.connect(self._on_cursor_hovered)
+
+    def stop(self) -> None:
+        """Forget where the mouse was."""
+        self._place = None
+        self._wait.stop()
+
+    def _on_cursor_hovered(self, place: Place | None) -> None:
+        if place is None or not self.is_on:
+            return
+        self._place = place
+        if not self._wait.isActive():
+            self._wait.start()
+
+    def _on_wait_timeout(self) -> None:
+        place, self._place = self._place, None
+        standing = None if place is None else self._lines.under(place)
+        if standing is not None:
+            self.found.emit(standing)

@@ -1,0 +1,354 @@
+"""SectionPane: the picture of one section, drawn in like any view."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QEvent, QPointF, QRectF, Signal
+from PySide6.QtGui import QCloseEvent, QMouseEvent, QPainter, QPolygonF, QResizeEvent
+from PySide6.QtWidgets import QMenu, QWidget
+from typing_extensions import override
+
+from processing.points.drive import Drive
+from processing.section.cut import Cut
+from processing.text import Language
+from widgets.plane_view.lay import Spot
+from widgets.plane_view.view import PlaneView
+from widgets.plane_view.viewport import PlaneViewport
+from widgets.section_view.feed import SectionFeed, SectionPicture, SectionWish
+from widgets.section_view.frame import BOTTOM_PX, LEFT_PX, paint_frame
+from widgets.section_view.ground import GroundPainter
+from widgets.section_view.lay import SectionLay
+from widgets.section_view.lines import SectionLines
+from widgets.section_view.marks import SectionMark, mark_of, mark_under, paint_marks
+from widgets.section_view.point_search import measured_point, points_within, shown_point
+from widgets.section_view.standing import Standing
+from widgets.section_view.titles import frame_words
+from widgets.shared.cursor import Place
+from widgets.shared.map_source import MapSource
+from widgets.shared.screen_marks import paint_note
+from widgets.shared.shared_state import SharedState
+from widgets.shared.sketch import Note
+
+_START_HALF_M = 8.0
+_START_BELOW_M, _START_ABOVE_M = 1.5, 3.5
+_GROUND_WITHIN_M = 4.0
+_GROUND_PERCENT = 25
+_GROUND_SHARE = 0.7
+"""The ground lies so far down in the window: what stands on it is seen."""
+
+_MORE_PX = 1.0
+"""Points of a section are so much larger than in 3D, where they overlap."""
+
+
+class SectionPane(PlaneView):
+    """Shows one standing; the picture before stays until the points of the new one are there.
+
+    Attributes
+    ----------
+    is_pinned : bool
+        Whether it is one of two windows; said in its title.
+    is_mouse_here, is_clicking : bool
+        Whether the mouse is over it, and whether a click in it is being told to the tool.
+
+    Signals
+    -------
+    distance_colours_toggled(is_on: bool)
+        Wished in the menu.
+    """
+
+    distance_colours_toggled = Signal(bool)
+
+    def __init__(
+        self,
+        source: MapSource,
+        shared: SharedState,
+        lines: SectionLines,
+        parent: QWidget | None = None,
+        *,
+        language: Language = "en",
+    ) -> None:
+        super().__init__(source, shared, parent, language=language)
+        self._lines = lines
+        self._standing: Standing | None = None
+        self._picture: SectionPicture | None = None
+        self._lay: SectionLay | None = None
+        self._framed = ""
+        self._ground_y = 0.0
+        self._marks: tuple[SectionMark, ...] = ()
+        self._named: tuple[SectionMark, tuple[float, float]] | None = None
+        self._is_by_distance = False
+        self._is_closed = False
+        self._points = GroundPainter()
+        self.is_pinned = False
+        self.is_mouse_here = False
+        self.is_clicking = False
+        self._feed = SectionFeed()
+        self._feed.arrived.connect(self._on_feed_arrived)
+        shared.map_changes.features_changed.connect(self._read_marks)
+        shared.view_settings.shown_features_changed.connect(self._read_marks)
+        shared.view_settings.look_changed.connect(self._ask)
+        shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
+
+    # What others ask.
+
+    @property
+    def standing(self) -> Standing | None:
+        """Where the section stands; its picture may still be on its way."""
+        return self._standing
+
+    @property
+    def cut(self) -> Cut | None:
+        """The cut that is painted."""
+        return None if self._lay is None else self._lay.cut
+
+    @property
+    def picture(self) -> SectionPicture | None:
+        """What is painted; None before the first points came."""
+        return self._picture
+
+    def show_standing(self, standing: Standing | None) -> None:
+        """Cut here from now on; None: nowhere."""
+        self._standing = standing
+        if standing is None:
+            self._picture = self._lay = None
+            self._framed, self._marks = "", ()
+            self.set_ground_stale()
+        else:
+            self._ask()
+        self.update()
+
+    def exaggerate(self, factor: float) -> None:
+        """Draw heights so many times larger; the ground stays where it is in the window."""
+        viewport = self.viewport
+        ground = np.array([[0.0, self._ground_y]])
+        before = viewport.to_screen(ground)[0, 1]
+        drawn = replace(viewport, exaggeration=factor)
+        after = drawn.to_screen(ground)[0, 1]
+        self.set_viewport(drawn.panned(0.0, float(before - after)))
+
+    def colour_by_distance(self, *, is_on: bool) -> None:
+        """Colour points by their distance from the plane, or as the other views do."""
+        if is_on is not self._is_by_distance:
+            self._is_by_distance = is_on
+            self._ask()
+
+    @override
+    def close(self) -> bool:
+        """Stop looking for points; may be called again."""
+        self._take_down()
+        return super().close()
+
+    @override
+    def closeEvent(self, event: QCloseEvent) -> None:
+        self._take_down()
+        super().closeEvent(event)
+
+    # What a plane view asks.
+
+    @override
+    def lay(self) -> SectionLay | None:
+        return self._lay
+
+    @override
+    def words(self) -> str:
+        if not any(drive.count for drive in self._source.drives()):
+            return self.tr("The section appears here once a recording is open.")
+        if self._standing is not None:
+            return self.tr("Points are being looked for.")
+        if self._lines.has_trajectory:
+            return self.tr("Click a place in another view to cut there.")
+        return self.tr("This recording has no trajectory: select a drawn line to cut across it.")
+
+    @override
+    def extent(self) -> QRectF | None:
+        picture, lay = self.picture, self.lay()
+        if picture is None or lay is None or not len(picture.section):
+            return None
+        places = lay.on_plane(picture.section)
+        low, high = np.percentile(places, [0.2, 99.8], axis=0)
+        (left, top), (right, bottom) = low.tolist(), high.tolist()
+        return QRectF(QPointF(left, top), QPointF(right, bottom))
+
+    @override
+    def paint_ground(self, painter: QPainter, viewport: PlaneViewport) -> None:
+        if self._picture is not None:
+            size_px = self._shared.view_settings.look.point_size_px + _MORE_PX
+            self._points.paint(painter, self._picture, viewport, size_px)
+
+    @override
+    def paint_frame(self, painter: QPainter, viewport: PlaneViewport) -> None:
+        picture = self._picture
+        if picture is None:
+            return
+        paint_marks(painter, self._marks, viewport, self._shared.selection.features)
+        words = frame_words(
+            self._source,
+            picture.wish.standing,
+            self._language,
+            exaggeration=viewport.exaggeration,
+            is_pinned=self.is_pinned,
+            is_empty=not picture.points.size,
+        )
+        paint_frame(painter, viewport, picture.wish.cut, words)
+        if self._named is not None:
+            mark, place = self._named
+            x, y = viewport.to_screen(np.array([place]))[0].tolist()
+            paint_note(painter, (x, y), Note((0.0, 0.0, 0.0), mark.name))
+
+    @override
+    def place_at(self, place: Spot, reach: float, *, exact: bool) -> Place | None:
+        picture, lay = self.picture, self.lay()
+        if picture is None or lay is None:
+            return None
+        at = np.array([place[0], lay.height_of(place[1])])
+        ellipse = np.array([reach, reach / self.viewport.exaggeration])
+        return (measured_point if exact else shown_point)(picture, at, ellipse)
+
+    @override
+    def points_inside(self, outline: QPolygonF) -> Mapping[str, NDArray[np.int64]]:
+        picture = self._picture
+        if picture is None:
+            return {}
+        return points_within(picture, self.viewport, outline)
+
+    @override
+    def reach_box(self) -> NDArray[np.float64] | None:
+        cut = self.cut
+        if cut is None:
+            return None
+        # Half as long again: the plane goes on beyond the slab's ends.
+        corners = replace(cut, half_length_m=1.5 * cut.half_length_m).outline
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        return np.array([[*low, -np.inf], [*high, np.inf]])
+
+    @override
+    def on_cursor_moved(self, place: Place) -> None:
+        """Stay: the section itself moves to the cursor."""
+        self.update()
+
+    @override
+    def view_menu(self) -> QMenu:
+        menu = super().view_menu()
+        colours = menu.addAction(self.tr("Colour by distance from the plane"))
+        colours.setCheckable(True)
+        colours.setChecked(self._is_by_distance)
+        colours.toggled.connect(self.distance_colours_toggled)
+        return menu
+
+    # Events.
+
+    @override
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if self._picture is not None and not self._framed:
+            self._look_at_place(self._picture)
+
+    @override
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        self.is_mouse_here = True
+        super().mouseMoveEvent(event)
+        named = mark_under(self._marks, self.viewport, event.position())
+        if named != self._named:
+            self._named = named
+            self.update()
+
+    @override
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        self.is_mouse_here = self.is_clicking = True
+        super().mousePressEvent(event)
+        self.is_clicking = False
+
+    @override
+    def mouseReleaseEvent(self, event: QMouseEvent) -> None:
+        self.is_clicking = True
+        super().mouseReleaseEvent(event)
+        self.is_clicking = False
+
+    @override
+    def leaveEvent(self, event: QEvent) -> None:
+        super().leaveEvent(event)
+        self.is_mouse_here = False
+        self._named = None
+        self.update()
+
+    # What others tell.
+
+    def _on_feed_arrived(self, picture: SectionPicture) -> None:
+        # What was asked for and passed meanwhile is shown all the same: the newest comes last.
+        if self._is_closed or self._standing is None or picture.wish.drives != self._drives():
+            return
+        self._picture = picture
+        if self._lay is None or self._lay.cut != picture.wish.cut:
+            self._lay = SectionLay(picture.wish.cut)
+        self._read_marks()
+        self._look_at_place(picture)
+        self.set_ground_stale()
+        self.update()
+        self.sharpened.emit()
+
+    def _on_map_drive_columns_changed(self, drive_id: str) -> None:
+        if any(drive.id == drive_id for drive in self._source.drives()):
+            self._ask()
+
+    # What is done in more than one place.
+
+    def _ask(self) -> None:
+        if self._standing is None or self._is_closed:
+            return
+        standing, look = self._standing, self._shared.view_settings.look
+        wish = SectionWish(standing, standing.cut, self._drives(), look, self._is_by_distance)
+        self._feed.wish(wish)
+
+    def _drives(self) -> tuple[Drive, ...]:
+        return tuple(drive for drive in self._source.drives() if drive.count)
+
+    def _read_marks(self) -> None:
+        cut = self.cut
+        if cut is None:
+            self._marks = ()
+            return
+        near = self._lines.near(cut.middle, cut.half_length_m)
+        made = (mark_of(self._source, one, cut, self._language) for one in near)
+        self._marks = tuple(mark for mark in made if mark is not None)
+        self._named = None
+        self.update()
+
+    def _look_at_place(self, picture: SectionPicture) -> None:
+        """Begin on the ground at each new line; afterwards move only as far as needed."""
+        if self.viewport.width <= 1:  # never shown yet: it is looked at when it is
+            return
+        standing = picture.wish.standing
+        line = standing.line
+        framed = f"{line.feature}/{line.drive}/{standing.is_along}"
+        viewport, lay = self.viewport, SectionLay(picture.wish.cut)
+        if framed != self._framed:
+            y = self._ground_y = _ground_y(lay, picture)
+            sides = y - _START_ABOVE_M, _START_HALF_M, y + _START_BELOW_M
+            scaled = viewport if self._framed else viewport.fitted(-_START_HALF_M, *sides)
+            below = (_GROUND_SHARE - 0.5) * viewport.height / scaled.scale_y
+            self.set_viewport(scaled.centred_on(0.0, y - below))
+            self._framed = framed
+        if standing.through is not None:
+            place = lay.to_plane(np.array([standing.through]))
+            x, y = self.viewport.to_screen(place)[0].tolist()
+            inside = LEFT_PX <= x <= self.width() and 0 <= y <= self.height() - BOTTOM_PX
+            if np.isfinite(x) and not inside:
+                self.set_viewport(self.viewport.centred_on(*place[0].tolist()))
+
+    def _take_down(self) -> None:
+        if not self._is_closed:
+            self._is_closed = True
+            self._feed.close()
+
+
+def _ground_y(lay: SectionLay, picture: SectionPicture) -> float:
+    """Where the ground about the middle is on the plane; the middle where no points are."""
+    section = picture.section
+    near = section[np.abs(section[:, 0]) <= _GROUND_WITHIN_M, 1]
+    if not near.size:
+        return 0.0
+    return lay.cut.middle[2] - float(np.percentile(near, _GROUND_PERCENT))

@@ -1,0 +1,35 @@
+"""SectionSettings: how sections are cut and shown, one value."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+EXAGGERATIONS = (1.0, 2.0, 5.0, 10.0)
+
+
+@dataclass(frozen=True)
+class SectionSettings:
+    """What the bar of the section view sets.
+
+    Attributes
+    ----------
+    width_m : float
+        Thickness of the slab.
+    step_m : float
+        How far a key steps along the line.
+    exaggeration : float
+        How many times heights are drawn larger.
+    is_along : bool
+        Whether the slab lies along the line instead of across it.
+    is_live : bool
+        Whether the slab follows the mouse over lines in any view.
+    is_by_distance : bool
+        Whether points are coloured by their distance from the plane.
+    """
+
+    width_m: float = 1.0
+    step_m: float = 1.0
+    exaggeration: float = 1.0
+    is_along: bool = False
+    is_live: bool = True
+    is_by_distance: bool = False

@@ -1,0 +1,398 @@
+"""SectionView: a cut through the recording, stepped, followed live, or held as two windows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from PySide6.QtCore import QPointF, Qt, Signal
+from PySide6.QtGui import QCloseEvent, QKeyEvent
+from PySide6.QtWidgets import QSplitter, QVBoxLayout, QWidget
+from typing_extensions import override
+
+from processing.section.cut import Cut
+from processing.section.profile import Profile, profile_of
+from processing.text import Language, Text
+from widgets.mouse_tools.mouse_tool import MouseTool
+from widgets.section_view.bar import SectionBar
+from widgets.section_view.drawn_lines import drawn_lines
+from widgets.section_view.ground_place import place_of_step
+from widgets.section_view.lines import SectionLines
+from widgets.section_view.live import LiveLine
+from widgets.section_view.pane import SectionPane
+from widgets.section_view.pinned import PinnedSections
+from widgets.section_view.settings import SectionSettings
+from widgets.section_view.standing import Standing
+from widgets.section_view.titles import line_title
+from widgets.shared.cursor import Place
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+
+NO_LINE = Text(
+    "Select a line first: the section then stands on it.",
+    "先に線を選択してください。選択した線の位置で断面を表示します。",
+)
+
+_MANY = 10
+
+
+class SectionView(QWidget):
+    """Shows the slab through the shared cursor, across the trajectory or a drawn line.
+
+    Parameters
+    ----------
+    source : MapSource
+    shared : SharedState
+    language : Language
+
+    Signals
+    -------
+    sharpened()
+        The points of the section that is asked for are painted.
+    menu_requested(wish: MenuWish)
+        The right button with nothing under way.
+    cut_changed(cut: Cut | None)
+        Where the slab is now; pinned: the one across.
+    settings_changed(settings: SectionSettings)
+        Set by hand, worth remembering.
+    pinned_changed(is_pinned: bool)
+    told(text: Text)
+        A line for the status bar.
+    profile_export_requested(), template_requested()
+        The buttons of the bar; :meth:`profile_wish` gives what is to be exported.
+    """
+
+    sharpened = Signal()
+    menu_requested = Signal(object)
+    cut_changed = Signal(object)
+    settings_changed = Signal(object)
+    pinned_changed = Signal(bool)
+    told = Signal(object)
+    profile_export_requested = Signal()
+    template_requested = Signal()
+
+    def __init__(
+        self,
+        source: MapSource,
+        shared: SharedState,
+        parent: QWidget | None = None,
+        *,
+        language: Language = "en",
+    ) -> None:
+        super().__init__(parent)
+        self._source = source
+        self._shared = shared
+        self._settings = SectionSettings()
+        self._followed = ""
+        self._standing: Standing | None = None
+        self._pinned: PinnedSections | None = None
+        self._told_cut: Cut | None = None
+        self._is_stepping = False
+        self._lines = SectionLines(source, shared, self)
+        self._bar = SectionBar(self)
+        self._first = SectionPane(source, shared, self._lines, self, language=language)
+        self._second = SectionPane(source, shared, self._lines, self, language=language)
+        self._live = LiveLine(shared.cursor, self._lines, self)
+        self._live.found.connect(self._on_live_found)
+        self._lay_out()
+        self._listen()
+        self._restart()
+
+    def _lay_out(self) -> None:
+        self._panes = QSplitter(Qt.Orientation.Horizontal, self)
+        self._panes.setChildrenCollapsible(False)
+        for pane in (self._first, self._second):
+            self._panes.addWidget(pane)
+        self._second.hide()
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        layout.addWidget(self._bar)
+        layout.addWidget(self._panes, 1)
+        self.setFocusProxy(self._first)
+
+    def _listen(self) -> None:
+        shared, bar = self._shared, self._bar
+        shared.cursor.moved.connect(self._on_cursor_moved)
+        shared.selection.features_changed.connect(self._on_selection_features_changed)
+        shared.map_changes.features_changed.connect(self._on_map_features_changed)
+        shared.map_changes.drives_changed.connect(self._restart)
+        bar.settings_chosen.connect(self._on_bar_settings_chosen)
+        bar.line_wanted.connect(self._on_bar_line_wanted)
+        bar.pin_toggled.connect(self.set_pinned)
+        bar.profile_export_requested.connect(self.profile_export_requested)
+        bar.template_requested.connect(self.template_requested)
+        self._first.sharpened.connect(self.sharpened)
+        for pane in (self._first, self._second):
+            pane.menu_requested.connect(self.menu_requested)
+            pane.distance_colours_toggled.connect(self._on_pane_distance_colours_toggled)
+
+    # What others ask.
+
+    @property
+    def settings(self) -> SectionSettings:
+        """How sections are cut and shown."""
+        return self._settings
+
+    @property
+    def standing(self) -> Standing | None:
+        """Where the section stands; pinned: the one across."""
+        return self._standing if self._pinned is None else self._pinned.across
+
+    @property
+    def cut(self) -> Cut | None:
+        """The slab; None where there is none."""
+        standing = self.standing
+        return None if standing is None else standing.cut
+
+    @property
+    def panes(self) -> tuple[SectionPane, ...]:
+        """The pictures that are shown: one, or two while pinned."""
+        return (self._first,) if self._pinned is None else (self._first, self._second)
+
+    @property
+    def is_pinned(self) -> bool:
+        """Whether a place is held as two windows."""
+        return self._pinned is not None
+
+    @property
+    def followed(self) -> str:
+        """Id of the drawn line that sections stand on; empty for the trajectory."""
+        return self._followed
+
+    def use_settings(self, settings: SectionSettings) -> None:
+        """Cut and show sections like this from now on."""
+        if settings == self._settings:
+            return
+        self._settings = settings
+        self._live.is_on = settings.is_live
+        self._bar.show_settings(settings)
+        for pane in (self._first, self._second):
+            pane.colour_by_distance(is_on=settings.is_by_distance)
+            if pane.viewport.exaggeration != settings.exaggeration:
+                pane.exaggerate(settings.exaggeration)
+        if self._standing is not None:
+            self._stand(self._standing)
+
+    def follow(self, line: str) -> None:
+        """Stand on a drawn line from now on, or on the trajectory (empty).
+
+        Parameters
+        ----------
+        line : str
+            Id of a line or an area; one without length is refused with a sentence.
+        """
+        if line and self._lines.drawn(line) is None:
+            self.told.emit(NO_LINE)
+            line = self._followed
+        self._followed = line
+        standing = self._through(self._shared.cursor.place)
+        if standing is not None:
+            self._stand(standing)
+
+    def step(self, count: int) -> None:
+        """Go so many steps along the line; the shared cursor, and so every view, goes with it."""
+        before = self.standing
+        if before is None:
+            return
+        after = before.stepped(count * self._settings.step_m)
+        if after.station_m == before.station_m:
+            return
+        self._stand(after)
+        self._is_stepping = True
+        try:
+            self._shared.cursor.move_to(place_of_step(after, self._source.drives()))
+        finally:
+            self._is_stepping = False
+
+    def set_pinned(self, is_pinned: bool) -> None:  # noqa: FBT001 - a slot of a checked action
+        """Hold this place as two windows, across and along, or release it."""
+        if is_pinned == self.is_pinned or (is_pinned and self._standing is None):
+            self._bar.show_pinned(is_pinned=self.is_pinned)
+            return
+        self._live.stop()
+        if self._standing is not None:
+            self._pinned = PinnedSections.at(self._standing) if is_pinned else None
+            self._stand(self._standing)
+        self.pinned_changed.emit(is_pinned)
+
+    def show_place(self, place: Place) -> None:
+        """Cut through a place, across the line under it or else across what is followed."""
+        self._live.stop()
+        standing = self._lines.under(place) or self._through(place)
+        if standing is not None:
+            self._stand(standing)
+
+    def center_on_selection(self) -> None:
+        """Cut through the middle of the chosen features, or through the cursor."""
+        for id_ in sorted(self._shared.selection.features):
+            feature = self._source.feature(id_)
+            if feature is not None:
+                vertex = feature.vertices[len(feature.vertices) // 2]
+                self.show_place(Place(vertex.xyz, vertex.measured, vertex.is_occluded))
+                return
+        if self._shared.cursor.place is not None:
+            self.show_place(self._shared.cursor.place)
+
+    def show_everything(self) -> None:
+        """Show all points of the slab."""
+        for pane in self.panes:
+            pane.show_everything()
+
+    def zoom_by(self, factor: float) -> None:
+        """Zoom about the middle."""
+        for pane in self.panes:
+            pane.zoom_by(factor)
+
+    def position_of(self, place: Place) -> QPointF | None:
+        """Where a place is in this widget; None outside the slab."""
+        spot = self._first.position_of(place)
+        return None if spot is None else QPointF(self._first.mapTo(self, spot))
+
+    def set_mouse_tool(self, tool: MouseTool | None) -> None:
+        """Tell this tool from now on what the mouse does; None: a click puts the cursor."""
+        for pane in (self._first, self._second):
+            pane.set_mouse_tool(tool)
+
+    def profile_wish(self) -> Callable[[], Profile] | None:
+        """What makes the profile of the section that is shown, in any thread; None without one."""
+        standing = self.standing
+        if standing is None:
+            return None
+        cut, drives = standing.cut, self._source.drives()
+        near = self._lines.near(cut.middle, cut.half_length_m)
+        lines = drawn_lines(near, self._source.catalogue())
+        title, station_m = line_title(self._source, standing), standing.station_m
+        return lambda: profile_of(cut, drives, lines, station_m=station_m, title=title)
+
+    @override
+    def close(self) -> bool:
+        """Stop looking for points; may be called again."""
+        self._take_down()
+        return super().close()
+
+    @override
+    def closeEvent(self, event: QCloseEvent) -> None:
+        self._take_down()
+        super().closeEvent(event)
+
+    @override
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        steps = {Qt.Key.Key_Q: -1, Qt.Key.Key_W: 1}.get(Qt.Key(event.key()), 0)
+        if steps:
+            is_far = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
+            self.step(steps * (_MANY if is_far else 1))
+        elif event.key() == Qt.Key.Key_S and not event.modifiers():
+            self.set_pinned(not self.is_pinned)
+        else:
+            super().keyPressEvent(event)
+
+    # What others tell.
+
+    def _on_cursor_moved(self, place: Place) -> None:
+        if self._is_stepping or self._pinned is not None or self._is_own(place):
+            return
+        self._live.stop()
+        standing = self._lines.under(place) if self._settings.is_live else None
+        standing = standing or self._through(place)
+        if standing is not None:
+            self._stand(standing)
+
+    def _on_live_found(self, standing: Standing) -> None:
+        is_own = any(pane.is_mouse_here for pane in self.panes)
+        if not is_own and self._pinned is None and self.isVisible():
+            self._stand(standing)
+
+    def _on_selection_features_changed(self, ids: frozenset[str]) -> None:
+        if not self._followed or self._followed in ids:
+            return
+        lines = [id_ for id_ in ids if self._lines.drawn(id_) is not None]
+        if len(lines) == 1:
+            self.follow(lines[0])
+
+    def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
+        standing = self._standing
+        if self._followed in ids and self._lines.drawn(self._followed) is None:
+            self._followed = ""
+        if standing is None or standing.line.feature not in ids:
+            return
+        line = self._lines.drawn(standing.line.feature)
+        if line is not None:
+            self._stand(replace(standing, line=line))
+        else:
+            self._release()
+            self._stand(self._through(self._shared.cursor.place) or self._lines.start())
+
+    def _on_bar_settings_chosen(self, settings: SectionSettings) -> None:
+        self.use_settings(settings)
+        self.settings_changed.emit(settings)
+
+    def _on_bar_line_wanted(self, is_drawn: bool) -> None:  # noqa: FBT001 - a slot
+        line = self._lines.at_hand() if is_drawn else ""
+        if is_drawn and not line:
+            self.told.emit(NO_LINE)
+            self._bar.show_line(is_drawn=False)
+        else:
+            self.follow(line)
+
+    def _on_pane_distance_colours_toggled(self, is_on: bool) -> None:  # noqa: FBT001 - a slot
+        self._on_bar_settings_chosen(replace(self._settings, is_by_distance=is_on))
+
+    # What is done in more than one place.
+
+    def _restart(self) -> None:
+        """Begin anew on other drives: at the cursor, or near the beginning of the drive."""
+        self._live.stop()
+        self._release()
+        self._followed = ""
+        for pane in (self._first, self._second):
+            pane.show_standing(None)
+        self._stand(self._through(self._shared.cursor.place) or self._lines.start())
+
+    def _through(self, place: Place | None) -> Standing | None:
+        """Where the section across what is followed goes through a place."""
+        line = self._lines.drawn(self._followed) if self._followed else None
+        if line is None:
+            return None if place is None else self._lines.across_trajectory(place)
+        if place is None:
+            return Standing(line, line.stations.length_m / 2)
+        return self._lines.standing_at(line, place)
+
+    def _stand(self, standing: Standing | None) -> None:
+        """Show the section that stands here, as the settings want it."""
+        settings = self._settings
+        if standing is not None:
+            standing = replace(standing, width_m=settings.width_m, is_along=settings.is_along)
+        self._standing = standing
+        if self._pinned is not None and standing is not None:
+            self._pinned = PinnedSections.at(standing)
+        pinned = self._pinned
+        self._second.setVisible(pinned is not None)
+        for pane in (self._first, self._second):
+            pane.is_pinned = pinned is not None
+        self._first.show_standing(standing if pinned is None else pinned.across)
+        self._second.show_standing(None if pinned is None else pinned.along)
+        self._bar.show_pinned(is_pinned=pinned is not None)
+        self._bar.show_line(is_drawn=standing is not None and bool(standing.line.feature))
+        if self.cut != self._told_cut:
+            self._told_cut = self.cut
+            self.cut_changed.emit(self._told_cut)
+
+    def _release(self) -> None:
+        if self._pinned is not None:
+            self._pinned = None
+            self.pinned_changed.emit(self.is_pinned)
+
+    def _is_own(self, place: Place) -> bool:
+        """Whether a place was clicked in this view, which shows it already."""
+        return any(
+            pane.is_clicking
+            and pane.cut is not None
+            and pane.cut.holds(pane.cut.to_section([place.xyz]))[0]
+            for pane in self.panes
+        )
+
+    def _take_down(self) -> None:
+        self._live.stop()
+        for pane in (self._first, self._second):
+            pane.close()
