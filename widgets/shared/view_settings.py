@@ -36,6 +36,7 @@ class ViewSettings(QObject):
 
     look_changed = Signal(object)  # PointLook
     image_changed = Signal()  # another drive or another kind of image
+    image_lay_changed = Signal()
     hidden_kinds_changed = Signal()
     hidden_runs_changed = Signal()
     shows_rejected_changed = Signal()
