@@ -25,6 +25,7 @@ from widgets.shared.view_settings import PointLook
 Floats = NDArray[np.float64]
 
 REST_MS = 200
+_LEAST_MARK_MS, _FRAMES_BETWEEN_MARKS = 20, 3.0
 _POINTS_PER_PORTION = 150_000
 
 
@@ -60,6 +61,8 @@ class Cloud(QObject):
         self._camera: Camera3D | None = None
         self._look = PointLook()
         self._marked: dict[str, NDArray[np.int64]] = {}
+        self._to_mark: dict[str, NDArray[np.int64]] = {}
+        self._frame_s = 0.0
         self._chosen: dict[bool, frozenset[TileId]] = {False: frozenset(), True: frozenset()}
         self._looks: dict[TileId, PointLook] = {}
         self._arrived: list[SceneTile] = []
@@ -72,6 +75,8 @@ class Cloud(QObject):
         self._rest.timeout.connect(self._on_rest_timeout)
         self._portions = QTimer(self, singleShot=True, interval=0)
         self._portions.timeout.connect(self._on_portions_timeout)
+        self._marks = QTimer(self, singleShot=True)
+        self._marks.timeout.connect(self._on_marks_timeout)
 
     @property
     def drawn(self) -> tuple[DrawnTile, ...]:
@@ -125,8 +130,17 @@ class Cloud(QObject):
             self._wish_again()
 
     def mark(self, points: Mapping[str, NDArray[np.int64]]) -> None:
-        """Mark chosen points: drive id to sorted indices."""
-        before, self._marked = self._marked, dict(points)
+        """Mark chosen points: drive id to sorted indices; at once, or when frames allow."""
+        self._to_mark = dict(points)
+        if not self._marks.isActive():
+            self._on_marks_timeout()
+
+    def _on_marks_timeout(self) -> None:
+        if self._to_mark is self._marked:
+            return
+        # While points are chosen by dragging, most of the time is left to what is dragged in.
+        self._marks.start(max(_LEAST_MARK_MS, round(1e3 * _FRAMES_BETWEEN_MARKS * self._frame_s)))
+        before, self._marked = self._marked, self._to_mark
         none = np.empty(0, np.int64)
         touched = {
             drive_id: self._touched(
@@ -168,6 +182,7 @@ class Cloud(QObject):
 
     def record_frame(self, seconds: float) -> None:
         """Learn from how long a frame took."""
+        self._frame_s = seconds
         # A frame that has to hand new points to the graphics says nothing about the next ones.
         if self._was_changed:
             self._was_changed = False
@@ -182,6 +197,7 @@ class Cloud(QObject):
         """Stop choosing and loading; may be called again."""
         self._rest.stop()
         self._portions.stop()
+        self._marks.stop()
         self._feed.close()
 
     def _touched(
