@@ -76,7 +76,7 @@ class SectionBar(QToolBar):
         )
         self._live.toggled.connect(self._on_settings_edited)
         self._pin = self._switch(
-            self.tr("Pin"), self.tr("Hold the place as two windows, across and along (S)")
+            self.tr("Pin"), self.tr("Hold the place as two windows, across and along")
         )
         self._pin.toggled.connect(self.pin_toggled)
         self.addSeparator()

@@ -104,7 +104,7 @@ def _paint_offsets(painter: QPainter, viewport: PlaneViewport, words: FrameWords
         painter.setPen(QPen(_MIDDLE if fifth == 0 else _GRID, 1.0))
         painter.drawLine(QLineF(x, 0.0, x, bottom))
         offset = fifth * step / _FIFTHS
-        label = f"{offset:.{digits}f}" if fifth else "0 m"
+        label = f"{offset:.{digits}f}".replace("-", "−") if fifth else "0 m"
         half = metrics.horizontalAdvance(label) / 2
         if from_x <= x - half and x + half <= to_x:
             painter.setPen(_INK)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QCloseEvent, QKeyEvent
-from PySide6.QtWidgets import QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 from typing_extensions import override
 
 from processing.section.cut import Cut
@@ -20,6 +20,7 @@ from widgets.section_view.ground_place import place_of_step
 from widgets.section_view.lines import SectionLines
 from widgets.section_view.live import LiveLine
 from widgets.section_view.pane import SectionPane
+from widgets.section_view.panes import SectionPanes
 from widgets.section_view.pinned import PinnedSections
 from widgets.section_view.settings import SectionSettings
 from widgets.section_view.standing import Standing
@@ -90,8 +91,7 @@ class SectionView(QWidget):
         self._is_stepping = False
         self._lines = SectionLines(source, shared, self)
         self._bar = SectionBar(self)
-        self._first = SectionPane(source, shared, self._lines, self, language=language)
-        self._second = SectionPane(source, shared, self._lines, self, language=language)
+        self._panes = SectionPanes(source, shared, self._lines, language, self)
         self._live = LiveLine(shared.cursor, self._lines, self)
         self._live.found.connect(self._on_live_found)
         self._lay_out()
@@ -99,17 +99,12 @@ class SectionView(QWidget):
         self._restart()
 
     def _lay_out(self) -> None:
-        self._panes = QSplitter(Qt.Orientation.Horizontal, self)
-        self._panes.setChildrenCollapsible(False)
-        for pane in (self._first, self._second):
-            self._panes.addWidget(pane)
-        self._second.hide()
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
         layout.addWidget(self._bar)
         layout.addWidget(self._panes, 1)
-        self.setFocusProxy(self._first)
+        self.setFocusProxy(self._panes.all[0])
 
     def _listen(self) -> None:
         shared, bar = self._shared, self._bar
@@ -122,8 +117,8 @@ class SectionView(QWidget):
         bar.pin_toggled.connect(self.set_pinned)
         bar.profile_export_requested.connect(self.profile_export_requested)
         bar.template_requested.connect(self.template_requested)
-        self._first.sharpened.connect(self.sharpened)
-        for pane in (self._first, self._second):
+        self._panes.all[0].sharpened.connect(self.sharpened)
+        for pane in self._panes.all:
             pane.menu_requested.connect(self.menu_requested)
             pane.distance_colours_toggled.connect(self._on_pane_distance_colours_toggled)
 
@@ -148,7 +143,7 @@ class SectionView(QWidget):
     @property
     def panes(self) -> tuple[SectionPane, ...]:
         """The pictures that are shown: one, or two while pinned."""
-        return (self._first,) if self._pinned is None else (self._first, self._second)
+        return self._panes.shown
 
     @property
     def is_pinned(self) -> bool:
@@ -167,10 +162,7 @@ class SectionView(QWidget):
         self._settings = settings
         self._live.is_on = settings.is_live
         self._bar.show_settings(settings)
-        for pane in (self._first, self._second):
-            pane.colour_by_distance(is_on=settings.is_by_distance)
-            if pane.viewport.exaggeration != settings.exaggeration:
-                pane.exaggerate(settings.exaggeration)
+        self._panes.use_settings(settings)
         if self._standing is not None:
             self._stand(self._standing)
 
@@ -223,6 +215,10 @@ class SectionView(QWidget):
         if standing is not None:
             self._stand(standing)
 
+    def center_on(self, place: Place) -> None:
+        """The same as :meth:`show_place`: a section goes to where it is asked for."""
+        self.show_place(place)
+
     def center_on_selection(self) -> None:
         """Cut through the middle of the chosen features, or through the cursor."""
         for id_ in sorted(self._shared.selection.features):
@@ -246,13 +242,13 @@ class SectionView(QWidget):
 
     def position_of(self, place: Place) -> QPointF | None:
         """Where a place is in this widget; None outside the slab."""
-        spot = self._first.position_of(place)
-        return None if spot is None else QPointF(self._first.mapTo(self, spot))
+        pane = self._panes.all[0]
+        spot = pane.position_of(place)
+        return None if spot is None else QPointF(pane.mapTo(self, spot))
 
     def set_mouse_tool(self, tool: MouseTool | None) -> None:
         """Tell this tool from now on what the mouse does; None: a click puts the cursor."""
-        for pane in (self._first, self._second):
-            pane.set_mouse_tool(tool)
+        self._panes.set_mouse_tool(tool)
 
     def profile_wish(self) -> Callable[[], Profile] | None:
         """What makes the profile of the section that is shown, in any thread; None without one."""
@@ -290,7 +286,7 @@ class SectionView(QWidget):
     # What others tell.
 
     def _on_cursor_moved(self, place: Place) -> None:
-        if self._is_stepping or self._pinned is not None or self._is_own(place):
+        if self._is_stepping or self._pinned is not None or self._panes.are_clicked_at(place):
             return
         self._live.stop()
         standing = self._lines.under(place) if self._settings.is_live else None
@@ -345,8 +341,7 @@ class SectionView(QWidget):
         self._live.stop()
         self._release()
         self._followed = ""
-        for pane in (self._first, self._second):
-            pane.show_standing(None)
+        self._panes.show_one(None)
         self._stand(self._through(self._shared.cursor.place) or self._lines.start())
 
     def _through(self, place: Place | None) -> Standing | None:
@@ -366,13 +361,11 @@ class SectionView(QWidget):
         self._standing = standing
         if self._pinned is not None and standing is not None:
             self._pinned = PinnedSections.at(standing)
-        pinned = self._pinned
-        self._second.setVisible(pinned is not None)
-        for pane in (self._first, self._second):
-            pane.is_pinned = pinned is not None
-        self._first.show_standing(standing if pinned is None else pinned.across)
-        self._second.show_standing(None if pinned is None else pinned.along)
-        self._bar.show_pinned(is_pinned=pinned is not None)
+        if self._pinned is None:
+            self._panes.show_one(standing)
+        else:
+            self._panes.show_two(self._pinned)
+        self._bar.show_pinned(is_pinned=self.is_pinned)
         self._bar.show_line(is_drawn=standing is not None and bool(standing.line.feature))
         if self.cut != self._told_cut:
             self._told_cut = self.cut
@@ -383,16 +376,6 @@ class SectionView(QWidget):
             self._pinned = None
             self.pinned_changed.emit(self.is_pinned)
 
-    def _is_own(self, place: Place) -> bool:
-        """Whether a place was clicked in this view, which shows it already."""
-        return any(
-            pane.is_clicking
-            and pane.cut is not None
-            and pane.cut.holds(pane.cut.to_section([place.xyz]))[0]
-            for pane in self.panes
-        )
-
     def _take_down(self) -> None:
         self._live.stop()
-        for pane in (self._first, self._second):
-            pane.close()
+        self._panes.take_down()

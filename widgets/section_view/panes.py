@@ -1,0 +1,92 @@
+"""SectionPanes: the picture of a section, or two of them side by side while a place is held."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QSplitter, QWidget
+
+from processing.text import Language
+from widgets.mouse_tools.mouse_tool import MouseTool
+from widgets.section_view.lines import SectionLines
+from widgets.section_view.pane import SectionPane
+from widgets.section_view.pinned import PinnedSections
+from widgets.section_view.settings import SectionSettings
+from widgets.section_view.standing import Standing
+from widgets.shared.cursor import Place
+from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
+
+
+class SectionPanes(QSplitter):
+    """Both pictures; the second one is there only while a place is held.
+
+    Attributes
+    ----------
+    all : tuple of SectionPane
+        The first and the second, shown or not.
+    """
+
+    def __init__(
+        self,
+        source: MapSource,
+        shared: SharedState,
+        lines: SectionLines,
+        language: Language,
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(Qt.Orientation.Horizontal, parent)
+        self.setChildrenCollapsible(False)
+        first, second = (
+            SectionPane(source, shared, lines, self, language=language) for _ in range(2)
+        )
+        self.all = (first, second)
+        for pane in self.all:
+            self.addWidget(pane)
+        second.hide()
+        self.setFocusProxy(first)
+
+    @property
+    def shown(self) -> tuple[SectionPane, ...]:
+        """One, or two while a place is held."""
+        return self.all if self.all[0].is_pinned else self.all[:1]
+
+    def show_one(self, standing: Standing | None) -> None:
+        """Show one section; None: nothing."""
+        self._be_pinned(is_pinned=False)
+        self.all[0].show_standing(standing)
+        self.all[1].show_standing(None)
+
+    def show_two(self, pinned: PinnedSections) -> None:
+        """Show a place across its line and along it."""
+        self._be_pinned(is_pinned=True)
+        self.all[0].show_standing(pinned.across)
+        self.all[1].show_standing(pinned.along)
+
+    def use_settings(self, settings: SectionSettings) -> None:
+        """Colour points and draw heights like this."""
+        for pane in self.all:
+            pane.colour_by_distance(is_on=settings.is_by_distance)
+            if pane.viewport.exaggeration != settings.exaggeration:
+                pane.exaggerate(settings.exaggeration)
+
+    def set_mouse_tool(self, tool: MouseTool | None) -> None:
+        """Tell this tool from now on what the mouse does."""
+        for pane in self.all:
+            pane.set_mouse_tool(tool)
+
+    def are_clicked_at(self, place: Place) -> bool:
+        """Whether a place is being clicked here just now, within the slab that is shown."""
+        for pane in self.shown:
+            if pane.is_clicking and pane.cut is not None:
+                return bool(pane.cut.holds(pane.cut.to_section([place.xyz]))[0])
+        return False
+
+    def take_down(self) -> None:
+        """Stop looking for points; may be called again."""
+        for pane in self.all:
+            pane.close()
+
+    def _be_pinned(self, *, is_pinned: bool) -> None:
+        for pane in self.all:
+            pane.is_pinned = is_pinned
+        self.all[1].setVisible(is_pinned)
