@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from processing.project.change import Change
 from processing.project.database import Database
 from processing.project.database_errors import damaged
+from processing.project.feature import Feature
 from processing.project.feature_rows import change_from_json, change_to_json
 from processing.project.label_change import LabelChange
 from processing.project.label_rows import PENDING, labels_at, write_labels, write_pending
@@ -15,6 +16,7 @@ from processing.project.project_settings import ProjectSettings, write_setting
 from processing.text import Text
 
 _POSITION = "history_position"
+_FIRST_WITH = "SELECT place FROM zuka_history WHERE instr(change, ?) > 0 ORDER BY place LIMIT 1"
 _LABEL = "SELECT label_en, label_ja FROM zuka_history WHERE place = ?"
 
 
@@ -102,6 +104,20 @@ class History:
         if change is None:
             return ()
         return (change if self._pending <= self.position else change.inverse()).labels
+
+    def additions_of(self, run: str) -> tuple[Feature, ...]:
+        """The candidates of a run as the tool gave them; none where the history lacks them.
+
+        Raises
+        ------
+        BadFile
+            It is damaged.
+        """
+        # A run's id is on no change before the one that put its candidates on the map.
+        rows = self._database.rows(_FIRST_WITH, (run,))
+        change = self._change(int(str(rows[0][0]))) if rows else None
+        added = () if change is None else change.added
+        return tuple(feature for feature in added if feature.provenance.run == run)
 
     def append(self, connection: sqlite3.Connection, label: Text, change: Change) -> Standing:
         """Write a change behind the last one, in the caller's transaction; redo is gone.

@@ -1,0 +1,90 @@
+"""The evaluation of runs as files: the table as CSV, the curve as PNG or PDF."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from PySide6.QtCore import QMarginsF, QRectF, QSizeF, Qt
+from PySide6.QtGui import QFont, QGuiApplication, QImage, QPageSize, QPainter, QPdfWriter
+
+from processing.errors import NoSpace
+from processing.formats.safe_write import written_safely
+from processing.project.evaluation_table import write_evaluation
+from processing.project.run_evaluation import RunEvaluation
+from processing.text import Text
+from widgets.panels.reliability_plot import PlotColours, ReliabilityPlot
+
+_SIDE_MM = 150.0
+_PNG_PX = 1800
+_FONT_MM = 3.5
+_PDF_DPI = 600
+_MM_PER_INCH = 25.4
+
+
+def write_evaluation_file(
+    path: Path, evaluations: Sequence[RunEvaluation], plot: ReliabilityPlot | None
+) -> None:
+    """Write the table or the curve, by the ending of the name.
+
+    Parameters
+    ----------
+    path : Path
+        Ends in ``.csv``, ``.png`` or ``.pdf``.
+    plot : ReliabilityPlot or None
+        The curve for the latter two; without one the table is written.
+
+    Raises
+    ------
+    NoSpace, InUse, MissingInput, BadFile
+        What stands against writing; what was there before stays.
+    """
+    ending = path.suffix.lower()
+    if plot is None or ending not in (".png", ".pdf"):
+        write_evaluation(path, evaluations)
+        return
+    with written_safely(path) as temporary:
+        is_whole = _write_pdf(temporary, plot) if ending == ".pdf" else _write_png(temporary, plot)
+        if not is_whole:
+            raise NoSpace(
+                Text("The picture can't be written.", "図を書き込めません。"),
+                Text.same(str(path)),
+                Text(
+                    "Check that the disk has space and allows writing.",
+                    "ディスクの空き容量と書き込みの可否を確認してください。",
+                ),
+            )
+
+
+def _write_png(path: Path, plot: ReliabilityPlot) -> bool:
+    picture = QImage(_PNG_PX, _PNG_PX, QImage.Format.Format_RGB32)
+    picture.fill(Qt.GlobalColor.white)
+    per_mm = _PNG_PX / _SIDE_MM
+    picture.setDotsPerMeterX(round(per_mm * 1000))
+    picture.setDotsPerMeterY(round(per_mm * 1000))
+    with QPainter(picture) as painter:
+        _paint(painter, plot, per_mm)
+    return picture.save(str(path))
+
+
+def _write_pdf(path: Path, plot: ReliabilityPlot) -> bool:
+    page = QPdfWriter(str(path))
+    page.setResolution(_PDF_DPI)
+    page.setPageSize(QPageSize(QSizeF(_SIDE_MM, _SIDE_MM), QPageSize.Unit.Millimeter))
+    page.setPageMargins(QMarginsF(0, 0, 0, 0))
+    page.setTitle(plot.words.title)
+    painter = QPainter()
+    if not painter.begin(page):
+        return False
+    _paint(painter, plot, _PDF_DPI / _MM_PER_INCH)
+    return painter.end()
+
+
+def _paint(painter: QPainter, plot: ReliabilityPlot, per_mm: float) -> None:
+    """In the screen's units, so that lines are as thick on paper as beside it."""
+    font = QFont(QGuiApplication.font())
+    scale = per_mm * _FONT_MM / max(font.pixelSize(), 1)
+    painter.scale(scale, scale)
+    painter.setFont(font)
+    side = _SIDE_MM * per_mm / scale
+    plot.paint(painter, QRectF(0, 0, side, side), PlotColours.on_paper())
