@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.point_image import PointCloudImage
+from processing.image.point_image_kernels import PixelLayout
 from processing.image.tiles import TILE, TileKey
-
-_POINTS_AT_ONCE = 1_000_000
+from processing.kernels import kernel
 
 
 class TouchedTiles:
@@ -18,19 +18,40 @@ class TouchedTiles:
     ----------
     image : PointCloudImage
     points : (n,) int64
-        Of the image's recording, in any order.
+        Of the image's recording, rising.
     """
 
     def __init__(self, image: PointCloudImage, points: NDArray[np.int64]) -> None:
         rows, columns = -(-image.rows // TILE), -(-image.width // TILE)
-        self._finest = np.zeros((max(1, rows), max(1, columns)), dtype=bool)
-        for start in range(0, points.size, _POINTS_AT_ONCE):
-            of_row, of_column = image.pixel_of(points[start : start + _POINTS_AT_ONCE])
-            is_shown = of_row >= 0
-            self._finest[of_row[is_shown] // TILE, of_column[is_shown] // TILE] = True
+        self._finest = np.zeros((max(1, rows), max(1, columns)), dtype=np.bool_)
+        if points.size and image.rows:
+            row = int(np.searchsorted(image.row_starts, points[0], side="right")) - 1
+            _touch_kernel(image.layout, points, max(row, 0), self._finest)
 
     def __contains__(self, key: TileKey) -> bool:
         """Whether a tile shows one of the points, or would if it were sharper."""
         rows = slice(key.row << key.level, (key.row + 1) << key.level)
         columns = slice(key.column << key.level, (key.column + 1) << key.level)
         return bool(self._finest[rows, columns].any())
+
+
+@kernel
+def _touch_kernel(
+    layout: PixelLayout, points: NDArray[np.int64], row: int, touched: NDArray[np.bool_]
+) -> None:
+    """Mark the tile of every point; the first is in ``row`` or behind it."""
+    rows = layout.row_starts.size - 1
+    for k in range(points.size):
+        point = points[k]
+        while row < rows - 1 and layout.row_starts[row + 1] <= point:
+            row += 1
+        doubled = 2 * layout.pulses[point] - layout.origins[row]
+        column = doubled * layout.per_span // layout.spans[row]
+        touched[row // TILE, column // TILE] = True
+
+
+def warm_up() -> None:
+    """Compile the kernel."""
+    one = np.zeros(1, np.int64)
+    layout = PixelLayout(one, np.array([0, 1]), one, np.array([2]), 1)
+    _touch_kernel(layout, one, 0, np.zeros((1, 1), np.bool_))

@@ -39,7 +39,6 @@ class PaintOutline(PaintTool):
     @override
     def choose_box(self, boxed: Boxed) -> None:
         self._begin()
-        self._show_stroke(boxed.points)
         if boxed.find_every is None:
             self._paint(boxed.points)
         else:

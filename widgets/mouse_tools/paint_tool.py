@@ -40,7 +40,7 @@ class Painted:
     Attributes
     ----------
     points : mapping of str to (n,) int64
-        Drive id to the points below it, rising.
+        Drive id to the points below it.
     rule : PaintRule
         As it was then.
     """
@@ -60,6 +60,8 @@ class Painted:
         made: list[LabelChange] = []
         for drive_id, points in self.points.items():
             if drive_id in drives:
+                if (np.diff(points) <= 0).any():
+                    points = np.unique(points)
                 labels = labels_of(drives[drive_id], points)
                 chosen = self.rule.chosen(labels)
                 made += label_changes(drive_id, points[chosen], labels[chosen], self.rule.code)
