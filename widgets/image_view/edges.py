@@ -1,4 +1,4 @@
-"""Edges: what stands round the picture. Ruler above, minimap below, or the empty page."""
+"""Edges: what stands round the picture. Ruler and minimap on either side, or the empty page."""
 
 from __future__ import annotations
 
@@ -19,6 +19,9 @@ _MINIMAP_PX = 40
 class Edges:
     """Holds the parts at the edges of a view and tells them what is shown.
 
+    Where the street goes up, the ruler stands on the left and the minimap on the right; else above
+    and below.
+
     Parameters
     ----------
     view : QWidget
@@ -37,9 +40,13 @@ class Edges:
         """Stand at the edges of the view; the viewport gets what is left."""
         width, height = self._view.width(), self._view.height()
         strip = _MINIMAP_PX if self._has_strip else 0
+        self.empty.setGeometry(0, 0, width, height)
+        if viewport.lay.is_vertical:
+            self.ruler.setGeometry(0, 0, _RULER_PX, height)
+            self.minimap.setGeometry(width - strip, 0, strip, height)
+            return viewport.sized(width - _RULER_PX - strip, height, 0, _RULER_PX)
         self.ruler.setGeometry(0, 0, width, _RULER_PX)
         self.minimap.setGeometry(0, height - strip, width, strip)
-        self.empty.setGeometry(0, 0, width, height)
         return viewport.sized(width, height - _RULER_PX - strip, _RULER_PX)
 
     def show_picture(self, picture: Picture | None, look: PointLook, *, is_refused: bool) -> None:
@@ -56,4 +63,4 @@ class Edges:
         self.ruler.show_part(picture, viewport)
         if picture is not None:
             span = viewport.span
-            self.minimap.mark(span.left, span.right)
+            self.minimap.mark(span.left, span.right, viewport.lay)

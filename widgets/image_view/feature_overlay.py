@@ -117,7 +117,7 @@ class FeatureOverlay:
     def screen_place(self, viewport: Viewport, xyz: Position) -> tuple[float, float] | None:
         """Where a place is in the window; None where no point of the drive is near it."""
         u, v = self._places.places_of((Vertex(xyz),))[0].tolist()
-        return (viewport.x_of(u), viewport.y_of(v)) if np.isfinite(u) else None
+        return viewport.position_of(u, v) if np.isfinite(u) else None
 
     def _paint_preview(
         self,

@@ -82,6 +82,17 @@ class FeaturePlaces:
         """A feature in the picture; None when it isn't there."""
         return self._placed.get(id_)
 
+    def span_of(self, ids: Iterable[str]) -> Span | None:
+        """The smallest rectangle that holds features; None when none of them is in the picture."""
+        found = [self._placed[id_].bounds for id_ in ids if id_ in self._placed]
+        bounds = np.array(found).reshape(-1, 4)
+        bounds = bounds[np.isfinite(bounds[:, 0])]
+        if not bounds.size:
+            return None
+        left, top = bounds[:, :2].min(axis=0).tolist()
+        right, bottom = bounds[:, 2:].max(axis=0).tolist()
+        return Span(left, top, right, bottom)
+
     def within(self, span: Span) -> Iterator[PlacedFeature]:
         """Features whose bounds touch a rectangle."""
         if self._bounds is None:

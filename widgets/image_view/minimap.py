@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QRectF, Qt, Signal
+from PySide6.QtCore import QSizeF, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
 from processing.image.tile_cache import TileCache
 from widgets.image_view.mosaic import Mosaic
-from widgets.image_view.picture import Picture
+from widgets.image_view.picture import Picture, Span
 from widgets.image_view.tile_images import TileImages
 from widgets.image_view.viewport import Viewport
 from widgets.shared.feature_style import ACCENT
+from widgets.shared.image_lay import ImageLay
 from widgets.shared.view_settings import PointLook
 
 HEIGHT_PX = 40
@@ -41,6 +44,7 @@ class Minimap(QWidget):
         self._mosaic = Mosaic(self._images)
         self._picture: Picture | None = None
         self._shown = (0.0, 0.0)
+        self._lay = ImageLay()
         self.setToolTip(self.tr("The whole recording; click or drag to go there"))
 
     def show_picture(self, picture: Picture | None, look: PointLook) -> None:
@@ -58,10 +62,10 @@ class Minimap(QWidget):
         """The labels of these points of a drive have changed."""
         self._images.show_labels(drive_id, points)
 
-    def mark(self, left: float, right: float) -> None:
+    def mark(self, left: float, right: float, lay: ImageLay) -> None:
         """Mark the part from one place to another, picture coordinates."""
-        if (left, right) != self._shown:
-            self._shown = (left, right)
+        if (left, right, lay) != (*self._shown, self._lay):
+            self._shown, self._lay = (left, right), lay
             self.update()
 
     @override
@@ -72,8 +76,7 @@ class Minimap(QWidget):
             if picture is not None:
                 viewport = self._viewport(picture)
                 self._mosaic.paint(painter, picture, viewport)
-                left, right = (viewport.x_of(place) for place in self._shown)
-                self._paint_part(painter, left, right)
+                self._paint_part(painter, viewport)
 
     @override
     def mousePressEvent(self, event: QMouseEvent) -> None:
@@ -87,24 +90,30 @@ class Minimap(QWidget):
     def _go_to(self, event: QMouseEvent) -> None:
         picture = self._picture
         if picture is not None:
-            place, _ = self._viewport(picture).to_picture(event.position().x(), 0.0)
+            position = event.position()
+            place, _ = self._viewport(picture).to_picture(position.x(), position.y())
             self.place_chosen.emit(min(max(place, 0.0), float(picture.size[0])))
 
     def _viewport(self, picture: Picture) -> Viewport:
         """The whole picture, pressed into the strip."""
         u, v = picture.size
-        width, height = max(self.width(), 1), max(self.height(), 1)
-        zoom_v = height / max(v, 1)
-        stretch = width / max(u, 1) / zoom_v
-        return Viewport(
-            width, height, (max(u, 1), max(v, 1)), stretch, zoom_v, centre=(u / 2, v / 2)
+        strip = Viewport(
+            max(self.width(), 1),
+            max(self.height(), 1),
+            (max(u, 1), max(v, 1)),
+            centre=(u / 2, v / 2),
+            lay=self._lay,
         )
+        zoom_v = strip.across_px / max(v, 1)
+        return replace(strip, zoom=zoom_v, stretch=strip.along_px / max(u, 1) / zoom_v)
 
-    def _paint_part(self, painter: QPainter, left: float, right: float) -> None:
-        height, width = float(self.height()), float(self.width())
-        left, right = max(left, 0.0), min(right, width)
-        painter.fillRect(QRectF(0, 0, left, height), _SHADE)
-        painter.fillRect(QRectF(right, 0, width - right, height), _SHADE)
+    def _paint_part(self, painter: QPainter, viewport: Viewport) -> None:
+        (u, v), (start, end) = viewport.extent, self._shown
+        start, end = min(max(start, 0.0), u), min(max(end, 0.0), u)
+        painter.fillRect(viewport.rectangle_of(Span(0.0, 0.0, start, v)), _SHADE)
+        painter.fillRect(viewport.rectangle_of(Span(end, 0.0, u, v)), _SHADE)
+        frame = viewport.rectangle_of(Span(start, 0.0, end, v)).adjusted(1, 1, -1, -1)
+        frame.setSize(frame.size().expandedTo(QSizeF(4.0, 4.0)))
         painter.setPen(QPen(ACCENT, 2.0))
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.drawRect(QRectF(left + 1, 1, max(right - left - 2, 4.0), height - 2))
+        painter.drawRect(frame)

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from PySide6.QtCore import QPoint, QRect, QRectF, QSize
-from PySide6.QtGui import QColor, QImage, QPainter
+from PySide6.QtCore import QPoint, QRect, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QImage, QPainter, QTransform
 
 from processing.image.tile_choice import tiles_in_window
 from processing.image.tiles import TileKey
 from widgets.image_view.picture import Picture, Span
 from widgets.image_view.tile_images import THINNINGS, TileImages
 from widgets.image_view.viewport import Viewport
+from widgets.shared.image_lay import ImageLay
 
 _UNKNOWN = QColor("#14161a")
 _MARGIN = 2.0  # pixels beyond the window's edge, for the interpolation
@@ -91,6 +92,8 @@ class Mosaic:
         self._images = images
         self._made_for: tuple[_Grid, int] | None = None
         self._whole = QImage()
+        self._turned = QImage()
+        self._turned_for: tuple[tuple[_Grid, int], ImageLay] | None = None
 
     def paint(self, painter: QPainter, picture: Picture, viewport: Viewport) -> bool:
         """Paint what the viewport shows; says whether all of it is as sharp as it will be."""
@@ -110,8 +113,12 @@ class Mosaic:
         found = self._images.images(keys, grid.thinning)
         made_for = grid, self._images.version
         if made_for != self._made_for:
+            self._turned = QImage()  # else painting would copy what it shares
             self._compose(grid, keys, found)
             self._made_for = made_for
+        if (made_for, viewport.lay) != self._turned_for:
+            self._turned = _turned(self._whole, viewport.lay)
+            self._turned_for = made_for, viewport.lay
         self._paint_part(painter, grid.span, viewport)
         return self._images.is_complete
 
@@ -159,15 +166,37 @@ class Mosaic:
             min(whole.right, seen.right + _MARGIN),
             min(whole.bottom, seen.bottom + _MARGIN),
         )
-        target = QRectF(
-            viewport.x_of(shown.left),
-            viewport.y_of(shown.top),
-            (shown.right - shown.left) * viewport.zoom_u,
-            (shown.bottom - shown.top) * viewport.zoom_v,
+        target, of_whole = viewport.rectangle_of(shown), viewport.rectangle_of(whole)
+        scale_x = self._turned.width() / of_whole.width()
+        scale_y = self._turned.height() / of_whole.height()
+        source = QRectF(
+            (target.left() - of_whole.left()) * scale_x,
+            (target.top() - of_whole.top()) * scale_y,
+            target.width() * scale_x,
+            target.height() * scale_y,
         )
         is_smooth = min(viewport.zoom_u, viewport.zoom_v) < 1
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, is_smooth)
-        painter.drawImage(target, self._whole, _source(shown, whole, self._whole))
+        painter.drawImage(target, self._turned, source)
+
+
+def _turned(image: QImage, lay: ImageLay) -> QImage:
+    """A picture that goes to the right and down, as it lies on the screen."""
+    if lay.is_vertical:  # u goes up, v to the right
+        image = image.transformed(QTransform().rotate(-90.0))
+    flips_x = lay.is_mirrored_across if lay.is_vertical else lay.is_reversed_along
+    flips_y = lay.is_reversed_along if lay.is_vertical else lay.is_mirrored_across
+    sides = [
+        side
+        for side, flips in (
+            (Qt.Orientation.Horizontal, flips_x),
+            (Qt.Orientation.Vertical, flips_y),
+        )
+        if flips
+    ]
+    for side in sides:
+        image = image.flipped(side)
+    return image
 
 
 def _thinning(across_px: float) -> int:

@@ -14,7 +14,7 @@ from widgets.shared.snap_state import SnapMode
 
 NOTCH = 120.0
 ZOOM_PER_NOTCH = 1.25
-_ALONG_PER_NOTCH = 0.12  # of the window's width
+_ALONG_PER_NOTCH = 0.12  # of the window's size along the street
 _KEY_SHARE = 0.1  # of the window's size
 
 _ARROWS = {
@@ -111,7 +111,7 @@ class Navigation:
         # Some systems turn a wheel with Shift into a sideways one.
         notches = (angle.y() or angle.x()) / NOTCH
         if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            return viewport.panned(notches * _ALONG_PER_NOTCH * viewport.width, 0.0)
+            return viewport.rolled(notches * _ALONG_PER_NOTCH)
         position = event.position()
         return viewport.zoomed(ZOOM_PER_NOTCH**notches, position.x(), position.y())
 
@@ -124,6 +124,5 @@ class Navigation:
                 return viewport.panned(right * share_px[0], down * share_px[1])
         for zoom, factor in _ZOOMS.items():
             if key == zoom:
-                middle = viewport.width / 2, viewport.top + viewport.height / 2
-                return viewport.zoomed(factor, *middle)
+                return viewport.zoomed(factor, *viewport.middle)
         return None

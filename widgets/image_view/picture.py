@@ -15,6 +15,9 @@ from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
 from processing.points.drive import Drive
 from widgets.image_view.drive_lay import DriveLay, lay_of
+from widgets.shared.image_lay import ImageLay
+from widgets.shared.map_source import MapSource
+from widgets.shared.view_settings import ViewSettings
 
 Floats = NDArray[np.float64]
 
@@ -60,6 +63,23 @@ class Picture:
         lay = lay_of(drive, image)
         is_top = kind is ImageKind.TOP_VIEW
         return Picture(drive, image, lay, not is_top, not is_top and lay.left_columns_are_high)
+
+    @staticmethod
+    def chosen(source: MapSource, settings: ViewSettings) -> Picture | None:
+        """The picture that is to be shown; None when its drive isn't there.
+
+        Raises
+        ------
+        Unsuitable
+            The drive has no image of that kind.
+        """
+        drives = {drive.id: drive for drive in source.drives()}
+        drive = drives.get(settings.drive_id)
+        return None if drive is None else Picture.of(drive, settings.image_kind)
+
+    def turned(self, wanted: ImageLay) -> ImageLay:
+        """How it is turned where this is wanted: a top view has north up in any case."""
+        return wanted if self.rows_go_right else ImageLay()
 
     @property
     def size(self) -> tuple[int, int]:

@@ -1,4 +1,4 @@
-"""Ruler: metres along the drive at the upper edge of the picture."""
+"""Ruler: metres along the drive at the edge of the picture."""
 
 from __future__ import annotations
 
@@ -53,17 +53,33 @@ class Ruler(QWidget):
         fifths = np.arange(math.ceil(start_m / step_m * 5), math.floor(end_m / step_m * 5) + 1)
         places = picture.lay.rows_at(fifths * step_m / 5)
         digits = max(0, -math.floor(math.log10(step_m)))
-        height = float(self.height())
+        room_px, height = self._turn(painter)
         for fifth, place in zip(fifths.tolist(), places.tolist(), strict=True):
-            x = self._viewport.x_of(place)
+            x = self._along(place)
             is_labelled = fifth % 5 == 0
             painter.setPen(QPen(_INK if is_labelled else _MINOR, 1.0))
             painter.drawLine(QLineF(x, height - (8 if is_labelled else 4), x, height))
             if is_labelled:
                 label = f"{fifth * step_m / 5:,.{digits}f} m"
                 box = QRectF(x + 4, 0, _LABEL_EVERY_PX, height - 2)
-                if x + 4 + painter.fontMetrics().horizontalAdvance(label) <= self.width():
+                if x + 4 + painter.fontMetrics().horizontalAdvance(label) <= room_px:
                     painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, label)
+
+    def _turn(self, painter: QPainter) -> tuple[float, float]:
+        """Turn what is painted, so that it is read upwards; gives length and breadth of the band.
+
+        The ticks' end stays beside the picture.
+        """
+        if not self._viewport.lay.is_vertical:
+            return float(self.width()), float(self.height())
+        painter.translate(0.0, float(self.height()))
+        painter.rotate(-90.0)
+        return float(self.height()), float(self.width())
+
+    def _along(self, place: float) -> float:
+        """Where a place along the drive is on the band."""
+        x, y = self._viewport.position_of(place, 0.0)
+        return float(self.height()) - y if self._viewport.lay.is_vertical else x
 
 
 def round_step(least: float) -> float:

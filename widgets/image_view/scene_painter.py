@@ -76,7 +76,7 @@ class ScenePainter:
         with QPainter(self._view) as painter:
             painter.fillRect(self._view.rect(), BACKGROUND)
             if picture is not None:
-                painter.setClipRect(QRectF(0, viewport.top, viewport.width, viewport.height))
+                painter.setClipRect(viewport.window)
                 is_sharp = self._mosaic.paint(painter, picture, viewport)
                 self._paint_over(painter, picture, viewport, overlays)
                 self._paint_line(painter, self._described(picture, viewport, overlays.look))
@@ -96,9 +96,8 @@ class ScenePainter:
             )
         spot, before = overlays.cursor.spot, overlays.cursor.before
         if spot is not None:
-            at = viewport.x_of(spot[0]), viewport.y_of(spot[1])
-            trail = None if before is None else (viewport.x_of(before[0]), viewport.y_of(before[1]))
-            paint_cross(painter, at, trail)
+            trail = None if before is None else viewport.position_of(*before)
+            paint_cross(painter, viewport.position_of(*spot), trail)
         if drawing is not None:
             for note in drawing.notes:
                 place = self._features.screen_place(viewport, note.xyz)
@@ -132,10 +131,11 @@ class ScenePainter:
         metrics = painter.fontMetrics()
         shown = metrics.elidedText(line, Qt.TextElideMode.ElideRight, int(room))
         width, height = metrics.horizontalAdvance(shown), metrics.height()
-        plate = QRectF(8, clip.bottom() - height - 12, width + 16, height + 4)
+        left = clip.left() + 8
+        plate = QRectF(left, clip.bottom() - height - 12, width + 16, height + 4)
         painter.fillRect(plate, _PLATE)
         painter.setPen(_INK)
-        painter.drawText(QPointF(16, plate.bottom() - 2 - metrics.descent()), shown)
+        painter.drawText(QPointF(left + 8, plate.bottom() - 2 - metrics.descent()), shown)
 
     def _paint_refusal(self, painter: QPainter, refusal: UserError) -> None:
         what, remedy = (part.spoken(self._language) for part in (refusal.what, refusal.remedy))

@@ -43,7 +43,8 @@ _MARGIN_PX = 24.0
 class ImageView(QWidget):
     """Paints a drive's point-cloud image with the map on it; every pixel is an exact coordinate.
 
-    The street runs from left to right, the left side of the drive is up.
+    The street runs from left to right, the left side of the drive up, unless the settings' lay
+    turns or mirrors it.
 
     Parameters
     ----------
@@ -63,6 +64,8 @@ class ImageView(QWidget):
         Every vertex of another drive has found its point of this one, or none.
     menu_requested(wish: MenuWish)
         The right button with nothing under way.
+    looked()
+        Another part of the picture is shown, or another size of it.
     """
 
     open_requested = Signal()
@@ -70,6 +73,7 @@ class ImageView(QWidget):
     sharpened = Signal()
     features_placed = Signal()
     menu_requested = Signal(object)
+    looked = Signal()
 
     def __init__(
         self,
@@ -115,7 +119,7 @@ class ImageView(QWidget):
         shared = self._shared
         shared.cursor.moved.connect(self._on_cursor_moved)
         shared.selection.features_changed.connect(self._on_selection_features_changed)
-        shared.selection.points_changed.connect(self._on_selection_points_changed)
+        shared.selection.points_changed.connect(self._tint)
         shared.map_changes.features_changed.connect(self._on_map_features_changed)
         shared.map_changes.drives_changed.connect(self._on_map_drives_changed)
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
@@ -123,6 +127,7 @@ class ImageView(QWidget):
         shared.map_changes.labels_changed.connect(self._edges.minimap.show_labels)
         shared.view_settings.look_changed.connect(self._on_settings_look_changed)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
+        shared.view_settings.image_lay_changed.connect(self._on_settings_image_lay_changed)
         shared.view_settings.shown_features_changed.connect(self.update)
         shared.sketch.changed.connect(self.update)
         shared.snap.mark_changed.connect(self.update)
@@ -162,8 +167,7 @@ class ImageView(QWidget):
     def zoom_by(self, factor: float) -> None:
         """Zoom about the middle."""
         viewport = self._viewport
-        middle = viewport.width / 2, viewport.top + viewport.height / 2
-        self._look_through(viewport.zoomed(factor, *middle))
+        self._look_through(viewport.zoomed(factor, *viewport.middle))
 
     def center_on(self, place: Place) -> None:
         """Put a place in the middle; without effect when no point of the drive is near it."""
@@ -173,21 +177,16 @@ class ImageView(QWidget):
 
     def center_on_selection(self) -> None:
         """Put the chosen features in the middle, or the cursor when none is chosen."""
-        chosen = [self._places.get(id_) for id_ in self._shared.selection.features]
-        bounds = [one.bounds for one in chosen if one is not None and np.isfinite(one.bounds[0])]
-        if bounds:
-            left, top = np.min([one[:2] for one in bounds], axis=0).tolist()
-            right, bottom = np.max([one[2:] for one in bounds], axis=0).tolist()
-            self._look_through(self._viewport.holding(left, top, right, bottom))
+        span = self._places.span_of(self._shared.selection.features)
+        if span is not None:
+            self._look_through(self._viewport.holding(span))
         elif self._shared.cursor.place is not None:
             self.center_on(self._shared.cursor.place)
 
     def position_of(self, place: Place) -> QPointF | None:
         """Where a place is in this widget; None when no point of the drive is near it."""
         found = None if self._picture is None else self._cursor.find(self._picture, place)
-        if found is None:
-            return None
-        return QPointF(self._viewport.x_of(found[0]), self._viewport.y_of(found[1]))
+        return None if found is None else QPointF(*self._viewport.position_of(*found))
 
     # Events.
 
@@ -222,8 +221,8 @@ class ImageView(QWidget):
 
     @override
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        picture, position = self._picture, event.position()
-        if picture is None:
+        position = event.position()
+        if self._picture is None:
             return
         if self._navigation.starts_with(event.button()):
             self._navigation.begin(position)
@@ -237,8 +236,8 @@ class ImageView(QWidget):
 
     @override
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        picture, position = self._picture, event.position()
-        if picture is None:
+        position = event.position()
+        if self._picture is None:
             return
         if self._navigation.is_panning:
             self._look_through(self._navigation.dragged(self._viewport, position))
@@ -305,10 +304,6 @@ class ImageView(QWidget):
         self._overlay.selected = ids
         self.update()
 
-    def _on_selection_points_changed(self) -> None:
-        self._tint()
-        self.update()
-
     def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
         if len(ids) > _MANY_FEATURES:
             self._places.read_all()
@@ -337,7 +332,7 @@ class ImageView(QWidget):
         before = self._picture
         self._refusal = None
         try:
-            self._picture = self._chosen_picture()
+            self._picture = Picture.chosen(self._source, self._shared.view_settings)
         except UserError as error:  # told where the picture would be
             self._picture, self._refusal = None, error
         picture, look = self._picture, self._shared.view_settings.look
@@ -348,13 +343,16 @@ class ImageView(QWidget):
         self._cursor.move_to(picture, self._shared.cursor.place)
         self._cursor.forget_trail()
         self._show_mouse()
-        if self._viewport.width > 1:  # shown before
-            self._viewport = self._hits.viewport = self._edges.lay_out(self._viewport)
+        self._lay_out()
         self._hits.picture = picture
         if picture is not None:
             self._look_through(viewport_on(picture, before, self._viewport))
         self._search.go_on()
         self.update()
+
+    def _on_settings_image_lay_changed(self) -> None:
+        self._lay_out()
+        self._look_through(self._viewport)
 
     def _on_minimap_place_chosen(self, u: float) -> None:
         self._look_through(self._viewport.centred_on(u, self._viewport.centre[1]))
@@ -362,19 +360,22 @@ class ImageView(QWidget):
     # What is done in more than one place.
 
     def _ask_for_menu(self, event: QMouseEvent) -> None:
-        menu = view_menu(self, self.show_everything, self.show_one_to_one, self.center_on_selection)
+        menu = view_menu(self, self, self._shared.view_settings)
         hit = self._hits.exact_hit(event.position(), event.modifiers())
         self.menu_requested.emit(MenuWish(menu, event.globalPosition().toPoint(), hit))
 
-    def _chosen_picture(self) -> Picture | None:
-        settings = self._shared.view_settings
-        drives = {drive.id: drive for drive in self._source.drives()}
-        drive = drives.get(settings.drive_id)
-        return None if drive is None else Picture.of(drive, settings.image_kind)
+    def _lay_out(self) -> None:
+        """Turn the picture as it is wanted, and give it what the edges leave."""
+        wanted = self._shared.view_settings.image_lay
+        lay = wanted if self._picture is None else self._picture.turned(wanted)
+        self._viewport = self._hits.viewport = self._viewport.laid(lay)
+        if self._viewport.width > 1:  # shown before
+            self._viewport = self._hits.viewport = self._edges.lay_out(self._viewport)
 
     def _look_through(self, viewport: Viewport) -> None:
         self._viewport = self._hits.viewport = viewport
         self._edges.show_part(self._picture, viewport)
+        self.looked.emit()
         self.update()
 
     def _hover(self, position: QPointF) -> None:
@@ -388,6 +389,7 @@ class ImageView(QWidget):
         chosen = self._shared.selection.points
         if picture is not None:
             self._images.tint(chosen.get(picture.drive.id, np.empty(0, np.int64)))
+            self.update()
 
     def _plan_middle(self) -> tuple[float, float] | None:
         picture = self._picture

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from widgets.image_view.picture import Span
 from widgets.image_view.viewport import Viewport
 
 STREET = Viewport(1600, 900, (1300.0, 1000.0), stretch=6.0, zoom=0.9, centre=(300, 500), top=20)
@@ -13,7 +14,7 @@ STREET = Viewport(1600, 900, (1300.0, 1000.0), stretch=6.0, zoom=0.9, centre=(30
 def test_picture_to_screen_and_back_is_the_same_place() -> None:
     (x, y), *_ = STREET.to_screen(np.array([[123.25, 456.75]])).tolist()
     assert STREET.to_picture(x, y) == pytest.approx((123.25, 456.75))
-    assert (STREET.x_of(123.25), STREET.y_of(456.75)) == pytest.approx((x, y))
+    assert STREET.position_of(123.25, 456.75) == pytest.approx((x, y))
 
 
 def test_the_centre_is_in_the_middle_below_the_top() -> None:
@@ -50,8 +51,8 @@ def test_the_start_fills_the_height_and_begins_at_the_left_edge() -> None:
 
 def test_a_pan_moves_the_picture_with_the_mouse() -> None:
     moved = STREET.panned(100, -30)
-    assert moved.x_of(300) == pytest.approx(STREET.x_of(300) + 100)
-    assert moved.y_of(500) == pytest.approx(STREET.y_of(500) - 30)
+    assert moved.position_of(300, 500)[0] == pytest.approx(STREET.position_of(300, 500)[0] + 100)
+    assert moved.position_of(300, 500)[1] == pytest.approx(STREET.position_of(300, 500)[1] - 30)
 
 
 def test_the_picture_cannot_be_pushed_out_of_the_window() -> None:
@@ -77,7 +78,7 @@ def test_another_window_size_keeps_the_middle() -> None:
 
 
 def test_what_is_too_large_for_the_window_is_shrunk_to_fit() -> None:
-    held = STREET.holding(0, 0, 1300, 1000)
+    held = STREET.holding(Span(0, 0, 1300, 1000))
     assert held.span.left <= 0
     assert held.span.right >= 1300
-    assert STREET.holding(10, 10, 12, 12).zoom == STREET.zoom
+    assert STREET.holding(Span(10, 10, 12, 12)).zoom == STREET.zoom
