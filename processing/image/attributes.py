@@ -32,8 +32,8 @@ if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a cir
 SHOWN_RADIUS_M = 0.2
 """Neighbourhood of normals and shapes that are made for the screen."""
 
-_UNLABELLED_SHARE = 0.7
-"""How bright points without a label are: the street is seen, and labels stand out."""
+_UNLABELLED_GREYS = 64, 191
+"""The darkest and the brightest point without a label: black and white are left to classes."""
 
 _Colours = NDArray[np.uint8]
 _Points = NDArray[np.int64]
@@ -235,7 +235,9 @@ def _other_color(drive: Drive, points: _Points) -> _Colours:
 
 def _label(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
     """Colours of classes over the intensity, so that one sees the street while painting."""
-    shown = (_intensity(drive, points, low, high) * _UNLABELLED_SHARE).astype(np.uint8)
+    dark, bright = _UNLABELLED_GREYS
+    grey = _intensity(drive, points, low, high).astype(np.uint16)
+    shown = (dark + grey * (bright - dark) // 255).astype(np.uint8)
     if drive.columns.has("label"):
         labels = drive.columns["label"][points]
         is_labelled = labels > 0

@@ -25,6 +25,7 @@ from processing.image.colour_maps import (
 )
 from processing.image.kinds import ImageKind
 from processing.points.classes import point_classes, read_classes
+from processing.points.classes import point_classes
 from processing.points.drive import Drive
 from tests.builders import simulated_drive
 from tests.processing.image.recordings import drive_of, small_drive
@@ -119,9 +120,12 @@ def test_what_is_missing_is_said_with_what_to_do(drive: Drive) -> None:
 
 def test_points_without_a_label_show_the_street_in_grey_below_the_labels(drive: Drive) -> None:
     points = np.arange(100)
-    grey = colours(drive, points, "intensity", 2, 98)
+    grey = colours(drive, points, "intensity", 2, 98)[:, 0].astype(int)
     without = colours(drive, points, "label", 2, 98)
-    assert (without == (grey * 0.7).astype(np.uint8)).all()
+    assert (without == without[:, :1]).all()
+    assert (np.diff(without[np.argsort(grey), 0].astype(int)) >= 0).all()
+    blackest = min(class_colours()[one.code].max() for one in point_classes())
+    assert blackest < without.min() < without.max() < 206
     labels = np.zeros(drive.count, np.uint8)
     labels[:50:2] = 6
     drive.columns.add("label", labels)
