@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QKeySequence
+from PySide6.QtCore import QEvent, QObject, Qt, Signal
+from PySide6.QtGui import QKeyEvent, QKeySequence
 from PySide6.QtWidgets import (
+    QApplication,
     QCheckBox,
     QFrame,
     QGridLayout,
@@ -21,6 +22,7 @@ from PySide6.QtWidgets import (
     QVBoxLayout,
     QWidget,
 )
+from typing_extensions import override
 
 from processing.project.feature import Feature
 from processing.project.review_state import ReviewProgress, ReviewState
@@ -36,6 +38,8 @@ from widgets.shared.shared_state import SharedState
 _LEAST = 0.9
 _BIG_PX = 24
 _NUMBER_PX = 64
+_ENTER = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+_EMPTY, _WAITING, _REVIEW = range(3)
 
 
 @dataclass(frozen=True)
@@ -106,6 +110,7 @@ class ReviewPanel(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self._pages)
+        self.setFocusPolicy(Qt.FocusPolicy.ClickFocus)
         shared.map_changes.features_changed.connect(self._on_map_features_changed)
         shared.map_changes.drives_changed.connect(self._on_map_drives_changed)
         self._settings.shows_rejected_changed.connect(self._on_settings_shows_rejected_changed)
@@ -127,8 +132,7 @@ class ReviewPanel(QWidget):
         self._show_page()
         if not progress.state.is_open:
             return
-        state = progress.state
-        self._chooser.show_runs(self._tally.by_run, state.runs, state.order)
+        self._show_runs()
         left = time_left(progress.seconds_left) if progress.left else ""
         count = self.tr("%n left", "", progress.left)
         self._left.setText(f"{count} · {left}" if left else count)
@@ -143,6 +147,20 @@ class ReviewPanel(QWidget):
         for button in (self._accept, self._reject, self._edit, self._next):
             button.setEnabled(feature is not None)
         self._show_count()
+
+    @override
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Enter ends what is typed into the number; it must not judge the candidate."""
+        is_enter = isinstance(event, QKeyEvent) and event.key() in _ENTER
+        if watched is self._least and is_enter:
+            if event.type() is QEvent.Type.ShortcutOverride:
+                event.accept()
+                return True
+            if event.type() is QEvent.Type.KeyPress:
+                self._least.interpretText()
+                self.setFocus()
+                return True
+        return super().eventFilter(watched, event)
 
     def _make_parts(self) -> None:
         self._chooser = RunChooser(self._source, self._language, self)
@@ -171,6 +189,7 @@ class ReviewPanel(QWidget):
         self._least.setMinimumWidth(_NUMBER_PX)
         self._least.setValue(_LEAST)
         self._least.valueChanged.connect(self._show_count)
+        self._least.installEventFilter(self)
         self._accept_all = QPushButton(self)
         self._accept_all.clicked.connect(lambda: self.accept_from_requested.emit(self.least))
         self._rejected = QCheckBox(self.tr("Show rejected features"), self)
@@ -262,13 +281,19 @@ class ReviewPanel(QWidget):
     def _show_page(self) -> None:
         tallies = self._tally.by_run.values()
         waiting = sum(tally.candidates for tally in tallies)
-        if self._progress.state.is_open:
-            self._pages.setCurrentIndex(2)
-        elif waiting:
-            self._waiting.setText(self.tr("%n candidate(s) wait for a decision.", "", waiting))
-            self._pages.setCurrentIndex(1)
-        else:
-            self._pages.setCurrentIndex(0)
+        self._waiting.setText(self.tr("%n candidate(s) wait for a decision.", "", waiting))
+        page = _REVIEW if self._progress.state.is_open else (_WAITING if waiting else _EMPTY)
+        if page != self._pages.currentIndex():
+            focus = QApplication.focusWidget()
+            has_focus = focus is not None and self.isAncestorOf(focus)
+            self._pages.setCurrentIndex(page)
+            if has_focus:
+                # A field that came into focus by chance would take the keys that judge.
+                self.setFocus()
+
+    def _show_runs(self) -> None:
+        state = self._progress.state
+        self._chooser.show_runs(self._tally.by_run, state.runs, state.order)
 
     def _show_count(self) -> None:
         count = self._count_from(self.least) if self._progress.state.is_open else 0
@@ -287,10 +312,12 @@ class ReviewPanel(QWidget):
 
     def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
         self._tally.read(ids)
+        self._show_runs()
         self._show_page()
 
     def _on_map_drives_changed(self) -> None:
         self._tally.read_all()
+        self._show_runs()
         self._show_page()
 
 
