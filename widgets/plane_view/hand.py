@@ -66,6 +66,10 @@ class PlaneHand:
         self.gesture = Gesture(hits, shared.cursor)
         self.is_clicking = False
 
+    def pans_with(self, button: Qt.MouseButton) -> bool:
+        """Whether a press of this button would begin to push the picture."""
+        return self._navigation.starts_with(button)
+
     def press(self, event: QMouseEvent) -> bool:
         """A button went down; says whether a menu is wanted."""
         if self._navigation.starts_with(event.button()):
