@@ -95,8 +95,8 @@ class LabelLayer:
     def _write(self, labels: Sequence[LabelChange]) -> None:
         for one in labels:
             drive = self._drive_of(one.drive)
-            self._unflushed[one.drive] = drive
             write_labels(drive, one.unpacked_points(), one.codes_after())
+            self._unflushed[one.drive] = drive
 
     def _fits(self, label: LabelChange) -> bool:
         try:
