@@ -110,6 +110,11 @@ class SectionPane(PlaneView):
         """What is painted; None before the first points came."""
         return self._picture
 
+    @property
+    def marks(self) -> tuple[SectionMark, ...]:
+        """What of the map crosses the slab."""
+        return self._marks
+
     def show_standing(self, standing: Standing | None) -> None:
         """Cut here from now on; None: nowhere."""
         self._standing = standing

@@ -1,0 +1,133 @@
+"""The section view on a shown window, its points there, with a map behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from pytestqt.qtbot import QtBot
+
+from processing.points.drive import Drive
+from processing.project.catalogue import Geometry
+from processing.project.change import Change
+from processing.project.feature import Feature, Vertex, new_feature_id
+from processing.text import Text
+from tests.mouse_events import NO_KEYS, move_mouse
+from tests.widgets.builders import OpenMap, place_on
+from widgets.mouse_tools.mouse_tool import MouseTool
+from widgets.section_view.pane import SectionPane
+from widgets.section_view.view import SectionView
+from widgets.shared.cursor import Place
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+@dataclass
+class Hand:
+    """A view and the hand at its mouse and keyboard."""
+
+    qtbot: QtBot
+    map: OpenMap
+    view: SectionView
+
+    @property
+    def pane(self) -> SectionPane:
+        return self.view.panes[0]
+
+    def do(self, work: Callable[[], object]) -> None:
+        """Do something after which the section is painted anew."""
+        with self.qtbot.waitSignal(self.view.sharpened):
+            work()
+
+    def line(self, *vertices: Vertex) -> Feature:
+        """Put a line on the map."""
+        kind = self.map.kind_of(Geometry.LINE)
+        feature = Feature(new_feature_id(), kind, Geometry.LINE, vertices)
+        self.map.apply(Text.same("test"), Change(added=(feature,)))
+        return feature
+
+    def spot(self, place: Place) -> QPoint:
+        position = self.pane.position_of(place)
+        assert position is not None
+        return QPoint(int(np.floor(position.x())), int(np.floor(position.y())))
+
+    def look_closely(self) -> None:
+        """Look at the road in a thin slab, so large that points are apart."""
+        settings = replace(self.view.settings, width_m=0.3)
+        self.do(lambda: self.view.use_settings(settings))
+        picture, pane = self.pane.picture, self.pane
+        lay = pane.lay()
+        assert picture is not None
+        assert lay is not None
+        road = picture.section[np.abs(picture.section[:, 0]) < 1.0]
+        x, y = np.median(lay.on_plane(road), axis=0).tolist()
+        scaled = pane.viewport.zoomed(30.0, 0.0, 0.0)
+        pane.set_viewport(scaled.centred_on(x, y))
+
+    def lone_point(self, avoid: QPoint | None = None) -> Place:
+        """A measured point of the picture with no other near it in the window."""
+        picture, pane = self.pane.picture, self.pane
+        lay = pane.lay()
+        assert picture is not None
+        assert lay is not None
+        spots = pane.viewport.to_screen(lay.on_plane(picture.section))
+        inside = (spots > (80, 40)).all(axis=1)
+        inside &= (spots < (pane.width() - 20, pane.height() - 40)).all(axis=1)
+        for number in np.flatnonzero(inside):
+            away = np.hypot(*(spots - spots[number]).T)
+            away[number] = np.inf
+            is_far = avoid is None or np.hypot(*(spots[number] - avoid.toTuple())) > 40
+            if away.min() > 6 and is_far:
+                drive = picture.wish.drives[int(picture.drive_numbers[number])]
+                return place_on(drive, int(picture.points[number]))
+        pytest.fail("every point has another one near it")
+
+    def take(self, tool: MouseTool) -> MouseTool:
+        self.map.listen_to(tool)
+        self.view.set_mouse_tool(tool)
+        return tool
+
+    def drag(self, start: QPoint, end: QPoint) -> None:
+        self.qtbot.mousePress(self.pane, LEFT, NO_KEYS, start)
+        move_mouse(self.pane, (start + end) / 2, LEFT)
+        move_mouse(self.pane, end, LEFT)
+        self.qtbot.mouseRelease(self.pane, LEFT, NO_KEYS, end)
+
+    def key(self, key: Qt.Key, keys: Qt.KeyboardModifier = NO_KEYS) -> None:
+        self.qtbot.keyClick(self.pane, key, keys)
+
+
+@pytest.fixture
+def open_map(left_drive: Drive, right_drive: Drive) -> OpenMap:
+    return OpenMap((left_drive, right_drive))
+
+
+@pytest.fixture
+def hand(qtbot: QtBot, open_map: OpenMap) -> Iterator[Hand]:
+    """Give a view of both heads' street, in the middle of the ten metres."""
+    hand = shown(qtbot, open_map)
+    hand.do(lambda: hand.view.show_place(on_road(hand, 5.0)))
+    yield hand
+    hand.view.close()
+
+
+def shown(qtbot: QtBot, open_map: OpenMap) -> Hand:
+    view = SectionView(open_map, open_map.shared)
+    qtbot.addWidget(view)
+    view.resize(900, 600)
+    if open_map.all_drives and view.standing is not None:
+        with qtbot.waitSignal(view.sharpened):
+            view.show()
+    else:
+        view.show()
+    return Hand(qtbot, open_map, view)
+
+
+def on_road(hand: Hand, station_m: float) -> Place:
+    """The place of the trajectory at a station."""
+    standing = hand.view.standing
+    assert standing is not None
+    return Place(standing.line.stations.place_at(station_m))
