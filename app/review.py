@@ -168,7 +168,10 @@ class Review(QObject):
         label = _ACCEPT_ABOVE.filled(count=f"{len(features):,}", least=f"{least:.2f}")
         if not self._applied(label, change):
             return False
-        self._go_on()
+        if self._queue.status(self._state.feature) is Status.CANDIDATE:
+            self.changed.emit()
+        else:
+            self._go_on()
         return True
 
     def _decide(self, status: Status) -> bool:
