@@ -49,8 +49,8 @@ def looking(
         phi_deg=phi,
         kappa_deg=kappa,
         focal_px=focal_px,
-        cx_px=size[0] / 2,
-        cy_px=size[1] / 2,
+        cx_px=(size[0] - 1) / 2,
+        cy_px=(size[1] - 1) / 2,
         width_px=size[0],
         height_px=size[1],
         distortion=distortion,
@@ -74,7 +74,7 @@ def photograph(image: CameraImage, length_m: float = 10.0) -> NDArray[np.uint8]:
     import cv2
 
     columns, rows = np.meshgrid(np.arange(image.width_px), np.arange(image.height_px))
-    pixels = np.column_stack([columns.ravel() + 0.5, rows.ravel() + 0.5])
+    pixels = np.column_stack([columns.ravel(), rows.ravel()]).astype(np.float64)
     surface = seen_by(image, pixels, length_m)[1].reshape(columns.shape)
     image.path.parent.mkdir(parents=True, exist_ok=True)
     _, content = cv2.imencode(".png", SURFACE_COLOURS[surface][:, :, ::-1])

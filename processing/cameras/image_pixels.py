@@ -49,8 +49,10 @@ class ImagePixels:
         """Colours at (n, 2) columns and rows of the listed image, (n, 3); inside it."""
         height, width = self.pixels.shape[:2]
         across, down = self.scale
-        columns = np.clip((places[:, 0] / across).astype(np.int64), 0, width - 1)
-        rows = np.clip((places[:, 1] / down).astype(np.int64), 0, height - 1)
+        # Pixels have their middles at whole numbers.
+        columns = np.floor((places[:, 0] + 0.5) / across).astype(np.int64)
+        rows = np.floor((places[:, 1] + 0.5) / down).astype(np.int64)
+        columns, rows = np.clip(columns, 0, width - 1), np.clip(rows, 0, height - 1)
         return np.asarray(self.pixels[rows, columns])
 
 

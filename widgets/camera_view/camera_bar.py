@@ -1,0 +1,113 @@
+"""CameraBar: which image is shown, the others that see the place, and what clicks do."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QToolButton, QWidget
+
+from widgets.camera_view.view import CameraView
+
+
+class CameraBar(QWidget):
+    """The line above the camera image.
+
+    Parameters
+    ----------
+    view : CameraView
+
+    Signals
+    -------
+    calibration_toggled(bool)
+        The form of the camera's offsets is wanted, or no more.
+    """
+
+    calibration_toggled = Signal(bool)
+
+    def __init__(self, view: CameraView, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._view = view
+        self._before = self._button("‹", self.tr("The next better image of the place ([)"))
+        self._after = self._button("›", self.tr("The next image of the place (])"))
+        self._images = QComboBox(self)
+        self._images.setToolTip(self.tr("The images that see the place, best first"))
+        self._images.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
+        self._images.setMinimumContentsLength(14)
+        # Page up and down go through the images as well: the view keeps the keys.
+        self._images.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._stereo = self._button(
+            self.tr("Stereo"), self.tr("Measure a place by two images where points are missing")
+        )
+        self._calibration = self._button(
+            self.tr("Calibration"), self.tr("Adjust how the camera sits on the vehicle")
+        )
+        for button in (self._stereo, self._calibration):
+            button.setCheckable(True)
+        self._lay_out()
+        self._before.clicked.connect(self._on_before_clicked)
+        self._after.clicked.connect(self._on_after_clicked)
+        self._images.activated.connect(view.show_sighting)
+        self._stereo.toggled.connect(view.set_stereo)
+        self._calibration.toggled.connect(self.calibration_toggled)
+        view.sightings_changed.connect(self._show)
+        view.stereo_changed.connect(self._show)
+        self._show()
+
+    def end_calibration(self) -> None:
+        """The form was closed elsewhere."""
+        self._calibration.setChecked(False)
+
+    def _lay_out(self) -> None:
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(8, 0, 8, 0)
+        layout.setSpacing(4)
+        layout.addWidget(self._before)
+        layout.addWidget(self._images)
+        layout.addWidget(self._after)
+        layout.addStretch(1)
+        layout.addWidget(self._stereo)
+        layout.addWidget(self._calibration)
+
+    def _button(self, text: str, tip: str) -> QToolButton:
+        button = QToolButton(self)
+        button.setText(text)
+        button.setToolTip(tip)
+        button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        return button
+
+    def _show(self) -> None:
+        showing = self._view.showing
+        count = len(showing.sightings)
+        words = [
+            self.tr("{number}/{count}  {name} · {distance} m").format(
+                number=i + 1,
+                count=count,
+                name=one.image.path.stem,
+                distance=f"{one.distance_m:.0f}",
+            )
+            + (self.tr(" (hidden)") if one.is_hidden else "")
+            for i, one in enumerate(showing.sightings)
+        ]
+        if words != [self._images.itemText(i) for i in range(self._images.count())]:
+            with QSignalBlocker(self._images):
+                self._images.clear()
+                self._images.addItems(words)
+        with QSignalBlocker(self._images):
+            self._images.setCurrentIndex(showing.index)
+        has_image = showing.taken is not None
+        is_other = showing.index < 0 and has_image
+        self._images.setPlaceholderText(
+            showing.taken.image.path.stem if showing.taken and is_other else self.tr("No image")
+        )
+        self._images.setEnabled(count > 0)
+        self._before.setEnabled(count > 1)
+        self._after.setEnabled(count > 1)
+        for button in (self._stereo, self._calibration):
+            button.setEnabled(has_image or button.isChecked())
+        with QSignalBlocker(self._stereo):
+            self._stereo.setChecked(self._view.is_stereo)
+
+    def _on_before_clicked(self) -> None:
+        self._view.step(-1)
+
+    def _on_after_clicked(self) -> None:
+        self._view.step(1)
