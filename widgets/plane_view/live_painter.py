@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtGui import QPainter
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QColor, QPainter
 
 from processing.project.catalogue import Catalogue, Geometry
 from processing.project.feature import Position, Vertex
@@ -28,6 +29,7 @@ from widgets.shared.snap_state import SNAP_NAMES, SnapMark
 Floats = NDArray[np.float64]
 
 _NO_ORIGIN = np.zeros(3)
+_WORDS = QColor("#c9d1d9")
 
 
 @dataclass(frozen=True)
@@ -106,6 +108,13 @@ def spot_of(lay: Lay, viewport: PlaneViewport, xyz: Position) -> tuple[float, fl
     """Where a place is in the widget; None where it isn't shown."""
     x, y = viewport.to_screen(lay.to_plane(np.array([xyz], dtype=np.float64)))[0].tolist()
     return (x, y) if np.isfinite(x) and np.isfinite(y) else None
+
+
+def paint_words(painter: QPainter, room: QRectF, words: str) -> None:
+    """Write in the middle why there is nothing to see."""
+    painter.setPen(_WORDS)
+    flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
+    painter.drawText(room.adjusted(24, 24, -24, -24), int(flags), words)
 
 
 def _pieces(lay: Lay, viewport: PlaneViewport, xyz: Floats, shape: Geometry) -> Floats:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QPainter, QPixmap
 
 from processing.project.catalogue import Catalogue
@@ -22,17 +23,22 @@ class Ground(Protocol):
 
 
 class StillPicture:
-    """A move of the mouse paints its own marks over this and nothing else anew."""
+    """A move of the mouse paints its own marks over this and nothing else anew.
+
+    Ground and map are two layers, since points arrive while the map stays, and the map is edited
+    while the points stay.
+    """
 
     def __init__(self) -> None:
         self._painter = FeaturePainter()
-        self._picture = QPixmap()
-        self._shows: tuple[object, ...] | None = None
+        self._ground, self._map = QPixmap(), QPixmap()
+        self._ground_shows: tuple[object, ...] | None = None
+        self._map_shows: tuple[object, ...] | None = None
         self._held: tuple[PlaneFeatures, Catalogue] | None = None
 
-    def drop(self) -> None:
-        """Paint all anew the next time."""
-        self._shows = None
+    def drop_ground(self) -> None:
+        """Paint the ground anew the next time; the map only if features or viewport are others."""
+        self._ground_shows = None
 
     def paint(
         self,
@@ -46,21 +52,30 @@ class StillPicture:
     ) -> None:
         """Show ground and map, painted anew where they are others than before."""
         ratio = painter.device().devicePixelRatioF()
+        if self._ground_shows != (viewport, ratio):
+            self._ground = _emptied(self._ground, viewport, ratio, BACKGROUND)
+            with QPainter(self._ground) as still:
+                ground.paint_ground(still, viewport)
+            self._ground_shows = viewport, ratio
         # Features and catalogue are values: others are other objects.
         shows = id(features), id(catalogue), viewport, selected, ratio
-        if shows != self._shows:
-            self._paint_anew(ratio, viewport)
-            with QPainter(self._picture) as still:
-                ground.paint_ground(still, viewport)
+        if self._map_shows != shows:
+            self._map = _emptied(self._map, viewport, ratio, Qt.GlobalColor.transparent)
+            with QPainter(self._map) as still:
                 self._painter.paint(still, features, viewport, catalogue, selected)
             # Held, so that their ids belong to no others.
             self._held = features, catalogue
-            self._shows = shows
-        painter.drawPixmap(0, 0, self._picture)
+            self._map_shows = shows
+        painter.drawPixmap(0, 0, self._ground)
+        painter.drawPixmap(0, 0, self._map)
 
-    def _paint_anew(self, ratio: float, viewport: PlaneViewport) -> None:
-        size = round(viewport.width * ratio), round(viewport.height * ratio)
-        if (self._picture.width(), self._picture.height()) != size:
-            self._picture = QPixmap(*size)
-        self._picture.setDevicePixelRatio(ratio)
-        self._picture.fill(BACKGROUND)
+
+def _emptied(
+    picture: QPixmap, viewport: PlaneViewport, ratio: float, colour: QColor | Qt.GlobalColor
+) -> QPixmap:
+    width, height = round(viewport.width * ratio), round(viewport.height * ratio)
+    if (picture.width(), picture.height()) != (width, height):
+        picture = QPixmap(width, height)
+    picture.setDevicePixelRatio(ratio)
+    picture.fill(colour)
+    return picture

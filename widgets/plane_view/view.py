@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QCoreApplication, QEvent, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import (
-    QColor,
     QKeyEvent,
     QMouseEvent,
     QPainter,
@@ -26,7 +25,7 @@ from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.plane_view.feature_hits import PlaneHits
 from widgets.plane_view.hand import PlaneHand
 from widgets.plane_view.lay import Lay, Spot
-from widgets.plane_view.live_painter import LiveContent, LivePainter, spot_of
+from widgets.plane_view.live_painter import LiveContent, LivePainter, paint_words, spot_of
 from widgets.plane_view.projected_map import ProjectedMap
 from widgets.plane_view.still_picture import BACKGROUND, StillPicture
 from widgets.plane_view.viewport import PlaneViewport
@@ -35,7 +34,6 @@ from widgets.shared.map_source import MapSource
 from widgets.shared.screen_marks import paint_outline
 from widgets.shared.shared_state import SharedState
 
-_WORDS = QColor("#c9d1d9")
 _MIDDLE_PART = 0.6
 _ALONG_PER_NOTCH = 0.12  # of the window's width
 
@@ -157,6 +155,9 @@ class PlaneView(QWidget):
         if spot is not None and not self._viewport.shows(*spot, _MIDDLE_PART):
             self.set_viewport(self._viewport.centred_on(*spot))
 
+    def on_drives_changed(self) -> None:
+        """Drives were added, or a project opened or closed; all is painted anew afterwards."""
+
     def move_along(self, notches: float) -> None:
         """The wheel with Shift: along the drive, or to the side where there is none."""
         self.set_viewport(
@@ -196,7 +197,7 @@ class PlaneView(QWidget):
 
     def set_ground_stale(self) -> None:
         """Paint ground and map anew: another lay, other points, other colours."""
-        self._still.drop()
+        self._still.drop_ground()
         self._show_mouse()
         self._place_first()
         self.update()
@@ -247,7 +248,7 @@ class PlaneView(QWidget):
         with QPainter(self) as painter:
             if lay is None:
                 painter.fillRect(self.rect(), BACKGROUND)
-                self._paint_words(painter)
+                paint_words(painter, QRectF(self.rect()), self.words())
                 return
             self._refresh()
             catalogue = self._source.catalogue()
@@ -345,6 +346,7 @@ class PlaneView(QWidget):
         self._cursor_before = None
         self._map.read_all()
         self._is_placed = False
+        self.on_drives_changed()
         self.set_ground_stale()
 
     def _on_settings_shown_changed(self) -> None:
@@ -390,9 +392,3 @@ class PlaneView(QWidget):
             self.setCursor(Qt.CursorShape.ArrowCursor)
         else:
             self._hand.show_mouse()
-
-    def _paint_words(self, painter: QPainter) -> None:
-        painter.setPen(_WORDS)
-        area = QRectF(self.rect()).adjusted(24, 24, -24, -24)
-        flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
-        painter.drawText(area, int(flags), self.words())

@@ -1,0 +1,102 @@
+"""The road's height along a drive, from which one tells what stands above it."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.image.kinds import ImageKind
+from processing.points.drive import Drive
+
+Floats = NDArray[np.float64]
+
+_POINTS_A_ROW = 8
+_MOST_ROWS = 4_000
+_BESIDE_M = 3.0
+_SMOOTHED = 9
+_SAMPLES = 24
+_USUAL_DROP_M = 2.0
+_FARTHEST_M = 100.0
+
+
+def ground_along(drive: Drive) -> Floats:
+    """Places of the road below the vehicle.
+
+    With turns they are the points with which rows begin: the laser looked straight down there.
+    Without, the height of the trajectory above the points below it is taken from some samples.
+
+    Returns
+    -------
+    (m, 3) float64
+        Easting, northing and the road's height, m, project CRS; empty without trajectory.
+    """
+    trajectory = drive.trajectory
+    if trajectory is None or drive.count == 0 or not len(trajectory.xyz):
+        return np.empty((0, 3))
+    if drive.turns is not None:
+        found = _below_rows(drive, trajectory.xyz)
+        if len(found):
+            return found
+    return _below_samples(drive, trajectory.xyz)
+
+
+def ceilings_above(ground: Floats, places: Floats, limit_m: float) -> Floats:
+    """Heights up to which points are shown.
+
+    Parameters
+    ----------
+    ground : (m, 3) float64
+        The road's places; not empty.
+    places : (..., 2) float64
+        Easting and northing.
+    limit_m : float
+        Above the nearest place of the road.
+
+    Returns
+    -------
+    (...) float64
+        m, project CRS; infinite further than 100 m from the road.
+    """
+    from scipy.spatial import cKDTree
+
+    beside_m, nearest = cKDTree(ground[:, :2]).query(places)
+    ceilings: Floats = np.where(beside_m <= _FARTHEST_M, ground[nearest, 2] + limit_m, np.inf)
+    return ceilings
+
+
+def _below_rows(drive: Drive, way: Floats) -> Floats:
+    image = drive.image(ImageKind.TRAJECTORY_CENTER)
+    filled = np.flatnonzero(np.diff(image.row_starts) >= _POINTS_A_ROW)
+    rows = filled[:: max(1, len(filled) // _MOST_ROWS)]
+    points = image.row_starts[rows][:, None] + np.arange(_POINTS_A_ROW)
+    places = np.median(drive.xyz(points.ravel()).reshape(*points.shape, 3), axis=1)
+    # Where nothing came back from below the vehicle a row begins with something else.
+    from scipy.spatial import cKDTree
+
+    beside_m, nearest = cKDTree(way[:, :2]).query(places[:, :2])
+    is_below = (beside_m <= _BESIDE_M) & (places[:, 2] < way[nearest, 2])
+    return _smoothed(places[is_below])
+
+
+def _smoothed(places: Floats) -> Floats:
+    """Heights as medians of neighbours: a car below the beam is no road."""
+    if len(places) < _SMOOTHED:
+        return places
+    padded = np.pad(places[:, 2], _SMOOTHED // 2, mode="edge")
+    heights = np.median(np.lib.stride_tricks.sliding_window_view(padded, _SMOOTHED), axis=1)
+    return np.column_stack([places[:, :2], heights])
+
+
+def _below_samples(drive: Drive, way: Floats) -> Floats:
+    low, high = np.array(drive.info.lowest), np.array(drive.info.highest)
+    inside = way[((way >= low) & (way <= high))[:, :2].all(axis=1)]
+    if not len(inside):
+        return np.empty((0, 3))
+    chosen = np.linspace(0, len(inside) - 1, min(_SAMPLES, len(inside))).astype(np.int64)
+    drops = []
+    for place in inside[chosen]:
+        point = drive.nearest_point(place - [0.0, 0.0, _USUAL_DROP_M], _BESIDE_M)
+        if point >= 0:
+            drops.append(float(place[2] - drive.xyz(np.array([point]))[0, 2]))
+    drop_m = float(np.median(drops)) if drops else _USUAL_DROP_M
+    return inside - [0.0, 0.0, drop_m]

@@ -1,0 +1,258 @@
+"""PlanFeed: makes pictures of the points from above beside the window's thread."""
+
+from __future__ import annotations
+
+import threading
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QObject, Signal
+
+from processing.errors import UserError
+from processing.image.kinds import ImageKind
+from processing.image.plan_ground import ceilings_above, ground_along
+from processing.image.plan_raster import PlanFrame, PlanPicture, PlanRaster, square_middles
+from processing.image.tile_cache import TileCache, TileRequest
+from processing.image.tile_choice import Camera3D, tiles_in_view
+from processing.image.tiles import TileKey, TilePyramid
+from processing.points.drive import Drive
+from widgets.map_view.plan_tiles import OutdatedWish, PlanTiles, TilePoints, WantedTile
+from widgets.shared.view_settings import PointLook
+
+Floats = NDArray[np.float64]
+
+_FIRST_BUDGET, _FULL_BUDGET = 300_000, 3_000_000
+_OVERVIEW_BUDGET, _OVERVIEW_PX = 1_000_000, 1_200
+_EYE_M = 20_000.0
+_TOLD_S = 0.15
+
+
+@dataclass(frozen=True)
+class PlanWish:
+    """What the view wants to see.
+
+    Attributes
+    ----------
+    everything : PlanFrame
+        The whole recording, at any scale.
+    drives : tuple of (Drive, ImageKind)
+        With the kind of image whose tiles are drawn.
+    origin : (3,) float64
+        The document's local origin, m, project CRS.
+    age : int
+        Raised with every change of drives; told back.
+    look : PointLook
+    size_px : int
+        Side of the square that a point covers, pixels of the frame.
+    limit_m : float or None
+        Points higher above the road are hidden.
+    """
+
+    frame: PlanFrame
+    everything: PlanFrame
+    drives: tuple[tuple[Drive, ImageKind], ...]
+    origin: Floats
+    age: int
+    look: PointLook
+    size_px: int
+    limit_m: float | None
+
+    @property
+    def manner(self) -> tuple[object, ...]:
+        """What the same pictures of the whole recording come from."""
+        return self.age, self.look, self.size_px, self.limit_m, self.everything
+
+
+@dataclass(frozen=True, eq=False)
+class ShownPlan:
+    """A picture for a wish.
+
+    Attributes
+    ----------
+    is_sharp : bool
+        Nothing finer will come.
+    is_overview : bool
+        It is of the whole recording, whatever was wished.
+    ground : (m, 3) float64
+        Places of the road, m, project CRS; may be empty.
+    """
+
+    wish: PlanWish
+    picture: PlanPicture
+    ground: Floats
+    is_sharp: bool
+    is_overview: bool = False
+
+    def ceiling_at(self, easting: float, northing: float) -> float:
+        """The height above which points are hidden at a place, m; infinite without a limit."""
+        if self.wish.limit_m is None or not len(self.ground):
+            return np.inf
+        place = np.array([easting, northing])
+        return float(ceilings_above(self.ground, place, self.wish.limit_m))
+
+
+class PlanFeed(QObject):
+    """Works out wishes one after the other; the newest is the one that counts.
+
+    Signals
+    -------
+    pictured(shown: ShownPlan)
+        Sent from another thread, so received through the window's event queue.
+    """
+
+    pictured = Signal(object)
+
+    def __init__(self, tiles: TileCache) -> None:
+        super().__init__()
+        self._changed = threading.Condition()
+        self._next: PlanWish | None = None
+        self._is_closed = False
+        self._tiles = PlanTiles(tiles, self._changed, self._is_outdated)
+        self._ground: tuple[int, Floats] = -1, np.empty((0, 3))
+        self._overview: tuple[object, ...] = ()
+        self._worker = threading.Thread(target=self._work, name="plan pictures", daemon=True)
+        self._worker.start()
+
+    def wish(self, wish: PlanWish) -> None:
+        """Ask for what is to be seen now; replaces what was asked for and isn't finished."""
+        with self._changed:
+            self._next = wish
+            self._changed.notify_all()
+
+    def close(self) -> None:
+        """Stop the worker and wait for it; nothing is told afterwards."""
+        with self._changed:
+            self._is_closed = True
+            self._next = None
+            self._changed.notify_all()
+        self._worker.join()
+        self._tiles.close()
+
+    def _work(self) -> None:
+        while True:
+            with self._changed:
+                while self._next is None and not self._is_closed:
+                    self._changed.wait()
+                if self._is_closed or self._next is None:
+                    return
+                wish, self._next = self._next, None
+            try:
+                self._fulfil(wish)
+            except OutdatedWish:
+                continue
+
+    def _is_outdated(self) -> bool:
+        return self._is_closed or self._next is not None
+
+    def _fulfil(self, wish: PlanWish) -> None:
+        pyramids = self._prepared(wish)
+        raster = self._raster(wish, wish.frame)
+        added: set[tuple[int, TileKey]] = set()
+        for budget in (_FIRST_BUDGET, _FULL_BUDGET):
+            is_first = budget == _FIRST_BUDGET
+            chosen = _chosen(pyramids, _camera(wish.frame, wish), budget)
+            lacking = [_wanted(wish, *tile) for tile in chosen if tile not in added]
+            told_at = time.monotonic()
+            for tile in self._tiles.get(lacking, wish.origin, is_patient=is_first):
+                _add(raster, wish, tile)
+                if time.monotonic() - told_at > _TOLD_S:
+                    self._tell(ShownPlan(wish, raster.picture(), self._ground[1], is_sharp=False))
+                    told_at = time.monotonic()
+            added.update(chosen)
+            self._tell(ShownPlan(wish, raster.picture(), self._ground[1], is_sharp=not is_first))
+        self._make_overview(wish, pyramids)
+
+    def _make_overview(self, wish: PlanWish, pyramids: list[tuple[int, TilePyramid]]) -> None:
+        """What is shown where a push or a zoom is ahead of the pictures."""
+        if wish.manner == self._overview:
+            return
+        raster = self._raster(wish, wish.everything)
+        chosen = _chosen(pyramids, _camera(wish.everything, wish), _OVERVIEW_BUDGET)
+        wanted = [_wanted(wish, *tile) for tile in chosen]
+        for tile in self._tiles.get(wanted, wish.origin, is_patient=False):
+            _add(raster, wish, tile)
+        picture = raster.picture()
+        self._tell(ShownPlan(wish, picture, self._ground[1], is_sharp=True, is_overview=True))
+        self._overview = wish.manner
+
+    def _prepared(self, wish: PlanWish) -> list[tuple[int, TilePyramid]]:
+        """Drives' numbers and the tiles of those that can be shown."""
+        pyramids = []
+        for number, (drive, kind) in enumerate(wish.drives):
+            try:
+                pyramid = drive.image(kind).pyramid
+                pyramid.prepare()
+            except UserError:
+                continue  # the image view says why; here the drive's points are just not there
+            pyramids.append((number, pyramid))
+        return pyramids
+
+    def _raster(self, wish: PlanWish, frame: PlanFrame) -> PlanRaster:
+        ground = self._ground_of(wish)
+        if wish.limit_m is None or not len(ground):
+            return PlanRaster(frame, wish.origin)
+        ceilings = ceilings_above(ground, square_middles(frame), wish.limit_m)
+        return PlanRaster(frame, wish.origin, ceilings)
+
+    def _ground_of(self, wish: PlanWish) -> Floats:
+        age, ground = self._ground
+        if age != wish.age:
+            found = []
+            for drive, _ in wish.drives:
+                try:
+                    found.append(ground_along(drive))
+                except UserError:
+                    continue  # the image view says why; there is no limit then
+            ground = np.concatenate([np.empty((0, 3)), *found])
+            self._ground = wish.age, ground
+            self._tiles.forget()
+        return ground
+
+    def _tell(self, shown: ShownPlan) -> None:
+        if not self._is_closed:
+            self.pictured.emit(shown)
+
+
+def whole_frame(low: Floats, high: Floats) -> PlanFrame:
+    """A frame of everything between two places, (2,) easting and northing, m."""
+    size = np.maximum(high - low, 1.0)
+    px_per_m = _OVERVIEW_PX / float(size.max())
+    width, height = np.maximum(np.ceil(size * px_per_m), 1).astype(int).tolist()
+    return PlanFrame(float(low[0]), float(high[1]), px_per_m, width, height)
+
+
+def _camera(frame: PlanFrame, wish: PlanWish) -> Camera3D:
+    """Looking straight down; points that cover several pixels need not lie so close."""
+    origin = wish.origin.tolist()
+    east, north = (frame.west + frame.east) / 2, (frame.south + frame.north) / 2
+    gap_px = max(1.0, wish.size_px / 2)
+    return Camera3D(
+        origin=(origin[0], origin[1], origin[2]),
+        position=(east - origin[0], north - origin[1], _EYE_M),
+        direction=(0.0, 0.0, -1.0),
+        up=(0.0, 1.0, 0.0),
+        width_px=max(1, round(frame.width / gap_px)),
+        height_px=max(1, round(frame.height / gap_px)),
+        parallel_height_m=frame.north - frame.south,
+    )
+
+
+def _chosen(
+    pyramids: list[tuple[int, TilePyramid]], camera: Camera3D, budget_points: int
+) -> list[tuple[int, TileKey]]:
+    """Drives' numbers and tiles, coarse ones first."""
+    found = tiles_in_view([pyramid for _, pyramid in pyramids], camera, budget_points)
+    return [(pyramids[index][0], key) for index, key in found]
+
+
+def _wanted(wish: PlanWish, number: int, key: TileKey) -> WantedTile:
+    drive, kind = wish.drives[number]
+    look = wish.look
+    request = TileRequest(drive.id, kind, key, look.attribute, look.low_percent, look.high_percent)
+    return WantedTile(number, drive, request)
+
+
+def _add(raster: PlanRaster, wish: PlanWish, tile: TilePoints) -> None:
+    raster.add(tile.number, tile.points, tile.local_xyz, tile.colours, size_px=wish.size_px)
