@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from types import FrameType
 
 from platformdirs import user_documents_path
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
 from app.actions.draw import draw_actions
@@ -18,6 +18,7 @@ from app.actions.file import FileActions
 from app.actions.help import HelpActions
 from app.actions.layouts import adopt_view_toggles, layout_actions
 from app.actions.process import process_actions
+from app.actions.review import review_actions
 from app.actions.tool_entries import TOOL_ENTRIES
 from app.actions.view import view_actions
 from app.cli.window_wish import WindowWish
@@ -25,6 +26,8 @@ from app.document import Document
 from app.hand import make_toolbox
 from app.jobs import JobQueue
 from app.main_window import MainWindow
+from app.panel_places import panels_of
+from app.review import Review
 from app.settings import Settings
 from app.shortcut_editing import give_keys
 from app.theme import Theme
@@ -32,27 +35,28 @@ from app.translation import Translation
 from app.view_area import ViewArea
 from app.view_docks import View, ViewDocks
 from app.window_change import WindowChange
-from app.window_contents import Contents, Panel
+from app.window_contents import Contents
 from app.window_parts import LastingParts, WindowParts
 from app.wiring import connect_lasting, connect_parts
 from processing.text import Language, Text
 from widgets.image_view.view import ImageView
 from widgets.panels.attribute_panel import AttributePanel
+from widgets.panels.evaluation_panel import EvaluationPanel
 from widgets.panels.feature_table import FeatureTable
 from widgets.panels.jobs_panel import JobsPanel
+from widgets.panels.label_panel import LabelPanel
 from widgets.panels.layers_panel import LayersPanel
 from widgets.panels.processing_panel import ProcessingPanel
 from widgets.panels.project_tree import ProjectTree
+from widgets.panels.review_panel import ReviewPanel
 from widgets.parts.drawing_bar import DrawingBar
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
 from widgets.parts.start_page import StartPage
 from widgets.parts.status_line import StatusLine
 from widgets.scene_view.view import SceneView
+from widgets.section_view.view import SectionView
 
-_LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
-_RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
-_BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
 _SIGNALS_SEEN_MS = 250
 
 
@@ -132,11 +136,13 @@ def _make_lasting(settings: Settings) -> LastingParts:
     theme.choose(settings.theme)
     jobs = JobQueue()
     document = Document(jobs)
+    review = Review(document, document)
     return LastingParts(
         settings=settings,
         theme=theme,
         jobs=jobs,
         document=document,
+        review=review,
         toolbox=make_toolbox(document),
         window=MainWindow(),
     )
@@ -147,6 +153,8 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
     shared, tiles = document.shared, document.tiles
     image_view = ImageView(document, shared, tiles, language=language)
     scene_view = SceneView(document, shared, tiles, language=language)
+    section_view = SectionView(document, shared, language=language)
+    section_view.use_settings(lasting.settings.section)
     image_bar = ImageBar(document, shared, language)
     hints = {entry.name: entry.hint for entry in TOOL_ENTRIES}
     message_bar = MessageBar(language)
@@ -158,10 +166,18 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         theme=lasting.theme,
         jobs=lasting.jobs,
         document=document,
+        review=lasting.review,
         toolbox=lasting.toolbox,
         image_view=image_view,
         scene_view=scene_view,
-        view_docks=ViewDocks((View("scene", Text.same("3D"), scene_view),), language),
+        section_view=section_view,
+        view_docks=ViewDocks(
+            (
+                View("scene", Text.same("3D"), scene_view),
+                View("section", Text("Section", "断面"), section_view),
+            ),
+            language,
+        ),
         image_bar=image_bar,
         drawing_bar=DrawingBar(shared, hints, language),
         message_bar=message_bar,
@@ -171,6 +187,9 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         layers_panel=LayersPanel(document, shared, language),
         processing_panel=ProcessingPanel(language),
         attribute_panel=AttributePanel(document, shared, language),
+        review_panel=ReviewPanel(document, shared, language),
+        evaluation_panel=EvaluationPanel(document, shared, language),
+        label_panel=LabelPanel(document, shared, language),
         feature_table=FeatureTable(document, shared, language),
         jobs_panel=JobsPanel(language),
         window=lasting.window,
@@ -179,7 +198,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
 
 def _furnish(parts: WindowParts, files: FileActions, change: WindowChange) -> None:
     """Put the widgets into the window, with all that one can do with them."""
-    parts.toolbox.use_views((parts.image_view, parts.scene_view))
+    parts.toolbox.use_views(parts.views)
     contents = Contents(
         language=parts.language,
         start_page=parts.start_page,
@@ -192,7 +211,7 @@ def _furnish(parts: WindowParts, files: FileActions, change: WindowChange) -> No
     parts.window.hold(contents)
     _add_actions(parts, files, change)
     parts.window.end_toolbar(contents.tools)
-    parts.window.add_panels(_panels(parts), parts.language)
+    parts.window.add_panels(panels_of(parts), parts.language)
     give_keys(parts)
     connect_parts(parts)
     parts.window.show_work(is_open=parts.document.project is not None)
@@ -207,6 +226,7 @@ def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -
         *view_actions(parts, change.speak),
         *draw_actions(parts),
         *process_actions(parts),
+        *review_actions(parts),
         *help_.actions(),
     )
     parts.window.add_actions(actions)
@@ -217,46 +237,6 @@ def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -
     parts.start_page.demo_requested.connect(files.open_demo)
     parts.image_view.open_requested.connect(files.choose_project)
     parts.image_view.import_requested.connect(files.choose_import)
-
-
-def _panels(parts: WindowParts) -> tuple[Panel, ...]:
-    project, layers = Text("Project", "プロジェクト"), Text("Layers", "レイヤ")
-    processing, attributes = Text("Processing", "処理"), Text("Attributes", "属性")
-    jobs, table = Text("Jobs", "ジョブ"), Text("Table of features", "地物一覧")
-    return (
-        Panel("layers", layers, parts.layers_panel, _LEFT, 212, 600),
-        Panel("project", project, parts.project_tree, _LEFT, 212, 200, narrow_behind="layers"),
-        Panel("attributes", attributes, parts.attribute_panel, _RIGHT, 248, 420),
-        Panel(
-            "processing",
-            processing,
-            parts.processing_panel,
-            _RIGHT,
-            248,
-            380,
-            narrow_behind="attributes",
-        ),
-        Panel(
-            "jobs",
-            jobs,
-            parts.jobs_panel,
-            _RIGHT,
-            248,
-            380,
-            behind="processing",
-            narrow_behind="attributes",
-        ),
-        Panel(
-            "features",
-            table,
-            parts.feature_table,
-            _BELOW,
-            900,
-            230,
-            is_hidden=True,
-            key="F6",
-        ),
-    )
 
 
 def _fulfil(wish: WindowWish, parts: WindowParts) -> None:

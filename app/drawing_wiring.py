@@ -45,8 +45,8 @@ def connect_drawing(parts: WindowParts) -> None:
     for measure in toolbox.tools_of(MeasureTool):
         measure.measured.connect(bar.show_measures)
     snap.modes_changed.connect(wiring.on_snap_modes_changed)
-    parts.image_view.menu_requested.connect(wiring.on_view_menu_requested)
-    parts.scene_view.menu_requested.connect(wiring.on_view_menu_requested)
+    for view in parts.views:
+        view.menu_requested.connect(wiring.on_view_menu_requested)
     parts.document.opened.connect(wiring.on_document_opened)
     parts.document.closed.connect(parts.status_line.clearMessage)
     parts.document.catalogue_changed.connect(wiring.on_document_opened)
@@ -68,7 +68,7 @@ class _DrawingWiring(QObject):
         cycle = self._parts.window.actions_by_id["cycle-kind"]
         cycle.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
         self._parts.window.removeAction(cycle)
-        for view in (self._parts.image_view, self._parts.scene_view):
+        for view in self._parts.views:
             view.addAction(cycle)
 
     def on_document_opened(self) -> None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import datetime
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from app.theme import ThemeChoice
 from app.view_area import AreaLayout
 from processing.text import Language
 from widgets.parts.recent_project import RecentProject
+from widgets.section_view.settings import SectionSettings
 
 _MOST_RECENT = 10
 _MOST_USED = 30
@@ -122,6 +124,19 @@ class Settings:
     def forget_project(self, folder: Path) -> None:
         """Take a project off the recent ones."""
         self._keep_recent([one for one in self.recent_projects if one.folder != folder])
+
+    @property
+    def section(self) -> SectionSettings:
+        """How sections were cut last."""
+        stored = str(self._store.value("section", ""))
+        try:
+            return SectionSettings(**json.loads(stored)) if stored else SectionSettings()
+        except (ValueError, TypeError):  # of another version
+            return SectionSettings()
+
+    def remember_section(self, section: SectionSettings) -> None:
+        """Cut sections like this the next time."""
+        self._store.setValue("section", json.dumps(asdict(section)))
 
     @property
     def layout(self) -> WindowLayout | None:

@@ -27,12 +27,15 @@ class FixedKey:
         Keys that no action can have; empty for the mouse.
     action : str
         The one action that has the key as well, since it does the same; or empty.
+    in_review : str
+        The one action that has the key while candidates are judged and nothing is drawn; or empty.
     """
 
     gesture: Text
     name: Text
     keys: Keys = ()
     action: str = ""
+    in_review: str = ""
 
 
 FIXED: tuple[FixedKey, ...] = (
@@ -44,6 +47,7 @@ FIXED: tuple[FixedKey, ...] = (
         Text("Enter, right button, double click", "Enter、右ボタン、ダブルクリック"),
         Text("Finish what is being drawn", "作図中の図形を確定"),
         ("Return", "Enter"),
+        in_review="review-accept",
     ),
     FixedKey(
         Text("Backspace", "Backspace"),
@@ -60,6 +64,7 @@ FIXED: tuple[FixedKey, ...] = (
         Text("Remove the vertex under the mouse, or the selection", "頂点または選択した地物を削除"),
         ("Del",),
         "delete",
+        "review-reject",
     ),
     FixedKey(
         Text("Shift while drawing", "作図中のShift"), Text("Hold the direction", "方向を固定")
@@ -156,7 +161,7 @@ class Shortcuts:
     def conflict(self, action: str, key: str) -> Conflict | None:
         """What speaks against giving a key to an action; None when nothing does."""
         for fixed in FIXED:
-            if key in fixed.keys and action != fixed.action:
+            if key in fixed.keys and action not in (fixed.action, fixed.in_review):
                 return Conflict(fixed=fixed)
         for other in self.defaults:
             if other != action and key in self.keys_of(other):

@@ -123,7 +123,7 @@ class WindowChange(QObject):
         seen = _Seen.of(parts)
         parts.window.setUpdatesEnabled(False)
         parts.toolbox.use_views(())
-        parts.scene_view.close()
+        parts.close_views()
         # Loaders hold on to the old views until they have told them of their tiles.
         parts.document.tiles.tell_nobody()
         self._translation.speak(self._wanted)

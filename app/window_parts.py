@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 from app.document import Document
 from app.jobs import JobQueue
 from app.main_window import MainWindow
+from app.review import Review
 from app.settings import Settings
 from app.theme import Theme
 from app.view_docks import ViewDocks
@@ -14,17 +15,21 @@ from processing.text import Language
 from widgets.image_view.view import ImageView
 from widgets.mouse_tools.toolbox import MouseToolbox
 from widgets.panels.attribute_panel import AttributePanel
+from widgets.panels.evaluation_panel import EvaluationPanel
 from widgets.panels.feature_table import FeatureTable
 from widgets.panels.jobs_panel import JobsPanel
+from widgets.panels.label_panel import LabelPanel
 from widgets.panels.layers_panel import LayersPanel
 from widgets.panels.processing_panel import ProcessingPanel
 from widgets.panels.project_tree import ProjectTree
+from widgets.panels.review_panel import ReviewPanel
 from widgets.parts.drawing_bar import DrawingBar
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
 from widgets.parts.start_page import StartPage
 from widgets.parts.status_line import StatusLine
 from widgets.scene_view.view import SceneView
+from widgets.section_view.view import SectionView
 
 
 @dataclass(frozen=True)
@@ -35,6 +40,7 @@ class LastingParts:
     theme: Theme
     jobs: JobQueue
     document: Document
+    review: Review
     toolbox: MouseToolbox
     window: MainWindow
 
@@ -51,9 +57,11 @@ class WindowParts:
     theme: Theme
     jobs: JobQueue
     document: Document
+    review: Review
     toolbox: MouseToolbox
     image_view: ImageView
     scene_view: SceneView
+    section_view: SectionView
     view_docks: ViewDocks
     image_bar: ImageBar
     drawing_bar: DrawingBar
@@ -64,9 +72,22 @@ class WindowParts:
     layers_panel: LayersPanel
     processing_panel: ProcessingPanel
     attribute_panel: AttributePanel
+    review_panel: ReviewPanel
+    evaluation_panel: EvaluationPanel
+    label_panel: LabelPanel
     feature_table: FeatureTable
     jobs_panel: JobsPanel
     window: MainWindow
+
+    @property
+    def views(self) -> tuple[ImageView | SceneView | SectionView, ...]:
+        """All views of the map."""
+        return (self.image_view, self.scene_view, self.section_view)
+
+    def close_views(self) -> None:
+        """Stop the views' loaders and give back their graphics; may be called again."""
+        self.scene_view.close()
+        self.section_view.close()
 
     def replace_by(self, parts: WindowParts) -> None:
         """Hold these parts from now on."""
@@ -78,5 +99,5 @@ def take_down(parts: WindowParts) -> None:
     """Stop jobs and loaders, close the project and the 3D view; may be called again."""
     parts.jobs.close()
     parts.document.close()
-    parts.scene_view.close()
+    parts.close_views()
     parts.document.tiles.close()

@@ -8,6 +8,8 @@ from PySide6.QtCore import QObject
 
 from app.drawing_wiring import connect_drawing
 from app.jobs import JobState, JobStatus
+from app.review_wiring import connect_review
+from app.view_wiring import connect_views
 from app.window_parts import WindowParts, take_down
 from processing.errors import Unsuitable
 from processing.project.change import Change
@@ -34,6 +36,8 @@ def connect_parts(parts: WindowParts) -> None:
     _connect_document(parts, wiring)
     _connect_intentions(parts, wiring)
     connect_drawing(parts)
+    connect_views(parts)
+    connect_review(parts)
     parts.window.closed.connect(wiring.on_window_closed)
     wiring.on_undo_stack_changed()
     wiring.on_toolbox_tool_chosen(parts.toolbox.name)
@@ -68,6 +72,7 @@ def _connect_intentions(parts: WindowParts, wiring: _Wiring) -> None:
     parts.layers_panel.kind_chosen.connect(wiring.on_layers_kind_chosen)
     parts.attribute_panel.change_requested.connect(document.apply)
     parts.feature_table.change_requested.connect(document.apply)
+    parts.project_tree.change_requested.connect(document.apply)
     parts.project_tree.drive_chosen.connect(wiring.on_tree_drive_chosen)
     parts.processing_panel.run_requested.connect(wiring.on_processing_run_requested)
     parts.jobs_panel.cancel_requested.connect(parts.jobs.cancel)

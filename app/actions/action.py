@@ -91,12 +91,14 @@ MENUS: tuple[tuple[str, Text], ...] = (
     ("view", Text("&View", "表示(&V)")),
     ("draw", Text("&Draw", "作図(&D)")),
     ("process", Text("&Process", "処理(&P)")),
+    ("review", Text("&Review", "確認(&R)")),
     ("help", Text("&Help", "ヘルプ(&H)")),
 )
 """Menus from left to right."""
 
 SUBMENUS: Mapping[str, Text] = {
     "view/layouts": Text("Layouts", "レイアウト"),
+    "view/section": Text("Section", "断面"),
     "view/theme": Text("Theme", "配色"),
     # Both words, so that who can't read the language spoken finds it.
     "view/language": Text("Language / 言語", "言語 / Language"),

@@ -37,7 +37,7 @@ def label_actions(parts: WindowParts) -> tuple[Action, ...]:
             "erase-labels",
             Text("Paint with the eraser", "消しゴムで塗る"),
             erase,
-            "Shift+W",
+            "Shift+Y",
             Text("Points painted lose their label.", "塗った点のラベルが消えます。"),
         ),
     )

@@ -205,7 +205,7 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
     ToolEntry(
         "paint-brush",
         Text("Paint labels", "ラベルを塗る"),
-        "B",
+        "U",
         "mdi6.brush",
         Text(
             "Drag over points to give them the chosen class; [ and ] change the brush.",
@@ -217,7 +217,7 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
     ToolEntry(
         "paint-rectangle",
         Text("Label a rectangle", "矩形内にラベルを付ける"),
-        "Shift+B",
+        "Shift+U",
         "mdi6.select-drag",
         Text(
             "All measured points inside a box that is dragged.",
@@ -229,7 +229,7 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
     ToolEntry(
         "paint-lasso",
         Text("Label inside a lasso", "投げ縄内にラベルを付ける"),
-        "Ctrl+B",
+        "Ctrl+U",
         "mdi6.lasso",
         Text(
             "Draw round the points to label, in the image, the section or 3D.",
@@ -241,7 +241,7 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
     ToolEntry(
         "paint-segment",
         Text("Label segments", "セグメントにラベルを付ける"),
-        "W",
+        "Y",
         "mdi6.auto-fix",
         Text(
             "Click a segment, or drag over several: each is labelled as a whole.",

@@ -30,6 +30,7 @@ def view_actions(parts: WindowParts, speak: Callable[[Language], None]) -> tuple
     return (
         *_places(parts),
         *_standings(parts),
+        *_sections(parts),
         *_themes(parts),
         *_languages(parts, speak),
         *_looks(parts),
@@ -38,12 +39,12 @@ def view_actions(parts: WindowParts, speak: Callable[[Language], None]) -> tuple
 
 def _places(parts: WindowParts) -> tuple[Action, ...]:
     def show_everything() -> None:
-        parts.image_view.show_everything()
-        parts.scene_view.show_everything()
+        for view in parts.views:
+            view.show_everything()
 
     def center() -> None:
-        parts.image_view.center_on_selection()
-        parts.scene_view.center_on_selection()
+        for view in parts.views:
+            view.center_on_selection()
 
     return (
         Action(
@@ -54,8 +55,8 @@ def _places(parts: WindowParts) -> tuple[Action, ...]:
             ("Home",),
             "mdi6.fit-to-page-outline",
             hint=Text(
-                "The whole recording in the image and in 3D.",
-                "画像と3Dに走行データの全体を表示します。",
+                "The whole recording in every view.",
+                "すべてのビューに走行データの全体を表示します。",
             ),
             needs_project=True,
         ),
@@ -113,6 +114,41 @@ def _standings(parts: WindowParts) -> tuple[Action, ...]:
             hint=Text(
                 "Looks from behind and above, as the vehicle drove.",
                 "車両の進行方向に、後方の上から見ます。",
+            ),
+            needs_project=True,
+        ),
+    )
+
+
+def _sections(parts: WindowParts) -> tuple[Action, ...]:
+    """Where the section stands."""
+    section = parts.section_view
+
+    def stepping(id_: str, text: Text, key: str, count: int) -> Action:
+        def step() -> None:
+            parts.view_docks.show_view("section")
+            section.step(count)
+
+        return Action(id_, text, step, "view/section", (key,), needs_project=True)
+
+    def pin() -> None:
+        parts.view_docks.show_view("section")
+        section.set_pinned(not section.is_pinned)
+
+    return (
+        stepping("section-back", Text("Step back", "1つ戻る"), "Q", -1),
+        stepping("section-forward", Text("Step forward", "1つ進む"), "W", 1),
+        stepping("section-far-back", Text("Ten steps back", "10戻る"), "Shift+Q", -10),
+        stepping("section-far-forward", Text("Ten steps forward", "10進む"), "Shift+W", 10),
+        Action(
+            "section-pin",
+            Text("Hold as two windows, across and along", "横断と縦断の2画面に固定"),
+            pin,
+            "view/section",
+            ("I",),
+            hint=Text(
+                "Cuts across and along the line at this place, until it is released.",
+                "この位置の横断面と縦断面を並べて固定します。もう一度押すと解除します。",
             ),
             needs_project=True,
         ),

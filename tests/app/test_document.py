@@ -13,7 +13,8 @@ from processing.project.change import Change
 from processing.project.feature import Feature, Vertex
 from processing.project.importing import ImportRequest
 from processing.text import Text
-from processing.tools.registry import TOOLS
+from processing.tools.normals import NORMALS
+from processing.tools.segments import SEGMENTS
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 
 SIGN = Feature("f1", "sign", Geometry.POINT, (Vertex((1.0, 2.0, 3.0)),))
@@ -63,7 +64,7 @@ def test_an_imported_drive_is_shown_and_its_surfaces_are_prepared(
         pass
     (drive,) = document.drives()
     assert document.shared.view_settings.drive_id == drive.id
-    wanted = {column.name for tool in TOOLS.values() for column in tool.outputs}
+    wanted = {column.name for tool in (NORMALS, SEGMENTS) for column in tool.outputs}
     qtbot.waitUntil(lambda: all(drive.columns.has(name) for name in wanted), timeout=WAIT_MS)
     assert columns == {drive.id}
 

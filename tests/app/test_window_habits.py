@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QTreeWidget, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.application import build_window, make_application
+from app.review_wiring import QUEUE_ACTIONS
 from app.settings import Settings
 from app.shortcut_editing import shortcuts_of
 from app.window_parts import WindowParts
@@ -88,7 +89,7 @@ def test_what_needs_a_project_is_disabled_until_one_is_open(
     assert {"export", "close", "everything", "panel-layers"} <= set(needing)
     assert not any(actions[name].isEnabled() for name in needing)
     assert parts.document.create(tmp_path / "p.zuka", "EPSG:6677")
-    nothing_to_do = {"undo", "redo"}
+    nothing_to_do = {"undo", "redo", *QUEUE_ACTIONS}
     assert all(actions[name].isEnabled() for name in needing if name not in nothing_to_do)
     assert not any(actions[name].isEnabled() for name in nothing_to_do)
     parts.document.close()

@@ -1,0 +1,95 @@
+"""Wiring of the review: the queue, its panel, its keys, and the views that show each candidate."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, Qt
+
+from app.actions.review import QUEUE_KEYS
+from app.window_parts import WindowParts
+from processing.project.feature import Feature
+from widgets.shared.cursor import Place
+
+QUEUE_ACTIONS = (*QUEUE_KEYS, "review-worst", "review-along", "review-end")
+"""Actions that can be done only while a queue is open."""
+
+
+def connect_review(parts: WindowParts) -> None:
+    """Connect the review with the widgets of a window; again for new ones."""
+    wiring = _ReviewWiring(parts)
+    review, panel = parts.review, parts.review_panel
+    review.shown.connect(wiring.on_review_shown)
+    review.changed.connect(wiring.on_review_changed)
+    review.edit_requested.connect(wiring.on_review_edit_requested)
+    parts.document.shared.sketch.changed.connect(wiring.on_sketch_changed)
+    panel.open_requested.connect(review.open)
+    panel.order_requested.connect(review.put_in_order)
+    panel.accept_requested.connect(review.accept)
+    panel.reject_requested.connect(review.reject)
+    panel.edit_requested.connect(review.edit)
+    panel.next_requested.connect(review.next)
+    panel.back_requested.connect(review.back)
+    panel.accept_from_requested.connect(review.accept_from)
+    panel.processing_requested.connect(wiring.on_panel_processing_requested)
+    panel.ask_count_from(review.count_from)
+    parts.project_tree.review_requested.connect(wiring.on_tree_review_requested)
+    wiring.keep_keys_to_views()
+    wiring.on_review_changed()
+
+
+class _ReviewWiring(QObject):
+    """What has to be translated between the queue and the window."""
+
+    def __init__(self, parts: WindowParts) -> None:
+        super().__init__(parts.window.centralWidget())  # goes with the widgets
+        self._parts = parts
+        self._is_editing = False
+
+    def keep_keys_to_views(self) -> None:
+        """Enter and letters judge over the views and the queue only: in forms they are typed."""
+        parts = self._parts
+        for name in QUEUE_KEYS:
+            action = parts.window.actions_by_id[name]
+            action.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
+            parts.window.removeAction(action)
+            for widget in (*parts.views, parts.review_panel):
+                widget.addAction(action)
+
+    def on_review_shown(self, _feature: Feature, place: Place) -> None:
+        """Every view has the candidate in its middle; the section cuts through it."""
+        for view in self._parts.views:
+            view.center_on(place)
+
+    def on_review_changed(self) -> None:
+        review = self._parts.review
+        self._parts.review_panel.show_review(review.progress, review.current)
+        self._allow_keys()
+        if self._is_editing:
+            # What was corrected is judged: the hand has the pointer again.
+            self._is_editing = False
+            if self._parts.toolbox.name == "edit":
+                self._parts.toolbox.choose("select")
+
+    def on_review_edit_requested(self, feature: Feature) -> None:
+        self._parts.document.shared.selection.choose_features(frozenset({feature.id}))
+        self._parts.toolbox.choose("edit")
+        self._is_editing = True
+
+    def on_sketch_changed(self) -> None:
+        self._allow_keys()
+
+    def on_panel_processing_requested(self) -> None:
+        self._parts.window.show_panel("processing")
+
+    def on_tree_review_requested(self, run: str) -> None:
+        review = self._parts.review
+        self._parts.window.show_panel("review")
+        review.open((run,), review.progress.state.order)
+
+    def _allow_keys(self) -> None:
+        """While something is drawn, Enter and Delete belong to what is drawn."""
+        parts = self._parts
+        is_judging = parts.review.is_open and not parts.toolbox.hand.is_busy
+        for name in QUEUE_ACTIONS:
+            is_key = name in QUEUE_KEYS
+            allowed = is_judging if is_key else parts.review.is_open
+            parts.window.actions_made.allow(name, is_allowed=allowed)
