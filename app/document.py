@@ -349,7 +349,8 @@ class Document(QObject):
         removed = {feature.id for feature in change.removed}
         selection = self.shared.selection
         selection.choose_features(selection.features - removed)
-        self.shared.map_changes.features_changed.emit(change.feature_ids)
+        if change.feature_ids:
+            self.shared.map_changes.features_changed.emit(change.feature_ids)
         labels = tuple((self.drive(one.drive), one) for one in change.labels)
         tell_labels(labels, self.tiles, self.shared.map_changes)
         return True

@@ -1,0 +1,137 @@
+"""Labels painted in the window: seen at once, undone by keys, kept over a restart."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+
+from processing.image.colour_maps import class_colours
+from processing.labels.label_column import labels_of
+from processing.labels.strokes import points_under_brush
+from tests.journeys.conftest import WAIT_MS
+from tests.mouse_events import NO_KEYS, move_mouse
+
+LEFT = Qt.MouseButton.LeftButton
+CONTROL = Qt.KeyboardModifier.ControlModifier
+
+
+class Painter:
+    """The surveyor with a brush in the hand."""
+
+    def __init__(self, surveyor):
+        self.surveyor = surveyor
+        self.view = surveyor.parts.image_view
+        window = surveyor.parts.window
+        with surveyor.bot.waitActive(window):
+            window.activateWindow()
+        self.view.setFocus()
+        self.do("tool-paint-brush")
+        drive = surveyor.drive
+        image = drive.image(surveyor.document.shared.view_settings.image_kind)
+        self.point = surveyor.shown_point(image.rows // 2, image.width // 2)
+        self.spot = surveyor.pixel_of(self.point)
+
+    def do(self, action: str) -> None:
+        self.surveyor.parts.window.actions_by_id[action].trigger()
+
+    @property
+    def labels(self):
+        drive = self.surveyor.drive
+        return labels_of(drive, np.arange(drive.count))
+
+    def press(self):
+        QTest.mousePress(self.view, LEFT, NO_KEYS, self.spot)
+
+    def drag(self, steps: int = 5):
+        for step in range(1, steps + 1):
+            move_mouse(self.view, self.spot + QPoint(6 * step, 0), LEFT)
+
+    def release(self, steps: int = 5):
+        QTest.mouseRelease(self.view, LEFT, NO_KEYS, self.spot + QPoint(6 * steps, 0))
+
+    def stroke(self):
+        self.press()
+        self.drag()
+        self.release()
+
+    def colour(self) -> tuple[int, int, int]:
+        pixel = self.view.grab().toImage().pixelColor(self.spot)
+        return pixel.red(), pixel.green(), pixel.blue()
+
+
+@pytest.fixture
+def painter(surveyor, tmp_path):
+    surveyor.import_sample_street(tmp_path / "street.zuka")
+    return Painter(surveyor)
+
+
+def test_a_stroke_is_seen_undone_redone_and_kept(painter, surveyor, tmp_path):
+    bot, document, view = surveyor.bot, surveyor.document, painter.view
+    bot.keyClick(view, "6")
+    assert document.shared.labels.rule.code == 6
+    painter.do("brush-larger")
+    assert document.shared.labels.radius_m == 0.375
+    painter.stroke()
+    place = np.array(surveyor.place_of(painter.point).xyz)
+    under = points_under_brush(surveyor.drive, place, place, 0.375)
+    painted = painter.labels
+    assert under.size > 5
+    assert (painted[under] == 6).all()
+    assert document.undo_stack.undo_label.en == "Label points: Building"
+    building = tuple(class_colours()[6].tolist())
+    bot.waitUntil(lambda: painter.colour() == building, timeout=WAIT_MS)
+    bot.keyClick(view, Qt.Key.Key_Z, CONTROL)
+    assert not painter.labels.any()
+    bot.waitUntil(lambda: painter.colour() != building, timeout=WAIT_MS)
+    bot.keyClick(view, Qt.Key.Key_Y, CONTROL)
+    np.testing.assert_array_equal(painter.labels, painted)
+    bot.waitUntil(lambda: painter.colour() == building, timeout=WAIT_MS)
+    document.close()
+    assert document.open(tmp_path / "street.zuka")
+    np.testing.assert_array_equal(painter.labels, painted)
+    assert document.undo()
+    assert not painter.labels.any()
+
+
+def test_escape_and_undo_in_the_middle_of_a_stroke_drop_only_the_stroke(painter, surveyor):
+    bot, view = surveyor.bot, painter.view
+    painter.stroke()
+    painted = painter.labels
+    assert painted.any()
+    bot.keyClick(view, "7")
+    for key, modifiers in ((Qt.Key.Key_Escape, NO_KEYS), (Qt.Key.Key_Z, CONTROL)):
+        painter.press()
+        painter.drag(3)
+        bot.keyClick(view, key, modifiers)
+        painter.drag(5)
+        painter.release()
+        np.testing.assert_array_equal(painter.labels, painted)
+        assert surveyor.parts.toolbox.name == "paint-brush"
+    painter.stroke()
+    assert 7 in painter.labels
+
+
+def test_two_strokes_while_a_tool_stores_its_columns_are_both_kept(painter, surveyor):
+    bot, view, document = surveyor.bot, painter.view, surveyor.document
+
+    def run_and_paint():
+        job = document.start_run("normals", surveyor.drive.id, _usual("normals"))
+        painter.stroke()
+        bot.keyClick(view, "5")
+        painter.stroke()
+        return job
+
+    surveyor.wait_for_job(run_and_paint)
+    assert set(painter.labels) >= {0, 5}
+    assert document.undo()
+    assert set(painter.labels) == {0, 2}
+    assert document.undo()
+    assert not painter.labels.any()
+
+
+def _usual(tool: str):
+    from processing.tools.registry import TOOLS
+
+    return TOOLS[tool].parameters()
