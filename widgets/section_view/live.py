@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtWidgets import QWidget
 
 from widgets.section_view.lines import SectionLines
 from widgets.shared.cursor import Cursor, Place
@@ -17,6 +18,8 @@ class LiveLine(QObject):
     ----------
     cursor : Cursor
     lines : SectionLines
+    owner : QWidget
+        While it is hidden nothing is looked for.
 
     Attributes
     ----------
@@ -31,9 +34,10 @@ class LiveLine(QObject):
 
     found = Signal(object)
 
-    def __init__(self, cursor: Cursor, lines: SectionLines, parent: QObject | None = None) -> None:
-        super().__init__(parent)
+    def __init__(self, cursor: Cursor, lines: SectionLines, owner: QWidget) -> None:
+        super().__init__(owner)
         self._lines = lines
+        self._owner = owner
         self._place: Place | None = None
         self.is_on = True
         self._wait = QTimer(self, singleShot=True, interval=_EVERY_MS)
@@ -46,7 +50,7 @@ class LiveLine(QObject):
         self._wait.stop()
 
     def _on_cursor_hovered(self, place: Place | None) -> None:
-        if place is None or not self.is_on:
+        if place is None or not self.is_on or not self._owner.isVisible():
             return
         self._place = place
         if not self._wait.isActive():

@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QEvent, QPointF, QRectF, Signal
-from PySide6.QtGui import QCloseEvent, QMouseEvent, QPainter, QPolygonF, QResizeEvent
+from PySide6.QtCore import QEvent, QPointF, QRectF, Qt, Signal
+from PySide6.QtGui import QCloseEvent, QMouseEvent, QPainter, QPolygonF, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QMenu, QWidget
 from typing_extensions import override
 
 from processing.points.drive import Drive
+from processing.project.feature import Vertex
 from processing.section.cut import Cut
 from processing.text import Language
 from widgets.plane_view.lay import Spot
@@ -80,6 +81,7 @@ class SectionPane(PlaneView):
         self._ground_y = 0.0
         self._marks: tuple[SectionMark, ...] = ()
         self._named: tuple[SectionMark, tuple[float, float]] | None = None
+        self._held: tuple[str, Vertex] | None = None
         self._is_by_distance = False
         self._is_closed = False
         self._points = GroundPainter()
@@ -206,12 +208,19 @@ class SectionPane(PlaneView):
 
     @override
     def place_at(self, place: Spot, reach: float, *, exact: bool) -> Place | None:
-        picture, lay = self.picture, self.lay()
+        picture, lay = self._picture, self._lay
         if picture is None or lay is None:
             return None
         at = np.array([place[0], lay.height_of(place[1])])
         ellipse = np.array([reach, reach / self.viewport.exaggeration])
-        return (measured_point if exact else shown_point)(picture, at, ellipse)
+        found = (measured_point if exact else shown_point)(picture, at, ellipse)
+        drawing, held = self._shared.sketch.drawing, self._held
+        if found is not None or drawing is None or held is None or drawing.replaces != held[0]:
+            return found
+        # Where nothing was measured a vertex that is dragged keeps what the section doesn't show.
+        _, _, away = lay.cut.to_section([held[1].xyz])[0].tolist()
+        easting, northing, height = lay.cut.to_space([[*at, away]])[0].tolist()
+        return Place((easting, northing, height), is_occluded=True)
 
     @override
     def points_inside(self, outline: QPolygonF) -> Mapping[str, NDArray[np.int64]]:
@@ -247,6 +256,11 @@ class SectionPane(PlaneView):
     # Events.
 
     @override
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self._ask()
+
+    @override
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         if self._picture is not None and not self._framed:
@@ -264,6 +278,7 @@ class SectionPane(PlaneView):
     @override
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self.is_mouse_here = self.is_clicking = True
+        self._held = self._held_by(event)
         super().mousePressEvent(event)
         self.is_clicking = False
 
@@ -302,8 +317,8 @@ class SectionPane(PlaneView):
     # What is done in more than one place.
 
     def _ask(self) -> None:
-        if self._standing is None or self._is_closed:
-            return
+        if self._standing is None or self._is_closed or not self.isVisible():
+            return  # what is hidden is looked for when it is shown
         standing, look = self._standing, self._shared.view_settings.look
         wish = SectionWish(standing, standing.cut, self._drives(), look, self._is_by_distance)
         self._feed.wish(wish)
@@ -343,6 +358,15 @@ class SectionPane(PlaneView):
             inside = LEFT_PX <= x <= self.width() and 0 <= y <= self.height() - BOTTOM_PX
             if np.isfinite(x) and not inside:
                 self.set_viewport(self.viewport.centred_on(*place[0].tolist()))
+
+    def _held_by(self, event: QMouseEvent) -> tuple[str, Vertex] | None:
+        """The vertex that a press takes hold of, with its feature's id."""
+        if event.button() != Qt.MouseButton.LeftButton or self._lay is None:
+            return None
+        self._refresh()
+        hit = self._hits.quick_hit(event.position(), event.modifiers())
+        feature = self._source.feature(hit.feature) if hit.vertex >= 0 else None
+        return None if feature is None else (feature.id, feature.vertices[hit.vertex])
 
     def _take_down(self) -> None:
         if not self._is_closed:

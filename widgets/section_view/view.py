@@ -296,11 +296,12 @@ class SectionView(QWidget):
 
     def _on_live_found(self, standing: Standing) -> None:
         is_own = any(pane.is_mouse_here for pane in self.panes)
-        if not is_own and self._pinned is None and self.isVisible():
+        if not is_own and self._pinned is None:
             self._stand(standing)
 
     def _on_selection_features_changed(self, ids: frozenset[str]) -> None:
-        if not self._followed or self._followed in ids:
+        is_free = self._standing is not None and not self._followed
+        if is_free or self._followed in ids:
             return
         lines = [id_ for id_ in ids if self._lines.drawn(id_) is not None]
         if len(lines) == 1:

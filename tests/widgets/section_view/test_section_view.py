@@ -181,6 +181,27 @@ def test_a_dragged_vertex_becomes_the_point_under_the_mouse(hand: Hand) -> None:
     assert moved.vertices == (Vertex(target.xyz, target.measured), far)
 
 
+def test_where_nothing_was_measured_a_vertex_keeps_what_the_section_does_not_show(
+    hand: Hand,
+) -> None:
+    hand.look_closely()
+    start = hand.lone_point()
+    far = Vertex(tuple((np.array(start.xyz) + np.array([0.0, 8.0, 0.0])).tolist()))
+    feature = hand.line(Vertex(start.xyz, start.measured), far)
+    hand.take(listened(hand))
+    sky = QPoint(600, 70)
+    hand.drag(hand.spot(start), sky)
+    moved = hand.map.stored[feature.id].vertices[0]
+    cut, lay = cut_of(hand), hand.pane.lay()
+    assert lay is not None
+    ((offset, height, away),) = cut.to_section([moved.xyz])
+    x, y = hand.pane.viewport.to_plane(sky.x(), sky.y())
+    assert (offset, height) == pytest.approx((x, lay.height_of(y)))
+    assert away == pytest.approx(cut.to_section([start.xyz])[0, 2])
+    assert moved.is_occluded
+    assert moved.measured is None
+
+
 def listened(hand: Hand) -> EditVertices:
     tool = EditVertices(hand.map, hand.map.shared)
     hand.map.listen_to(tool)
@@ -319,7 +340,8 @@ def test_without_a_trajectory_a_drawn_line_is_cut_across(qtbot: QtBot, tmp_path:
     hand = shown(qtbot, OpenMap((Drive(made),)))
     assert "no trajectory: select a drawn line" in hand.pane.words()
     line = curb_line(hand)
-    hand.do(lambda: hand.view.follow(line.id))
+    hand.do(lambda: hand.map.shared.selection.choose_features(frozenset({line.id})))
+    assert hand.view.followed == line.id
     assert hand.pane.picture is not None
     assert hand.pane.picture.points.size
     hand.view.close()
@@ -332,6 +354,14 @@ def test_other_drives_are_cut_once_they_are_open(hand: Hand) -> None:
     assert hand.view.cut is None
     assert hand.pane.picture is None
     assert not hand.view.is_pinned
+
+
+def test_what_is_hidden_is_looked_for_when_it_is_shown(hand: Hand) -> None:
+    hand.view.hide()
+    with hand.qtbot.assertNotEmitted(hand.view.sharpened, wait=100):
+        hand.map.shared.cursor.move_to(on_road(hand, 8.0))
+    hand.do(hand.view.show)
+    assert hand.pane.cut == hand.view.cut
 
 
 def test_the_width_is_that_of_the_slab(hand: Hand) -> None:
