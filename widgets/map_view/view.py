@@ -102,6 +102,7 @@ class MapView(PlaneView):
         self._empty.import_requested.connect(self.import_requested)
         self.viewport_changed.connect(self._wish)
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
+        shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
         shared.view_settings.look_changed.connect(self._wish)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
         self._read_drives()
@@ -280,6 +281,10 @@ class MapView(PlaneView):
         if any(drive.id == drive_id for drive, _ in self._drives):
             self._age += 1
             self._wish()
+
+    def _on_map_labels_changed(self, drive_id: str, _points: object) -> None:
+        if self._shared.view_settings.look.attribute == "label":
+            self._on_map_drive_columns_changed(drive_id)
 
     def _on_settings_image_changed(self) -> None:
         before = self._drives

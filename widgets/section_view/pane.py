@@ -94,6 +94,7 @@ class SectionPane(PlaneView):
         shared.view_settings.shown_features_changed.connect(self._read_marks)
         shared.view_settings.look_changed.connect(self._ask)
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
+        shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
 
     # What others ask.
 
@@ -313,6 +314,10 @@ class SectionPane(PlaneView):
     def _on_map_drive_columns_changed(self, drive_id: str) -> None:
         if any(drive.id == drive_id for drive in self._source.drives()):
             self._ask()
+
+    def _on_map_labels_changed(self, drive_id: str, _points: object) -> None:
+        if self._shared.view_settings.look.attribute == "label":
+            self._on_map_drive_columns_changed(drive_id)
 
     # What is done in more than one place.
 
