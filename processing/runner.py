@@ -174,7 +174,7 @@ def _columns(
     total = max(request.drive.count, 1)
     compute = tool.compute
     if tool.compute_of is not None:
-        compute = tool.compute_of(request.drive, request.beside, request.parameters)
+        compute = tool.compute_of(request.drive, request.beside, request.parameters, monitor)
     for block in blocks_of(image.row_starts, tool.overlap_rows, points_per_block):
         monitor.check()
         monitor.report(float(image.row_starts[block.rows.start]) / total)

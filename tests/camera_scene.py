@@ -39,7 +39,7 @@ def looking(
     right = np.cross([0.0, 0.0, 1.0], backwards)
     right /= np.linalg.norm(right)
     rotation = np.stack([right, np.cross(backwards, right), backwards])
-    omega, phi, kappa = angles_of(rotation)
+    omega, phi, kappa = angles_of(rotation).tolist()
     easting, northing, height = (START + at).tolist()
     return CameraImage(
         path=path,

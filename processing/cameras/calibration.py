@@ -113,27 +113,7 @@ def with_offset(
         What the time moves the camera along; the time stays without effect where it doesn't
         cover both moments.
     """
-    if offset.is_zero:
-        return image
-    rotation, centre, time = Camera(image).rotation, np.array(image.xyz), image.time_s
-    if offset.time_s and trajectory is not None:
-        times = np.array([time, time + offset.time_s])
-        if trajectory.covers(times).all():
-            positions, turns = trajectory.positions_at(times), trajectory.rotations_at(times)
-            turn = turns[1] @ turns[0].T
-            centre = positions[1] + turn @ (centre - positions[0])
-            rotation, time = rotation @ turn.T, float(times[1])
-    shift = np.array([offset.right_m, offset.up_m, -offset.forward_m])
-    centre = centre + rotation.T @ shift
-    omega, phi, kappa = angles_of(_turn_of(offset) @ rotation)
-    return dataclasses.replace(
-        image,
-        time_s=time,
-        xyz=(float(centre[0]), float(centre[1]), float(centre[2])),
-        omega_deg=omega,
-        phi_deg=phi,
-        kappa_deg=kappa,
-    )
+    return _moved([image], offset, trajectory)[0]
 
 
 def with_offsets(
@@ -142,26 +122,71 @@ def with_offsets(
     """All images, each with the offset of its camera; cameras without one stay as delivered."""
     if all(offset.is_zero for offset in offsets.values()):
         return images
-    return ImageList(
-        tuple(
-            with_offset(image, offsets.get(camera_of(image), NO_OFFSET), trajectory)
-            for image in images
-        )
+    moved = list(images)
+    cameras = np.array([camera_of(image) for image in images])
+    for camera, offset in offsets.items():
+        own = np.flatnonzero(cameras == camera)
+        for number, image in zip(
+            own.tolist(), _moved([images[n] for n in own.tolist()], offset, trajectory), strict=True
+        ):
+            moved[number] = image
+    return ImageList(tuple(moved))
+
+
+def angles_of(rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Angles of rotations R3(kappa) R2(phi) R1(omega).
+
+    Parameters
+    ----------
+    rotations : (..., 3, 3) float64
+
+    Returns
+    -------
+    (..., 3) float64
+        Omega, phi and kappa, deg.
+    """
+    r = rotations
+    level = np.hypot(r[..., 2, 1], r[..., 2, 2])
+    phi = np.arctan2(r[..., 2, 0], level)
+    # Where the camera looks along east or west only the sum of omega and kappa is defined.
+    is_steep = level < _STEEP
+    omega = np.where(is_steep, 0.0, np.arctan2(-r[..., 2, 1], r[..., 2, 2]))
+    kappa = np.where(
+        is_steep,
+        np.arctan2(r[..., 0, 1], r[..., 1, 1]),
+        np.arctan2(-r[..., 1, 0], r[..., 0, 0]),
     )
+    return np.asarray(np.degrees(np.stack([omega, phi, kappa], axis=-1)))
 
 
-def angles_of(rotation: NDArray[np.float64]) -> tuple[float, float, float]:
-    """Omega, phi and kappa, deg, of a (3, 3) rotation R3(kappa) R2(phi) R1(omega)."""
-    level = float(np.hypot(rotation[2, 1], rotation[2, 2]))
-    phi = np.arctan2(rotation[2, 0], level)
-    if level < _STEEP:
-        # Only the sum of omega and kappa is defined here.
-        omega, kappa = 0.0, np.arctan2(rotation[0, 1], rotation[1, 1])
-    else:
-        omega = np.arctan2(-rotation[2, 1], rotation[2, 2])
-        kappa = np.arctan2(-rotation[1, 0], rotation[0, 0])
-    found = np.degrees([omega, phi, kappa])
-    return float(found[0]), float(found[1]), float(found[2])
+def _moved(
+    images: Sequence[CameraImage], offset: CameraOffset, trajectory: Trajectory | None
+) -> list[CameraImage]:
+    """Images of one camera with its offset."""
+    if offset.is_zero or not images:
+        return list(images)
+    rotations = np.array([Camera(image).rotation for image in images])
+    centres = np.array([image.xyz for image in images])
+    times = np.array([image.time_s for image in images])
+    if offset.time_s and trajectory is not None:
+        known = trajectory.covers(times) & trajectory.covers(times + offset.time_s)
+        before, after = times[known], times[known] + offset.time_s
+        turns = trajectory.rotations_at(after) @ trajectory.rotations_at(before).swapaxes(1, 2)
+        lever = centres[known] - trajectory.positions_at(before)
+        centres[known] = trajectory.positions_at(after) + np.einsum("nij,nj->ni", turns, lever)
+        rotations[known] = rotations[known] @ turns.swapaxes(1, 2)
+        times[known] = after
+    # The transposed rotation takes camera axes to project axes.
+    centres += np.array([offset.right_m, offset.up_m, -offset.forward_m]) @ rotations
+    angles = angles_of(_turn_of(offset) @ rotations)
+    return [
+        dataclasses.replace(
+            image, time_s=time, xyz=tuple(xyz), omega_deg=omega, phi_deg=phi, kappa_deg=kappa
+        )
+        for image, time, xyz, (omega, phi, kappa) in zip(
+            images, times.tolist(), centres.tolist(), angles.tolist(), strict=True
+        )
+    ]
 
 
 def estimated_from(

@@ -9,7 +9,7 @@ import numpy as np
 from processing.cameras.image_list import ImageList
 from processing.cameras.image_remarks import far_away
 from processing.cameras.seen_colours import PointColouring
-from processing.errors import Unsuitable
+from processing.errors import MissingInput, Unsuitable
 from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.text import Text
@@ -41,18 +41,23 @@ class ColourParameters:
     )
 
 
-def colouring_of(drive: Drive, beside: tuple[Drive, ...], parameters: ColourParameters) -> Compute:
+def colouring_of(
+    drive: Drive, beside: tuple[Drive, ...], parameters: ColourParameters, monitor: Monitor
+) -> Compute:
     """Colours a drive's blocks; all drives of the street may hide a point from a camera.
 
     Raises
     ------
     Unsuitable
         The images were taken far from the points.
+    MissingInput
+        Not one of the image files is there.
     """
     images = drive.images or ImageList(())
     remark = far_away(images, np.array(drive.info.lowest), np.array(drive.info.highest))
     if remark is not None:
         raise Unsuitable(remark, Text.same(drive.info.name), _RIGHT_LIST)
+    _check_files(images, monitor)
     hiding = (drive, *beside) if parameters.regards_hidden else ()
     colouring = PointColouring(images, hiding, parameters.reach_m)
 
@@ -64,6 +69,28 @@ def colouring_of(drive: Drive, beside: tuple[Drive, ...], parameters: ColourPara
     return compute
 
 
+def _check_files(images: ImageList, monitor: Monitor) -> None:
+    """Say which image files are missing; the others are used."""
+    missing = [image.path for image in images if not image.path.is_file()]
+    facts = {"missing": len(missing), "all": len(images)}
+    if len(missing) == len(images):
+        raise MissingInput(_ALL_MISSING.filled(**facts), Text.same(str(missing[0])), _PUT_BACK)
+    if missing:
+        monitor.report(0.0, _SOME_MISSING.filled(**facts, name=missing[0].name))
+
+
+_ALL_MISSING = Text(
+    "None of the {all} camera images is where it was.",
+    "{all} 枚のカメラ画像がどれも元の場所にありません。",
+)
+_SOME_MISSING = Text(
+    "{missing} of {all} camera images are missing ({name} …); the others are used",
+    "{all} 枚中 {missing} 枚のカメラ画像（{name} など）が見つからないため、残りの画像を使用します",
+)
+_PUT_BACK = Text(
+    "Put the image files back where they were, or import the drive again with them.",
+    "画像ファイルを元の場所に戻すか、画像と一緒に走行データをインポートし直してください。",
+)
 _RIGHT_LIST = Text(
     "Import the drive again with the list of images in the points' reference system.",
     "点群と同じ座標系の画像一覧と一緒に、走行データをインポートし直してください。",

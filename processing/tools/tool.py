@@ -114,8 +114,8 @@ class CandidateResult:
 # A tool's parameters are its own frozen dataclass, so the runner can't know their type.
 Compute = Callable[[PointBlock, Any, Monitor], PointResult]
 Find = Callable[[Drive, Any, Monitor], CandidateResult]
-# A drive, the other drives of its street, the tool's parameters.
-ComputeOf = Callable[[Drive, tuple[Drive, ...], Any], Compute]
+# A drive, the other drives of its street, the tool's parameters, whom to tell what is lacking.
+ComputeOf = Callable[[Drive, tuple[Drive, ...], Any, Monitor], Compute]
 
 
 def nothing_per_point(_block: PointBlock, _parameters: object, _monitor: Monitor) -> PointResult:

@@ -11,6 +11,7 @@ from processing.cameras.depth import DepthPicture
 from processing.cameras.image_list import CameraImage
 from processing.project.feature import Position
 from widgets.mouse_tools.mouse_tool import Ray
+from widgets.plane_view.line_pieces import cut_to
 
 Floats = NDArray[np.float64]
 
@@ -37,20 +38,28 @@ class CameraLay:
         self.image = image
         self.camera = Camera(image)
         self.depth = depth
+        self._low = np.array([-0.5, -0.5])
+        self._high = self._low + np.array([image.width_px, image.height_px])
 
     def to_plane(self, xyz: Floats) -> Floats:
-        """(n, 2) columns and rows; NaN behind the camera."""
-        return self.camera.pixels_of(np.asarray(xyz, dtype=np.float64).reshape(-1, 3))
+        """(n, 2) columns and rows; NaN outside the image."""
+        pixels = self.camera.pixels_of(np.asarray(xyz, dtype=np.float64).reshape(-1, 3))
+        inside = np.asarray(((pixels >= self._low) & (pixels <= self._high)).all(axis=1))
+        pixels[~inside] = np.nan
+        return pixels
 
     def lines_on_plane(self, xyz: Floats, ends: NDArray[np.int64]) -> list[Floats]:
-        """Segments as lines, bent as the lens bends them; NaN places where they are broken."""
+        """Segments as lines, bent as the lens bends them, cut off at the image's edges.
+
+        NaN places stand where a line is broken.
+        """
         if not len(ends):
             return []
         away = np.asarray(xyz, dtype=np.float64) - np.array(self.image.xyz)
         if self.image.projection == "equirectangular":
-            return self._around(away[ends])
+            return self._cut(self._around(away[ends]))
         seen = away @ self.camera.rotation.T
-        return self._ahead(seen[ends])
+        return self._cut(self._ahead(seen[ends]))
 
     def ray(self, place: tuple[float, float]) -> Ray | None:
         """The line of sight of a pixel."""
@@ -73,8 +82,17 @@ class CameraLay:
             near &= ~self.depth.hides(places)
         return np.asarray(near)
 
-    def _ahead(self, seen: Floats) -> list[Floats]:
-        """Lines of (m, 2, 3) ends in camera axes: cut off before the camera and far aside."""
+    def _cut(self, lines: Floats) -> list[Floats]:
+        """What of (m, k, 2) lines lies in the image; NaN between pieces that don't meet."""
+        count, steps = lines.shape[:2]
+        pieces = np.stack([lines[:, :-1], lines[:, 1:]], axis=2).reshape(-1, 2, 2)
+        cut, numbers, _ = cut_to(pieces, self._low, self._high)
+        owners = numbers // (steps - 1)
+        firsts = np.searchsorted(owners, np.arange(count + 1))
+        return [_joined(cut[firsts[i] : firsts[i + 1]]) for i in range(count)]
+
+    def _ahead(self, seen: Floats) -> Floats:
+        """Lines of (m, 2, 3) ends in camera axes, none before the camera or far aside: NaN."""
         start, way = seen[:, 0], seen[:, 1] - seen[:, 0]
         first, last = np.zeros(len(seen)), np.ones(len(seen))
         # Each plane: a place is inside where its distance is positive.
@@ -97,30 +115,34 @@ class CameraLay:
         if any(self.image.distortion):
             share = np.linspace(0.0, 1.0, _PIECES + 1)[None, :, None]
             flat = flat[:, :1] + share * (flat[:, 1:] - flat[:, :1])
-        return self._projected(flat, is_there)
+        flat[~is_there] = np.nan
+        return self._projected(flat)
 
-    def _projected(self, flat: Floats, is_there: NDArray[np.bool_]) -> list[Floats]:
+    def _projected(self, flat: Floats) -> Floats:
         """Pixels of (m, k, 2) places on the plane one metre before the camera."""
-        count, steps = flat.shape[:2]
-        ahead = np.concatenate([flat, np.full((count, steps, 1), -1.0)], axis=2)
+        ahead = np.concatenate([flat, np.full((*flat.shape[:2], 1), -1.0)], axis=2)
         xyz = ahead.reshape(-1, 3) @ self.camera.rotation + np.array(self.image.xyz)
-        pixels = self.camera.pixels_of(xyz).reshape(count, steps, 2)
-        return [
-            line if is_drawn else np.empty((0, 2))
-            for line, is_drawn in zip(pixels, is_there, strict=True)
-        ]
+        return self.camera.pixels_of(xyz).reshape(flat.shape)
 
-    def _around(self, ends: Floats) -> list[Floats]:
-        """Lines of (m, 2, 3) ends about a panorama's centre, broken at its seam."""
+    def _around(self, ends: Floats) -> Floats:
+        """Lines of (m, 2, 3) ends about a panorama's centre, NaN where they jump at its seam."""
         share = np.linspace(0.0, 1.0, 2 * _PIECES + 1)[None, :, None]
         unit = ends / np.maximum(np.linalg.norm(ends, axis=2, keepdims=True), 1e-9)
         places = unit[:, :1] + share * (unit[:, 1:] - unit[:, :1])
         pixels = self.camera.pixels_of(places.reshape(-1, 3) + np.array(self.image.xyz))
         lines = pixels.reshape(len(ends), -1, 2)
-        return [_broken(line, self.image.width_px / 2) for line in lines]
+        jumps = np.abs(np.diff(lines[:, :, 0], axis=1)) > self.image.width_px / 2
+        lines[:, 1:][jumps] = np.nan
+        return lines
 
 
-def _broken(line: Floats, most_px: float) -> Floats:
-    """A line with a NaN place wherever it jumps from one edge to the other."""
-    jumps = np.flatnonzero(np.abs(np.diff(line[:, 0])) > most_px) + 1
-    return np.insert(line, jumps, np.nan, axis=0)
+def _joined(pieces: Floats) -> Floats:
+    """(k, 2, 2) pieces as one line, with NaN where one doesn't begin where the last ended."""
+    if not len(pieces):
+        return np.empty((0, 2))
+    broken = np.flatnonzero((pieces[1:, 0] != pieces[:-1, 1]).any(axis=1))
+    line = np.vstack([pieces[:, 0], pieces[-1:, 1]])
+    if not broken.size:
+        return line
+    ends = np.stack([pieces[broken, 1], np.full((broken.size, 2), np.nan)], axis=1)
+    return np.insert(line, np.repeat(broken + 1, 2), ends.reshape(-1, 2), axis=0)

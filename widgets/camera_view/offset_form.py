@@ -15,7 +15,8 @@ from processing.cameras.calibration import (
     estimated_from,
     residuals_px,
 )
-from processing.cameras.image_list import CameraImage
+from processing.cameras.image_list import CameraImage, ImageList
+from processing.cameras.image_remarks import outside_trajectory
 from processing.errors import Unsuitable
 from processing.text import Language
 from widgets.camera_view.taken_images import TakenImage
@@ -84,6 +85,12 @@ class OffsetForm(QWidget):
         self._pixel = None
         self._trial = {}
         self._view.try_offsets({})
+
+    def show_kept(self) -> None:
+        """What was to be saved is kept now: nothing is tried out any more."""
+        self._trial = {}
+        self._view.try_offsets({})
+        self._show()
 
     def begin(self) -> None:
         """Show the offset of the camera at hand."""
@@ -178,29 +185,34 @@ class OffsetForm(QWidget):
         self._show_facts(taken)
 
     def _show_facts(self, taken: TakenImage) -> None:
-        pairs = self.pairs
+        pairs, trajectory = self.pairs, taken.drive.trajectory
         words = []
         if self._pixel is not None:
             words.append(self.tr("Now click the same thing in another view."))
         elif self._points.isChecked() and not pairs:
             words.append(self.tr("Click a thing in the image."))
         if pairs:
-            off = residuals_px(pairs, self._offset(), taken.drive.trajectory)
+            off = residuals_px(pairs, self._offset(), trajectory)
             words.append(
                 self.tr("%n pair(s), off by {each} px", None, len(pairs)).format(
                     each=" · ".join(f"{value:.1f}" for value in off)
                 )
             )
-        self._facts.setText("   ".join(words))
-        self._facts.setVisible(bool(words))
         self._drop.setEnabled(bool(pairs) or self._pixel is not None)
         self._estimate.setEnabled(bool(pairs))
         offset = self._offset()
+        covered = outside_trajectory(taken.drive.delivered_images or ImageList(()), trajectory)
+        if offset.time_s and covered is not None:
+            words.append(covered.spoken(self._language))
+        self._facts.setText("   ".join(words))
+        self._facts.setVisible(bool(words))
         self._reset.setEnabled(not offset.is_zero)
         self._save.setEnabled(bool(self._trial) and self._trial != self._all_kept(self._trial))
 
     def _all_kept(self, cameras: Mapping[str, CameraOffset]) -> dict[str, CameraOffset]:
-        kept = {t.camera: self._kept(t) for t in self._view.showing.images.images}
+        kept: dict[str, CameraOffset] = {}
+        for drive in self._view.showing.images.drives:
+            kept.update(drive.camera_offsets)
         return {camera: kept.get(camera, NO_OFFSET) for camera in cameras}
 
     def _try(self, offset: CameraOffset) -> None:

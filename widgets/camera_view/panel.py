@@ -56,6 +56,10 @@ class CameraPanel(QWidget):
         """The form of offsets."""
         return self._form
 
+    def show_kept_offsets(self) -> None:
+        """Offsets were kept or changed elsewhere: images and form show those that count now."""
+        self._form.show_kept()
+
     def _on_bar_calibration_toggled(self, wanted: bool) -> None:  # noqa: FBT001 - Qt's signal
         self._form.setVisible(wanted)
         if wanted:

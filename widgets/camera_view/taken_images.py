@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from processing.cameras.calibration import NO_OFFSET, CameraOffset, camera_of, with_offset
+from processing.cameras.calibration import CameraOffset, camera_of, with_offsets
 from processing.cameras.choice import ImageChoice
 from processing.cameras.image_list import CameraImage, ImageList
 from processing.cameras.image_remarks import far_away
@@ -23,14 +23,16 @@ class TakenImage:
     ----------
     image, delivered : CameraImage
         With its camera's offset; as delivered.
-    camera : str
-        See :func:`processing.cameras.calibration.camera_of`.
     """
 
     image: CameraImage
     delivered: CameraImage
     drive: Drive
-    camera: str
+
+    @property
+    def camera(self) -> str:
+        """See :func:`processing.cameras.calibration.camera_of`."""
+        return camera_of(self.delivered)
 
 
 class TakenImages:
@@ -56,19 +58,15 @@ class TakenImages:
         self.drives = drives
         found: dict[CameraImage, TakenImage] = {}
         for drive in drives:
-            for delivered in drive.delivered_images or ():
-                if delivered not in found:
-                    found[delivered] = _taken(delivered, drive, trial)
+            delivered = drive.delivered_images or ImageList(())
+            offsets = {**drive.camera_offsets, **trial}
+            images = with_offsets(delivered, offsets, drive.trajectory if offsets else None)
+            for before, image in zip(delivered, images, strict=True):
+                if before not in found:
+                    found[before] = TakenImage(image, before, drive)
         self.images = tuple(found.values())
         self.choice = ImageChoice(taken.image for taken in self.images)
         self.remark = _remark(drives)
-
-
-def _taken(delivered: CameraImage, drive: Drive, trial: Mapping[str, CameraOffset]) -> TakenImage:
-    camera = camera_of(delivered)
-    offset = trial.get(camera) or drive.camera_offsets.get(camera, NO_OFFSET)
-    image = delivered if offset.is_zero else with_offset(delivered, offset, drive.trajectory)
-    return TakenImage(image, delivered, drive, camera)
 
 
 def _remark(drives: tuple[Drive, ...]) -> Text | None:
