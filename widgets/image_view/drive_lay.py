@@ -33,12 +33,15 @@ class DriveLay:
         Length of a row step over length of a column step on the ground near the trajectory.
     left_columns_are_high : bool
         Whether columns grow towards the left side of the drive.
+    plan : (k, 2) float64
+        Easting and northing of the way at the sampled rows, m; NaN in a top view.
     """
 
     sampled_rows: Floats
     distances_m: Floats
     stretch: float
     left_columns_are_high: bool
+    plan: Floats
 
     @property
     def length_m(self) -> float:
@@ -49,6 +52,10 @@ class DriveLay:
         """Metres along the drive at rows; fractions count."""
         return np.interp(rows, self.sampled_rows, self.distances_m)
 
+    def plan_at(self, row: float) -> Floats:
+        """(2,): easting and northing of the way at a row."""
+        return np.array([np.interp(row, self.sampled_rows, axis) for axis in self.plan.T])
+
     def rows_at(self, distances_m: Floats) -> Floats:
         """Rows at distances along the drive; where it stood, the first of them."""
         return np.interp(distances_m, self.distances_m, self.sampled_rows)
@@ -58,7 +65,10 @@ def lay_of(drive: Drive, image: PointCloudImage) -> DriveLay:
     """Measure how a drive lies in its image, from a few of its rows."""
     if image.kind is ImageKind.TOP_VIEW:
         ends = np.array([0.0, max(image.width, 1)])
-        return DriveLay(ends, ends * drive.info.cell_m, 1.0, left_columns_are_high=False)
+        unknown = np.full((2, 2), np.nan)
+        return DriveLay(
+            ends, ends * drive.info.cell_m, 1.0, left_columns_are_high=False, plan=unknown
+        )
     rows = np.unique(np.linspace(0, max(image.rows - 1, 0), _MOST_SAMPLES).astype(np.int64))
     places = _places_of_rows(drive, image, rows)
     steps = np.hypot(*np.diff(places[:, :2], axis=0).T)
@@ -74,6 +84,7 @@ def lay_of(drive: Drive, image: PointCloudImage) -> DriveLay:
         distances,
         float(np.clip(stretch, 1 / _MOST_STRETCH, _MOST_STRETCH)),
         left_columns_are_high=turns > 0,
+        plan=places[:, :2],
     )
 
 
