@@ -31,12 +31,17 @@ def _described(tool: Tool) -> dict[str, object]:
         "name": {"en": tool.name.en, "ja": tool.name.ja},
         "explanation": {"en": tool.explanation.en, "ja": tool.explanation.ja},
         "needs": tool.needs.value,
+        "gives": _gives(tool),
         "outputs": [
             {"name": column.name, "type": column.dtype, "values": column.width}
             for column in tool.outputs
         ],
         "parameters": [_parameter(parameter) for parameter in parameters_of(tool.parameters)],
     }
+
+
+def _gives(tool: Tool) -> str:
+    return "candidates" if tool.find is not None else "columns"
 
 
 def _parameter(parameter: Parameter) -> dict[str, object]:
@@ -56,7 +61,7 @@ def _parameter(parameter: Parameter) -> dict[str, object]:
 
 def _lines(tool: Tool) -> list[str]:
     language = system_language()
-    outputs = ", ".join(column.name for column in tool.outputs)
+    outputs = ", ".join(column.name for column in tool.outputs) or _gives(tool)
     lines = [
         f"{tool.id}  {tool.name.spoken(language)}",
         f"  {tool.explanation.spoken(language)}",

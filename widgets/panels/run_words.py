@@ -13,6 +13,7 @@ from processing.tools.registry import TOOLS
 from widgets.panels.feature_tally import RunOfTool, RunTally
 from widgets.panels.feature_words import words_of_value
 
+_LONGEST = 40
 _MOMENT = Text("d MMM HH:mm", "M月d日 HH:mm")
 _NAMED = Text("{tool}, {moment}", "{tool} {moment}")
 _SHORT = Text(
@@ -61,5 +62,7 @@ def facts_of_run(run: Run, drive_names: Sequence[str], language: Language) -> li
         name = id_ if parameter is None else parameter.name.spoken(language)
         unit = "" if parameter is None else parameter.unit
         words = words_of_value(value, None, language)
+        if len(words) > _LONGEST:
+            words = f"{words[:_LONGEST]}…"
         lines.append(f"{name}: {words} {unit}".rstrip())
     return lines

@@ -1,0 +1,97 @@
+"""Runs of the open project judged by its history, and written to files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtGui import QImage
+from PySide6.QtWidgets import QApplication
+
+from app.document import Document
+from app.evaluation import Evaluation
+from app.evaluation_files import write_evaluation_file
+from app.jobs import JobQueue
+from app.review import Review
+from processing.errors import UserError
+from processing.project.change import Change, Replacement
+from processing.project.review_state import ReviewOrder
+from processing.score.reliability import reliability_of
+from processing.text import Text
+from tests.processing.project.candidates import found_lines
+from widgets.panels.reliability_plot import PlotWords, ReliabilityPlot
+
+LABEL = Text("Move", "移動")
+WORDS = PlotWords("縁石", "信頼度", "採用の割合", "{count}件", "誤差{error}", "なし")
+
+
+@pytest.fixture
+def document(qapp: QApplication, tmp_path: Path) -> Iterator[Document]:
+    jobs = JobQueue()
+    document = Document(jobs)
+    document.create(tmp_path / "p.zuka", "EPSG:6677")
+    yield document
+    jobs.close()
+    document.close()
+    document.tiles.close()
+
+
+def test_corrections_are_measured_against_what_the_run_gave_also_after_a_restart(
+    document: Document, tmp_path: Path
+) -> None:
+    found = found_lines(6)
+    document.store_run(found)
+    review = Review(document)
+    review.open((found.run.id,), ReviewOrder.CONFIDENCE)
+    feature = review.current
+    assert feature is not None
+    higher = tuple(replace(v, xyz=(*v.xyz[:2], v.xyz[2] + 0.25)) for v in feature.vertices)
+    moved = feature.with_vertices(higher)
+    document.apply(LABEL, Change(replaced=(Replacement(feature, moved),)))
+    review.accept()
+    review.accept()
+    review.reject()
+    evaluation = Evaluation(document)
+    (one,) = evaluation.evaluations()
+    assert (one.accepted, one.rejected, one.undecided, one.corrected) == (2, 1, 3, 1)
+    assert one.shift_m == pytest.approx(0.25)
+    document.close()
+    assert evaluation.evaluations() == ()
+    document.open(tmp_path / "p.zuka")
+    assert evaluation.evaluations() == (one,)
+
+
+@pytest.fixture
+def plot() -> ReliabilityPlot:
+    confidence = np.linspace(0, 1, 200)
+    return ReliabilityPlot(reliability_of(confidence, confidence > 0.5), WORDS)
+
+
+def test_a_curve_becomes_a_picture_with_its_resolution(
+    qapp: QApplication, tmp_path: Path, plot: ReliabilityPlot
+) -> None:
+    path = tmp_path / "信頼度.png"
+    write_evaluation_file(path, (), plot)
+    picture = QImage(str(path))
+    assert (picture.width(), picture.height()) == (1800, 1800)
+    assert picture.pixelColor(3, 3).lightness() == 255
+    assert [one.name for one in tmp_path.iterdir()] == [path.name]
+
+
+def test_a_curve_becomes_a_page(qapp: QApplication, tmp_path: Path, plot: ReliabilityPlot) -> None:
+    path = tmp_path / "curve.pdf"
+    write_evaluation_file(path, (), plot)
+    assert path.read_bytes().startswith(b"%PDF")
+
+
+def test_a_picture_that_cannot_be_written_is_refused_and_leaves_nothing(
+    qapp: QApplication, tmp_path: Path, plot: ReliabilityPlot
+) -> None:
+    (tmp_path / "file").write_text("x")
+    for ending in ("png", "pdf", "csv"):
+        with pytest.raises(UserError):
+            write_evaluation_file(tmp_path / "file" / f"a.{ending}", (), plot)
+    assert [one.name for one in tmp_path.iterdir()] == ["file"]
