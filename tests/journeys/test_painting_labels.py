@@ -135,3 +135,41 @@ def _usual(tool: str):
     from processing.tools.registry import TOOLS
 
     return TOOLS[tool].parameters()
+
+
+def test_a_lasso_in_3d_labels_every_measured_point_inside_it(painter, surveyor):
+    bot, document = surveyor.bot, surveyor.document
+    scene = surveyor.parts.scene_view
+    bot.waitUntil(lambda: scene.is_settled, timeout=WAIT_MS)
+    painter.do("tool-paint-lasso")
+    picture = scene.picture
+    middle = scene.rect().center()
+    # Counter-clockwise about the middle, back to its start.
+    corners = [QPoint(-60, -30), QPoint(-60, 40), QPoint(70, 40), QPoint(70, -30), QPoint(-60, -30)]
+    spots = [middle + corner for corner in corners]
+    QTest.mousePress(picture, LEFT, NO_KEYS, spots[0])
+    for spot in spots[1:]:
+        # The view looks at where the mouse is as often as it can, not at every event.
+        move_mouse(picture, spot, LEFT)
+        scene._hand._on_look_up_timeout()
+    projection = scene._hits.projection
+    QTest.mouseRelease(picture, LEFT, NO_KEYS, spots[-1])
+    bot.waitUntil(lambda: document.undo_stack.undo_label is not None, timeout=WAIT_MS)
+    found = 0
+    for drive in document.drives():
+        local_xyz = drive.local_xyz(slice(0, drive.count), document.origin())
+        pixels, _ = projection.to_screen(local_xyz)
+        inside = [
+            (pixels[:, 0] > spots[0].x() - by)
+            & (pixels[:, 0] < spots[2].x() + by)
+            & (pixels[:, 1] > spots[0].y() - by)
+            & (pixels[:, 1] < spots[1].y() + by)
+            for by in (-1, 1)
+        ]
+        labelled = labels_of(drive, np.arange(drive.count)) > 0
+        assert labelled[inside[0]].all()
+        assert not labelled[~inside[1]].any()
+        found += int(inside[0].sum())
+    assert found > sum(one.tile.points.size for one in scene._hits.drawn) / 100
+    assert document.undo()
+    assert not any(labels_of(d, np.arange(d.count)).any() for d in document.drives())
