@@ -39,7 +39,9 @@ from app.window_contents import Contents
 from app.window_parts import LastingParts, WindowParts
 from app.wiring import connect_lasting, connect_parts
 from processing.text import Language, Text
+from widgets.camera_view.panel import CameraPanel
 from widgets.image_view.view import ImageView
+from widgets.map_view.view import MapView
 from widgets.panels.attribute_panel import AttributePanel
 from widgets.panels.evaluation_panel import EvaluationPanel
 from widgets.panels.feature_table import FeatureTable
@@ -155,6 +157,8 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
     scene_view = SceneView(document, shared, tiles, language=language)
     section_view = SectionView(document, shared, language=language)
     section_view.use_settings(lasting.settings.section)
+    camera_panel = CameraPanel(document, shared, language=language)
+    map_view = MapView(document, shared, tiles, language=language)
     image_bar = ImageBar(document, shared, language)
     hints = {entry.name: entry.hint for entry in TOOL_ENTRIES}
     message_bar = MessageBar(language)
@@ -171,10 +175,14 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         image_view=image_view,
         scene_view=scene_view,
         section_view=section_view,
+        camera_panel=camera_panel,
+        map_view=map_view,
         view_docks=ViewDocks(
             (
                 View("scene", Text.same("3D"), scene_view),
                 View("section", Text("Section", "断面"), section_view),
+                View("camera", Text("Camera", "カメラ"), camera_panel),
+                View("map", Text("Map", "地図"), map_view),
             ),
             language,
         ),
@@ -235,8 +243,9 @@ def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -
     parts.start_page.open_requested.connect(files.choose_project)
     parts.start_page.import_requested.connect(files.choose_import)
     parts.start_page.demo_requested.connect(files.open_demo)
-    parts.image_view.open_requested.connect(files.choose_project)
-    parts.image_view.import_requested.connect(files.choose_import)
+    for view in (parts.image_view, parts.map_view):
+        view.open_requested.connect(files.choose_project)
+        view.import_requested.connect(files.choose_import)
 
 
 def _fulfil(wish: WindowWish, parts: WindowParts) -> None:

@@ -18,6 +18,7 @@ def connect_review(parts: WindowParts) -> None:
     wiring = _ReviewWiring(parts)
     review, panel = parts.review, parts.review_panel
     review.shown.connect(wiring.on_review_shown)
+    review.coming.connect(parts.camera_view.prepare)
     review.changed.connect(wiring.on_review_changed)
     review.edit_requested.connect(wiring.on_review_edit_requested)
     parts.document.shared.sketch.changed.connect(wiring.on_sketch_changed)
@@ -57,7 +58,9 @@ class _ReviewWiring(QObject):
     def on_review_shown(self, _feature: Feature, place: Place) -> None:
         """Every view has the candidate in its middle; the section cuts through it."""
         for view in self._parts.views:
-            view.center_on(place)
+            if view is not self._parts.camera_view:
+                view.center_on(place)
+        self._parts.camera_view.show_place(place)
 
     def on_review_changed(self) -> None:
         review = self._parts.review

@@ -2,11 +2,116 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import Path
+
+from PySide6.QtCore import QCoreApplication, QObject
+from PySide6.QtWidgets import QFileDialog
+
+from app.evaluation import Evaluation
+from app.evaluation_files import write_evaluation_file
 from app.window_parts import WindowParts
+from processing.cameras.calibration import CameraOffset
+from processing.errors import UserError
+from processing.formats.profile_dxf import ProfileLook, write_profile_dxf
+from processing.text import Text
+
+_KEPT = Text("The camera offsets are kept.", "カメラの補正値を保存しました。")
+_WROTE = Text("Wrote {path}.", "{path} を書き出しました。")
+_NO_SECTION = Text(
+    "There is no section to write: put the cursor on the street first.",
+    "書き出す断面がありません。先に道路上にカーソルを置いてください。",
+)
 
 
 def connect_views(parts: WindowParts) -> None:
     """Connect the views with each other and with the window; again for new ones."""
-    section = parts.section_view
+    wiring = _ViewWiring(parts)
+    section, camera, map_view = parts.section_view, parts.camera_view, parts.map_view
     section.told.connect(parts.status_line.show_message)
     section.settings_changed.connect(parts.settings.remember_section)
+    section.profile_export_requested.connect(wiring.on_section_profile_export_requested)
+    camera.told.connect(parts.status_line.show_message)
+    camera.fields_of_view_changed.connect(map_view.show_fields_of_view)
+    parts.camera_panel.offsets_save_requested.connect(wiring.on_camera_offsets_save_requested)
+    parts.evaluation_panel.evaluation_wanted.connect(wiring.on_evaluation_wanted)
+    parts.evaluation_panel.export_requested.connect(wiring.on_evaluation_export_requested)
+
+
+class _ViewWiring(QObject):
+    """What has to be translated between the views and the document."""
+
+    def __init__(self, parts: WindowParts) -> None:
+        super().__init__(parts.window.centralWidget())  # goes with the widgets
+        self._parts = parts
+        self._evaluation = Evaluation(parts.document)
+
+    def on_section_profile_export_requested(self) -> None:
+        document, section = self._parts.document, self._parts.section_view
+        wish = section.profile_wish()
+        if wish is None:
+            document.told.emit(_NO_SECTION)
+            return
+        path = self._asked_path(
+            QCoreApplication.translate("ViewWiring", "Write the profile"),
+            "profile.dxf",
+            QCoreApplication.translate("ViewWiring", "Drawings (*.dxf)"),
+        )
+        if path is None:
+            return
+        look = ProfileLook(
+            exaggeration=section.settings.exaggeration, language=self._parts.language
+        )
+        never = tuple(file for drive in document.drives() for file in drive.delivered_files)
+
+        def write() -> Path:
+            write_profile_dxf(path, wish(), look, never=never)
+            return path
+
+        document.do_at_hand(write, self._tell_written)
+
+    def on_camera_offsets_save_requested(self, offsets: Mapping[str, CameraOffset]) -> None:
+        document = self._parts.document
+        try:
+            for drive in document.drives():
+                if drive.images:
+                    drive.keep_camera_offsets({**drive.camera_offsets, **offsets})
+        except UserError as error:
+            document.refused.emit(error)
+            return
+        for drive in document.drives():
+            document.tiles.drop(drive.id)
+            document.shared.map_changes.drive_columns_changed.emit(drive.id)
+        self._parts.camera_view.read_images()
+        document.told.emit(_KEPT)
+
+    def on_evaluation_wanted(self) -> None:
+        self._parts.evaluation_panel.show_evaluations(self._evaluation.evaluations())
+
+    def on_evaluation_export_requested(self, ending: str) -> None:
+        path = self._asked_path(
+            QCoreApplication.translate("ViewWiring", "Write the evaluation"),
+            f"evaluation.{ending}",
+            f"*.{ending}",
+        )
+        if path is None:
+            return
+        plot = None if ending == "csv" else self._parts.evaluation_panel.plot
+        try:
+            write_evaluation_file(path, self._evaluation.evaluations(), plot)
+        except UserError as error:
+            self._parts.document.refused.emit(error)
+            return
+        self._tell_written(path)
+
+    def _asked_path(self, title: str, name: str, files: str) -> Path | None:
+        project = self._parts.document.project
+        if project is None:
+            return None
+        start = str(project.folder.parent / name)
+        chosen, _ = QFileDialog.getSaveFileName(self._parts.window, title, start, files)
+        return Path(chosen) if chosen else None
+
+    def _tell_written(self, path: object) -> None:
+        if isinstance(path, Path):
+            self._parts.document.told.emit(_WROTE.filled(path=path.name))

@@ -12,7 +12,10 @@ from app.settings import Settings
 from app.theme import Theme
 from app.view_docks import ViewDocks
 from processing.text import Language
+from widgets.camera_view.panel import CameraPanel
+from widgets.camera_view.view import CameraView
 from widgets.image_view.view import ImageView
+from widgets.map_view.view import MapView
 from widgets.mouse_tools.toolbox import MouseToolbox
 from widgets.panels.attribute_panel import AttributePanel
 from widgets.panels.evaluation_panel import EvaluationPanel
@@ -62,6 +65,8 @@ class WindowParts:
     image_view: ImageView
     scene_view: SceneView
     section_view: SectionView
+    camera_panel: CameraPanel
+    map_view: MapView
     view_docks: ViewDocks
     image_bar: ImageBar
     drawing_bar: DrawingBar
@@ -80,14 +85,27 @@ class WindowParts:
     window: MainWindow
 
     @property
-    def views(self) -> tuple[ImageView | SceneView | SectionView, ...]:
+    def camera_view(self) -> CameraView:
+        """The picture in the camera's dock."""
+        return self.camera_panel.view
+
+    @property
+    def views(self) -> tuple[ImageView | SceneView | SectionView | CameraView | MapView, ...]:
         """All views of the map."""
-        return (self.image_view, self.scene_view, self.section_view)
+        return (
+            self.image_view,
+            self.scene_view,
+            self.section_view,
+            self.camera_view,
+            self.map_view,
+        )
 
     def close_views(self) -> None:
         """Stop the views' loaders and give back their graphics; may be called again."""
         self.scene_view.close()
         self.section_view.close()
+        self.camera_view.close()
+        self.map_view.close()
 
     def replace_by(self, parts: WindowParts) -> None:
         """Hold these parts from now on."""
