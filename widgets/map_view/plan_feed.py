@@ -27,6 +27,7 @@ _FIRST_BUDGET, _FULL_BUDGET = 300_000, 3_000_000
 _OVERVIEW_BUDGET, _OVERVIEW_PX = 1_000_000, 1_200
 _EYE_M = 20_000.0
 _TOLD_S = 0.15
+_MOST_GROWN = 2.0
 
 
 @dataclass(frozen=True)
@@ -255,4 +256,7 @@ def _wanted(wish: PlanWish, number: int, key: TileKey) -> WantedTile:
 
 
 def _add(raster: PlanRaster, wish: PlanWish, tile: TilePoints) -> None:
-    raster.add(tile.number, tile.points, tile.local_xyz, tile.colours, size_px=wish.size_px)
+    # Where points lie wider apart than their size, larger ones close the surface.
+    gap_px = round(tile.spacing_m * raster.frame.px_per_m)
+    size_px = min(max(gap_px, wish.size_px), round(_MOST_GROWN * wish.size_px))
+    raster.add(tile.number, tile.points, tile.local_xyz, tile.colours, size_px=size_px)

@@ -48,12 +48,15 @@ class TilePoints:
     local_xyz : (n, 3) float32
         m from the origin.
     colours : (n, 3) uint8
+    spacing_m : float
+        Mean distance of neighbours.
     """
 
     number: int
     points: NDArray[np.int64]
     local_xyz: NDArray[np.float32]
     colours: NDArray[np.uint8]
+    spacing_m: float
 
 
 class PlanTiles:
@@ -167,7 +170,9 @@ class PlanTiles:
         while self._kept_points > _KEPT_POINTS and len(self._places) > 1:
             _, dropped = self._places.popitem(last=False)
             self._kept_points -= len(dropped)
-        return TilePoints(tile.number, points, places, pixels.colours.reshape(-1, 3)[is_filled])
+        spacing_m = tile.drive.image(tile.request.kind).pyramid.spacing_m(tile.request.key)
+        colours = pixels.colours.reshape(-1, 3)[is_filled]
+        return TilePoints(tile.number, points, places, colours, spacing_m)
 
     def _on_tiles_done(self, request: TileRequest, pixels: TilePixels) -> None:
         with self._changed:

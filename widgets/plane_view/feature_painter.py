@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPointF, QRectF, Qt
+from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 
 from processing.project.catalogue import Catalogue, Geometry
@@ -39,14 +39,14 @@ class _Looks:
         In the order in which they are painted.
     style_of : (features,) int64
         Into ``styles``.
-    areas : list of (number of the style, ProjectedShape)
+    areas : list of (number of the style, ring on the plane)
     points : list of (number of the style, numbers of vertices)
     with_vertices : list of (number of the style, ProjectedShape)
     """
 
     styles: list[FeatureStyle]
     style_of: Integers
-    areas: list[tuple[int, ProjectedShape]]
+    areas: list[tuple[int, QPolygonF]]
     points: list[tuple[int, Integers]]
     with_vertices: list[tuple[int, ProjectedShape]]
 
@@ -100,11 +100,16 @@ def _is_same(
 
 def _looks_of(features: PlaneFeatures, catalogue: Catalogue, selected: frozenset[str]) -> _Looks:
     order: dict[FeatureStyle, tuple[bool, bool]] = {}
+    alike: dict[tuple[str, Status, float, bool], FeatureStyle] = {}
     own_styles = []
     for one in features.shapes:
         feature = one.shape.feature
-        style = style_of(catalogue, feature, is_selected=feature.id in selected)
-        order.setdefault(style, (feature.id in selected, feature.status is not Status.REJECTED))
+        is_selected = feature.id in selected
+        key = feature.kind, feature.status, feature.provenance.confidence, is_selected
+        style = alike.get(key)
+        if style is None:
+            style = alike[key] = style_of(catalogue, feature, is_selected=is_selected)
+            order.setdefault(style, (is_selected, feature.status is not Status.REJECTED))
         own_styles.append(style)
     styles = sorted(order, key=lambda style: order[style])
     numbers = {style: number for number, style in enumerate(styles)}
@@ -119,7 +124,7 @@ def _looks_of(features: PlaneFeatures, catalogue: Catalogue, selected: frozenset
             points.setdefault(number, []).append(firsts[index])
             continue
         if geometry is Geometry.AREA and one.is_whole:
-            areas.append((number, one))
+            areas.append((number, one.ring))
         if styles[number].has_vertices:
             with_vertices.append((number, one))
     return _Looks(
@@ -134,22 +139,22 @@ def _looks_of(features: PlaneFeatures, catalogue: Catalogue, selected: frozenset
 def _paint_areas(painter: QPainter, looks: _Looks, viewport: PlaneViewport) -> None:
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=False)
-    window = QRectF(0, 0, viewport.width, viewport.height)
-    for number, one in looks.areas:
-        bounds = one.bounds
-        if bounds is None:
+    window, seen = QRectF(0, 0, viewport.width, viewport.height), viewport.seen
+    transform = viewport.transform()
+    for number, ring in looks.areas:
+        box = ring.boundingRect()
+        if not box.intersects(seen):
             continue
-        (left, top), (right, bottom) = viewport.to_screen(bounds.reshape(2, 2)).tolist()
-        box = QRectF(left, top, right - left, bottom - top)
-        if min(box.width(), box.height()) < _LEAST_FILL_PX or not box.intersects(window):
+        box = transform.mapRect(box)
+        if min(box.width(), box.height()) < _LEAST_FILL_PX:
             continue
-        ring = QPolygonF(list(map(QPointF, *viewport.to_screen(one.pieces[:, 0]).T.tolist())))
+        shape = transform.map(ring)
         if not window.adjusted(-8e3, -8e3, 8e3, 8e3).contains(box):
-            ring = ring.intersected(QPolygonF(window))  # Qt goes wrong beyond 32,767 px
+            shape = shape.intersected(QPolygonF(window))  # Qt goes wrong beyond 32,767 px
         fill = QColor(looks.styles[number].colour)
         fill.setAlpha(_FILL_ALPHA)
         painter.setBrush(fill)
-        painter.drawPolygon(ring)
+        painter.drawPolygon(shape)
     painter.setBrush(Qt.BrushStyle.NoBrush)
 
 

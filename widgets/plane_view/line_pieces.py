@@ -35,14 +35,17 @@ def cut_to(pieces: Floats, low: Floats, high: Floats) -> tuple[Floats, Integers,
         Distance of its first end from that of the whole piece.
     """
     # Most pieces of a map lie beside the window: a comparison is cheaper than a division.
-    touches = (pieces.min(axis=1) <= high) & (pieces.max(axis=1) >= low)
-    numbers = np.flatnonzero(touches.all(axis=1))
+    one, other = pieces[:, 0], pieces[:, 1]
+    touches = (np.minimum(one, other) <= high) & (np.maximum(one, other) >= low)
+    numbers = np.flatnonzero(touches[:, 0] & touches[:, 1])
     start, way = pieces[numbers, 0], pieces[numbers, 1] - pieces[numbers, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
         first, second = (low - start) / way, (high - start) / way
     is_still = way == 0  # inside in this direction: it touches
-    enter = np.where(is_still, 0.0, np.minimum(first, second)).max(axis=1).clip(0.0)
-    leave = np.where(is_still, 1.0, np.maximum(first, second)).min(axis=1).clip(max=1.0)
+    enters = np.where(is_still, 0.0, np.minimum(first, second))
+    leaves = np.where(is_still, 1.0, np.maximum(first, second))
+    enter = np.maximum(enters[:, 0], enters[:, 1]).clip(0.0)
+    leave = np.minimum(leaves[:, 0], leaves[:, 1]).clip(max=1.0)
     inside = enter <= leave
     start, way, enter, leave = start[inside], way[inside], enter[inside], leave[inside]
     cut = np.stack([start + enter[:, None] * way, start + leave[:, None] * way], axis=1)
@@ -52,7 +55,8 @@ def cut_to(pieces: Floats, low: Floats, high: Floats) -> tuple[Floats, Integers,
 def thinned(pieces: Floats) -> Floats:
     """Pieces between whole pixels, without those that shrink to nothing: for very many."""
     whole = np.rint(pieces)
-    kept: Floats = whole[(whole[:, 0] != whole[:, 1]).any(axis=1)]
+    moves = whole[:, 0] != whole[:, 1]
+    kept: Floats = whole[moves[:, 0] | moves[:, 1]]
     return kept
 
 

@@ -8,6 +8,8 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from PySide6.QtCore import QPointF
+from PySide6.QtGui import QPolygonF
 
 from widgets.plane_view.lay import Lay
 from widgets.shared.feature_shapes import FeatureShape, FeatureShapes, FlatShapes, flattened
@@ -40,10 +42,15 @@ class ProjectedShape:
     pieces: Floats
     segments: Integers
 
-    @property
+    @cached_property
     def is_whole(self) -> bool:
         """Whether no segment is missing: an area can be filled."""
         return len(np.unique(self.segments)) == len(self.shape.segments)
+
+    @cached_property
+    def ring(self) -> QPolygonF:
+        """The outline of an area on the plane, where it is whole."""
+        return QPolygonF(list(map(QPointF, *self.pieces[:, 0].T.tolist())))
 
     @cached_property
     def bounds(self) -> Floats | None:

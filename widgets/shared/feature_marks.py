@@ -23,6 +23,7 @@ class FeatureMarks:
 
     def __init__(self) -> None:
         self._symbols = SymbolPictures()
+        self._discs: dict[tuple[FeatureStyle, float], QImage] = {}
 
     def paint(
         self,
@@ -47,20 +48,35 @@ class FeatureMarks:
         device = painter.device()
         ratio = device.devicePixelRatioF()
         symbol = self._symbols.picture(style.symbol, style.colour, ratio) if is_point else None
+        disc = self._disc(style, ratio) if is_point and symbol is None else None
         is_open = np.zeros(len(spots), bool) if hollow is None else hollow
         shown = marks_to_paint(spots, device.width(), device.height())
         squares: dict[bool, list[QRectF]] = {False: [], True: []}
         for (x, y), is_hollow in zip(spots[shown].tolist(), is_open[shown].tolist(), strict=True):
             if symbol is not None:
                 _paint_picture(painter, x, y, symbol, style)
-            elif is_point:
-                _paint_disc(painter, _box(x, y, _DISC_PX), style)
+            elif disc is not None:
+                painter.drawImage(QPointF(x - SYMBOL_PX / 2, y - SYMBOL_PX / 2), disc)
             side = _RING_PX - 4 if is_point else _VERTEX_PX
             squares[is_point or is_hollow].append(_box(x, y, side))
         if style.has_vertices:
             for is_empty, boxes in squares.items():
                 _paint_squares(painter, boxes, style, is_open=is_empty)
         painter.setBrush(Qt.BrushStyle.NoBrush)
+
+    def _disc(self, style: FeatureStyle, ratio: float) -> QImage:
+        """What stands for a kind without a symbol, painted once: there may be thousands."""
+        key = style, ratio
+        if key not in self._discs:
+            side = round(SYMBOL_PX * ratio)
+            image = QImage(side, side, QImage.Format.Format_ARGB32_Premultiplied)
+            image.fill(Qt.GlobalColor.transparent)
+            image.setDevicePixelRatio(ratio)
+            with QPainter(image) as painter:
+                painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+                _paint_disc(painter, _box(SYMBOL_PX / 2, SYMBOL_PX / 2, _DISC_PX), style)
+            self._discs[key] = image
+        return self._discs[key]
 
 
 def _box(x: float, y: float, side: float) -> QRectF:
