@@ -37,7 +37,8 @@ from widgets.shared.shared_state import SharedState
 
 _LEAST = 0.9
 _BIG_PX = 24
-_NUMBER_PX = 64
+_NUMBER_PX = 72
+_BESIDE_PX = 12
 _ENTER = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
 _EMPTY, _WAITING, _REVIEW = range(3)
 
@@ -186,6 +187,8 @@ class ReviewPanel(QWidget):
         self._back = self._button(self.tr("Back"), keys.back, self.back_requested.emit)
         self._least = NumberField(0.0, 1.0, decimals=2, parent=self)
         self._least.setSingleStep(0.05)
+        self._least.setPrefix("≥ ")
+        self._least.setToolTip(self.tr("The confidence from which all candidates are accepted"))
         self._least.setMinimumWidth(_NUMBER_PX)
         self._least.setValue(_LEAST)
         self._least.valueChanged.connect(self._show_count)
@@ -219,6 +222,9 @@ class ReviewPanel(QWidget):
         # The keys belong to the queue: a button in focus would take Enter for itself.
         button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         button.clicked.connect(slot)
+        # Three stand beside each other: no wider than their words.
+        button.setMinimumWidth(button.fontMetrics().horizontalAdvance(button.text()) + _BESIDE_PX)
+        button.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         return button
 
     def _empty_page(self) -> QWidget:
@@ -244,7 +250,6 @@ class ReviewPanel(QWidget):
             judging.addWidget(button, 1, 2 * column, 1, 2)
         many = QHBoxLayout()
         many.setSpacing(4)
-        many.addWidget(QLabel(self.tr("Confidence from"), self))
         many.addWidget(self._least)
         many.addWidget(self._accept_all, 1)
         undo = QLabel(self.tr("Ctrl+Z takes decisions back."), self)
@@ -254,9 +259,12 @@ class ReviewPanel(QWidget):
         layout = QVBoxLayout(page)
         layout.setContentsMargins(8, 8, 8, 8)
         layout.setSpacing(8)
-        for one in (self._chooser, self._left, self._bar, self._facts, self._card, self._done):
+        for one in (self._chooser, self._left, self._bar, self._facts):
             layout.addWidget(one)
+        # Above the card, whose height changes: buttons stay under the mouse.
         layout.addLayout(judging)
+        layout.addWidget(self._card)
+        layout.addWidget(self._done)
         layout.addLayout(many)
         layout.addWidget(self._rejected)
         layout.addWidget(undo)
@@ -267,6 +275,8 @@ class ReviewPanel(QWidget):
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         scroll.setWidget(page)
+        room = scroll.verticalScrollBar().sizeHint().width()
+        scroll.setMinimumWidth(page.minimumSizeHint().width() + room)
         return scroll
 
     def _facts_words(self, progress: ReviewProgress) -> str:
