@@ -97,9 +97,8 @@ def export(
     """Write the map's accepted features in each format that is asked for.
 
     A map without features gives files without features: a script's next step finds them.
-
-    Every file is written under a temporary name; they take their own names when the last one is
-    whole, so that an error, a cancel or a full disk leaves the folder as it was.
+    Files take their own names when the last one is whole, so that an error, a cancel or a full disk
+    leaves the folder as it was.
 
     Parameters
     ----------
@@ -122,10 +121,8 @@ def export(
         coordinate that is no number; a character that the encoding lacks.
     Unsuitable
         A feature with too few vertices or of a kind the catalogue lacks.
-    InUse, NoSpace, MissingInput, BadFile
-        What stands against writing.
-    Cancelled
-        The user stopped; nothing was written.
+    InUse, NoSpace, MissingInput, BadFile, Cancelled
+        What stands against writing; nothing was written.
     """
     monitor = monitor or SilentMonitor()
     _check_request(request, crs)

@@ -50,6 +50,8 @@ def test_a_project_of_the_first_schema_is_opened_with_its_history(tmp_path: Path
     folder = new_project(tmp_path / "street.zuka", line)
     with closing(sqlite3.connect(folder / "project.gpkg")) as connection, connection:
         connection.execute("ALTER TABLE features DROP COLUMN occluded")
+        connection.execute("DROP TABLE zuka_history_labels")
+        connection.execute("DELETE FROM gpkg_extensions WHERE table_name = 'zuka_history_labels'")
         connection.execute("UPDATE zuka_settings SET value = '1' WHERE key = 'schema'")
         for place, text in connection.execute("SELECT place, change FROM zuka_history").fetchall():
             change = json.loads(text)
