@@ -212,10 +212,27 @@ def crossings_of(cut: Cut, line: DrawnLine) -> list[Crossing]:
 
 def plane_crossings(section: Floats) -> Floats:
     """Offsets and heights (k, 2) at which a line of the section, (n, 3), passes its plane."""
-    before, after = section[:-1], section[1:]
+    return segment_crossings(section[:-1], section[1:])[1]
+
+
+def segment_crossings(starts: Floats, ends: Floats) -> tuple[NDArray[np.int64], Floats]:
+    """Which segments of the section pass its plane, and where.
+
+    Parameters
+    ----------
+    starts, ends : (n, 3) float64
+        Offsets, heights, distances from the plane.
+
+    Returns
+    -------
+    numbers : (k,) int64
+        Of the segments, rising.
+    places : (k, 2) float64
+        Offsets and heights.
+    """
     # A vertex in the plane belongs to the side that leaves it, so that it counts once.
-    passes = (before[:, 2] <= 0) != (after[:, 2] <= 0)
-    start, end = before[passes], after[passes]
+    passes = np.flatnonzero((starts[:, 2] <= 0) != (ends[:, 2] <= 0))
+    start, end = starts[passes], ends[passes]
     shares = start[:, 2] / (start[:, 2] - end[:, 2])
     places: Floats = start[:, :2] + shares[:, None] * (end[:, :2] - start[:, :2])
-    return places
+    return passes, places

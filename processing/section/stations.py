@@ -44,6 +44,8 @@ class Stations:
     ----------
     length_m : float
         In plan.
+    bounds : tuple of float
+        Least easting and northing, greatest easting and northing.
 
     Raises
     ------
@@ -74,6 +76,8 @@ class Stations:
         steps = np.hypot(*np.diff(self._local[:, :2], axis=0).T)
         self._stations = np.concatenate([[0.0], np.cumsum(steps)])
         self.length_m = float(self._stations[-1])
+        low, high = places[:, :2].min(axis=0), places[:, :2].max(axis=0)
+        self.bounds: tuple[float, float, float, float] = (*low.tolist(), *high.tolist())
 
     @classmethod
     def of_trajectory(cls, trajectory: Trajectory) -> Self:

@@ -102,12 +102,18 @@ class SectionLines(QObject):
     def under(self, place: Place) -> Standing | None:
         """The line under a place, drawn ones before trajectories; None where none is near."""
         best: tuple[float, CutLine] | None = None
+        easting, northing, height = place.xyz
+        reach = _LINE_REACH_M
         for line in self._near_lines(place):
             stations = line.stations
+            left, low, right, high = stations.bounds
+            is_beside = not (left - reach <= easting <= right + reach)
+            if is_beside or not (low - reach <= northing <= high + reach):
+                continue
             station_m = stations.nearest(place.xyz)
             away = stations.distance(place.xyz, station_m)
-            above = place.xyz[2] - stations.place_at(station_m)[2]
-            is_near = away <= _LINE_REACH_M and abs(above) <= _HEIGHT_REACH_M
+            above = height - stations.place_at(station_m)[2]
+            is_near = away <= reach and abs(above) <= _HEIGHT_REACH_M
             if is_near and (best is None or away < best[0]):
                 best = away, line
         if best is not None:

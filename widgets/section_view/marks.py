@@ -9,80 +9,101 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
-from processing.project.catalogue import Geometry
+from processing.project.catalogue import Catalogue, Geometry
 from processing.project.feature import Feature
 from processing.section.cut import Cut
-from processing.section.profile import plane_crossings
-from processing.text import Language
+from processing.section.profile import segment_crossings
+from widgets.plane_view.projected_map import PlaneFeatures
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.section_view.lay import SectionLay
-from widgets.shared.feature_style import FeatureStyle, style_of
-from widgets.shared.map_source import MapSource
+from widgets.shared.crowded_marks import marks_to_paint
+from widgets.shared.feature_style import style_of
 
 Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 _HALO = QColor("#0b0d10")
+_WHITE = QColor("#ffffff")
 _CROSSING_PX, _VERTEX_PX = 5.0, 7.0
+_CHOSEN_MORE_PX = 1.5
 _NAMED_PX = 9.0
 
 
 @dataclass(frozen=True, eq=False)
-class SectionMark:
-    """What a section shows of a feature beside its line.
+class SectionMarks:
+    """What a section shows of the map beside its lines.
 
     Attributes
     ----------
-    feature : str
-        Id.
-    name : str
-        Of its kind, for people.
-    style : FeatureStyle
-    crossings : (n, 2) float64
+    features : PlaneFeatures
+        What is drawn; owners are numbers of its shapes.
+    crossings : (k, 2) float64
         In the plane of the section.
+    crossing_owners : (k,) int64
     vertices : (m, 2) float64
-        Of those within the slab.
+        Of lines and areas, within the slab.
+    vertex_owners : (m,) int64
     hollow : (m,) bool
         No point was measured at that vertex.
     """
 
-    feature: str
-    name: str
-    style: FeatureStyle
+    features: PlaneFeatures
     crossings: Floats
+    crossing_owners: Integers
     vertices: Floats
+    vertex_owners: Integers
     hollow: NDArray[np.bool_]
 
+    def feature(self, owner: int) -> Feature:
+        """The feature of a number."""
+        return self.features.shapes[owner].shape.feature
 
-def mark_of(
-    source: MapSource, feature: Feature, cut: Cut, language: Language
-) -> SectionMark | None:
-    """The marks of a feature in a cut; None where it has none."""
-    catalogue = source.catalogue()
-    lay, places = SectionLay(cut), np.array([vertex.xyz for vertex in feature.vertices])
-    section = cut.to_section(places)
-    is_inside = cut.holds(section)
-    line = section
-    if feature.geometry is Geometry.AREA:
-        line = np.concatenate([section, section[:1]])
-    passed = plane_crossings(line) if len(line) > 1 else np.empty((0, 2))
-    passed = passed[np.abs(passed[:, 0]) <= cut.half_length_m]
-    if not (len(passed) or is_inside.any()):
-        return None
-    kind = feature.kind
-    return SectionMark(
-        feature.id,
-        catalogue[kind].name.spoken(language) if kind in catalogue else kind,
-        style_of(catalogue, feature, is_selected=False),
-        lay.on_plane(np.column_stack([passed, np.zeros(len(passed))])),
-        lay.on_plane(section[is_inside]),
-        np.array([vertex.is_occluded for vertex in feature.vertices])[is_inside],
+
+@dataclass(frozen=True)
+class NamedMark:
+    """A mark under the mouse.
+
+    Attributes
+    ----------
+    place : tuple of float
+        In the plane of the section.
+    """
+
+    feature: str
+    kind: str
+    place: tuple[float, float]
+
+
+def marks_of(features: PlaneFeatures, cut: Cut) -> SectionMarks:
+    """The marks of what is drawn in a cut."""
+    flat, lay = features.flat, SectionLay(cut)
+    section = cut.to_section(flat.local_xyz)
+    numbers, passed = segment_crossings(section[flat.segments[:, 0]], section[flat.segments[:, 1]])
+    inside = np.abs(passed[:, 0]) <= cut.half_length_m
+    is_line = np.array([one.feature.geometry is not Geometry.POINT for one in flat.shapes], bool)
+    vertices = np.flatnonzero(cut.holds(section) & is_line[flat.owners])
+    owners = flat.owners[vertices]
+    own = (vertices - flat.first_vertices[owners]).tolist()
+    hollow = [
+        flat.shapes[owner].feature.vertices[number].is_occluded
+        for owner, number in zip(owners.tolist(), own, strict=True)
+    ]
+    on_plane = lay.on_plane(np.column_stack([passed, np.zeros(len(passed))]))
+    return SectionMarks(
+        features,
+        on_plane[inside],
+        flat.segment_owners[numbers[inside]],
+        lay.on_plane(section[vertices]),
+        owners,
+        np.array(hollow, dtype=bool),
     )
 
 
 def paint_marks(
     painter: QPainter,
-    marks: tuple[SectionMark, ...],
+    marks: SectionMarks,
     viewport: PlaneViewport,
+    catalogue: Catalogue,
     selected: frozenset[str],
 ) -> None:
     """Paint discs where lines cross, and squares for vertices of what isn't chosen.
@@ -90,48 +111,55 @@ def paint_marks(
     Vertices of chosen features have their squares from the view itself.
     """
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
-    for mark in marks:
-        is_chosen = mark.feature in selected
-        colour = QColor(mark.style.colour)
-        for x, y in viewport.to_screen(mark.crossings).tolist():
-            radius = _CROSSING_PX + (1.5 if is_chosen else 0.0)
-            painter.setPen(QPen(_HALO, 3.5))
-            painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.drawEllipse(QPointF(x, y), radius, radius)
-            painter.setPen(QPen(QColor("#ffffff") if is_chosen else colour, 2.0))
-            painter.setBrush(Qt.BrushStyle.NoBrush if mark.style.is_dashed else colour)
-            painter.drawEllipse(QPointF(x, y), radius, radius)
-        if not is_chosen:
-            _paint_squares(painter, mark, viewport, colour)
+    size = viewport.width, viewport.height
+    spots = viewport.to_screen(marks.crossings)
+    for number in marks_to_paint(spots, *size).tolist():
+        feature = marks.feature(int(marks.crossing_owners[number]))
+        _paint_disc(painter, spots[number], catalogue, feature, is_chosen=feature.id in selected)
+    spots = viewport.to_screen(marks.vertices)
+    for number in marks_to_paint(spots, *size).tolist():
+        feature = marks.feature(int(marks.vertex_owners[number]))
+        if feature.id not in selected:
+            is_hollow = bool(marks.hollow[number])
+            _paint_square(painter, spots[number], catalogue, feature, is_hollow=is_hollow)
     painter.setBrush(Qt.BrushStyle.NoBrush)
 
 
-def mark_under(
-    marks: tuple[SectionMark, ...], viewport: PlaneViewport, mouse: QPointF
-) -> tuple[SectionMark, tuple[float, float]] | None:
-    """The mark nearest to the mouse within a few pixels, and its place in the plane."""
-    best: tuple[float, SectionMark, tuple[float, float]] | None = None
-    at = np.array([mouse.x(), mouse.y()])
-    for mark in marks:
-        places = np.concatenate([mark.crossings, mark.vertices])
-        away = np.hypot(*(viewport.to_screen(places) - at).T)
-        nearest = int(away.argmin())
-        if away[nearest] <= _NAMED_PX and (best is None or away[nearest] < best[0]):
-            x, y = places[nearest].tolist()
-            best = float(away[nearest]), mark, (x, y)
-    return None if best is None else best[1:]
+def mark_under(marks: SectionMarks, viewport: PlaneViewport, mouse: QPointF) -> NamedMark | None:
+    """The mark nearest to the mouse within a few pixels."""
+    places = np.concatenate([marks.crossings, marks.vertices])
+    if not len(places):
+        return None
+    away = np.hypot(*(viewport.to_screen(places) - np.array([mouse.x(), mouse.y()])).T)
+    nearest = int(away.argmin())
+    if away[nearest] > _NAMED_PX:
+        return None
+    owners = np.concatenate([marks.crossing_owners, marks.vertex_owners])
+    feature = marks.feature(int(owners[nearest]))
+    x, y = places[nearest].tolist()
+    return NamedMark(feature.id, feature.kind, (x, y))
 
 
-def _paint_squares(
-    painter: QPainter, mark: SectionMark, viewport: PlaneViewport, colour: QColor
+def _paint_disc(
+    painter: QPainter, spot: Floats, catalogue: Catalogue, feature: Feature, *, is_chosen: bool
 ) -> None:
-    half = _VERTEX_PX / 2
-    spots = viewport.to_screen(mark.vertices).tolist()
-    for (x, y), is_hollow in zip(spots, mark.hollow.tolist(), strict=True):
-        box = QRectF(x - half, y - half, _VERTEX_PX, _VERTEX_PX)
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.setPen(QPen(_HALO, 3.5))
-        painter.drawRect(box)
-        painter.setPen(QPen(colour if is_hollow else QColor("#ffffff"), 1.25))
-        painter.setBrush(Qt.BrushStyle.NoBrush if is_hollow else colour)
+    style = style_of(catalogue, feature, is_selected=is_chosen)
+    middle, colour = QPointF(*spot.tolist()), QColor(style.colour)
+    radius = _CROSSING_PX + (_CHOSEN_MORE_PX if is_chosen else 0.0)
+    painter.setPen(QPen(_HALO, 3.5))
+    painter.setBrush(Qt.BrushStyle.NoBrush if style.is_dashed else colour)
+    painter.drawEllipse(middle, radius, radius)
+    painter.setPen(QPen(_WHITE if is_chosen else colour, 2.0))
+    painter.drawEllipse(middle, radius, radius)
+
+
+def _paint_square(
+    painter: QPainter, spot: Floats, catalogue: Catalogue, feature: Feature, *, is_hollow: bool
+) -> None:
+    colour = QColor(style_of(catalogue, feature, is_selected=False).colour)
+    x, y = (spot - _VERTEX_PX / 2).tolist()
+    box = QRectF(x, y, _VERTEX_PX, _VERTEX_PX)
+    painter.setBrush(Qt.BrushStyle.NoBrush if is_hollow else colour)
+    for pen in (QPen(_HALO, 3.5), QPen(colour if is_hollow else _WHITE, 1.25)):
+        painter.setPen(pen)
         painter.drawRect(box)

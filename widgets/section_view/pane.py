@@ -15,7 +15,7 @@ from typing_extensions import override
 from processing.points.drive import Drive
 from processing.project.feature import Vertex
 from processing.section.cut import Cut
-from processing.text import Language
+from processing.text import Language, Text
 from widgets.plane_view.lay import Spot
 from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
@@ -24,7 +24,7 @@ from widgets.section_view.frame import BOTTOM_PX, LEFT_PX, paint_frame
 from widgets.section_view.ground import GroundPainter
 from widgets.section_view.lay import SectionLay
 from widgets.section_view.lines import SectionLines
-from widgets.section_view.marks import SectionMark, mark_of, mark_under, paint_marks
+from widgets.section_view.marks import NamedMark, SectionMarks, mark_under, marks_of, paint_marks
 from widgets.section_view.point_search import measured_point, points_within, shown_point
 from widgets.section_view.standing import Standing
 from widgets.section_view.titles import frame_words
@@ -79,8 +79,8 @@ class SectionPane(PlaneView):
         self._lay: SectionLay | None = None
         self._framed = ""
         self._ground_y = 0.0
-        self._marks: tuple[SectionMark, ...] = ()
-        self._named: tuple[SectionMark, tuple[float, float]] | None = None
+        self._marks: SectionMarks | None = None
+        self._named: NamedMark | None = None
         self._held: tuple[str, Vertex] | None = None
         self._is_by_distance = False
         self._is_closed = False
@@ -90,8 +90,6 @@ class SectionPane(PlaneView):
         self.is_clicking = False
         self._feed = SectionFeed()
         self._feed.arrived.connect(self._on_feed_arrived)
-        shared.map_changes.features_changed.connect(self._read_marks)
-        shared.view_settings.shown_features_changed.connect(self._read_marks)
         shared.view_settings.look_changed.connect(self._ask)
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
         shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
@@ -114,8 +112,14 @@ class SectionPane(PlaneView):
         return self._picture
 
     @property
-    def marks(self) -> tuple[SectionMark, ...]:
-        """What of the map crosses the slab."""
+    def marks(self) -> SectionMarks | None:
+        """What of the map crosses the slab; None without a picture."""
+        self._refresh()
+        features, cut = self._hits.features, self.cut
+        if features is None or cut is None:
+            return None
+        if self._marks is None or self._marks.features is not features:
+            self._marks = marks_of(features, cut)
         return self._marks
 
     def show_standing(self, standing: Standing | None) -> None:
@@ -123,7 +127,7 @@ class SectionPane(PlaneView):
         self._standing = standing
         if standing is None:
             self._picture = self._lay = None
-            self._framed, self._marks = "", ()
+            self._framed, self._marks = "", None
             self.set_ground_stale()
         else:
             self._ask()
@@ -189,10 +193,11 @@ class SectionPane(PlaneView):
 
     @override
     def paint_frame(self, painter: QPainter, viewport: PlaneViewport) -> None:
-        picture = self._picture
-        if picture is None:
+        picture, marks, catalogue = self._picture, self.marks, self._source.catalogue()
+        if picture is None or marks is None:
             return
-        paint_marks(painter, self._marks, viewport, self._shared.selection.features)
+        selected = self._shared.selection.features
+        paint_marks(painter, marks, viewport, catalogue, selected)
         words = frame_words(
             self._source,
             picture.wish.standing,
@@ -202,10 +207,14 @@ class SectionPane(PlaneView):
             is_empty=not picture.points.size,
         )
         paint_frame(painter, viewport, picture.wish.cut, words)
-        if self._named is not None:
-            mark, place = self._named
-            x, y = viewport.to_screen(np.array([place]))[0].tolist()
-            paint_note(painter, (x, y), Note((0.0, 0.0, 0.0), mark.name))
+        named = self._named
+        if named is not None:
+            x, y = viewport.to_screen(np.array([named.place]))[0].tolist()
+            name = Text.same(named.kind)
+            if named.kind in catalogue:
+                name = catalogue[named.kind].name
+            note = Note((0.0, 0.0, 0.0), name.spoken(self._language))
+            paint_note(painter, (x, y), note)
 
     @override
     def place_at(self, place: Spot, reach: float, *, exact: bool) -> Place | None:
@@ -271,7 +280,8 @@ class SectionPane(PlaneView):
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         self.is_mouse_here = True
         super().mouseMoveEvent(event)
-        named = mark_under(self._marks, self.viewport, event.position())
+        marks = self.marks
+        named = None if marks is None else mark_under(marks, self.viewport, event.position())
         if named != self._named:
             self._named = named
             self.update()
@@ -305,7 +315,6 @@ class SectionPane(PlaneView):
         self._picture = picture
         if self._lay is None or self._lay.cut != picture.wish.cut:
             self._lay = SectionLay(picture.wish.cut)
-        self._read_marks()
         self._look_at_place(picture)
         self.set_ground_stale()
         self.update()
@@ -330,17 +339,6 @@ class SectionPane(PlaneView):
 
     def _drives(self) -> tuple[Drive, ...]:
         return tuple(drive for drive in self._source.drives() if drive.count)
-
-    def _read_marks(self) -> None:
-        cut = self.cut
-        if cut is None:
-            self._marks = ()
-            return
-        near = self._lines.near(cut.middle, cut.half_length_m)
-        made = (mark_of(self._source, one, cut, self._language) for one in near)
-        self._marks = tuple(mark for mark in made if mark is not None)
-        self._named = None
-        self.update()
 
     def _look_at_place(self, picture: SectionPicture) -> None:
         """Begin on the ground at each new line; afterwards move only as far as needed."""

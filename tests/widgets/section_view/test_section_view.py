@@ -213,11 +213,13 @@ def test_a_line_that_crosses_has_a_mark_with_its_name(hand: Hand) -> None:
     crossing = Place((line.vertices[0].xyz[0], cut_of(hand).middle[1], line.vertices[0].xyz[2]))
     spot = hand.spot(crossing)
     move_mouse(hand.pane, spot)
+    assert hand.pane.marks is not None
     found = mark_under(hand.pane.marks, hand.pane.viewport, spot.toPointF())
     assert found is not None
-    assert (found[0].feature, found[0].name) == (line.id, "Curb")
+    assert (found.feature, found.kind) == (line.id, "curb")
     hand.map.shared.view_settings.hide_kinds(frozenset({line.kind}))
-    assert hand.pane.marks == ()
+    assert hand.pane.marks is not None
+    assert not len(hand.pane.marks.crossings)
 
 
 def test_a_lasso_holds_points_of_both_heads(hand: Hand) -> None:
