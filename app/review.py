@@ -157,11 +157,12 @@ class Review(QObject):
 
     def count_from(self, least: float) -> int:
         """How many undecided candidates have at least this confidence."""
-        return len(self._undecided_from(least))
+        return self._queue.count_from(least)
 
     def accept_from(self, least: float) -> bool:
         """Agree to all undecided candidates of at least this confidence, in one step."""
-        features = self._undecided_from(least)
+        found = map(self._document.feature, self._queue.undecided_from(least))
+        features = [feature for feature in found if feature is not None]
         if not features:
             return False
         change = _judged(features, Status.ACCEPTED)
@@ -199,10 +200,6 @@ class Review(QObject):
         finally:
             self._is_deciding = False
 
-    def _undecided_from(self, least: float) -> list[Feature]:
-        found = map(self._document.feature, self._queue.undecided())
-        return [one for one in found if one is not None and one.provenance.confidence >= least]
-
     def _begin(self, state: ReviewState) -> None:
         self._trail.clear()
         self._state = state
@@ -217,7 +214,11 @@ class Review(QObject):
         runs = set(state.runs)
         members = {one.id: one for one in self._document.features() if one.provenance.run in runs}
         ids = review_order(members.values(), state.order, self._document.drives())
-        return ReviewQueue(ids, [members[id_].status for id_ in ids])
+        return ReviewQueue(
+            ids,
+            [members[id_].status for id_ in ids],
+            [members[id_].provenance.confidence for id_ in ids],
+        )
 
     def _go_on(self) -> None:
         """Show the next undecided candidate behind this one; tell when that was the last."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, insort
 from collections import Counter
 from collections.abc import Iterator, Sequence
 
@@ -16,14 +17,22 @@ class ReviewQueue:
     ids : sequence of str
         In the order of the review.
     statuses : sequence of Status
+    confidences : sequence of float
         Of each.
     """
 
-    def __init__(self, ids: Sequence[str] = (), statuses: Sequence[Status] = ()) -> None:
+    def __init__(
+        self,
+        ids: Sequence[str] = (),
+        statuses: Sequence[Status] = (),
+        confidences: Sequence[float] = (),
+    ) -> None:
         self._ids = list(ids)
         self._places = {id_: place for place, id_ in enumerate(self._ids)}
         self._statuses = dict(zip(self._ids, statuses, strict=True))
+        self._confidences = dict(zip(self._ids, confidences, strict=True))
         self._counts = Counter(self._statuses.values())
+        self._undecided = sorted(self._confidences[id_] for id_ in self.undecided())
 
     def __len__(self) -> int:
         return len(self._ids)
@@ -45,14 +54,31 @@ class ReviewQueue:
 
     def took(self, id_: str, status: Status) -> None:
         """A feature of the queue has this status now."""
-        self._counts[self._statuses[id_]] -= 1
+        before, confidence = self._statuses[id_], self._confidences[id_]
+        if before is Status.CANDIDATE:
+            del self._undecided[bisect_left(self._undecided, confidence)]
+        if status is Status.CANDIDATE:
+            insort(self._undecided, confidence)
+        self._counts[before] -= 1
         self._counts[status] += 1
         self._statuses[id_] = status
 
     def without(self, ids: set[str]) -> ReviewQueue:
         """The queue after some features are gone."""
         left = [id_ for id_ in self._ids if id_ not in ids]
-        return ReviewQueue(left, [self._statuses[id_] for id_ in left])
+        return ReviewQueue(
+            left,
+            [self._statuses[id_] for id_ in left],
+            [self._confidences[id_] for id_ in left],
+        )
+
+    def count_from(self, least: float) -> int:
+        """How many that nobody has judged have at least this confidence."""
+        return len(self._undecided) - bisect_left(self._undecided, least)
+
+    def undecided_from(self, least: float) -> list[str]:
+        """Their ids, in the order of the review."""
+        return [id_ for id_ in self.undecided() if self._confidences[id_] >= least]
 
     def undecided(self, after: str = "") -> Iterator[str]:
         """Ids that nobody has judged, those behind a feature first, then from the beginning.
