@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QCoreApplication
@@ -237,6 +238,8 @@ class FileActions:
         is_open = document.project is not None and document.project.folder == wish.project.resolve()
         try:
             request = request_of_files(wish.files, wish.crs)
+            if wish.classes_as_labels:
+                request = replace(request, labels="classification")
         except UserError as error:
             self._parts.message_bar.show_error(error)
             return

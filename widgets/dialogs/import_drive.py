@@ -7,6 +7,7 @@ from pathlib import Path
 
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import (
+    QCheckBox,
     QDialog,
     QDialogButtonBox,
     QFileDialog,
@@ -36,11 +37,14 @@ class ImportWish:
         The project's folder; made if there is none.
     crs : str
         ``EPSG:n``, or empty for the files' own.
+    classes_as_labels : bool
+        Whether the delivered classes become labels that can be corrected by hand.
     """
 
     files: tuple[Path, ...]
     project: Path
     crs: str
+    classes_as_labels: bool = False
 
 
 class ImportForm(QDialog):
@@ -58,6 +62,10 @@ class ImportForm(QDialog):
         self._files.setSelectionMode(QListWidget.SelectionMode.ExtendedSelection)
         self._project = QLineEdit(str(project), self)
         self._crs = ReferenceSystemBox(self)
+        self._as_labels = QCheckBox(self.tr("Take the delivered classes as labels"), self)
+        self._as_labels.setToolTip(
+            self.tr("Labels can be corrected by hand and are exported to LAS again.")
+        )
         self._trouble = QLabel(self)
         self._trouble.setWordWrap(True)
         self._buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
@@ -105,6 +113,7 @@ class ImportForm(QDialog):
         form = QFormLayout()
         form.addRow(self.tr("Project"), folder)
         form.addRow(self.tr("Reference system"), self._crs)
+        form.addRow("", self._as_labels)
         layout = QVBoxLayout(self)
         layout.addWidget(hint)
         layout.addLayout(files, 1)
@@ -142,5 +151,6 @@ class ImportForm(QDialog):
         project = Path(self._project.text().strip())
         if project.suffix != ".zuka":
             project = project.with_name(project.name + ".zuka")
-        self.import_requested.emit(ImportWish(files, project, code))
+        wish = ImportWish(files, project, code, self._as_labels.isChecked())
+        self.import_requested.emit(wish)
         self.close()
