@@ -8,7 +8,7 @@ from pathlib import Path
 from PySide6.QtCore import QMarginsF, QRectF, QSizeF, Qt
 from PySide6.QtGui import QFont, QGuiApplication, QImage, QPageSize, QPainter, QPdfWriter
 
-from processing.errors import NoSpace
+from processing.errors import NoSpace, Unsuitable
 from processing.formats.safe_write import written_safely
 from processing.project.evaluation_table import write_evaluation
 from processing.project.run_evaluation import RunEvaluation
@@ -32,17 +32,25 @@ def write_evaluation_file(
     path : Path
         Ends in ``.csv``, ``.png`` or ``.pdf``.
     plot : ReliabilityPlot or None
-        The curve for the latter two; without one the table is written.
+        The curve for the latter two.
 
     Raises
     ------
+    Unsuitable
+        There is no curve.
     NoSpace, InUse, MissingInput, BadFile
         What stands against writing; what was there before stays.
     """
     ending = path.suffix.lower()
-    if plot is None or ending not in (".png", ".pdf"):
+    if ending not in (".png", ".pdf"):
         write_evaluation(path, evaluations)
         return
+    if plot is None:
+        raise Unsuitable(
+            Text("There is no curve yet.", "グラフはまだありません。"),
+            Text.same(str(path)),
+            Text("Judge some candidates first.", "先に候補を判定してください。"),
+        )
     with written_safely(path) as temporary:
         is_whole = _write_pdf(temporary, plot) if ending == ".pdf" else _write_png(temporary, plot)
         if not is_whole:

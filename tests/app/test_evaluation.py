@@ -16,7 +16,7 @@ from app.evaluation import Evaluation
 from app.evaluation_files import write_evaluation_file
 from app.jobs import JobQueue
 from app.review import Review
-from processing.errors import UserError
+from processing.errors import Unsuitable, UserError
 from processing.project.change import Change, Replacement
 from processing.project.review_state import ReviewOrder
 from processing.score.reliability import reliability_of
@@ -85,6 +85,12 @@ def test_a_curve_becomes_a_page(qapp: QApplication, tmp_path: Path, plot: Reliab
     path = tmp_path / "curve.pdf"
     write_evaluation_file(path, (), plot)
     assert path.read_bytes().startswith(b"%PDF")
+
+
+def test_without_a_curve_no_picture_is_written(tmp_path: Path) -> None:
+    with pytest.raises(Unsuitable):
+        write_evaluation_file(tmp_path / "a.png", (), None)
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_picture_that_cannot_be_written_is_refused_and_leaves_nothing(
