@@ -47,7 +47,7 @@ def measure_start() -> Measurement:
             [sys.executable, "-c", _PROGRAM], check=False, capture_output=True, text=True
         )
         if done.returncode != 0:
-            raise _no_window(done.stderr)
+            raise no_window(done.stderr)
         times.append(float(done.stdout.split()[-1]) - start)
     warm = sorted(times[1:])
     return Measurement(
@@ -61,7 +61,8 @@ def measure_start() -> Measurement:
     )
 
 
-def _no_window(told: str) -> MissingInput:
+def no_window(told: str) -> MissingInput:
+    """The refusal when a process of the window ended, with its last words."""
     last = told.strip().splitlines()[-1:] or [""]
     return MissingInput(
         Text("The window could not be shown.", "ウィンドウを表示できません。"),

@@ -1,0 +1,120 @@
+"""Fifty candidates judged by keys alone, each in the middle of every view."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPointF, Qt
+
+from app.window_parts import WindowParts
+from processing.bench.street_candidates import street_candidates
+from processing.project.feature import Feature, Position, Status
+from processing.project.feature_middle import middle_of
+from tests.processing.project.candidates import found
+from widgets.shared.cursor import Place
+
+COUNT = 50
+WITHIN_M = 0.10
+WAIT_MS = 30_000
+KEYS = {"accept": Qt.Key.Key_Return, "reject": Qt.Key.Key_Delete, "next": Qt.Key.Key_N}
+
+
+@pytest.fixture
+def desk(surveyor, tmp_path, qtbot):
+    """Give a window on the sample street that is arranged for checking."""
+    surveyor.import_sample_street(tmp_path / "street.zuka")
+    parts = surveyor.parts
+    with qtbot.waitActive(parts.window):
+        parts.window.activateWindow()
+    parts.window.actions_by_id["layout-checking"].trigger()
+    qtbot.waitUntil(lambda: parts.scene_view.is_settled, timeout=WAIT_MS)
+    return surveyor
+
+
+def test_a_queue_of_fifty_is_judged_by_keys_alone(desk, qtbot):
+    parts, review = desk.parts, desk.parts.review
+    assert parts.document.store_run(
+        found(street_candidates(desk.drive, COUNT), drive=desk.drive.id)
+    )
+    parts.image_view.setFocus()
+    parts.window.actions_by_id["review-start"].trigger()
+    assert review.progress.left == COUNT
+    confidences, wanted, keys, seen_by_camera = [], {}, 0, 0
+    while review.current is not None:
+        feature = review.current
+        confidences.append(feature.provenance.confidence)
+        seen_by_camera += assert_centred(parts, qtbot, feature)
+        is_true = feature.provenance.confidence > 0.5
+        wanted[feature.id] = Status.ACCEPTED if is_true else Status.REJECTED
+        qtbot.keyClick(parts.image_view, KEYS["accept" if is_true else "reject"])
+        keys += 1
+    assert keys == COUNT
+    assert confidences == sorted(confidences)
+    assert seen_by_camera >= COUNT / 2
+    decided = {id_: parts.document.feature(id_).status for id_ in wanted}
+    assert decided == wanted
+    assert review.progress.left == 0
+    for _ in range(COUNT):
+        parts.window.actions_by_id["undo"].trigger()
+    assert {one.status for one in parts.document.features()} == {Status.CANDIDATE}
+    assert review.progress.left == COUNT
+
+
+def test_keys_type_in_forms_and_draw_while_something_is_drawn(desk, qtbot):
+    parts, review = desk.parts, desk.parts.review
+    made = found(street_candidates(desk.drive, 6), drive=desk.drive.id)
+    assert parts.document.store_run(made)
+    parts.window.actions_by_id["review-start"].trigger()
+    first = review.current
+    parts.layers_panel.setFocus()
+    parts.drawing_bar.setFocus()
+    parts.toolbox.choose_kind(parts.document.catalogue()["curb_lower"])
+    place = desk.place_of(int(made.change.added[0].vertices[0].measured.point))
+    for shift in (0, 900):
+        desk.click(desk.place_of(place.measured.point + shift).measured.point)
+    assert parts.toolbox.hand.is_busy
+    desk.key(Qt.Key.Key_Return)
+    assert review.current == first
+    assert len(list(parts.document.features())) == 7
+
+
+def assert_centred(parts: WindowParts, qtbot, feature: Feature) -> bool:
+    """Every view has the candidate in its middle; says whether a camera image shows it."""
+    middle = middle_of(feature)
+    place = Place(middle.xyz, middle.measured, middle.is_occluded)
+    for view, centre in centres(parts):
+        at = view.position_of(place)
+        assert at is not None
+        away_px = np.hypot(at.x() - centre.x(), at.y() - centre.y())
+        assert away_px <= max(1.0, pixels_of(view, place, WITHIN_M))
+    assert parts.section_view.cut is not None
+    _, _, aside = parts.section_view.cut.to_section(np.array([place.xyz]))[0]
+    assert abs(aside) <= WITHIN_M
+    camera = parts.camera_view
+    if camera.lay() is None:
+        return False
+    at = camera.position_of(place)
+    centre = QPointF(camera.width() / 2, camera.height() / 2)
+    return at is not None and np.hypot(at.x() - centre.x(), at.y() - centre.y()) <= 1.0
+
+
+def centres(parts: WindowParts):
+    """The views that always show a place, and the middle of each picture."""
+    image = parts.image_view
+    viewport = image.viewport
+    yield image, QPointF(viewport.width / 2, viewport.top + viewport.height / 2)
+    for view in (parts.scene_view, parts.map_view):
+        yield view, QPointF(view.width() / 2, view.height() / 2)
+
+
+def pixels_of(view, place: Place, metres: float) -> float:
+    """How many pixels a length is at a place, in the direction in which it is longest."""
+    at, spots = view.position_of(place), []
+    for axis in range(3):
+        moved: Position = tuple(
+            value + (metres if number == axis else 0.0) for number, value in enumerate(place.xyz)
+        )
+        spot = view.position_of(Place(moved))
+        if spot is not None:
+            spots.append(np.hypot(spot.x() - at.x(), spot.y() - at.y()))
+    return float(max(spots, default=0.0))
