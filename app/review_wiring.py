@@ -6,7 +6,7 @@ from PySide6.QtCore import QObject, Qt
 
 from app.actions.review import QUEUE_KEYS
 from app.window_parts import WindowParts
-from processing.project.feature import Feature
+from processing.project.feature import Feature, Status
 from widgets.shared.cursor import Place
 
 QUEUE_ACTIONS = (*QUEUE_KEYS, "review-worst", "review-along", "review-end")
@@ -30,6 +30,7 @@ def connect_review(parts: WindowParts) -> None:
     panel.next_requested.connect(review.next)
     panel.back_requested.connect(review.back)
     panel.accept_from_requested.connect(review.accept_from)
+    panel.evaluation_requested.connect(wiring.on_panel_evaluation_requested)
     panel.processing_requested.connect(wiring.on_panel_processing_requested)
     panel.ask_count_from(review.count_from)
     parts.project_tree.review_requested.connect(wiring.on_tree_review_requested)
@@ -43,7 +44,7 @@ class _ReviewWiring(QObject):
     def __init__(self, parts: WindowParts) -> None:
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
-        self._is_editing = False
+        self._edited = ""
 
     def keep_keys_to_views(self) -> None:
         """Enter and letters judge over the views and the queue only: in forms they are typed."""
@@ -66,22 +67,27 @@ class _ReviewWiring(QObject):
         review = self._parts.review
         self._parts.review_panel.show_review(review.progress, review.current)
         self._allow_keys()
-        if self._is_editing:
+        current = review.current
+        is_judged = current is None or current.status is not Status.CANDIDATE
+        if self._edited and (current is None or is_judged or current.id != self._edited):
             # What was corrected is judged: the hand has the pointer again.
-            self._is_editing = False
+            self._edited = ""
             if self._parts.toolbox.name == "edit":
                 self._parts.toolbox.choose("select")
 
     def on_review_edit_requested(self, feature: Feature) -> None:
         self._parts.document.shared.selection.choose_features(frozenset({feature.id}))
         self._parts.toolbox.choose("edit")
-        self._is_editing = True
+        self._edited = feature.id
 
     def on_sketch_changed(self) -> None:
         self._allow_keys()
 
     def on_panel_processing_requested(self) -> None:
         self._parts.window.show_panel("processing")
+
+    def on_panel_evaluation_requested(self) -> None:
+        self._parts.window.show_panel("evaluation")
 
     def on_tree_review_requested(self, run: str) -> None:
         review = self._parts.review

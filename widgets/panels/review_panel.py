@@ -14,7 +14,6 @@ from PySide6.QtWidgets import (
     QGridLayout,
     QHBoxLayout,
     QLabel,
-    QProgressBar,
     QPushButton,
     QScrollArea,
     QSizePolicy,
@@ -32,6 +31,7 @@ from widgets.panels.feature_tally import FeatureTally
 from widgets.panels.jobs_panel import time_left
 from widgets.panels.run_chooser import RunChooser
 from widgets.parts.number_field import NumberField
+from widgets.parts.share_bar import ShareBar
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -137,8 +137,7 @@ class ReviewPanel(QWidget):
         left = time_left(progress.seconds_left) if progress.left else ""
         count = self.tr("%n left", "", progress.left)
         self._left.setText(f"{count} · {left}" if left else count)
-        self._bar.setRange(0, max(progress.total, 1))
-        self._bar.setValue(progress.total - progress.left)
+        self._bar.show_share((progress.total - progress.left) / max(progress.total, 1))
         self._facts.setText(self._facts_words(progress))
         self._card.setVisible(feature is not None)
         self._done.setVisible(feature is None)
@@ -171,9 +170,7 @@ class ReviewPanel(QWidget):
         font = self._left.font()
         font.setPixelSize(_BIG_PX)
         self._left.setFont(font)
-        self._bar = QProgressBar(self)
-        self._bar.setTextVisible(False)
-        self._bar.setFixedHeight(8)
+        self._bar = ShareBar(self)
         self._facts = QLabel(self)
         self._facts.setWordWrap(True)
         self._card = CandidateCard(self._language, self)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QCheckBox, QLabel, QProgressBar, QPushButton
+from PySide6.QtWidgets import QCheckBox, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
 from processing.project.change import Change, Replacement
@@ -99,9 +99,9 @@ def test_the_queue_is_shown_in_numbers(panel: ReviewPanel, open_map: OpenMap) ->
     panel.show_review(progress, features[3])
     assert "5 left · 0:10" in labels(panel)
     assert "2 accepted · 1 rejected · 30 a minute" in labels(panel)
-    bar = panel.findChild(QProgressBar)
-    assert isinstance(bar, QProgressBar)
-    assert (bar.value(), bar.maximum()) == (3, 8)
+    bar = panel.findChild(ShareBar)
+    assert isinstance(bar, ShareBar)
+    assert bar.share == pytest.approx(3 / 8)
     lines = card(panel).lines()
     assert lines[:2] == ("curb_lower", "4 / 8")
     assert "height_m: 0.15" in lines
