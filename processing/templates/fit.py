@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import math
 from dataclasses import dataclass, replace
 
@@ -13,7 +14,7 @@ from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.templates.fit_kernels import GRADE, HEIGHT, OFFSET, POSE, TILT, TURN
 from processing.templates.guide import LineDirection, RoadDirection
-from processing.templates.place_fit import Expected, PlaceFit, refined, searched
+from processing.templates.place_fit import TILTS_RAD, Expected, PlaceFit, refined, searched
 from processing.templates.profile_template import ProfileTemplate
 from processing.templates.shape import Shape
 from processing.templates.slab import Frame, SlabReader
@@ -31,6 +32,7 @@ _MOST_LOST_M = (0.24, 0.16)
 _FIRST_TURNS = np.radians([0.0, -8.0, 8.0])
 _MIRROR_GAIN = 0.1
 _CLEARLY = 0.01
+_LONG_LOST_M = 1.0
 _MOST_STEPS = 200_000
 _NEAR_START_M = 10.0
 
@@ -182,7 +184,8 @@ def _start_of(
     best: Start | None = None
     for turn in _FIRST_TURNS.tolist():
         at = replace(frame, heading_rad=frame.heading_rad + turn)
-        fit = searched(shape, reader.slab(at), Expected(np.zeros(POSE), _SPREAD), _FIRST_REACH_M)
+        nothing_known = Expected(np.zeros(POSE), _SPREAD)
+        fit = searched(shape, reader.slab(at), nothing_known, _FIRST_REACH_M, TILTS_RAD)
         for _ in range(2):
             step = _Step(at, fit)
             at = Frame(step.place, step.heading_rad)
@@ -216,8 +219,12 @@ class _Walker:
             monitor.check()
             frame = direction.next_frame(settings.step_m, self._road, is_seen=lost_m == 0.0)
             step = _Step(frame, self._fit(frame, tilt, direction.grade, lost_m))
+            fits = step.fit.score >= settings.least_score
+            if fits and lost_m >= _LONG_LOST_M and not self._goes_on(direction, step):
+                # What looks like the shape in one section alone is something else.
+                fits, step = False, _Step(frame, replace(step.fit, score=0.0))
             steps.append(step)
-            if step.fit.score < settings.least_score:
+            if not fits:
                 lost_m += settings.step_m
                 direction.go_on(frame)
                 continue
@@ -243,6 +250,16 @@ class _Walker:
         if again.score >= self._settings.least_score:
             return again
         return PlaceFit(pose, max(fit.score, again.score), fit.seen)
+
+    def _goes_on(self, direction: LineDirection, step: _Step) -> bool:
+        """Whether the next section shows the shape too."""
+        ahead = copy.copy(direction)
+        ahead.take(step.place, step.heading_rad)
+        frame = ahead.next_frame(self._settings.step_m, self._road, is_seen=True)
+        pose = np.array([0.0, 0.0, step.fit.pose[TILT], 0.0, ahead.grade])
+        slab = self._reader.slab(frame, self._way)
+        fit = refined(self._shape, slab, Expected(pose, self._spread))
+        return fit.score >= self._settings.least_score
 
     def _is_back(self, place: _Floats, start: _Floats, steps: int) -> bool:
         """Whether the line has come round to where it began."""

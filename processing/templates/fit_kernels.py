@@ -32,6 +32,7 @@ _STEEPEST_TILT = math.radians(5.0)
 _ZONE_WEIGHT = 4.0  # a quarter as many points in the empty zones as on the shape is no fit at all
 _LEAST_SEEN = 0.5  # of the shape's length
 _SHARPNESS = 1.5
+_SPARSE_M = 0.05  # as far on either side of a point the shape is seen by it
 
 
 @kernel
@@ -137,17 +138,35 @@ def score_kernel(
 
 @kernel
 def _shares(sums: _Floats, segments: _Floats) -> tuple[float, float, float]:
-    """Shares of the seen length that lies on points, sharply and softly; of what is seen."""
+    """Shares of the seen length that lies on points, sharply and softly; of what is seen.
+
+    Bins between points a little apart are seen with them: far from a scanner points are sparse.
+    """
     seen, whole, lies, softly = 0.0, 0.0, 0.0, 0.0
     for k in range(segments.shape[0]):
         size = segments[k, LENGTH] / segments[k, BINS]
         whole += segments[k, LENGTH]
-        first = int(segments[k, FIRST_BIN])
-        for place in range(first, first + int(segments[k, BINS])):
-            if sums[place, 0] > 0.0:
+        first, end = int(segments[k, FIRST_BIN]), int(segments[k, FIRST_BIN] + segments[k, BINS])
+        before = -1
+        for place in range(first, end + 1):
+            if place < end and sums[place, 0] == 0.0:
+                continue
+            # What stands between the bin seen before and this one: shared, if they are near.
+            start = before + 1 if before >= 0 else first
+            missing = (place - start) * size
+            sides = (before >= 0) + (place < end)
+            if 0.0 < missing <= _SPARSE_M * sides:
+                for side in range(2):
+                    other = before if side == 0 else place
+                    if first <= other < end and (side == 1 or before >= 0):
+                        seen += missing / sides
+                        lies += missing / sides * sums[other, 1] / sums[other, 0]
+                        softly += missing / sides * sums[other, 2] / sums[other, 0]
+            if place < end:
                 seen += size
                 lies += size * sums[place, 1] / sums[place, 0]
                 softly += size * sums[place, 2] / sums[place, 0]
+                before = place
     needed = max(seen, _LEAST_SEEN * whole)
     return lies / needed, softly / needed, seen / whole
 

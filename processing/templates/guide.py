@@ -108,9 +108,8 @@ class LineDirection:
 
     def take(self, place: _Floats, heading_rad: float) -> None:
         """A place was fitted, and the line's direction in it."""
-        if np.linalg.norm(place - self._places[-1]) > 2 * _FADES_M:
-            self._places.clear()
-        self._places = [*self._places, place][-_REMEMBERED:]
+        is_near = np.linalg.norm(place - self._places[-1]) <= 2 * _FADES_M
+        self._places = [*(self._places if is_near else ()), place][-_REMEMBERED:]
         self._last, self._heading_rad = place, heading_rad
         if len(self._places) < 3:
             return

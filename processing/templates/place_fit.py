@@ -25,7 +25,8 @@ _Floats = NDArray[np.float64]
 _FEWEST = 12
 _SEARCHED_POINTS = 400
 _SEARCH_STEP_M = 0.02
-_SEARCH_TILTS = (0.0, math.radians(-3.0), math.radians(3.0))
+TILTS_RAD = (0.0, math.radians(-3.0), math.radians(3.0))
+"""Searched where nothing is known of the tilt."""
 _BEST_KEPT = 3
 _UNDETERMINED = 0.5
 """A shape that fits as well beside its place (a level piece of road) scores no more than this."""
@@ -72,11 +73,23 @@ def refined(shape: Shape, slab: Slab, expected: Expected) -> PlaceFit:
     return _refined_from(shape, slab, expected, expected.pose)
 
 
-def searched(shape: Shape, slab: Slab, expected: Expected, reach: tuple[float, float]) -> PlaceFit:
-    """The best pose within some offset and height of the one expected; nearer ones go before."""
+def searched(
+    shape: Shape,
+    slab: Slab,
+    expected: Expected,
+    reach: tuple[float, float],
+    tilts: tuple[float, ...] = (0.0,),
+) -> PlaceFit:
+    """The best pose within some offset and height of the one expected; nearer ones go before.
+
+    Parameters
+    ----------
+    tilts : tuple of float
+        Tried besides, from the one expected, rad.
+    """
     if slab.points.size < _FEWEST:
         return _nothing(expected)
-    poses = _grid(expected.pose, reach)
+    poses = _grid(expected.pose, reach, tilts)
     scores = np.empty(len(poses))
     step = float(max(1, slab.points.size // _SEARCHED_POINTS))
     limits = (1.5 * shape.tolerance_m, shape.reach_m, step)
@@ -122,17 +135,17 @@ def _nothing(expected: Expected) -> PlaceFit:
     return PlaceFit(expected.pose.copy(), 0.0, 0.0)
 
 
-def _grid(middle: _Floats, reach: tuple[float, float]) -> _Floats:
+def _grid(middle: _Floats, reach: tuple[float, float], tilts: tuple[float, ...]) -> _Floats:
     """(m, POSE) poses over offset, height and tilt."""
     offsets, heights = (
         np.arange(-round(one / _SEARCH_STEP_M), round(one / _SEARCH_STEP_M) + 1) * _SEARCH_STEP_M
         for one in reach
     )
-    grid = np.array(np.meshgrid(offsets, heights, _SEARCH_TILTS, indexing="ij")).reshape(3, -1)
+    grid = np.array(np.meshgrid(offsets, heights, tilts, indexing="ij")).reshape(3, -1)
     poses = np.tile(middle, (grid.shape[1], 1))
     poses[:, OFFSET] += grid[0]
     poses[:, HEIGHT] += grid[1]
-    poses[:, TILT] = grid[2]
+    poses[:, TILT] += grid[2]
     return poses
 
 
