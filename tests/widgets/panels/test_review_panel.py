@@ -20,6 +20,7 @@ from widgets.panels.candidate_card import CandidateCard
 from widgets.panels.review_panel import ReviewPanel
 from widgets.panels.run_chooser import RunChooser
 from widgets.parts.number_field import NumberField
+from widgets.parts.share_bar import ShareBar
 
 
 @pytest.fixture
