@@ -24,8 +24,8 @@ TOLERANCE_M = 0.2
 
 _CELLS_ACROSS = 200
 _LEAST_CELL_PX = 2.0
-_GROWTH = 1.4
-_MOST_CELLS = 8.0
+_DISC = 0.7
+_LEAST_SLOPE = 0.02
 _CLICK_M = 0.15
 
 
@@ -76,8 +76,8 @@ class DepthPicture:
     Notes
     -----
     Steps: the tiles of all drives that the camera may look at are read, each at the level at
-    which its points are about as dense as the cells; every point covers a square as large as the
-    distance to its neighbours, so that surfaces are closed; the nearest one wins. Single points
+    which its points are about as dense as the cells; every point is a disc that faces as its
+    neighbours lie, so large that surfaces are closed; the nearest one wins. Single points
     without neighbours, noise and what is classified as moving hide nothing.
     """
 
@@ -97,6 +97,9 @@ class DepthPicture:
         )
         self.front_m = np.full(shape, np.inf, np.float32)
         self._number = np.full(shape, -1, np.int32)
+        rows, columns = np.indices(shape)
+        middles = (np.column_stack([columns.ravel(), rows.ravel()]) + 0.5) * self.cell_px
+        self._rays = self.camera.rays_of(middles).reshape(*shape, 3)
         self._surroundings = Surroundings(self.camera, drives, reach_m)
         self._per_radian = pixels_per_radian(image)
         self._points: list[NDArray[np.int64]] = []
@@ -166,7 +169,7 @@ class DepthPicture:
         Notes
         -----
         All measured points near the line are looked at, not only those of the grid. A point is
-        met when the line passes it nearer than to its neighbours.
+        met when the line passes through its disc.
         """
         ray = self.camera.rays_of(np.array([pixel]))[0]
         best: tuple[float, int, int] | None = None
@@ -193,12 +196,16 @@ class DepthPicture:
         if not sizes.size:
             return
         pixels = self.camera.pixels_of(away + np.array(self.camera.image.xyz))
-        ranges = np.sqrt((away * away).sum(axis=1))
-        radii = _GROWTH * sizes / 2 * self._per_radian / (ranges * self.cell_px)
-        ranges[ranges > self._surroundings.reach_m] = np.inf
+        is_far = (away * away).sum(axis=1) > self._surroundings.reach_m**2
+        pixels[is_far] = np.nan
         number = np.full(self.front_m.shape, -1, np.int32)
         front_kernel(
-            pixels / self.cell_px, ranges, np.minimum(radii, _MOST_CELLS), self.front_m, number
+            pixels / self.cell_px,
+            (away, points.normals[kept].astype(np.float64), sizes * _DISC),
+            self._per_radian / self.cell_px,
+            self._rays,
+            self.front_m,
+            number,
         )
         taken = number >= 0
         self._number[taken] = number[taken] + self._starts[-1]
@@ -243,12 +250,17 @@ class DepthPicture:
 
 @dataclass(frozen=True)
 class _NearRay:
-    """Points near a line of sight: (k,) each; ranges along it, distances and angles aside."""
+    """Points near a line of sight, (k,) each.
+
+    Ranges along the line and distances aside, m; where the line meets the point's disc,
+    infinite where it doesn't.
+    """
 
     points: NDArray[np.int64]
     ranges: NDArray[np.float64]
     aside: NDArray[np.float64]
     sizes: NDArray[np.float32]
+    met: NDArray[np.float64]
 
     @property
     def angles(self) -> NDArray[np.float64]:
@@ -257,8 +269,7 @@ class _NearRay:
     @property
     def first_met(self) -> float:
         """Where the line meets a surface first; infinite where it meets none."""
-        is_met = self.aside <= self.sizes * (_GROWTH / 2)
-        return float(np.min(self.ranges[is_met], initial=np.inf))
+        return float(np.min(self.met, initial=np.inf))
 
     def nearest_at(self, first: float) -> tuple[float, int] | None:
         """The point nearest to the line among those about so far away: angle and index."""
@@ -275,9 +286,15 @@ def _near_ray(points: SizedPoints, ray: NDArray[np.float64], aside_rad: float) -
     ranges = points.away @ ray
     square = (points.away * points.away).sum(axis=1) - ranges * ranges
     # Where points are sparse, the ones that stand for the surface there may be farther aside.
-    reach = np.maximum(ranges * aside_rad, points.sizes * (_GROWTH / 2))
+    reach = np.maximum(ranges * aside_rad, points.sizes * _DISC)
     near = np.flatnonzero((ranges > 0) & (square <= reach * reach))
     if not near.size:
         return None
+    away, sizes, normals = points.away[near], points.sizes[near], points.normals[near]
+    facing, slope = (away * normals).sum(axis=1), normals @ ray
+    has_normal = np.abs(slope) > _LEAST_SLOPE
+    met = np.where(has_normal, facing / np.where(has_normal, slope, 1.0), ranges[near])
+    off = np.linalg.norm(met[:, None] * ray - away, axis=1)
+    met = np.where((off <= sizes * _DISC) & (met > 0), met, np.inf)
     aside = np.sqrt(np.maximum(square[near], 0.0))
-    return _NearRay(points.points[near], ranges[near], aside, points.sizes[near])
+    return _NearRay(points.points[near], ranges[near], aside, sizes, met)

@@ -10,9 +10,13 @@ from processing.kernels import kernel
 ALONE_M = 0.01
 """The size of a point without neighbours: it hides next to nothing."""
 
+MOST_CELLS = 8.0
+"""So far from its own cell a point covers others at most."""
+
 
 _RIM = 0.6
 _STRAIGHT = -0.7
+_LEAST_SINE = 0.3
 
 
 @kernel
@@ -21,13 +25,16 @@ def _size_between(
     is_filled: NDArray[np.bool_],
     here: tuple[int, int],
     step: tuple[int, int],
-    limit: float,
+    way: NDArray[np.float64],
 ) -> float:
-    """Distance to the nearer of two opposite neighbours; less where they form no surface."""
+    """Distance to the nearer of two opposite neighbours; less where they form no surface.
+
+    ``way``: (4,) given with the farthest distance of neighbours in its last place; gets the
+    direction to one of them.
+    """
     height, width = is_filled.shape
     r, c = here
     nearest, product, found = np.inf, 0.0, 0
-    first = np.zeros(3)
     length = 0.0
     for side in (1, -1):
         i, j = r + side * step[0], c + side * step[1]
@@ -37,11 +44,11 @@ def _size_between(
         y = xyz[i, j, 1] - xyz[r, c, 1]
         z = xyz[i, j, 2] - xyz[r, c, 2]
         away = np.sqrt(x * x + y * y + z * z)
-        if away > limit or away == 0.0:
+        if away > way[3] or away == 0.0:
             continue
         if found:
-            product = (x * first[0] + y * first[1] + z * first[2]) / (away * length)
-        first[0], first[1], first[2], length = x, y, z, away
+            product = (x * way[0] + y * way[1] + z * way[2]) / (away * length)
+        way[0], way[1], way[2], length = x, y, z, away
         found += 1
         nearest = min(nearest, away)
     if found == 0:
@@ -52,51 +59,89 @@ def _size_between(
 
 @kernel
 def sizes_kernel(
-    xyz: NDArray[np.float64], is_filled: NDArray[np.bool_], limit: float, sizes: NDArray[np.float32]
+    xyz: NDArray[np.float64],
+    is_filled: NDArray[np.bool_],
+    limit: float,
+    sizes: NDArray[np.float32],
+    normals: NDArray[np.float32],
 ) -> None:
-    """How large a piece of surface each point of a raster stands for.
+    """How large a piece of surface each point of a raster stands for, and which way it faces.
 
     ``xyz``: (h, w, 3) m; ``limit``: neighbours farther away are other surfaces, m; ``sizes``:
-    (h, w), the larger of the distances to the nearer neighbours in the row and in the column.
+    (h, w), the larger of the distances to the nearer neighbours in the row and in the column;
+    ``normals``: (h, w, 3), either way round, zero at first and where none is known.
     """
     height, width = is_filled.shape
+    a, b = np.zeros(4), np.zeros(4)
+    a[3], b[3] = limit, limit
     for r in range(height):
         for c in range(width):
-            if is_filled[r, c]:
-                along = _size_between(xyz, is_filled, (r, c), (0, 1), limit)
-                across = _size_between(xyz, is_filled, (r, c), (1, 0), limit)
-                sizes[r, c] = max(along, across, ALONE_M)
+            if not is_filled[r, c]:
+                continue
+            along = _size_between(xyz, is_filled, (r, c), (0, 1), a)
+            across = _size_between(xyz, is_filled, (r, c), (1, 0), b)
+            sizes[r, c] = max(along, across, ALONE_M)
+            if along == 0.0 or across == 0.0:
+                continue
+            x = a[1] * b[2] - a[2] * b[1]
+            y = a[2] * b[0] - a[0] * b[2]
+            z = a[0] * b[1] - a[1] * b[0]
+            area = np.sqrt(x * x + y * y + z * z)
+            long = np.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+            wide = np.sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2])
+            if area > _LEAST_SINE * long * wide:
+                normals[r, c, 0] = x / area
+                normals[r, c, 1] = y / area
+                normals[r, c, 2] = z / area
 
 
 @kernel
 def front_kernel(
     places: NDArray[np.float64],
-    ranges: NDArray[np.float64],
-    radii: NDArray[np.float64],
+    points: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    scale: float,
+    rays: NDArray[np.float64],
     front: NDArray[np.float32],
     number: NDArray[np.int32],
 ) -> None:
-    """The nearest point in each cell.
+    """The nearest piece of surface in each cell.
 
-    ``places``: (n, 2) column and row in cells, NaN where not seen; ``ranges``: (n,) m;
-    ``radii``: (n,) cells that a point covers around its own; ``front``: (h, w), infinite at
+    ``places``: (n, 2) column and row in cells, NaN where not seen; ``points``: (n, 3) from the
+    perspective centre, m, (n, 3) normals, (n,) radii of their discs, m; ``scale``: cells a
+    radian; ``rays``: (h, w, 3) directions of the cells' middles; ``front``: (h, w), infinite at
     first; ``number``: (h, w), the front point.
     """
     height, width = front.shape
+    away, normals, radii = points
     for k in range(places.shape[0]):
-        x, y, radius = places[k, 0], places[k, 1], radii[k]
+        x, y = places[k, 0], places[k, 1]
+        square = away[k, 0] ** 2 + away[k, 1] ** 2 + away[k, 2] ** 2
+        distance = np.sqrt(square)
+        radius = min(radii[k] * scale / distance, MOST_CELLS)
         if not (x >= -radius and y >= -radius and x < width + radius and y < height + radius):
             continue
-        # A cell is covered when its middle is; the point's own cell always.
-        left, right = int(np.ceil(x - radius - 0.5)), int(np.floor(x + radius - 0.5))
-        top, bottom = int(np.ceil(y - radius - 0.5)), int(np.floor(y + radius - 0.5))
-        left, right = min(left, int(np.floor(x))), max(right, int(np.floor(x)))
-        top, bottom = min(top, int(np.floor(y))), max(bottom, int(np.floor(y)))
-        away = np.float32(ranges[k])
+        facing = (
+            away[k, 0] * normals[k, 0] + away[k, 1] * normals[k, 1] + away[k, 2] * normals[k, 2]
+        )
+        own_c, own_r = int(np.floor(x)), int(np.floor(y))
+        left, right = int(np.floor(x - radius)), int(np.floor(x + radius))
+        top, bottom = int(np.floor(y - radius)), int(np.floor(y + radius))
         for r in range(max(0, top), min(height - 1, bottom) + 1):
             for c in range(max(0, left), min(width - 1, right) + 1):
-                if away < front[r, c]:
-                    front[r, c] = away
+                is_own = r == own_r and c == own_c
+                inside = abs(c + 0.5 - x) <= radius and abs(r + 0.5 - y) <= radius
+                met = distance
+                u, v, w = rays[r, c, 0], rays[r, c, 1], rays[r, c, 2]
+                slope = u * normals[k, 0] + v * normals[k, 1] + w * normals[k, 2]
+                if facing != 0.0 and slope != 0.0:
+                    # Where the cell's middle meets the disc.
+                    met = facing / slope
+                    beside = met * (u * away[k, 0] + v * away[k, 1] + w * away[k, 2])
+                    inside = met > 0 and met * met - 2 * beside + square <= radii[k] ** 2
+                    if not inside:
+                        met = distance
+                if (inside or is_own) and np.float32(met) < front[r, c]:
+                    front[r, c] = met
                     number[r, c] = k
 
 
@@ -113,7 +158,8 @@ def hidden_kernel(
     ``cells``: (n, 2) column and row, −1: outside; ``tolerance``: m, and share of the range.
     The inverse range of a plane is linear in the image, so the far end of a tilted surface
     within its cell is foretold from the cells beside it; the smaller of the differences to both
-    sides is taken, so that an edge isn't mistaken for a slope.
+    sides is taken, so that an edge isn't mistaken for a slope, and half of it, as the range is
+    that of the cell's middle.
     """
     height, width = front.shape
     for k in range(cells.shape[0]):
@@ -134,9 +180,9 @@ def hidden_kernel(
             steep = min(steep, abs(here - 1.0 / front[r + 1, c]))
         far = here
         if level < np.inf:
-            far -= level
+            far -= level / 2
         if steep < np.inf:
-            far -= steep
+            far -= steep / 2
         if far <= 0.0:
             continue
         hidden[k] = ranges[k] > 1.0 / far + tolerance[0] + tolerance[1] * ranges[k]
@@ -144,8 +190,10 @@ def hidden_kernel(
 
 def warm_up() -> None:
     """Compile the kernels."""
-    sizes_kernel(np.zeros((2, 2, 3)), np.ones((2, 2), np.bool_), 0.3, np.zeros((2, 2), np.float32))
-    front = np.full((2, 2), np.inf, np.float32)
-    front_kernel(np.zeros((1, 2)), np.ones(1), np.ones(1), front, np.zeros((2, 2), np.int32))
+    sizes, normals = np.zeros((2, 2), np.float32), np.zeros((2, 2, 3), np.float32)
+    sizes_kernel(np.zeros((2, 2, 3)), np.ones((2, 2), np.bool_), 0.3, sizes, normals)
+    front, number = np.full((2, 2), np.inf, np.float32), np.zeros((2, 2), np.int32)
+    points = np.ones((1, 3)), np.ones((1, 3)), np.ones(1)
+    front_kernel(np.zeros((1, 2)), points, 1.0, np.ones((2, 2, 3)), front, number)
     cells, hidden = np.zeros((1, 2), np.int64), np.zeros(1, np.bool_)
     hidden_kernel(cells, np.ones(1), front, (0.2, 0.01), hidden)

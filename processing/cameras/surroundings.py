@@ -41,11 +41,14 @@ class SizedPoints:
         From the perspective centre, project axes, m.
     sizes : (n,) float32
         How large a piece of surface each stands for, m; `ALONE_M` where it has no neighbours.
+    normals : (n, 3) float32
+        Which way it faces, either way round; zero where that isn't known.
     """
 
     points: NDArray[np.int64]
     away: NDArray[np.float64]
     sizes: NDArray[np.float32]
+    normals: NDArray[np.float32]
 
     @property
     def has_company(self) -> NDArray[np.bool_]:
@@ -178,12 +181,18 @@ class Surroundings:
         xyz[is_filled] = drive.xyz(points) - self._centre
         limit = max(_SURFACE_M, 2 * pyramid.spacing_m(key))
         sizes = np.zeros(raster.shape, np.float32)
-        sizes_kernel(xyz, is_filled, limit, sizes)
+        normals = np.zeros((*raster.shape, 3), np.float32)
+        sizes_kernel(xyz, is_filled, limit, sizes, normals)
         away = xyz[is_filled]
         is_there = (away * away).sum(axis=1) >= OWN_BODY_M**2
         if drive.columns.has("classification"):
             is_there &= ~np.isin(drive.columns["classification"][points], _NOT_THERE)
-        return SizedPoints(points[is_there], away[is_there], sizes[is_filled][is_there])
+        return SizedPoints(
+            points[is_there],
+            away[is_there],
+            sizes[is_filled][is_there],
+            normals[is_filled][is_there],
+        )
 
 
 def _cone_of(camera: Camera) -> tuple[NDArray[np.float64], float]:
