@@ -137,7 +137,10 @@ class SectionLines(QObject):
         return [feature for feature in self._near.within(place, reach_m) if settings.shows(feature)]
 
     def _near_lines(self, place: Place) -> list[CutLine]:
-        found = [self.drawn(feature.id) for feature in self.near(place.xyz, _LINE_REACH_M)]
+        """The lines about a place; of those that are not, no stations are made."""
+        near = self.near(place.xyz, _LINE_REACH_M)
+        about = [one for one in near if one.id in self._drawn or _is_about(one, place.xyz)]
+        found = [self.drawn(feature.id) for feature in about]
         return [line for line in found if line is not None]
 
     def _pass_of(self, line: CutLine, point: int) -> tuple[float, float] | None:
@@ -153,6 +156,14 @@ class SectionLines(QObject):
     def _on_features_changed(self, ids: tuple[str, ...]) -> None:
         for id_ in ids:
             self._drawn.pop(id_, None)
+
+
+def _is_about(feature: Feature, place: Position) -> bool:
+    eastings, northings, _ = zip(*(vertex.xyz for vertex in feature.vertices), strict=True)
+    easting, northing, _ = place
+    reach = _LINE_REACH_M
+    is_beside = not (min(eastings) - reach <= easting <= max(eastings) + reach)
+    return not is_beside and bool(min(northings) - reach <= northing <= max(northings) + reach)
 
 
 def _line_of(feature: Feature) -> CutLine | None:
