@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -62,12 +63,24 @@ def with_images(drive: Drive, images: tuple[CameraImage, ...]) -> Drive:
 
 @pytest.fixture(scope="module")
 def street() -> SimulatedDrive:
-    return simulated_drive(3, pulses_per_turn=600.0, lost_share=0.0)
+    return simulated_drive(3, pulses_per_turn=600.0, length_m=8.0, lost_share=0.0)
+
+
+@pytest.fixture(scope="module")
+def taken(tmp_path_factory: pytest.TempPathFactory) -> tuple[CameraImage, ...]:
+    return photographs(tmp_path_factory.mktemp("taken"))
 
 
 @pytest.fixture
-def drive(tmp_path: Path, street: SimulatedDrive) -> Drive:
-    return with_images(drive_of(street, tmp_path / "d"), photographs(tmp_path))
+def images(tmp_path: Path, taken: tuple[CameraImage, ...]) -> tuple[CameraImage, ...]:
+    """Give photographs that may be damaged."""
+    folder = shutil.copytree(taken[0].path.parent, tmp_path / "写真")
+    return tuple(replace(image, path=folder / image.path.name) for image in taken)
+
+
+@pytest.fixture
+def drive(tmp_path: Path, street: SimulatedDrive, images: tuple[CameraImage, ...]) -> Drive:
+    return with_images(drive_of(street, tmp_path / "d"), images)
 
 
 def coloured(drive: Drive, **parameters: object) -> dict[str, np.ndarray]:
@@ -101,7 +114,8 @@ def test_walls_behind_poles_dont_get_the_colour_of_poles(
 
     unregarded = wrong(coloured(drive, regards_hidden=False))
     assert unregarded > 30
-    assert wrong(coloured(drive)) < 0.2 * unregarded
+    # The side of the pole that no beam met hides nothing.
+    assert wrong(coloured(drive)) < 0.5 * unregarded
 
 
 def test_far_points_are_left_uncoloured(drive: Drive) -> None:
@@ -158,11 +172,11 @@ def test_images_of_another_reference_system_are_refused(drive: Drive) -> None:
 
 
 def test_seen_colours_are_shown_before_delivered_ones(
-    tmp_path: Path, street: SimulatedDrive
+    tmp_path: Path, street: SimulatedDrive, images: tuple[CameraImage, ...]
 ) -> None:
     delivered = np.full((street.count, 3), 200 << 8, np.uint16)
     delivered[0] = 65535
-    drive = with_images(drive_of(street, tmp_path / "d", color=delivered), photographs(tmp_path))
+    drive = with_images(drive_of(street, tmp_path / "d", color=delivered), images)
     found = coloured(drive)
     for name, values in found.items():
         drive.columns.add(name, values)
