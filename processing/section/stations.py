@@ -84,6 +84,10 @@ class Stations:
         """The way of the vehicle's reference point."""
         return cls(trajectory.xyz, times=trajectory.time)
 
+    def measured_places(self) -> tuple[Floats, Floats]:
+        """The stations (k,), m, rising, and places (k, 3), m, project CRS, it is measured by."""
+        return self._stations.copy(), self._local + self._origin
+
     def place_at(self, station_m: float) -> tuple[float, float, float]:
         """Where a station is; before the beginning and behind the end straight on and level."""
         inside = min(max(station_m, 0.0), self.length_m)

@@ -25,6 +25,7 @@ _VIEW = QColor("#f0e442")
 _MARGIN_PX = 12.0
 _MOST_BAR_PX = 160.0
 _STATION_PX = 110.0
+_MOST_STATIONS = 100_000
 _TICK_PX, _ARROW_PX = 5.0, 6.0
 _NORTH_PX = 34.0
 
@@ -149,10 +150,11 @@ def _thinned(pixels: Floats) -> Floats:
 
 def _paint_stations(painter: QPainter, viewport: PlaneViewport, way: Way) -> None:
     step_m = round_step(_STATION_PX / viewport.scale)
-    if way.length_m / step_m > 10_000:
+    first, last = way.ends
+    if (last - first) / step_m > _MOST_STATIONS:
         return
-    stations = np.arange(0.0, way.length_m + 1e-6, step_m)
-    between = stations[:-1] + step_m / 2
+    stations = np.arange(np.ceil(first / step_m), np.floor(last / step_m) + 1) * step_m
+    between = np.arange(np.ceil(first / step_m - 0.5), last / step_m - 0.5) * step_m + step_m / 2
     over_m = max(2.0 / viewport.scale, 0.5)
     for at, is_tick in ((between, False), (stations, True)):
         spots = viewport.to_screen(way.at(at))

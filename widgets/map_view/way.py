@@ -8,12 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.errors import Unsuitable
 from processing.points.drive import Drive
+from processing.points.trajectory import Trajectory
+from processing.section.stations import Stations
 from widgets.map_view.plan_lay import on_plan
 
 Floats = NDArray[np.float64]
-
-_STEP_M = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,16 +26,16 @@ class Way:
     places : (m, 2) float64
         On the plane: metres to the east and to the south; at least two.
     stations : (m,) float64
-        Metres from the beginning, rising.
+        Metres from the trajectory's beginning, as in sections; rising.
     """
 
     places: Floats
     stations: Floats
 
     @property
-    def length_m(self) -> float:
-        """Of all of it."""
-        return float(self.stations[-1])
+    def ends(self) -> tuple[float, float]:
+        """The first and the last station."""
+        return float(self.stations[0]), float(self.stations[-1])
 
     def at(self, stations: Floats) -> Floats:
         """(k, 2) places at stations."""
@@ -44,8 +45,8 @@ class Way:
 
     def directions(self, stations: Floats, over_m: float) -> Floats:
         """(k, 2) unit vectors of travel on the plane."""
-        before = self.at(np.maximum(stations - over_m, 0.0))
-        ahead = self.at(np.minimum(stations + over_m, self.length_m))
+        # Beyond the ends it stays where it is.
+        before, ahead = self.at(stations - over_m), self.at(stations + over_m)
         step = ahead - before
         directions: Floats = step / np.maximum(np.hypot(*step.T), 1e-9)[:, None]
         return directions
@@ -63,30 +64,52 @@ class Way:
 def ways_of(drives: Iterable[Drive]) -> tuple[Way, ...]:
     """The paths of drives; scanners of one vehicle share one."""
     ways: list[Way] = []
-    seen: list[Floats] = []
+    by_trajectory: list[tuple[Trajectory, list[Drive]]] = []
     for drive in drives:
         trajectory = drive.trajectory
         if trajectory is None or not drive.count:
             continue
-        if any(np.array_equal(trajectory.xyz, other) for other in seen):
-            continue
-        seen.append(trajectory.xyz)
-        way = _way_of(trajectory.xyz, drive)
+        for other, sharing in by_trajectory:
+            if np.array_equal(trajectory.xyz, other.xyz):
+                sharing.append(drive)
+                break
+        else:
+            by_trajectory.append((trajectory, [drive]))
+    for trajectory, sharing in by_trajectory:
+        way = _way_of(trajectory, sharing)
         if way is not None:
             ways.append(way)
     return tuple(ways)
 
 
-def _way_of(xyz: Floats, drive: Drive) -> Way | None:
-    """From the first to the last place beside which the drive's points lie."""
+def _way_of(trajectory: Trajectory, drives: list[Drive]) -> Way | None:
+    """The stretch beside which points were measured; None where the vehicle never moved."""
+    try:
+        line = Stations.of_trajectory(trajectory)
+    except Unsuitable:
+        return None
+    stations, xyz = line.measured_places()
+    is_recorded = np.zeros(len(stations), dtype=bool)
+    for drive in drives:
+        is_recorded |= _recorded(line, stations, xyz, drive)
+    inside = np.flatnonzero(is_recorded)
+    if inside.size > 1:
+        stations, xyz = (one[inside[0] : inside[-1] + 1] for one in (stations, xyz))
+    return Way(on_plan(xyz), stations)
+
+
+def _recorded(line: Stations, stations: Floats, xyz: Floats, drive: Drive) -> NDArray[np.bool_]:
+    """(k,) which places were passed while a drive was measured; without times, by its extent."""
+    turns = drive.turns
+    if turns is not None and len(turns.reference_times):
+        ends = [line.station_at_time(float(turns.reference_times[end])) for end in (0, -1)]
+        first = 0.0 if ends[0] is None else ends[0]
+        last = line.length_m if ends[1] is None else ends[1]
+        between: NDArray[np.bool_] = (stations >= first) & (stations <= last)
+        return between
     low, high = np.array(drive.info.lowest)[:2], np.array(drive.info.highest)[:2]
-    inside = np.flatnonzero(((xyz[:, :2] >= low) & (xyz[:, :2] <= high)).all(axis=1))
-    kept = xyz[inside[0] : inside[-1] + 1] if inside.size else xyz
-    places = on_plan(kept)
-    gone = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(places, axis=0).T))])
-    # A vehicle that stands gives many places at one station.
-    step = np.floor(gone / _STEP_M)
-    first = np.flatnonzero(np.diff(step, prepend=-1.0) > 0)
-    chosen = np.unique(np.concatenate([first, [len(places) - 1]]))
-    chosen = chosen[np.diff(gone[chosen], prepend=-1.0) > 0]
-    return Way(places[chosen], gone[chosen]) if len(chosen) > 1 else None
+    east, north = xyz[:, 0], xyz[:, 1]
+    is_beside: NDArray[np.bool_] = (
+        (east >= low[0]) & (east <= high[0]) & (north >= low[1]) & (north <= high[1])
+    )
+    return is_beside

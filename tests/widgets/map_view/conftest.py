@@ -1,0 +1,107 @@
+"""The map view on a shown window, sharp, with a map behind it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from pytestqt.qtbot import QtBot
+
+from processing.image.tile_cache import TileCache
+from processing.points.drive import Drive
+from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
+from tests.widgets.builders import OpenMap
+from widgets.map_view.view import MapView
+from widgets.mouse_tools.mouse_tool import MouseTool
+from widgets.shared.cursor import Place
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+@dataclass
+class Hand:
+    """A view and the hand at its mouse."""
+
+    qtbot: QtBot
+    map: OpenMap
+    view: MapView
+    drive: Drive
+
+    def look_at(self, place: Place, px_per_m: float) -> None:
+        """Look at a place from so near, and wait until the picture is sharp."""
+        lay = self.view.lay()
+        assert lay is not None
+        x, y = lay.to_plane(np.array([place.xyz]))[0].tolist()
+        viewport = self.view.viewport
+        with self.qtbot.waitSignal(self.view.sharpened):
+            self.view.set_viewport(
+                viewport.zoomed(px_per_m / viewport.scale, 0.0, 0.0).centred_on(x, y)
+            )
+
+    def spot(self, place: Place) -> QPoint:
+        position = self.view.position_of(place)
+        assert position is not None
+        return position.toPoint()
+
+    def take(self, tool: MouseTool) -> MouseTool:
+        self.map.listen_to(tool)
+        self.view.set_mouse_tool(tool)
+        return tool
+
+    def click(self, spot: QPoint) -> None:
+        self.qtbot.mouseClick(self.view, LEFT, NO_KEYS, spot)
+
+    def move(self, spot: QPoint, buttons: Qt.MouseButton = Qt.MouseButton.NoButton) -> None:
+        move_mouse(self.view, spot, buttons)
+
+    def drag(self, start: QPoint, end: QPoint) -> None:
+        self.qtbot.mousePress(self.view, LEFT, NO_KEYS, start)
+        self.move((start + end) / 2, LEFT)
+        self.move(end, LEFT)
+        self.qtbot.mouseRelease(self.view, LEFT, NO_KEYS, end)
+
+    def wheel(self, spot: QPoint, notches: int, keys: Qt.KeyboardModifier = NO_KEYS) -> None:
+        turn_wheel(self.view, spot, notches, keys)
+
+    def road_points(self, count: int) -> list[int]:
+        """Points of the road that nothing is above, the highest for half a metre, far apart."""
+        xyz = self.drive.xyz(slice(None))
+        is_road = np.abs(xyz[:, 2] - np.median(xyz[:, 2])) < 0.3
+        found: list[int] = []
+        for point in np.flatnonzero(is_road).tolist():
+            away = np.hypot(*(xyz[:, :2] - xyz[point, :2]).T)
+            alone = xyz[away < 0.5, 2].max() < xyz[point, 2] + 0.09
+            if alone and all(np.hypot(*(xyz[one] - xyz[point])[:2]) > 1.0 for one in found):
+                found.append(point)
+            if len(found) == count:
+                break
+        assert len(found) == count
+        return found
+
+
+@pytest.fixture
+def tiles(open_map: OpenMap) -> Iterator[TileCache]:
+    cache = TileCache()
+    cache.use(open_map.drive)
+    yield cache
+    cache.close()
+
+
+@pytest.fixture
+def open_map(left_drive: Drive) -> OpenMap:
+    return OpenMap((left_drive,))
+
+
+@pytest.fixture
+def hand(qtbot: QtBot, open_map: OpenMap, tiles: TileCache, left_drive: Drive) -> Iterator[Hand]:
+    """Give a view of the left drive, all of it in the window."""
+    view = MapView(open_map, open_map.shared, tiles)
+    qtbot.addWidget(view)
+    view.resize(900, 700)
+    with qtbot.waitSignal(view.sharpened):
+        view.show()
+    yield Hand(qtbot, open_map, view, left_drive)
+    view.close()

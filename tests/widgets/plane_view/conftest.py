@@ -1,0 +1,175 @@
+"""A plane view over a plan on which a grid of points was measured, one a metre."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PySide6.QtCore import QPoint, QRectF, Qt
+from PySide6.QtGui import QPainter, QPolygonF
+from pytestqt.qtbot import QtBot
+from typing_extensions import override
+
+from processing.project.catalogue import Geometry
+from processing.project.change import Change
+from processing.project.feature import Feature, PointReference, Position, Vertex, new_feature_id
+from processing.text import Text
+from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
+from tests.widgets.builders import OpenMap
+from widgets.mouse_tools.mouse_tool import MouseTool, Ray
+from widgets.plane_view.view import PlaneView
+from widgets.plane_view.viewport import PlaneViewport
+from widgets.shared.cursor import Place
+
+LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
+
+
+@dataclass
+class GridLay:
+    """Looks straight down; what is north of the limit isn't shown."""
+
+    limit: float = 1e9
+    asked: list[int] = field(default_factory=list)
+
+    def to_plane(self, xyz: NDArray[np.float64]) -> NDArray[np.float64]:
+        self.asked.append(len(xyz))
+        places = xyz[:, :2] * [1.0, -1.0]
+        places[xyz[:, 1] > self.limit] = np.nan
+        return places
+
+    def lines_on_plane(
+        self, xyz: NDArray[np.float64], ends: NDArray[np.int64]
+    ) -> list[NDArray[np.float64]]:
+        """Each segment as two pieces."""
+        lines = []
+        for first, second in self.to_plane(xyz)[ends]:
+            line = np.stack([first, (first + second) / 2, second])
+            lines.append(line if np.isfinite(line).all() else np.empty((0, 2)))
+        return lines
+
+    def ray(self, place: tuple[float, float]) -> Ray:
+        return Ray((place[0], -place[1], 100.0), (0.0, 0.0, -1.0))
+
+    def reach_m(self, place: tuple[float, float], reach: float, at: Position | None) -> float:
+        return reach
+
+    def is_near(self, xyz: NDArray[np.float64]) -> NDArray[np.bool_]:
+        return xyz[:, 2] < 50.0
+
+
+class GridView(PlaneView):
+    """Points lie on whole metres from 0 to 10."""
+
+    def __init__(self, open_map: OpenMap) -> None:
+        super().__init__(open_map, open_map.shared)
+        self.shown_lay: GridLay | None = GridLay()
+        self.grounds = 0
+        self.box: NDArray[np.float64] | None = None
+
+    @override
+    def lay(self) -> GridLay | None:
+        return self.shown_lay
+
+    @override
+    def words(self) -> str:
+        return "nothing"
+
+    @override
+    def extent(self) -> QRectF | None:
+        return QRectF(0, -10, 10, 10)
+
+    @override
+    def reach_box(self) -> NDArray[np.float64] | None:
+        return self.box
+
+    @override
+    def paint_ground(self, painter: QPainter, viewport: PlaneViewport) -> None:
+        self.grounds += 1
+
+    @override
+    def place_at(self, place: tuple[float, float], reach: float, *, exact: bool) -> Place | None:
+        east, north = round(place[0]), round(-place[1])
+        away = np.hypot(east - place[0], north + place[1])
+        if not (0 <= east <= 10 and 0 <= north <= 10) or away > reach:
+            return None
+        return grid_place(east, north)
+
+    @override
+    def points_inside(self, outline: QPolygonF) -> Mapping[str, NDArray[np.int64]]:
+        return {"grid": np.array([1, 2])}
+
+
+def grid_place(east: int, north: int) -> Place:
+    """A measured point of the grid."""
+    return Place((float(east), float(north), 5.0), PointReference("grid", 100 * east + north))
+
+
+@dataclass
+class Hand:
+    """A view and the hand at its mouse and keyboard."""
+
+    qtbot: QtBot
+    map: OpenMap
+    view: GridView
+
+    def add(self, geometry: Geometry, *places: tuple[int, int], **fields: object) -> Feature:
+        feature = Feature(
+            new_feature_id(),
+            self.map.kind_of(geometry),
+            geometry,
+            tuple(
+                Vertex(place.xyz, place.measured)
+                for place in (grid_place(east, north) for east, north in places)
+            ),
+            **fields,  # type: ignore[arg-type]
+        )
+        self.map.apply(Text.same("test"), Change(added=(feature,)))
+        return feature
+
+    def spot(self, east: float, north: float) -> QPoint:
+        position = self.view.position_of(Place((float(east), float(north), 5.0)))
+        assert position is not None
+        return position.toPoint()
+
+    def take(self, tool: MouseTool) -> MouseTool:
+        self.map.listen_to(tool)
+        self.view.set_mouse_tool(tool)
+        return tool
+
+    def click(self, spot: QPoint, button: Qt.MouseButton = LEFT) -> None:
+        self.qtbot.mouseClick(self.view, button, NO_KEYS, spot)
+
+    def move(self, spot: QPoint, buttons: Qt.MouseButton = Qt.MouseButton.NoButton) -> None:
+        move_mouse(self.view, spot, buttons)
+
+    def drag(self, start: QPoint, end: QPoint, button: Qt.MouseButton = LEFT) -> None:
+        self.qtbot.mousePress(self.view, button, NO_KEYS, start)
+        self.move((start + end) / 2, button)
+        self.move(end, button)
+        self.qtbot.mouseRelease(self.view, button, NO_KEYS, end)
+
+    def wheel(self, spot: QPoint, notches: int, keys: Qt.KeyboardModifier = NO_KEYS) -> None:
+        turn_wheel(self.view, spot, notches, keys)
+
+    def key(self, key: Qt.Key) -> None:
+        self.qtbot.keyClick(self.view, key)
+
+    def colour_at(self, spot: QPoint) -> str:
+        image = self.view.grab().toImage()
+        ratio = image.devicePixelRatioF()
+        return image.pixelColor((spot.toPointF() * ratio).toPoint()).name()
+
+
+@pytest.fixture
+def hand(qtbot: QtBot) -> Hand:
+    """Give a shown view of the grid, all of it in the window."""
+    open_map = OpenMap()
+    view = GridView(open_map)
+    qtbot.addWidget(view)
+    view.resize(800, 600)
+    with qtbot.waitExposed(view):
+        view.show()
+    return Hand(qtbot, open_map, view)
