@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import Unsuitable
-from processing.monitor import Monitor
+from processing.monitor import Monitor, SilentMonitor
 from processing.points.drive import Drive
 from processing.templates.fit_kernels import GRADE, HEIGHT, OFFSET, POSE, TILT, TURN
 from processing.templates.guide import LineDirection, RoadDirection
@@ -119,12 +119,24 @@ class Start:
     score: float
 
 
-def fit_at(drive: Drive, template: ProfileTemplate, frame: Frame, settings: FitSettings) -> Start:
-    """The template where it was drawn: as it is, or mirrored if it fits only so."""
-    as_drawn = _start_of(drive, template, frame, settings)
+def fit_at(
+    drive: Drive,
+    template: ProfileTemplate,
+    frame: Frame,
+    settings: FitSettings,
+    monitor: Monitor | None = None,
+) -> Start:
+    """The template where it was drawn: as it is, or mirrored if it fits only so.
+
+    Raises
+    ------
+    Cancelled
+    """
+    monitor = monitor or SilentMonitor()
+    as_drawn = _start_of(drive, template, frame, settings, monitor)
     if as_drawn.score > 1.0 - _MIRROR_GAIN:
         return as_drawn
-    mirrored = _start_of(drive, template.mirrored(), frame, settings)
+    mirrored = _start_of(drive, template.mirrored(), frame, settings, monitor)
     return mirrored if mirrored.score > as_drawn.score + _MIRROR_GAIN else as_drawn
 
 
@@ -151,8 +163,7 @@ def fit_along(
         The template isn't where it is to begin.
     Cancelled
     """
-    start = fit_at(drive, template, frame, settings)
-    monitor.check()
+    start = fit_at(drive, template, frame, settings, monitor)
     if start.score < settings.least_score:
         raise _not_here(template, start.score)
     shape = Shape.of(start.template, settings.tolerance_m)
@@ -176,13 +187,18 @@ def fit_along(
 
 
 def _start_of(
-    drive: Drive, template: ProfileTemplate, frame: Frame, settings: FitSettings
+    drive: Drive,
+    template: ProfileTemplate,
+    frame: Frame,
+    settings: FitSettings,
+    monitor: Monitor,
 ) -> Start:
     """The best place about a frame, turned by up to eight degrees and looked at twice more."""
     shape = Shape.of(template, settings.tolerance_m)
     reader = SlabReader(drive, settings.width_m, shape.box(max(_FIRST_REACH_M)))
     best: Start | None = None
     for turn in _FIRST_TURNS.tolist():
+        monitor.check()
         at = replace(frame, heading_rad=frame.heading_rad + turn)
         nothing_known = Expected(np.zeros(POSE), _SPREAD)
         fit = searched(shape, reader.slab(at), nothing_known, _FIRST_REACH_M, TILTS_RAD)

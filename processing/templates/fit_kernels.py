@@ -334,5 +334,7 @@ def warm_up() -> None:
     zones = np.zeros((0, 2)), np.zeros(1, np.int64)
     slab, chosen = np.zeros((2, 3)), np.zeros(2, np.int64)
     slab_kernel(slab.copy(), np.array([0.0, 0, 0, 0, 1]), np.ones(5), slab, chosen)
-    search_kernel(slab, np.zeros((1, POSE)), segments, zones, (0.02, 0.1, 1.0), np.zeros(1))
+    limits = (0.02, 0.1, 1.0)
+    score_kernel(slab, np.zeros(POSE), segments, zones, limits)
+    search_kernel(slab, np.zeros((1, POSE)), segments, zones, limits, np.zeros(1))
     refine_kernel(slab, np.zeros(POSE), (np.zeros(POSE), np.ones(POSE)), segments, 0.02)

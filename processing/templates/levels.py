@@ -42,11 +42,10 @@ def levels_near(
         is_level = heights[number + _FEWEST - 1] - height <= _APART_M
         if height < lowest or not is_level:
             continue
-        monitor.check()
         lowest = height + _APART_M
         middle = np.array([frame.place[0], frame.place[1], height + _APART_M / 2])
         tried = Frame(middle, frame.heading_rad)
-        fit = fit_at(drive, template, tried, settings)
+        fit = fit_at(drive, template, tried, settings, monitor)
         if fit.score > most:
             best, most = tried, fit.score
     if best is None:

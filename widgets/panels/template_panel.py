@@ -54,6 +54,7 @@ class TemplatePanel(QWidget):
         Gives the `TemplateStore` of the open project, or None.
     at_hand : AtHand
         Does the preview's work beside the window.
+    language : Language
 
     Signals
     -------
@@ -76,7 +77,8 @@ class TemplatePanel(QWidget):
         shared: SharedState,
         shelf: Shelf,
         at_hand: AtHand,
-        language: Language,
+        *,
+        language: Language = "en",
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)

@@ -78,7 +78,7 @@ def open_map(street: Drive) -> OpenMap:
 
 @pytest.fixture
 def panel(qtbot: QtBot, open_map: OpenMap, store: TemplateStore) -> TemplatePanel:
-    panel = TemplatePanel(open_map, open_map.shared, lambda: store, do_now, "en")
+    panel = TemplatePanel(open_map, open_map.shared, lambda: store, do_now)
     qtbot.addWidget(panel)
     panel.resize(280, 620)
     panel.show()
@@ -222,7 +222,7 @@ def test_the_newest_wish_for_a_look_counts(
     waiting: list[tuple[Callable[[], object], Callable[[object | None], None]]] = []
     store.put(CURB)
     panel = TemplatePanel(
-        open_map, open_map.shared, lambda: store, lambda w, t: waiting.append((w, t)), "en"
+        open_map, open_map.shared, lambda: store, lambda w, t: waiting.append((w, t))
     )
     qtbot.addWidget(panel)
     panel.use_cut(CUT)
@@ -239,7 +239,7 @@ def test_the_newest_wish_for_a_look_counts(
 
 def test_without_a_project_nothing_can_be_drawn(qtbot: QtBot) -> None:
     empty = OpenMap()
-    panel = TemplatePanel(empty, empty.shared, lambda: None, do_now, "ja")
+    panel = TemplatePanel(empty, empty.shared, lambda: None, do_now, language="ja")
     qtbot.addWidget(panel)
     panel.show()
     assert not button(panel, "Draw new").isEnabled()
