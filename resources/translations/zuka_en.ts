@@ -12,6 +12,16 @@
         </message>
     </context>
     <context>
+        <name>OffsetForm</name>
+        <message numerus="yes">
+            <source>%n pair(s), off by {each} px</source>
+            <translation>
+                <numerusform>%n pair, off by {each} px</numerusform>
+                <numerusform>%n pairs, off by {each} px</numerusform>
+            </translation>
+        </message>
+    </context>
+    <context>
         <name>ProjectTree</name>
         <message numerus="yes">
             <source>{name}: %n image(s)</source>
@@ -20,11 +30,45 @@
                 <numerusform>{name}: %n images</numerusform>
             </translation>
         </message>
+    </context>
+    <context>
+        <name>ReviewPanel</name>
         <message numerus="yes">
-            <source>{name}: %n feature(s)</source>
+            <source>%n left</source>
             <translation>
-                <numerusform>{name}: %n feature</numerusform>
-                <numerusform>{name}: %n features</numerusform>
+                <numerusform>%n left</numerusform>
+                <numerusform>%n left</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <source>%n candidate(s) wait for a decision.</source>
+            <translation>
+                <numerusform>%n candidate wait for a decision.</numerusform>
+                <numerusform>%n candidates wait for a decision.</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <source>Accept %n</source>
+            <translation>
+                <numerusform>Accept %n</numerusform>
+                <numerusform>Accept %n</numerusform>
+            </translation>
+        </message>
+    </context>
+    <context>
+        <name>RunChooser</name>
+        <message numerus="yes">
+            <source>%n run(s)</source>
+            <translation>
+                <numerusform>%n run</numerusform>
+                <numerusform>%n runs</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <source>%n left</source>
+            <translation>
+                <numerusform>%n left</numerusform>
+                <numerusform>%n left</numerusform>
             </translation>
         </message>
     </context>

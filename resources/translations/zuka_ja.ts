@@ -53,6 +53,87 @@
         </message>
     </context>
     <context>
+        <name>CameraBar</name>
+        <message>
+            <source>The next better image of the place ([)</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>The next image of the place (])</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>The images that see the place, best first</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Stereo</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Measure a place by two images where points are missing</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Calibration</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Adjust how the camera sits on the vehicle</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>{number}/{count}  {name} · {distance} m</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source> (hidden)</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>No image</source>
+            <translation type="unfinished" />
+        </message>
+    </context>
+    <context>
+        <name>CameraView</name>
+        <message>
+            <source>There are no camera images. Import a drive together with the list of its images.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Click a place in another view to see it in the camera images.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>No image sees this place. The nearest one, {name}, was taken {distance} m away.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Fade what is hidden in the image</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Reading {name} …</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Something hides the place in this image.</source>
+            <translation type="unfinished" />
+        </message>
+    </context>
+    <context>
+        <name>CandidateCard</name>
+        <message>
+            <source>Decided: {status}</source>
+            <translation>判定: {status}</translation>
+        </message>
+        <message>
+            <source>Found by</source>
+            <translation>検出ツール</translation>
+        </message>
+    </context>
+    <context>
         <name>CatalogueWish</name>
         <message>
             <source>Use an office's catalogue</source>
@@ -76,6 +157,13 @@
         <message>
             <source>Type part of a name</source>
             <translation>名前の一部を入力</translation>
+        </message>
+    </context>
+    <context>
+        <name>ConfidenceBar</name>
+        <message>
+            <source>Confidence: how sure the tool is of it, 0 to 1</source>
+            <translation>信頼度: ツールの確信の度合い（0～1）</translation>
         </message>
     </context>
     <context>
@@ -110,6 +198,129 @@
         <message>
             <source>Open a project…</source>
             <translation>プロジェクトを開く…</translation>
+        </message>
+    </context>
+    <context>
+        <name>EvaluationPanel</name>
+        <message>
+            <source>Tool and run</source>
+            <translation>ツールと実行</translation>
+        </message>
+        <message>
+            <source>Precision</source>
+            <translation>適合率</translation>
+        </message>
+        <message>
+            <source>Accepted of all decided, with the 95 % interval</source>
+            <translation>判定済みのうち採用の割合（95%信頼区間）</translation>
+        </message>
+        <message>
+            <source>Recall</source>
+            <translation>再現率</translation>
+        </message>
+        <message>
+            <source>Accepted of accepted and drawn by hand, with the 95 % interval</source>
+            <translation>採用と手作図の合計に占める採用の割合（95%信頼区間）</translation>
+        </message>
+        <message>
+            <source>Accepted</source>
+            <translation>採用</translation>
+        </message>
+        <message>
+            <source>As they were found, or corrected</source>
+            <translation>検出のまま、または修正して採用したもの</translation>
+        </message>
+        <message>
+            <source>Rejected</source>
+            <translation>却下</translation>
+        </message>
+        <message>
+            <source>Undecided</source>
+            <translation>未判定</translation>
+        </message>
+        <message>
+            <source>Candidates that nobody has judged</source>
+            <translation>まだ判定されていない候補</translation>
+        </message>
+        <message>
+            <source>Drawn by hand</source>
+            <translation>手作図</translation>
+        </message>
+        <message>
+            <source>Features of the same kinds on the same drives that the tool missed</source>
+            <translation>同じ走行データ上の同じ種別で、ツールが見つけず手で描いた地物</translation>
+        </message>
+        <message>
+            <source>Recall by length</source>
+            <translation>再現率（延長）</translation>
+        </message>
+        <message>
+            <source>The same in metres, for lines</source>
+            <translation>線について延長で求めた再現率</translation>
+        </message>
+        <message>
+            <source>Corrected</source>
+            <translation>修正</translation>
+        </message>
+        <message>
+            <source>Accepted after they were changed</source>
+            <translation>修正してから採用したもの</translation>
+        </message>
+        <message>
+            <source>Mean shift</source>
+            <translation>平均移動量</translation>
+        </message>
+        <message>
+            <source>How far the vertices of corrected features lie from where they were found</source>
+            <translation>修正した地物の頂点と検出位置との平均距離</translation>
+        </message>
+        <message>
+            <source>Calibration error</source>
+            <translation>較正誤差</translation>
+        </message>
+        <message>
+            <source>How far the share accepted is from the confidence, on average</source>
+            <translation>採用の割合と信頼度との差の平均</translation>
+        </message>
+        <message>
+            <source>Table (CSV)</source>
+            <translation>表（CSV）</translation>
+        </message>
+        <message>
+            <source>Curve (PNG)</source>
+            <translation>グラフ（PNG）</translation>
+        </message>
+        <message>
+            <source>Curve (PDF)</source>
+            <translation>グラフ（PDF）</translation>
+        </message>
+        <message>
+            <source>Export</source>
+            <translation>書き出し</translation>
+        </message>
+        <message>
+            <source>Once candidates of a run are judged, this says how good the tool was.</source>
+            <translation>候補を判定すると、ここにツールの評価が表示されます。</translation>
+        </message>
+        <message>
+            <source>Confidence of the tool</source>
+            <translation>ツールの信頼度</translation>
+        </message>
+        <message>
+            <source>Share accepted</source>
+            <translation>採用の割合</translation>
+        </message>
+        <message>
+            <source>{count} decided</source>
+            <translation>判定済み{count}件</translation>
+        </message>
+        <message>
+            <source>calibration error {error}</source>
+            <translation>較正誤差{error}</translation>
+        </message>
+        <message>
+            <source>Nothing is decided yet.</source>
+            <translation>まだ判定がありません。</translation>
         </message>
     </context>
     <context>
@@ -294,6 +505,10 @@
             <translation>コントラストの明るい側（百分位数）</translation>
         </message>
         <message>
+            <source>Show another image beside this one</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <source>Whole</source>
             <translation>全体</translation>
         </message>
@@ -311,6 +526,51 @@
         </message>
     </context>
     <context>
+        <name>ImageChoice</name>
+        <message>
+            <source>Direction of travel in the image; exchange its sides</source>
+            <translation type="unfinished" />
+        </message>
+    </context>
+    <context>
+        <name>ImageClicks</name>
+        <message>
+            <source>Click a thing here, then the same one in another view.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Stereo: click the thing in this image.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Stereo: go to another image that shows the thing.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Stereo: click the same thing on the line. Escape begins again.</source>
+            <translation type="unfinished" />
+        </message>
+    </context>
+    <context>
+        <name>ImageLay</name>
+        <message>
+            <source>Street from left to right</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Street upwards</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Exchange left and right sides</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Against the direction of travel</source>
+            <translation type="unfinished" />
+        </message>
+    </context>
+    <context>
         <name>ImageView</name>
         <message>
             <source>Show everything</source>
@@ -324,12 +584,24 @@
             <source>Centre on the selection</source>
             <translation>選択位置を中央に表示</translation>
         </message>
+        <message>
+            <source>Direction of the street</source>
+            <translation type="unfinished" />
+        </message>
     </context>
     <context>
         <name>ImportForm</name>
         <message>
             <source>Import a drive</source>
             <translation>走行データのインポート</translation>
+        </message>
+        <message>
+            <source>Take the delivered classes as labels</source>
+            <translation>納品時のクラスをラベルとして取り込む</translation>
+        </message>
+        <message>
+            <source>Labels can be corrected by hand and are exported to LAS again.</source>
+            <translation>ラベルは手動で修正でき、LASに書き出せます。</translation>
         </message>
         <message>
             <source>Import</source>
@@ -384,6 +656,53 @@
         </message>
     </context>
     <context>
+        <name>LabelPanel</name>
+        <message>
+            <source>Show the labels</source>
+            <translation>ラベルを表示</translation>
+        </message>
+        <message>
+            <source>Brush radius</source>
+            <translation>ブラシ半径</translation>
+        </message>
+        <message>
+            <source>Paint over</source>
+            <translation>塗る対象</translation>
+        </message>
+        <message>
+            <source>In space; the keys [ and ] change it too.</source>
+            <translation>空間上の半径です。[ と ] キーでも変更できます。</translation>
+        </message>
+        <message>
+            <source>Other points stay as they are, whatever is dragged over.</source>
+            <translation>対象以外の点は、なぞっても変わりません。</translation>
+        </message>
+        <message>
+            <source>All points</source>
+            <translation>すべての点</translation>
+        </message>
+        <message>
+            <source>Points without a label</source>
+            <translation>ラベルのない点</translation>
+        </message>
+        <message>
+            <source>Only {name}</source>
+            <translation>{name}のみ</translation>
+        </message>
+        <message>
+            <source>No label (erase)</source>
+            <translation>ラベルなし（消去）</translation>
+        </message>
+        <message>
+            <source>Points with this label</source>
+            <translation>このラベルの点数</translation>
+        </message>
+        <message>
+            <source>Key that takes this class, with a paint tool in hand</source>
+            <translation>ラベルを塗るツールの使用中にこのクラスを選ぶキー</translation>
+        </message>
+    </context>
+    <context>
         <name>LayersPanel</name>
         <message>
             <source>Search for a kind</source>
@@ -422,6 +741,25 @@
         </message>
     </context>
     <context>
+        <name>MapView</name>
+        <message>
+            <source>A recording is shown here from above.</source>
+            <translation>ここに計測データが真上から表示されます。</translation>
+        </message>
+        <message>
+            <source>Hide what stands high above the road</source>
+            <translation>路面より高い点を非表示</translation>
+        </message>
+        <message>
+            <source>Show everything up to the sky</source>
+            <translation>すべての高さの点を表示</translation>
+        </message>
+        <message>
+            <source>Higher than {metres} m</source>
+            <translation>路面から {metres} m を超える点</translation>
+        </message>
+    </context>
+    <context>
         <name>MessageBar</name>
         <message>
             <source>Close this message</source>
@@ -451,6 +789,79 @@
         </message>
     </context>
     <context>
+        <name>OffsetForm</name>
+        <message>
+            <source>From points</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Click a thing in the image, then the same thing in another view; repeat.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Drop last pair</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Estimate</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>As delivered</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Save</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Roll</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Pitch</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Yaw</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Right</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Up</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Forward</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Time</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Camera “{name}”: added to what was delivered</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Now click the same thing in another view.</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Click a thing in the image.</source>
+            <translation type="unfinished" />
+        </message>
+        <message numerus="yes">
+            <source>%n pair(s), off by {each} px</source>
+            <translation type="unfinished">
+                <numerusform />
+            </translation>
+        </message>
+    </context>
+    <context>
         <name>ParameterForm</name>
         <message>
             <source>This tool needs no settings.</source>
@@ -477,6 +888,17 @@
         </message>
     </context>
     <context>
+        <name>PlaneView</name>
+        <message>
+            <source>Show everything</source>
+            <translation>全体を表示</translation>
+        </message>
+        <message>
+            <source>Centre on the selection</source>
+            <translation>選択した地物を中央に表示</translation>
+        </message>
+    </context>
+    <context>
         <name>ProcessingPanel</name>
         <message>
             <source>Search for a tool</source>
@@ -485,6 +907,25 @@
         <message>
             <source>Run</source>
             <translation>実行</translation>
+        </message>
+    </context>
+    <context>
+        <name>ProjectRuns</name>
+        <message>
+            <source>Review this run</source>
+            <translation>この実行の候補を確認</translation>
+        </message>
+        <message>
+            <source>Show its features</source>
+            <translation>この実行の地物を表示</translation>
+        </message>
+        <message>
+            <source>Hide its features</source>
+            <translation>この実行の地物を非表示</translation>
+        </message>
+        <message>
+            <source>Delete its undecided candidates</source>
+            <translation>未判定の候補を削除</translation>
         </message>
     </context>
     <context>
@@ -510,12 +951,6 @@
         <message>
             <source>Runs</source>
             <translation>処理履歴</translation>
-        </message>
-        <message numerus="yes">
-            <source>{name}: %n feature(s)</source>
-            <translation>
-                <numerusform>{name}: 地物 %n 個</numerusform>
-            </translation>
         </message>
         <message>
             <source>{count} points</source>
@@ -561,6 +996,126 @@
         </message>
     </context>
     <context>
+        <name>ReviewPanel</name>
+        <message numerus="yes">
+            <source>%n left</source>
+            <translation>
+                <numerusform>残り%n件</numerusform>
+            </translation>
+        </message>
+        <message>
+            <source>Accept</source>
+            <translation>採用</translation>
+        </message>
+        <message>
+            <source>Reject</source>
+            <translation>却下</translation>
+        </message>
+        <message>
+            <source>Edit</source>
+            <translation>修正</translation>
+        </message>
+        <message>
+            <source>Next</source>
+            <translation>次へ</translation>
+        </message>
+        <message>
+            <source>Back</source>
+            <translation>前へ</translation>
+        </message>
+        <message>
+            <source>The confidence from which all candidates are accepted</source>
+            <translation>この信頼度以上の候補をまとめて採用します</translation>
+        </message>
+        <message>
+            <source>Show rejected features</source>
+            <translation>却下した地物を表示</translation>
+        </message>
+        <message>
+            <source>End the review</source>
+            <translation>確認を終了</translation>
+        </message>
+        <message>
+            <source>All candidates are decided.</source>
+            <translation>すべての候補を判定しました。</translation>
+        </message>
+        <message>
+            <source>See how good the runs were</source>
+            <translation>実行結果の評価を見る</translation>
+        </message>
+        <message>
+            <source>Candidates that a tool has found are judged here, one key for each.</source>
+            <translation>処理ツールが見つけた候補を、キー1つずつで判定します。</translation>
+        </message>
+        <message>
+            <source>Find something with a tool</source>
+            <translation>処理ツールで検出する</translation>
+        </message>
+        <message>
+            <source>Start the review</source>
+            <translation>確認を開始</translation>
+        </message>
+        <message>
+            <source>Ctrl+Z takes decisions back.</source>
+            <translation>Ctrl+Zで判定を取り消せます。</translation>
+        </message>
+        <message>
+            <source>{accepted} accepted · {rejected} rejected</source>
+            <translation>採用{accepted} · 却下{rejected}</translation>
+        </message>
+        <message>
+            <source>{count} a minute</source>
+            <translation>毎分{count}件</translation>
+        </message>
+        <message numerus="yes">
+            <source>%n candidate(s) wait for a decision.</source>
+            <translation>
+                <numerusform>判定待ちの候補が%n件あります。</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <source>Accept %n</source>
+            <translation>
+                <numerusform>%n件を採用</numerusform>
+            </translation>
+        </message>
+    </context>
+    <context>
+        <name>RunChooser</name>
+        <message>
+            <source>The runs whose candidates are judged</source>
+            <translation>候補を確認する実行</translation>
+        </message>
+        <message>
+            <source>Worst first</source>
+            <translation>信頼度の低い順</translation>
+        </message>
+        <message>
+            <source>Along the street</source>
+            <translation>道路沿いの順</translation>
+        </message>
+        <message>
+            <source>Whether the least certain candidates come first, or the nearest on the drive</source>
+            <translation>信頼度の低い候補から確認するか、走行順に確認するか</translation>
+        </message>
+        <message>
+            <source>All runs</source>
+            <translation>すべての実行</translation>
+        </message>
+        <message numerus="yes">
+            <source>%n run(s)</source>
+            <translation>
+                <numerusform>実行%n件</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <source>%n left</source>
+            <translation>
+                <numerusform>残り%n件</numerusform>
+            </translation>
+        </message>
+    </context>
+    <context>
         <name>ScenePainter</name>
         <message>
             <source>1 px = {metres:.3f} m</source>
@@ -598,8 +1153,138 @@
             <translation>選択位置を中央に表示</translation>
         </message>
         <message>
+            <source>Without perspective</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
             <source>Shade by depth (eye-dome lighting)</source>
             <translation>奥行きの陰影（Eye-Dome Lighting）</translation>
+        </message>
+        <message>
+            <source>Show only</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>All points</source>
+            <translation>すべての点</translation>
+        </message>
+        <message>
+            <source>Around what is chosen</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Within the section</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Around the drive</source>
+            <translation type="unfinished" />
+        </message>
+    </context>
+    <context>
+        <name>SectionBar</name>
+        <message>
+            <source>Across</source>
+            <translation>横断</translation>
+        </message>
+        <message>
+            <source>Along</source>
+            <translation>縦断</translation>
+        </message>
+        <message>
+            <source>Cut across the line or along it</source>
+            <translation>線を横切る断面か、線に沿った断面かを選びます</translation>
+        </message>
+        <message>
+            <source>Trajectory</source>
+            <translation>走行軌跡</translation>
+        </message>
+        <message>
+            <source>Drawn line</source>
+            <translation>作図した線</translation>
+        </message>
+        <message>
+            <source>The line that the section stands on</source>
+            <translation>断面の基準にする線</translation>
+        </message>
+        <message>
+            <source>Thickness of the slab</source>
+            <translation>断面の厚さ（幅）</translation>
+        </message>
+        <message>
+            <source>Distance of a step along the line (Q and W; Shift: ten)</source>
+            <translation>線に沿って進む間隔（Q・Wキー、Shiftで10倍）</translation>
+        </message>
+        <message>
+            <source>How many times heights are drawn larger</source>
+            <translation>高さ方向の拡大倍率</translation>
+        </message>
+        <message>
+            <source>Width</source>
+            <translation>幅</translation>
+        </message>
+        <message>
+            <source>Step</source>
+            <translation>間隔</translation>
+        </message>
+        <message>
+            <source>Heights</source>
+            <translation>高さ</translation>
+        </message>
+        <message>
+            <source>Live</source>
+            <translation>追従</translation>
+        </message>
+        <message>
+            <source>Follow the mouse over lines in any view</source>
+            <translation>どのビューでも、マウスの下にある線の位置へ断面を追従させます</translation>
+        </message>
+        <message>
+            <source>Pin</source>
+            <translation>固定</translation>
+        </message>
+        <message>
+            <source>Hold the place as two windows, across and along</source>
+            <translation>この位置を横断と縦断の2画面に固定します</translation>
+        </message>
+        <message>
+            <source>Template…</source>
+            <translation>テンプレート…</translation>
+        </message>
+        <message>
+            <source>Draw a profile once and fit it along the street</source>
+            <translation>断面形状を一度描いて、道路に沿って当てはめます</translation>
+        </message>
+        <message>
+            <source>Profile as DXF…</source>
+            <translation>断面図をDXFに書き出す…</translation>
+        </message>
+        <message>
+            <source>Write the ground line with heights, and what crosses it</source>
+            <translation>地盤線と高さ、横切る地物を書き出します</translation>
+        </message>
+    </context>
+    <context>
+        <name>SectionPane</name>
+        <message>
+            <source>The section appears here once a recording is open.</source>
+            <translation>走行データを開くと、ここに断面が表示されます。</translation>
+        </message>
+        <message>
+            <source>Points are being looked for.</source>
+            <translation>点を検索しています。</translation>
+        </message>
+        <message>
+            <source>Click a place in another view to cut there.</source>
+            <translation>ほかのビューで位置をクリックすると、そこの断面が表示されます。</translation>
+        </message>
+        <message>
+            <source>This recording has no trajectory: select a drawn line to cut across it.</source>
+            <translation>このデータには走行軌跡がありません。作図した線を選択すると、その線の断面が表示されます。</translation>
+        </message>
+        <message>
+            <source>Colour by distance from the plane</source>
+            <translation>断面からの距離で色分け</translation>
         </message>
     </context>
     <context>
@@ -670,6 +1355,25 @@
         </message>
     </context>
     <context>
+        <name>SlabForm</name>
+        <message>
+            <source>To the left</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>To the right</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Above the road up to</source>
+            <translation type="unfinished" />
+        </message>
+        <message>
+            <source>Above the road from</source>
+            <translation type="unfinished" />
+        </message>
+    </context>
+    <context>
         <name>StartPage</name>
         <message>
             <source>Recent projects</source>
@@ -721,6 +1425,147 @@
         <message>
             <source>reference system unknown</source>
             <translation>座標参照系は不明</translation>
+        </message>
+    </context>
+    <context>
+        <name>TemplateForm</name>
+        <message>
+            <source>The line that is made at the marked vertex</source>
+            <translation>印の付いた頂点に作成する線</translation>
+        </message>
+        <message>
+            <source>Points this near to the shape lie on it</source>
+            <translation>形状からこの距離以内の点を一致とみなします</translation>
+        </message>
+        <message>
+            <source>Line here</source>
+            <translation>作成する線</translation>
+        </message>
+        <message>
+            <source>Tolerance</source>
+            <translation>許容差</translation>
+        </message>
+        <message>
+            <source>No line</source>
+            <translation>作成しない</translation>
+        </message>
+    </context>
+    <context>
+        <name>TemplateList</name>
+        <message>
+            <source>Draw new</source>
+            <translation>新しく描く</translation>
+        </message>
+        <message>
+            <source>Draw the wanted profile in the section</source>
+            <translation>あるべき断面形状を断面ビューに描きます</translation>
+        </message>
+        <message>
+            <source>Manage</source>
+            <translation>管理</translation>
+        </message>
+        <message>
+            <source>Rename</source>
+            <translation>名前の変更</translation>
+        </message>
+        <message>
+            <source>Delete</source>
+            <translation>削除</translation>
+        </message>
+        <message>
+            <source>Import…</source>
+            <translation>読み込み…</translation>
+        </message>
+        <message>
+            <source>Export…</source>
+            <translation>書き出し…</translation>
+        </message>
+        <message>
+            <source>Import a template</source>
+            <translation>テンプレートの読み込み</translation>
+        </message>
+        <message>
+            <source>Templates (*.json)</source>
+            <translation>テンプレート (*.json)</translation>
+        </message>
+        <message>
+            <source>Export the template</source>
+            <translation>テンプレートの書き出し</translation>
+        </message>
+    </context>
+    <context>
+        <name>TemplatePanel</name>
+        <message>
+            <source>Add empty zone</source>
+            <translation>空白域を追加</translation>
+        </message>
+        <message>
+            <source>Draw in the section where no point should be</source>
+            <translation>点があってはならない範囲を断面ビューに描きます</translation>
+        </message>
+        <message>
+            <source>Remove zones</source>
+            <translation>空白域を削除</translation>
+        </message>
+        <message>
+            <source>Fit from here</source>
+            <translation>ここから追跡</translation>
+        </message>
+        <message>
+            <source>Follow the template along the street, both ways from the cursor</source>
+            <translation>カーソル位置から道路の両方向にテンプレートを追跡します</translation>
+        </message>
+        <message>
+            <source>Template</source>
+            <translation>テンプレート</translation>
+        </message>
+        <message>
+            <source>Draw a curb or a gutter once in the section; it is then fitted along the road.</source>
+            <translation>縁石や側溝の形状を断面に一度描くと、道路に沿って追跡できます。</translation>
+        </message>
+        <message>
+            <source>Put the cursor on the curb to see how the template lies.</source>
+            <translation>カーソルを縁石の上に置くと、テンプレートの合い具合が表示されます。</translation>
+        </message>
+        <message>
+            <source>Score here: {score}</source>
+            <translation>この位置のスコア: {score}</translation>
+        </message>
+    </context>
+    <context>
+        <name>TemplatePicture</name>
+        <message>
+            <source>Click a vertex to say which line is made there</source>
+            <translation>頂点をクリックすると、そこに作成する線を選べます</translation>
+        </message>
+    </context>
+    <context>
+        <name>ViewDocks</name>
+        <message>
+            <source>Zuka – views</source>
+            <translation>Zuka – ビュー</translation>
+        </message>
+    </context>
+    <context>
+        <name>ViewWiring</name>
+        <message>
+            <source>Write the profile</source>
+            <translation>断面図の書き出し</translation>
+        </message>
+        <message>
+            <source>Drawings (*.dxf)</source>
+            <translation>図面 (*.dxf)</translation>
+        </message>
+        <message>
+            <source>Write the evaluation</source>
+            <translation>評価の書き出し</translation>
+        </message>
+    </context>
+    <context>
+        <name>_Header</name>
+        <message>
+            <source>Close this image</source>
+            <translation type="unfinished" />
         </message>
     </context>
     <context>
