@@ -63,7 +63,7 @@ def with_images(drive: Drive, images: tuple[CameraImage, ...]) -> Drive:
 
 @pytest.fixture(scope="module")
 def street() -> SimulatedDrive:
-    return simulated_drive(3, pulses_per_turn=600.0, length_m=8.0, lost_share=0.0)
+    return simulated_drive(3, pulses_per_turn=600.0, lost_share=0.0)
 
 
 @pytest.fixture(scope="module")
