@@ -26,8 +26,10 @@ from widgets.section_view.lay import SectionLay
 from widgets.section_view.lines import SectionLines
 from widgets.section_view.marks import NamedMark, SectionMarks, mark_under, marks_of, paint_marks
 from widgets.section_view.point_search import measured_point, points_within, shown_point
+from widgets.section_view.settings import SectionSettings
 from widgets.section_view.standing import Standing
 from widgets.section_view.titles import frame_words
+from widgets.section_view.view_menu import add_settings
 from widgets.shared.cursor import Place
 from widgets.shared.map_source import MapSource
 from widgets.shared.screen_marks import paint_note
@@ -57,11 +59,11 @@ class SectionPane(PlaneView):
 
     Signals
     -------
-    distance_colours_toggled(is_on: bool)
+    settings_chosen(settings: SectionSettings)
         Wished in the menu.
     """
 
-    distance_colours_toggled = Signal(bool)
+    settings_chosen = Signal(object)
 
     def __init__(
         self,
@@ -82,7 +84,7 @@ class SectionPane(PlaneView):
         self._marks: SectionMarks | None = None
         self._named: NamedMark | None = None
         self._held: tuple[str, Vertex] | None = None
-        self._is_by_distance = False
+        self._settings = SectionSettings()
         self._is_closed = False
         self._points = GroundPainter()
         self.is_pinned = False
@@ -133,19 +135,16 @@ class SectionPane(PlaneView):
             self._ask()
         self.update()
 
-    def exaggerate(self, factor: float) -> None:
-        """Draw heights so many times larger; the ground stays where it is in the window."""
+    def use_settings(self, settings: SectionSettings) -> None:
+        """Colour points and draw heights like this; the ground stays where it is in the window."""
+        before, self._settings = self._settings, settings
         viewport = self.viewport
-        ground = np.array([[0.0, self._ground_y]])
-        before = viewport.to_screen(ground)[0, 1]
-        drawn = replace(viewport, exaggeration=factor)
-        after = drawn.to_screen(ground)[0, 1]
-        self.set_viewport(drawn.panned(0.0, float(before - after)))
-
-    def colour_by_distance(self, *, is_on: bool) -> None:
-        """Colour points by their distance from the plane, or as the other views do."""
-        if is_on is not self._is_by_distance:
-            self._is_by_distance = is_on
+        if viewport.exaggeration != settings.exaggeration:
+            ground = np.array([[0.0, self._ground_y]])
+            drawn = replace(viewport, exaggeration=settings.exaggeration)
+            moved = viewport.to_screen(ground) - drawn.to_screen(ground)
+            self.set_viewport(drawn.panned(0.0, float(moved[0, 1])))
+        if before.is_by_distance is not settings.is_by_distance:
             self._ask()
 
     @override
@@ -257,10 +256,7 @@ class SectionPane(PlaneView):
     @override
     def view_menu(self) -> QMenu:
         menu = super().view_menu()
-        colours = menu.addAction(self.tr("Colour by distance from the plane"))
-        colours.setCheckable(True)
-        colours.setChecked(self._is_by_distance)
-        colours.toggled.connect(self.distance_colours_toggled)
+        add_settings(menu, self._settings, self.settings_chosen.emit)
         return menu
 
     # Events.
@@ -334,7 +330,9 @@ class SectionPane(PlaneView):
         if self._standing is None or self._is_closed or not self.isVisible():
             return  # what is hidden is looked for when it is shown
         standing, look = self._standing, self._shared.view_settings.look
-        wish = SectionWish(standing, standing.cut, self._drives(), look, self._is_by_distance)
+        wish = SectionWish(
+            standing, standing.cut, self._drives(), look, self._settings.is_by_distance
+        )
         self._feed.wish(wish)
 
     def _drives(self) -> tuple[Drive, ...]:

@@ -65,9 +65,7 @@ class SectionPanes(QSplitter):
     def use_settings(self, settings: SectionSettings) -> None:
         """Colour points and draw heights like this."""
         for pane in self.all:
-            pane.colour_by_distance(is_on=settings.is_by_distance)
-            if pane.viewport.exaggeration != settings.exaggeration:
-                pane.exaggerate(settings.exaggeration)
+            pane.use_settings(settings)
 
     def set_mouse_tool(self, tool: MouseTool | None) -> None:
         """Tell this tool from now on what the mouse does."""

@@ -112,7 +112,7 @@ class SectionView(QWidget):
         shared.selection.features_changed.connect(self._on_selection_features_changed)
         shared.map_changes.features_changed.connect(self._on_map_features_changed)
         shared.map_changes.drives_changed.connect(self._restart)
-        bar.settings_chosen.connect(self._on_bar_settings_chosen)
+        bar.settings_chosen.connect(self._on_settings_chosen)
         bar.line_wanted.connect(self._on_bar_line_wanted)
         bar.pin_toggled.connect(self.set_pinned)
         bar.profile_export_requested.connect(self.profile_export_requested)
@@ -120,7 +120,7 @@ class SectionView(QWidget):
         self._panes.all[0].sharpened.connect(self.sharpened)
         for pane in self._panes.all:
             pane.menu_requested.connect(self.menu_requested)
-            pane.distance_colours_toggled.connect(self._on_pane_distance_colours_toggled)
+            pane.settings_chosen.connect(self._on_settings_chosen)
 
     # What others ask.
 
@@ -320,7 +320,7 @@ class SectionView(QWidget):
             self._release()
             self._stand(self._through(self._shared.cursor.place) or self._lines.start())
 
-    def _on_bar_settings_chosen(self, settings: SectionSettings) -> None:
+    def _on_settings_chosen(self, settings: SectionSettings) -> None:
         self.use_settings(settings)
         self.settings_changed.emit(settings)
 
@@ -331,9 +331,6 @@ class SectionView(QWidget):
             self._bar.show_line(is_drawn=False)
         else:
             self.follow(line)
-
-    def _on_pane_distance_colours_toggled(self, is_on: bool) -> None:  # noqa: FBT001 - a slot
-        self._on_bar_settings_chosen(replace(self._settings, is_by_distance=is_on))
 
     # What is done in more than one place.
 

@@ -15,7 +15,9 @@ from processing.project.catalogue import Geometry
 from processing.project.change import Change
 from processing.project.feature import Feature, Vertex, new_feature_id
 from processing.text import Text
+from tests.builders import START
 from tests.mouse_events import NO_KEYS, move_mouse
+from tests.street_scene import CURB_AT_M
 from tests.widgets.builders import OpenMap, place_on
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.section_view.pane import SectionPane
@@ -131,3 +133,14 @@ def on_road(hand: Hand, station_m: float) -> Place:
     standing = hand.view.standing
     assert standing is not None
     return Place(standing.line.stations.place_at(station_m))
+
+
+def station(hand: Hand) -> float:
+    assert hand.view.standing is not None
+    return hand.view.standing.station_m
+
+
+def curb_line(hand: Hand) -> Feature:
+    """The left curb as it was made: four metres to the left of the road's middle."""
+    ends = [START + np.array([-CURB_AT_M, north, 0.07]) for north in (1.0, 4.0, 9.0)]
+    return hand.line(*(Vertex(tuple(end.tolist())) for end in ends))

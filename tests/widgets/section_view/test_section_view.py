@@ -4,45 +4,27 @@ from __future__ import annotations
 
 import threading
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QPolygonF
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QMenu
 from pytestqt.qtbot import QtBot
 
-from processing.monitor import SilentMonitor
-from processing.points.drive import Drive
-from processing.project.change import Change
-from processing.project.feature import Feature, Vertex
-from processing.project.importing import ImportRequest, import_drives
+from processing.project.feature import Vertex
 from processing.section.cut import Cut
-from processing.text import Text
-from tests.builders import START, simulated_drive, write_laz
+from tests.builders import START
 from tests.mouse_events import NO_KEYS, move_mouse
 from tests.street_scene import CURB_AT_M, CURB_HEIGHT_M
 from tests.widgets.builders import OpenMap
-from tests.widgets.section_view.conftest import LEFT, Hand, on_road, shown
+from tests.widgets.section_view.conftest import LEFT, Hand, curb_line, on_road, shown, station
 from widgets.mouse_tools.edit_vertices import EditVertices
 from widgets.mouse_tools.snapping import SnappingHand
 from widgets.section_view.marks import mark_under
-from widgets.section_view.view import NO_LINE
 from widgets.shared.cursor import Place
 
 SHIFT = Qt.KeyboardModifier.ShiftModifier
-
-
-def station(hand: Hand) -> float:
-    assert hand.view.standing is not None
-    return hand.view.standing.station_m
-
-
-def curb_line(hand: Hand) -> Feature:
-    """The left curb as it was made: four metres to the left of the road's middle."""
-    ends = [START + np.array([-CURB_AT_M, north, 0.07]) for north in (1.0, 4.0, 9.0)]
-    return hand.line(*(Vertex(tuple(end.tolist())) for end in ends))
 
 
 def cut_of(hand: Hand) -> Cut:
@@ -274,79 +256,7 @@ def test_s_holds_the_place_as_two_windows_and_releases_it(hand: Hand) -> None:
     assert not along.isVisible()
 
 
-# Drawn lines.
-
-
-def test_it_stands_on_the_selected_line_until_the_trajectory_is_wanted(hand: Hand) -> None:
-    line = curb_line(hand)
-    hand.map.shared.selection.choose_features(frozenset({line.id}))
-    hand.do(lambda: hand.view.follow(line.id))
-    assert hand.view.standing is not None
-    assert hand.view.standing.line.feature == line.id
-    hand.do(lambda: hand.key(Qt.Key.Key_W))
-    place = hand.map.shared.cursor.place
-    assert place is not None
-    assert place.xyz[0] == pytest.approx(START[0] - CURB_AT_M, abs=0.1)
-    hand.do(lambda: hand.view.follow(""))
-    assert hand.view.standing.line.drive
-
-
-def test_when_the_line_is_deleted_it_goes_back_to_the_trajectory(hand: Hand) -> None:
-    line = curb_line(hand)
-    hand.do(lambda: hand.view.follow(line.id))
-    hand.do(lambda: hand.map.apply(Text.same("delete"), Change(removed=(line,))))
-    assert hand.view.followed == ""
-    assert hand.view.standing is not None
-    assert hand.view.standing.line.drive
-
-
-def test_a_line_that_is_none_is_refused_with_a_sentence(hand: Hand) -> None:
-    before = hand.view.standing
-    with hand.qtbot.waitSignal(hand.view.told) as told:
-        hand.view.follow("nothing")
-    assert told.args == [NO_LINE]
-    assert hand.view.followed == ""
-    assert before is not None
-    assert hand.view.standing is not None
-
-
-def test_what_crosses_is_in_the_profile(hand: Hand) -> None:
-    curb_line(hand)
-    wish = hand.view.profile_wish()
-    assert wish is not None
-    profile = wish()
-    assert profile.station_m == pytest.approx(station(hand))
-    (crossing,) = profile.crossings
-    assert crossing.name.ja == "縁石"
-    assert crossing.offset_m == pytest.approx(-CURB_AT_M + 0.5, abs=0.01)
-    assert profile.ground
-
-
-# What there is nothing to show of.
-
-
-def test_without_a_recording_it_says_what_would_be_here(qtbot: QtBot) -> None:
-    hand = shown(qtbot, OpenMap())
-    assert hand.pane.words() == "The section appears here once a recording is open."
-    assert hand.view.cut is None
-    assert hand.view.profile_wish() is None
-    for key in (Qt.Key.Key_W, Qt.Key.Key_S):
-        hand.key(key)
-    hand.view.close()
-
-
-def test_without_a_trajectory_a_drawn_line_is_cut_across(qtbot: QtBot, tmp_path: Path) -> None:
-    points = write_laz(simulated_drive(1), tmp_path / "street.laz")
-    (tmp_path / "drives").mkdir()
-    (made,) = import_drives(ImportRequest((points,), ()), tmp_path / "drives", SilentMonitor())
-    hand = shown(qtbot, OpenMap((Drive(made),)))
-    assert "no trajectory: select a drawn line" in hand.pane.words()
-    line = curb_line(hand)
-    hand.do(lambda: hand.map.shared.selection.choose_features(frozenset({line.id})))
-    assert hand.view.followed == line.id
-    assert hand.pane.picture is not None
-    assert hand.pane.picture.points.size
-    hand.view.close()
+# What changes.
 
 
 def test_other_drives_are_cut_once_they_are_open(hand: Hand) -> None:
@@ -383,6 +293,24 @@ def test_the_ground_stays_where_it_is_when_heights_grow(hand: Hand) -> None:
     assert after is not None
     assert after.y() == pytest.approx(before.y(), abs=60)
     assert hand.pane.viewport.exaggeration == pytest.approx(10.0)
+
+
+def test_the_menu_offers_heights_and_colours(hand: Hand) -> None:
+    chosen: list[object] = []
+    hand.view.settings_changed.connect(chosen.append)
+    menu = hand.pane.view_menu()
+    (heights,) = (one for one in menu.actions() if one.menu() is not None)
+    submenu = heights.menu()
+    assert isinstance(submenu, QMenu)
+    next(one for one in submenu.actions() if one.text() == "5×").trigger()
+    assert hand.pane.viewport.exaggeration == pytest.approx(5.0)
+    assert chosen == [hand.view.settings]
+    menu = hand.pane.view_menu()
+    (colours,) = (one for one in menu.actions() if one.isCheckable())
+    hand.do(colours.trigger)
+    assert hand.pane.picture is not None
+    in_plane = np.abs(hand.pane.picture.section[:, 2]).argmin()
+    assert hand.pane.picture.colours[in_plane].min() > 200
 
 
 def test_it_is_told_once_where_the_slab_is(hand: Hand) -> None:

@@ -1,0 +1,30 @@
+"""What the right button offers in a section beside what every view does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+from PySide6.QtCore import QCoreApplication
+from PySide6.QtWidgets import QMenu
+
+from widgets.section_view.settings import EXAGGERATIONS, SectionSettings
+
+
+def add_settings(
+    menu: QMenu, settings: SectionSettings, choose: Callable[[SectionSettings], None]
+) -> None:
+    """Offer colours and heights; what was chosen is told as the settings then wanted."""
+    colours = menu.addAction(
+        QCoreApplication.translate("SectionMenu", "Colour by distance from the plane")
+    )
+    colours.setCheckable(True)
+    colours.setChecked(settings.is_by_distance)
+    colours.toggled.connect(lambda is_on: choose(replace(settings, is_by_distance=is_on)))
+    heights = menu.addMenu(QCoreApplication.translate("SectionMenu", "Heights"))
+    for factor in EXAGGERATIONS:
+        entry = heights.addAction(f"{factor:g}×")
+        entry.setCheckable(True)
+        entry.setChecked(factor == settings.exaggeration)
+        wanted = replace(settings, exaggeration=factor)
+        entry.triggered.connect(lambda _, wanted=wanted: choose(wanted))
