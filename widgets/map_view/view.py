@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QCoreApplication, QRectF, Signal
+from PySide6.QtCore import QRectF, Signal
 from PySide6.QtGui import (
     QAction,
     QActionGroup,
@@ -97,7 +97,7 @@ class MapView(PlaneView):
         self._pictures = PlanPictures()
         self._feed = PlanFeed(tiles)
         self._feed.pictured.connect(self._on_feed_pictured)
-        self._empty = OpeningPage(self.words(), self)
+        self._empty = OpeningPage(self.tr("A recording is shown here from above."), self)
         self._empty.open_requested.connect(self.open_requested)
         self._empty.import_requested.connect(self.import_requested)
         self.viewport_changed.connect(self._wish)
@@ -146,10 +146,6 @@ class MapView(PlaneView):
     @override
     def lay(self) -> Lay | None:
         return self._lay if self._drives else None
-
-    @override
-    def words(self) -> str:
-        return QCoreApplication.translate("MapView", "A recording is shown here from above.")
 
     @override
     def extent(self) -> QRectF | None:
@@ -238,7 +234,7 @@ class MapView(PlaneView):
         limits = menu.addMenu(self.tr("Hide what stands high above the road"))
         group = QActionGroup(limits)
         for limit_m in (None, *_LIMITS_M):
-            words = self.tr("Show everything up to the sky")
+            words = self.tr("Hide nothing")
             if limit_m is not None:
                 words = self.tr("Higher than {metres} m").format(metres=f"{limit_m:g}")
             action = limits.addAction(words)

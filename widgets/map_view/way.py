@@ -16,6 +16,8 @@ from widgets.map_view.plan_lay import on_plan
 
 Floats = NDArray[np.float64]
 
+_STEP_M = 0.25
+
 
 @dataclass(frozen=True, eq=False)
 class Way:
@@ -95,7 +97,10 @@ def _way_of(trajectory: Trajectory, drives: list[Drive]) -> Way | None:
     inside = np.flatnonzero(is_recorded)
     if inside.size > 1:
         stations, xyz = (one[inside[0] : inside[-1] + 1] for one in (stations, xyz))
-    return Way(on_plan(xyz), stations)
+    # Painted often, and far closer than anyone can see.
+    is_first = np.diff(np.floor(stations / _STEP_M), prepend=-1.0) > 0
+    is_first[-1] = True
+    return Way(on_plan(xyz[is_first]), stations[is_first])
 
 
 def _recorded(line: Stations, stations: Floats, xyz: Floats, drive: Drive) -> NDArray[np.bool_]:
