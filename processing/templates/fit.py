@@ -291,7 +291,8 @@ def _not_here(template: ProfileTemplate, score: float) -> Unsuitable:
         ).filled(name=template.name, score=score),
         Text("the start", "開始位置"),
         Text(
-            "Start where the shape is seen, or raise the tolerance.",
-            "形状が計測されている位置から始めるか、許容差を大きくしてください。",
+            "Start where the shape is seen, draw more of its bends, or raise the tolerance.",
+            "形状が計測されている位置から始めるか、折れ点を含めて描き直すか、"
+            "許容差を大きくしてください。",
         ),
     )

@@ -30,12 +30,17 @@ def template_text(template: ProfileTemplate) -> str:
     return json.dumps(values_of(template), ensure_ascii=False, indent=1, allow_nan=False)
 
 
+def template_line(template: ProfileTemplate) -> str:
+    """The same on one line, its name first: how a run's parameters hold a template."""
+    return json.dumps(values_of(template), ensure_ascii=False, allow_nan=False)
+
+
 def values_of(template: ProfileTemplate) -> dict[str, JsonValue]:
     """What :func:`template_of` reads."""
     return {
+        "name": template.name,
         "format": FORMAT,
         "version": VERSION,
-        "name": template.name,
         "tolerance_m": template.tolerance_m,
         "shape": [_written(profile) for profile in template.shape],
         "empty": [_written(zone) for zone in template.empty],

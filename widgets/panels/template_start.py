@@ -12,7 +12,7 @@ from processing.project.feature import Position
 from processing.section.cut import Cut
 from processing.templates.profile_template import ProfileTemplate
 from processing.templates.slab import Frame
-from processing.templates.template_text import template_text
+from processing.templates.template_text import template_line
 from processing.tools.template import TemplateParameters
 from widgets.shared.cursor import Place
 from widgets.shared.map_source import MapSource
@@ -54,7 +54,7 @@ class TemplateStart:
             east, north = self.cut.normal
             heading = {"heading_deg": round(math.degrees(math.atan2(east, north)) % 360.0, 4)}
         return TemplateParameters(
-            template=template_text(template),
+            template=template_line(template),
             easting_m=round(easting, 4),
             northing_m=round(northing, 4),
             height_m=round(height, 4),

@@ -9,7 +9,12 @@ import pytest
 
 from processing.errors import BadFile, MissingInput, OutOfRange
 from processing.templates.profile_template import MadeLine, ProfileTemplate
-from processing.templates.template_text import parsed_template, read_template, template_text
+from processing.templates.template_text import (
+    parsed_template,
+    read_template,
+    template_line,
+    template_text,
+)
 from tests.processing.templates.curb_street import CURB
 
 GUTTER = ProfileTemplate(
@@ -26,6 +31,10 @@ def test_a_template_is_read_as_it_was_written(tmp_path: Path) -> None:
     path.write_text("\ufeff" + template_text(GUTTER), encoding="utf-8")
     assert read_template(path) == GUTTER
     assert parsed_template(template_text(CURB), "here") == CURB
+    line = template_line(GUTTER)
+    assert line.startswith('{"name": "側溝 L型"')
+    assert "\n" not in line
+    assert parsed_template(line, "here") == GUTTER
 
 
 def test_mirrored_twice_it_is_the_same() -> None:
