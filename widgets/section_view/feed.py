@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -67,6 +67,8 @@ class SectionPicture:
     colours : (n, 3) uint8
     is_thinned : bool
         Whether there are more points than these.
+    is_final : bool
+        Whether the colours are those wished for.
     """
 
     wish: SectionWish
@@ -75,6 +77,7 @@ class SectionPicture:
     section: Floats
     colours: NDArray[np.uint8]
     is_thinned: bool
+    is_final: bool = True
 
 
 class SectionFeed(QObject):
@@ -133,7 +136,7 @@ class SectionFeed(QObject):
                 parts.append(SectionPoints(drive.id, np.empty(0, np.int64), np.empty((0, 3))))
         is_slow = not wish.is_by_distance and wish.look.attribute not in _AT_ONCE
         if is_slow:
-            self._tell(picture_of(wish, parts, _PLAIN))
+            self._tell(replace(picture_of(wish, parts, _PLAIN), is_final=False))
         if not (is_slow and self._is_outdated()):
             self._tell(picture_of(wish, parts, wish.look.attribute))
 

@@ -77,6 +77,7 @@ class SectionPane(PlaneView):
         super().__init__(source, shared, parent, language=language)
         self._lines = lines
         self._standing: Standing | None = None
+        self._asked: SectionWish | None = None
         self._picture: SectionPicture | None = None
         self._lay: SectionLay | None = None
         self._framed = ""
@@ -314,7 +315,8 @@ class SectionPane(PlaneView):
         self._look_at_place(picture)
         self.set_ground_stale()
         self.update()
-        self.sharpened.emit()
+        if picture.is_final and picture.wish is self._asked:
+            self.sharpened.emit()
 
     def _on_map_drive_columns_changed(self, drive_id: str) -> None:
         if any(drive.id == drive_id for drive in self._source.drives()):
@@ -333,6 +335,7 @@ class SectionPane(PlaneView):
         wish = SectionWish(
             standing, standing.cut, self._drives(), look, self._settings.is_by_distance
         )
+        self._asked = wish
         self._feed.wish(wish)
 
     def _drives(self) -> tuple[Drive, ...]:
