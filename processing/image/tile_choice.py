@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.clip import Clip
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST, STEPS
 from processing.image.tiles import TILE, TileKey, TilePyramid
 
@@ -84,7 +85,11 @@ def tiles_in_window(
 
 
 def tiles_in_view(
-    pyramids: Sequence[TilePyramid], camera: Camera3D, budget_points: int
+    pyramids: Sequence[TilePyramid],
+    camera: Camera3D,
+    budget_points: int,
+    *,
+    clip: Clip | None = None,
 ) -> list[tuple[int, TileKey]]:
     """The tiles that a 3D view draws, coarse ones first; each point of a street in one tile.
 
@@ -92,11 +97,16 @@ def tiles_in_view(
     enough or the budget is spent. A tile stays until all its children in view are chosen, so
     there are no holes.
 
+    Parameters
+    ----------
+    clip : Clip, optional
+        Tiles that lie wholly outside are left out.
+
     Returns
     -------
     list of (index of the pyramid, tile)
     """
-    views = [_seen(pyramid, camera) for pyramid in pyramids]
+    views = [_seen(pyramid, camera, clip) for pyramid in pyramids]
     gaps: list[tuple[float, int, TileKey]] = []
     chosen: list[tuple[int, TileKey]] = []
     spent = 0
@@ -132,7 +142,7 @@ class _Seen:
     counts: NDArray[np.float64]
 
 
-def _seen(pyramid: TilePyramid, camera: Camera3D) -> _Seen:
+def _seen(pyramid: TilePyramid, camera: Camera3D, clip: Clip | None) -> _Seen:
     table = pyramid.table
     # An empty tile's bounds are infinite, from which no arithmetic may start.
     is_filled = table[:, COUNT] > 0
@@ -152,7 +162,11 @@ def _seen(pyramid: TilePyramid, camera: Camera3D) -> _Seen:
     else:
         across = 2 * np.tan(np.radians(camera.angle_deg) / 2)
         gap_px = spacing * camera.height_px / (across * np.maximum(distance, 1e-3))
-    return _Seen(is_filled & _in_frustum(low, high, camera), gap_px, table[:, COUNT])
+    is_visible = is_filled & _in_frustum(low, high, camera)
+    if clip is not None:
+        places = np.flatnonzero(is_visible)
+        is_visible[places] = clip.may_hold(table[places, LOWEST], table[places, HIGHEST])
+    return _Seen(is_visible, gap_px, table[:, COUNT])
 
 
 def _in_frustum(

@@ -33,6 +33,8 @@ class Camera:
         To what it looks at: the scale of panning and zooming over nothing.
     angle_deg : float
         Vertical opening.
+    is_parallel : bool
+        Whether far things are drawn as large as near ones: as large as what it looks at.
     """
 
     position: Triple
@@ -40,6 +42,7 @@ class Camera:
     pitch_deg: float = -30.0
     distance_m: float = 30.0
     angle_deg: float = ANGLE_DEG
+    is_parallel: bool = False
 
     @property
     def axes(self) -> Floats:
@@ -86,6 +89,10 @@ class Camera:
         """Nearer to a place (factor above 1), which stays where it is in the picture."""
         distance_m = min(max(self.distance_m / factor, _NEAREST_M), _FARTHEST_M)
         offset = np.array(self.position) - pivot
+        if self.is_parallel:
+            # Without perspective the scale is the distance; it has ends, the place has none.
+            factor = self.distance_m / distance_m
+            return replace(self, position=_triple(pivot + offset / factor), distance_m=distance_m)
         away = float(np.linalg.norm(offset)) / factor
         if not _NEAREST_M <= away <= _FARTHEST_M:
             return self
@@ -98,9 +105,14 @@ class Camera:
         return replace(self, position=_triple(place - self.axes[2] * away), distance_m=away)
 
     def from_above(self, height_m: float) -> Camera:
-        """Straight down on what it looks at, north up."""
-        turned = replace(self, heading_deg=0.0, pitch_deg=-90.0)
+        """Straight down on what it looks at, north up, without perspective as on a map."""
+        turned = replace(self, heading_deg=0.0, pitch_deg=-90.0, is_parallel=True)
         return turned.centred_on(self.focal_point, height_m)
+
+    @property
+    def height_m(self) -> float:
+        """How much of a surface at what it looks at is seen, from below to above."""
+        return 2 * self.distance_m * math.tan(math.radians(self.angle_deg) / 2)
 
     def for_tiles(self, origin: Floats, width_px: int, height_px: int) -> Camera3D:
         """The same as the choice of tiles asks for it."""
@@ -113,6 +125,7 @@ class Camera:
             width_px=width_px,
             height_px=height_px,
             angle_deg=self.angle_deg,
+            parallel_height_m=self.height_m if self.is_parallel else None,
         )
 
 

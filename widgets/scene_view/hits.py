@@ -99,7 +99,7 @@ class SceneHits:
             feature.segment,
             modifiers,
             reach_m=REACH_PX * self.projection.metres_per_px(depth_m),
-            ray=Ray(_as_place(self.origin + np.array(camera.position)), _as_place(direction)),
+            ray=Ray(_as_place(self.origin + self.projection.eye(*mouse)), _as_place(direction)),
         )
 
 

@@ -14,7 +14,10 @@ from widgets.scene_view.camera import Camera
 Floats = NDArray[np.float64]
 
 NEAR_M = 0.05
-"""What is nearer to the camera's plane than this isn't seen."""
+"""What is nearer to the camera's plane than this isn't seen in perspective."""
+
+_FARTHEST_MIDDLE = 4.0
+_LEAST_DISTANCE_M = 10.0
 
 
 @dataclass(frozen=True)
@@ -33,8 +36,14 @@ class Projection:
 
     @cached_property
     def focal_px(self) -> float:
-        """Pixels per metre, one metre in front of the camera."""
+        """Pixels per metre, one metre in front of a camera with perspective."""
         return self.height_px / 2 / math.tan(math.radians(self.camera.angle_deg) / 2)
+
+    @cached_property
+    def point_px(self) -> float:
+        """Pixels per metre where VTK's divisor is one: there is none without perspective."""
+        is_parallel = self.camera.is_parallel
+        return self.focal_px / self.camera.distance_m if is_parallel else self.focal_px
 
     def in_view(self, local_xyz: NDArray[np.floating]) -> Floats:
         """(n, 3): metres to the right, upwards and in front of the camera."""
@@ -53,7 +62,8 @@ class Projection:
         Returns
         -------
         pixels : (n, 2) float64
-            To the right and downwards from the upper left corner; NaN behind the camera.
+            To the right and downwards from the upper left corner; NaN behind the camera. Without
+            perspective what is behind it is seen as well.
         depth : (n,) float64
             Metres in front of the camera.
         """
@@ -62,7 +72,10 @@ class Projection:
     def on_screen(self, seen: Floats) -> tuple[Floats, Floats]:
         """Pixels and depths of what :meth:`in_view` gave."""
         depth = seen[:, 2]
-        scale = self.focal_px / np.where(depth > NEAR_M, depth, np.nan)
+        if self.camera.is_parallel:
+            scale: Floats = np.full(depth.shape, self.point_px)
+        else:
+            scale = self.focal_px / np.where(depth > NEAR_M, depth, np.nan)
         x = self.width_px / 2 + seen[:, 0] * scale
         y = self.height_px / 2 - seen[:, 1] * scale
         return np.column_stack([x, y]), depth
@@ -82,6 +95,8 @@ class Projection:
             Pixels of both ends; NaN for a segment that lies wholly behind the camera.
         """
         seen = self.in_view(local_xyz)[ends]
+        if self.camera.is_parallel:
+            return np.stack([self.on_screen(seen[:, end])[0] for end in (0, 1)], axis=1)
         depth = seen[:, :, 2]
         near = 2 * NEAR_M
         first, second = seen[:, 0], seen[:, 1]
@@ -96,33 +111,57 @@ class Projection:
     def ray(self, x: float, y: float) -> Floats:
         """(3,): direction through a pixel, so long that it reaches one metre in front."""
         right, up, forward = self._axes
+        if self.camera.is_parallel:
+            return np.array(forward)
         across = (x - self.width_px / 2) / self.focal_px
         upwards = (self.height_px / 2 - y) / self.focal_px
         direction: Floats = forward + right * across + up * upwards
         return direction
 
+    def eye(self, x: float, y: float) -> Floats:
+        """(3,): from where a pixel is seen, metres from the origin; depths count from there."""
+        position = np.array(self.camera.position)
+        if not self.camera.is_parallel:
+            return position
+        right, up, _ = self._axes
+        across, upwards = x - self.width_px / 2, self.height_px / 2 - y
+        eye: Floats = position + (right * across + up * upwards) / self.point_px
+        return eye
+
     def place_at(self, x: float, y: float, depth_m: float) -> Floats:
         """(3,): the place under a pixel so far in front of the camera, from the origin."""
-        place: Floats = np.array(self.camera.position) + self.ray(x, y) * depth_m
+        place: Floats = self.eye(x, y) + self.ray(x, y) * depth_m
         return place
 
     @cached_property
     def matrix(self) -> Floats:
-        """(3, 4) float64: from metres about the origin, and 1, to x·depth, y·depth and depth."""
+        """(3, 4) float64: from metres about the origin, and 1, to x·w, y·w and w.
+
+        w is the depth, or 1 without perspective.
+        """
         right, up, forward = self._axes
-        middle_x, middle_y = self.width_px / 2, self.height_px / 2
+        middle_x, middle_y, scale = self.width_px / 2, self.height_px / 2, self.point_px
+        position = np.array(self.camera.position)
+        if self.camera.is_parallel:
+            rows = np.stack([scale * right, -scale * up, np.zeros(3)])
+            return np.column_stack([rows, [middle_x, middle_y, 1.0] - rows @ position])
         rows = np.stack(
-            [
-                middle_x * forward + self.focal_px * right,
-                middle_y * forward - self.focal_px * up,
-                forward,
-            ]
+            [middle_x * forward + scale * right, middle_y * forward - scale * up, forward]
         )
-        return np.column_stack([rows, -rows @ np.array(self.camera.position)])
+        return np.column_stack([rows, -rows @ position])
 
     def metres_per_px(self, depth_m: float) -> float:
         """Size of a pixel at a depth."""
-        return depth_m / self.focal_px
+        return 1 / self.point_px if self.camera.is_parallel else depth_m / self.focal_px
+
+    def is_in_middle(self, local: Floats) -> bool:
+        """Whether a place, (3,) metres from the origin, is about where one looks, and not far."""
+        pixels, depth = self.to_screen(local[None])
+        x, y = pixels[0]
+        inside = abs(x / self.width_px - 0.5) <= 1 / 6
+        inside &= abs(y / self.height_px - 0.5) <= 1 / 6
+        farthest = _FARTHEST_MIDDLE * max(self.camera.distance_m, _LEAST_DISTANCE_M)
+        return bool(inside and (self.camera.is_parallel or depth[0] <= farthest))
 
     @cached_property
     def _axes(self) -> Floats:

@@ -29,7 +29,8 @@ from widgets.scene_view.points.tile_actors import PointSizes, TileActors
 _NEAREST_M = 0.1
 _DEPTH_RATIO = 20_000.0
 _LAYERS = 4
-_MOST_TIMES_LEAST = 3.0
+_ROOM_M = 1.0  # beyond the points, for what is drawn about them
+_MOST_TIMES_LEAST = 5.0  # fills the gaps of a road down to some three metres
 
 
 class Stage:
@@ -79,12 +80,19 @@ class Stage:
     def look(self, camera: Camera) -> None:
         """Look from here."""
         seen = self._cloud.GetActiveCamera()
-        _, up, _ = camera.axes
-        seen.SetPosition(*camera.position)
+        _, up, forward = camera.axes
+        nearest_m, farthest_m = self._depths(camera)
+        # Without perspective VTK's camera stands where it has all before it.
+        back_m = max(_NEAREST_M - nearest_m, 0.0) if camera.is_parallel else 0.0
+        seen.SetPosition(*(np.array(camera.position) - forward * back_m))
         seen.SetFocalPoint(*camera.focal_point)
         seen.SetViewUp(*up)
         seen.SetViewAngle(camera.angle_deg)
-        seen.SetClippingRange(*self._clipping(camera))
+        seen.SetParallelProjection(camera.is_parallel)
+        seen.SetParallelScale(camera.height_m / 2)
+        far_m = farthest_m + back_m
+        near_m = nearest_m + back_m if camera.is_parallel else far_m / _DEPTH_RATIO
+        seen.SetClippingRange(max(_NEAREST_M, near_m), far_m)
 
     def size_points(self, least_px: float, focal_px: float) -> None:
         """Draw points at least so large; both in Qt's pixels."""
@@ -127,13 +135,16 @@ class Stage:
         # VTK's types forget that no pass means its own way of drawing.
         self._cloud.SetPass(shading)  # type: ignore[arg-type]
 
-    def _clipping(self, camera: Camera) -> tuple[float, float]:
+    def _depths(self, camera: Camera) -> tuple[float, float]:
+        """How far in front of the camera what is drawn begins and ends, m."""
         position, forward = np.array(camera.position), camera.axes[2]
         bounds = self.tiles.bounds
-        far_m = camera.distance_m * 2
+        near_m, far_m = 0.0, camera.distance_m * 2
         if bounds is not None:
-            far_m = max(far_m, float((_corners(*bounds) - position).dot(forward).max()) * 1.01 + 1)
-        return max(_NEAREST_M, far_m / _DEPTH_RATIO), far_m
+            depths = (_corners(*bounds) - position).dot(forward)
+            near_m = min(near_m, float(depths.min()) - _ROOM_M)
+            far_m = max(far_m, float(depths.max()) * 1.01 + _ROOM_M)
+        return near_m, far_m
 
     def _on_window_start(self, *_: object) -> None:
         self._began_at = time.perf_counter()

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPointF, Qt, QTimer, Signal
+from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QCloseEvent, QColor, QPainter, QPaintEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QWidget
 from typing_extensions import override
@@ -18,6 +19,7 @@ from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.scene_view import overviews
 from widgets.scene_view.backdrop import BACKGROUND
 from widgets.scene_view.camera import Camera
+from widgets.scene_view.clipping import Clipping
 from widgets.scene_view.hand import Hand
 from widgets.scene_view.hits import SceneHits
 from widgets.scene_view.map.map_layer import MapLayer
@@ -38,7 +40,6 @@ if TYPE_CHECKING:  # importing these imports VTK, which is done after the view w
 Floats = NDArray[np.float64]
 
 _FARTHEST_M = 40.0
-_TOO_FAR = 4.0
 
 
 class SceneView(QWidget):
@@ -51,6 +52,11 @@ class SceneView(QWidget):
     source : MapSource
     shared : SharedState
     tiles : TileCache
+
+    Attributes
+    ----------
+    clipping : Clipping
+        Which part of space is shown; what lies outside is neither drawn nor hit.
 
     Signals
     -------
@@ -85,14 +91,15 @@ class SceneView(QWidget):
         self._cursor: Place | None = shared.cursor.place
         self._finder = PointFinder()
         self._hits = SceneHits(self._finder, Projection(Camera((0.0, 0.0, 10.0)), 1, 1))
-        self._map = MapLayer(source, shared)
+        self._map = MapLayer(source, shared, self)
+        self._map.outdated.connect(self._show_map)
         self._hand = Hand(self._hits, shared, self._drives.course_deg, self)
+        self.clipping = Clipping(source, shared, self)
+        self.clipping.changed.connect(self._clip)
         self._reserved = reserve_graphics(self)
         self._overlay = SceneOverlay(self)
         self._loader = StageLoader()
         self._loader.ready.connect(self._on_loader_ready)
-        self._map_refresh = QTimer(self, singleShot=True, interval=0)
-        self._map_refresh.timeout.connect(self._on_map_refresh_timeout)
         self.setMinimumSize(160, 120)
         self._listen()
         self._on_map_drives_changed()
@@ -102,14 +109,12 @@ class SceneView(QWidget):
         shared.cursor.moved.connect(self._on_cursor_moved)
         shared.selection.features_changed.connect(self._on_selection_features_changed)
         shared.selection.points_changed.connect(self._on_selection_points_changed)
-        shared.map_changes.features_changed.connect(self._on_map_features_changed)
         shared.map_changes.drives_changed.connect(self._on_map_drives_changed)
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
         shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
         shared.view_settings.look_changed.connect(self._on_settings_look_changed)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
-        shared.view_settings.shown_features_changed.connect(self._map_refresh.start)
-        shared.sketch.changed.connect(self._on_sketch_changed)
+        shared.sketch.changed.connect(self._paint_overlay)
         shared.snap.mark_changed.connect(self._paint_overlay)
         hand.camera_moved.connect(self.look_from)
         hand.acted.connect(self._paint_overlay)
@@ -158,7 +163,7 @@ class SceneView(QWidget):
             self.look_from(camera)
 
     def look_from_above(self) -> None:
-        """Look straight down on what is in the middle, north up."""
+        """Look straight down on what is in the middle, north up, without perspective."""
         camera = self.camera.centred_on(self._looked_at())
         self.look_from(camera.from_above(max(camera.distance_m, 30.0)))
 
@@ -202,6 +207,10 @@ class SceneView(QWidget):
         """Turn eye-dome lighting on or off."""
         if self._cloud is not None:
             self._cloud.set_shading(is_on=is_on)
+
+    def set_perspective(self, *, is_on: bool) -> None:
+        """Draw far things smaller than near ones, or as large."""
+        self.look_from(replace(self.camera, is_parallel=not is_on))
 
     @override
     def close(self) -> bool:
@@ -253,10 +262,11 @@ class SceneView(QWidget):
         self._cloud.settled.connect(self.sharpened)
         self._cloud.use(self._drives.with_kinds, self._drives.origin)
         self._cloud.colour(self._shared.view_settings.look)
+        self._clip()
         self._cloud.mark(self._shared.selection.points)
         picture.show()
         self._overlay.raise_()
-        self._on_map_refresh_timeout()
+        self._show_map()
         self.look_from(self.camera)
 
     def _on_stage_frame(self, seconds: float) -> None:
@@ -274,21 +284,18 @@ class SceneView(QWidget):
     def _on_cursor_moved(self, place: Place) -> None:
         self._cursor_before, self._cursor = self._cursor, place
         # Who clicks in this view has the place under the mouse already.
-        if not self._hand.is_clicking and not self._is_in_middle(place):
+        if not self._hand.is_clicking and not self._hits.projection.is_in_middle(
+            self._local(place)
+        ):
             self.center_on(place)
         self._paint_overlay()
 
     def _on_selection_features_changed(self, ids: frozenset[str]) -> None:
         self._hits.selected = ids
-        self._map_refresh.start()
 
     def _on_selection_points_changed(self) -> None:
         if self._cloud is not None:
             self._cloud.mark(self._shared.selection.points)
-
-    def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
-        self._map.read(ids)
-        self._map_refresh.start()
 
     def _on_map_drives_changed(self) -> None:
         self._cursor = self._cursor_before = None
@@ -296,7 +303,6 @@ class SceneView(QWidget):
         self._map.read_all()
         self._use_drives()
         self.show_everything()
-        self._map_refresh.start()
         self._paint_overlay()
 
     def _on_map_drive_columns_changed(self, drive_id: str) -> None:
@@ -316,18 +322,6 @@ class SceneView(QWidget):
         if self._drives.read():
             self._use_drives()
 
-    def _on_sketch_changed(self) -> None:
-        drawing = self._shared.sketch.drawing
-        if (drawing.replaces if drawing is not None else "") != self._map.replaced:
-            self._map_refresh.start()
-        self._paint_overlay()
-
-    def _on_map_refresh_timeout(self) -> None:
-        self._map.show(self._stage)
-        self._hits.flat = self._map.flat
-        if self._stage is not None:
-            self._stage.redraw()
-
     def _on_hand_menu_requested(self, where: QPointF) -> None:
         is_shaded = self._cloud is not None and self._cloud.is_shading_wanted
         menu = view_menu(self, self, is_shading_wanted=is_shaded)
@@ -336,10 +330,21 @@ class SceneView(QWidget):
 
     # What is done in more than one place.
 
+    def _show_map(self) -> None:
+        self._map.show(self._stage)
+        self._hits.flat = self._map.flat
+        if self._stage is not None:
+            self._stage.redraw()
+
+    def _clip(self) -> None:
+        self._finder.clip_to(self.clipping.clip)
+        if self._cloud is not None:
+            self._cloud.clip_to(self.clipping.clip)
+
     def _size_points(self) -> None:
         if self._stage is not None:
             size_px = self._shared.view_settings.look.point_size_px
-            self._stage.size_points(size_px, self._hits.projection.focal_px)
+            self._stage.size_points(size_px, self._hits.projection.point_px)
 
     def _use_drives(self) -> None:
         drives = self._drives
@@ -352,17 +357,9 @@ class SceneView(QWidget):
     def _looked_at(self) -> Floats:
         """What is in the middle of the picture; the cursor, where that is in it."""
         place = self._shared.cursor.place
-        if place is not None and self._is_in_middle(place):
+        if place is not None and self._hits.projection.is_in_middle(self._local(place)):
             return self._local(place)
         return self._hits.place_under(QPointF(self.width() / 2, self.height() / 2))
-
-    def _is_in_middle(self, place: Place) -> bool:
-        projection = self._hits.projection
-        pixels, depth = projection.to_screen(self._local(place)[None])
-        x, y = pixels[0]
-        inside = abs(x / projection.width_px - 0.5) <= 1 / 6
-        inside &= abs(y / projection.height_px - 0.5) <= 1 / 6
-        return bool(inside and depth[0] <= _TOO_FAR * max(self.camera.distance_m, 10.0))
 
     def _local(self, place: Place) -> Floats:
         local_xyz: Floats = np.array(place.xyz) - self._drives.origin

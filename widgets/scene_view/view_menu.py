@@ -5,11 +5,24 @@ from __future__ import annotations
 from typing import Protocol
 
 from PySide6.QtCore import QCoreApplication
-from PySide6.QtWidgets import QMenu, QWidget
+from PySide6.QtGui import QAction, QActionGroup
+from PySide6.QtWidgets import QMenu, QWidget, QWidgetAction
+
+from widgets.scene_view.camera import Camera
+from widgets.scene_view.clipping import ClipChoice, Clipping
+from widgets.scene_view.slab_form import SlabForm
 
 
 class Looking(Protocol):
     """What the menu does with the view."""
+
+    @property
+    def camera(self) -> Camera:
+        """From where it looks."""
+
+    @property
+    def clipping(self) -> Clipping:
+        """Which part of space is shown."""
 
     def look_along_drive(self) -> None:
         """Look along the drive."""
@@ -26,12 +39,18 @@ class Looking(Protocol):
     def set_shading(self, *, is_on: bool) -> None:
         """Turn eye-dome lighting on or off."""
 
+    def set_perspective(self, *, is_on: bool) -> None:
+        """Draw far things smaller, or not."""
+
 
 def view_menu(parent: QWidget, view: Looking, *, is_shading_wanted: bool) -> QMenu:
-    """From where one can look; it goes when it was closed."""
+    """From where one can look, and at what; it goes when it was closed."""
 
     def shade(is_on: bool) -> None:  # noqa: FBT001 - Qt's signal
         view.set_shading(is_on=is_on)
+
+    def flatten(is_on: bool) -> None:  # noqa: FBT001 - Qt's signal
+        view.set_perspective(is_on=not is_on)
 
     menu = QMenu(parent)
     menu.addAction(
@@ -43,11 +62,41 @@ def view_menu(parent: QWidget, view: Looking, *, is_shading_wanted: bool) -> QMe
         QCoreApplication.translate("SceneView", "Centre on the selection"), view.center_on_selection
     )
     menu.addSeparator()
+    flat = menu.addAction(QCoreApplication.translate("SceneView", "Without perspective"))
+    _make_checkable(flat, is_checked=view.camera.is_parallel)
+    flat.toggled.connect(flatten)
     shading = menu.addAction(
         QCoreApplication.translate("SceneView", "Shade by depth (eye-dome lighting)")
     )
-    shading.setCheckable(True)
-    shading.setChecked(is_shading_wanted)
+    _make_checkable(shading, is_checked=is_shading_wanted)
     shading.toggled.connect(shade)
+    _add_clipping(menu, view.clipping)
     menu.aboutToHide.connect(menu.deleteLater)
     return menu
+
+
+def _add_clipping(menu: QMenu, clipping: Clipping) -> None:
+    part = menu.addMenu(QCoreApplication.translate("SceneView", "Show only"))
+    texts = {
+        ClipChoice.EVERYTHING: QCoreApplication.translate("SceneView", "All points"),
+        ClipChoice.SELECTION: QCoreApplication.translate("SceneView", "Around what is chosen"),
+        ClipChoice.SECTION: QCoreApplication.translate("SceneView", "Within the section"),
+        ClipChoice.DRIVE: QCoreApplication.translate("SceneView", "Around the drive"),
+    }
+    group = QActionGroup(part)
+    for choice, text in texts.items():
+        action = QAction(text, part)
+        _make_checkable(action, is_checked=clipping.choice is choice)
+        action.setEnabled(clipping.can_choose(choice))
+        action.triggered.connect(lambda _=False, wanted=choice: clipping.choose(wanted))
+        group.addAction(action)
+        part.addAction(action)
+    reach = QWidgetAction(part)
+    reach.setDefaultWidget(SlabForm(clipping, part))
+    reach.setEnabled(clipping.can_choose(ClipChoice.DRIVE))
+    part.addAction(reach)
+
+
+def _make_checkable(action: QAction, *, is_checked: bool) -> None:
+    action.setCheckable(True)
+    action.setChecked(is_checked)

@@ -248,7 +248,7 @@ def test_a_second_pass_follows_by_the_place_in_plan(left_drive: Drive) -> None:
     picture = Picture.of(left_drive, ImageKind.TRAJECTORY_CENTER)
     image = copy(picture.image)
     image.row_times = image.row_times + 3600.0
-    lay = replace(picture.lay, plan=picture.lay.plan + [3.0, 0.0])
+    lay = replace(picture.lay, plan=picture.lay.plan + np.array([3.0, 0.0]))
     beside = replace(picture, image=image, lay=lay)
     u = place_along(picture, (200.3, 100.0), beside)
     assert u is not None

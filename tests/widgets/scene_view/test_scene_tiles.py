@@ -13,7 +13,7 @@ from processing.image.tiles import TileKey
 from processing.points.drive import Drive
 from widgets.scene_view.camera import Camera
 from widgets.scene_view.points.budget import FrameBudget
-from widgets.scene_view.points.scene_tile import TileId, shown_tiles
+from widgets.scene_view.points.scene_tile import Showing, TileId, shown_tiles
 from widgets.scene_view.points.tile_feed import TileFeed, Wish
 from widgets.shared.view_settings import PointLook
 
@@ -97,7 +97,7 @@ def wish(left_drive: Drive) -> Wish:
         origin=origin,
         age=7,
         camera=camera.for_tiles(origin, 800, 600),
-        look=PointLook(),
+        showing=Showing(PointLook()),
         budget_points=1_000_000,
         is_still=True,
         kept=frozenset(),
@@ -141,7 +141,7 @@ def test_a_feed_asks_for_nothing_that_is_known(qtbot: QtBot, left_drive: Drive, 
     with qtbot.waitSignal(feed.chosen, timeout=20_000) as chosen:
         feed.wish(wish)
     assert chosen.args is not None
-    known = frozenset((one, PointLook()) for one in chosen.args[0].tiles)
+    known = frozenset((one, Showing(PointLook())) for one in chosen.args[0].tiles)
     qtbot.waitUntil(lambda: tiles.held_bytes > 0, timeout=20_000)
     arrived: list[object] = []
     with qtbot.waitSignal(feed.chosen, timeout=20_000):

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
+from PySide6.QtCore import QObject, QTimer, Signal
 
 from widgets.shared.feature_shapes import FeatureShapes, FlatShapes, flattened
 from widgets.shared.feature_style import style_of
@@ -17,7 +18,7 @@ if TYPE_CHECKING:  # importing it imports VTK, which is done after the view was 
     from widgets.scene_view.stage import Stage
 
 
-class MapLayer:
+class MapLayer(QObject):
     """Reads features from the document, keeps those that are drawn, and draws them.
 
     Parameters
@@ -31,28 +32,39 @@ class MapLayer:
         The features that are drawn.
     replaced : str
         The feature that isn't, because it is being edited; or empty.
+
+    Signals
+    -------
+    outdated()
+        What is drawn isn't what is to be seen any longer; told once for all changes of a moment.
     """
 
-    def __init__(self, source: MapSource, shared: SharedState) -> None:
+    outdated = Signal()
+
+    def __init__(
+        self, source: MapSource, shared: SharedState, parent: QObject | None = None
+    ) -> None:
+        super().__init__(parent)
         self._source = source
         self._shared = shared
         self._shapes = FeatureShapes(np.zeros(3), ())
         self.flat: FlatShapes = flattened(())
         self.replaced = ""
+        self._soon = QTimer(self, singleShot=True, interval=0)
+        self._soon.timeout.connect(self.outdated)
+        shared.map_changes.features_changed.connect(self._on_map_features_changed)
+        shared.selection.features_changed.connect(self._soon.start)
+        shared.view_settings.shown_features_changed.connect(self._soon.start)
+        shared.sketch.changed.connect(self._on_sketch_changed)
 
     def read_all(self) -> None:
         """Take over all features, about the document's origin."""
         self._shapes = FeatureShapes(self._source.origin(), self._source.features())
-
-    def read(self, ids: Iterable[str]) -> None:
-        """Take over these features as they are now."""
-        for id_ in ids:
-            self._shapes.replace(id_, self._source.feature(id_))
+        self._soon.start()
 
     def show(self, stage: Stage | None) -> None:
         """Draw what is to be seen, once there is a stage."""
-        drawing = self._shared.sketch.drawing
-        self.replaced = "" if drawing is None else drawing.replaces
+        self.replaced = self._replaced_now()
         seen = self._shapes.seen(self._shared.view_settings.shows, self.replaced)
         self.flat = flattened(seen)
         if stage is None:
@@ -75,3 +87,16 @@ class MapLayer:
         shapes = [self._shapes.get(id_) for id_ in ids]
         places = [shape.local_xyz for shape in shapes if shape is not None]
         return np.concatenate(places) if places else None
+
+    def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
+        for id_ in ids:
+            self._shapes.replace(id_, self._source.feature(id_))
+        self._soon.start()
+
+    def _on_sketch_changed(self) -> None:
+        if self._replaced_now() != self.replaced:
+            self._soon.start()
+
+    def _replaced_now(self) -> str:
+        drawing = self._shared.sketch.drawing
+        return "" if drawing is None else drawing.replaces

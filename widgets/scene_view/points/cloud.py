@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from processing.image.clip import Clip
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache
 from processing.image.tile_choice import Camera3D
@@ -16,7 +17,13 @@ from processing.image.tiles import TileKey
 from processing.image.touched_tiles import TouchedTiles
 from processing.points.drive import Drive
 from widgets.scene_view.points.budget import FrameBudget
-from widgets.scene_view.points.scene_tile import DrawnTile, SceneTile, TileId, shown_tiles
+from widgets.scene_view.points.scene_tile import (
+    DrawnTile,
+    SceneTile,
+    Showing,
+    TileId,
+    shown_tiles,
+)
 from widgets.scene_view.points.tile_feed import Choice, TileFeed, Wish
 from widgets.scene_view.stage import Stage
 from widgets.shared.feature_style import ACCENT
@@ -59,12 +66,12 @@ class Cloud(QObject):
         self._origin: Floats = np.zeros(3)
         self._age = 0
         self._camera: Camera3D | None = None
-        self._look = PointLook()
+        self._showing = Showing(PointLook())
         self._marked: dict[str, NDArray[np.int64]] = {}
         self._to_mark: dict[str, NDArray[np.int64]] = {}
         self._frame_s = 0.0
         self._chosen: dict[bool, frozenset[TileId]] = {False: frozenset(), True: frozenset()}
-        self._looks: dict[TileId, PointLook] = {}
+        self._shown: dict[TileId, Showing] = {}
         self._arrived: list[SceneTile] = []
         self._is_moving = False
         self._is_shading_wanted = True
@@ -91,12 +98,12 @@ class Cloud(QObject):
     @property
     def is_settled(self) -> bool:
         """Whether the camera rests and all that it sees is there in its sharpest form."""
-        there = self._looks
+        there = self._shown
         return (
             not self._is_moving
             and self._is_chosen
             and not self._arrived
-            and all(there.get(tile) == self._look for tile in self._chosen[True])
+            and all(there.get(tile) == self._showing for tile in self._chosen[True])
         )
 
     def use(self, drives: Sequence[tuple[Drive, ImageKind]], origin: Floats) -> None:
@@ -104,7 +111,7 @@ class Cloud(QObject):
         self._drives, self._origin = tuple(drives), origin
         self._age += 1
         self._arrived.clear()
-        self._looks.clear()
+        self._shown.clear()
         self._stage.tiles.keep_only(())
         self._chosen = {False: frozenset(), True: frozenset()}
         self._wish_again()
@@ -123,9 +130,15 @@ class Cloud(QObject):
 
     def colour(self, look: PointLook) -> None:
         """Show points in these colours; their size is the stage's matter."""
-        look = _colours_only(look)
-        if look != self._look:
-            self._look = look
+        self._show_as(replace(self._showing, look=_colours_only(look)))
+
+    def clip_to(self, clip: Clip | None) -> None:
+        """Show only points in this part of space; None: all."""
+        self._show_as(replace(self._showing, clip=clip))
+
+    def _show_as(self, showing: Showing) -> None:
+        if showing != self._showing:
+            self._showing = showing
             # No frame now: it would hold up the worker that colours what is there.
             self._wish_again()
 
@@ -158,18 +171,18 @@ class Cloud(QObject):
 
     def refresh(self, drive_id: str) -> None:
         """The drive's columns changed: get its colours again."""
-        self._looks = {
-            tile: look for tile, look in self._looks.items() if tile.drive_id != drive_id
+        self._shown = {
+            tile: shown for tile, shown in self._shown.items() if tile.drive_id != drive_id
         }
         self._wish_again()
 
     def refresh_labels(self, drive_id: str, points: NDArray[np.int64]) -> None:
         """Labels of points changed: get the colours of the tiles that show them again."""
-        if self._look.attribute == "label":
+        if self._showing.look.attribute == "label":
             touched = self._touched(drive_id, points)
-            self._looks = {
-                tile: look
-                for tile, look in self._looks.items()
+            self._shown = {
+                tile: shown
+                for tile, shown in self._shown.items()
                 if tile.drive_id != drive_id or tile.key not in touched
             }
             self._wish_again()
@@ -226,12 +239,12 @@ class Cloud(QObject):
                 origin=self._origin,
                 age=self._age,
                 camera=self._camera,
-                look=self._look,
+                showing=self._showing,
                 budget_points=budget,
                 is_still=is_still,
                 kept=self._chosen[not is_still] & self._stage.tiles.tiles.keys(),
                 there=self._stage.tiles.tiles,
-                known=frozenset(self._looks.items()),
+                known=frozenset(self._shown.items()),
             )
         )
 
@@ -261,10 +274,10 @@ class Cloud(QObject):
         points, is_new = 0, False
         while self._arrived and points < _POINTS_PER_PORTION:
             tile = self._arrived.pop(0)
-            if tile.age != self._age or tile.id not in wanted or tile.look != self._look:
+            if tile.age != self._age or tile.id not in wanted or tile.showing != self._showing:
                 continue
             self._stage.tiles.put(tile, self._colours_of(tile))
-            self._looks[tile.id] = tile.look
+            self._shown[tile.id] = tile.showing
             is_new |= tile.id in drawn
             # Colours alone cost the graphics little: what was seen changes at once.
             points += 0 if tile.id in there else tile.points.size
@@ -285,7 +298,7 @@ class Cloud(QObject):
 
     def _keep(self, tiles: Collection[TileId]) -> None:
         self._stage.tiles.keep_only(tiles)
-        self._looks = {tile: look for tile, look in self._looks.items() if tile in tiles}
+        self._shown = {tile: shown for tile, shown in self._shown.items() if tile in tiles}
 
     def _shade(self) -> bool:
         has_time = not self._is_moving or self.budget.is_fast

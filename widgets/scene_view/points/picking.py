@@ -103,16 +103,20 @@ def entry_depths(low: Floats, high: Floats, projection: Projection, x: float, y:
     -------
     (n,) float64
         Metres in front of the camera, 0 from inside, infinite where the cone misses the box.
+        Without perspective the cone is a tube, which begins far behind the camera.
     """
-    position = np.array(projection.camera.position)
+    position, is_parallel = projection.eye(x, y), projection.camera.is_parallel
     reach = np.linalg.norm(np.maximum(np.abs(low - position), np.abs(high - position)), axis=1)
-    margin = (reach * TOLERANCE_PX / projection.focal_px)[:, None]
+    reach = np.ones_like(reach) if is_parallel else reach
+    margin = (reach * TOLERANCE_PX / projection.point_px)[:, None]
     direction = projection.ray(x, y)
     direction = np.where(np.abs(direction) < 1e-12, 1e-12, direction)
     first = (low - margin - position) / direction
     second = (high + margin - position) / direction
     enter = np.minimum(first, second).max(axis=1)
     leave = np.maximum(first, second).min(axis=1)
+    if is_parallel:  # what lies behind the camera is seen as well
+        return np.where(leave >= enter, enter, np.inf)
     is_hit = (leave >= enter) & (leave > 0)
     return np.where(is_hit, np.maximum(enter, 0.0), np.inf)
 
@@ -162,6 +166,11 @@ def _near_ray(
 ) -> NDArray[np.int64]:
     """Points that may be within reach: float32 and no roots, since a tile has many points."""
     right, up, forward = projection.camera.axes
+    if projection.camera.is_parallel:
+        offset = local_xyz - projection.eye(x, y).astype(np.float32)
+        seen = np.stack([right, up]).astype(np.float32) @ offset.T
+        tube = np.float32(1.05 * TOLERANCE_PX / projection.point_px + 1e-3)
+        return np.flatnonzero((np.abs(seen) <= tube).all(axis=0))
     across = (x - projection.width_px / 2) / projection.focal_px
     upwards = (projection.height_px / 2 - y) / projection.focal_px
     # Distances from the ray's two planes, measured square to the forward axis.

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.clip import Clip
 from processing.image.enclosed_points import Sight, points_enclosed
 from processing.image.kinds import ImageKind
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
@@ -45,6 +46,7 @@ class PointFinder:
     def __init__(self) -> None:
         self._drives: dict[str, tuple[Drive, ImageKind]] = {}
         self._origin: Floats = np.zeros(3)
+        self._clip: Clip | None = None
         self._searched: OrderedDict[TileId, TilePoints] = OrderedDict()
 
     def use(self, drives: Sequence[tuple[Drive, ImageKind]], origin: Floats) -> None:
@@ -52,6 +54,12 @@ class PointFinder:
         self._drives = {drive.id: (drive, kind) for drive, kind in drives}
         self._origin = origin
         self._searched.clear()
+
+    def clip_to(self, clip: Clip | None) -> None:
+        """Find only points in this part of space from now on; None: all."""
+        if clip != self._clip:
+            self._clip = clip
+            self._searched.clear()
 
     def exact(
         self, shown: Sequence[DrawnTile], projection: Projection, x: float, y: float
@@ -63,7 +71,11 @@ class PointFinder:
         shown : sequence of DrawnTile
             What is drawn: the finest tiles among them need not be read again.
         """
-        finest = {one.tile.id: one.tile for one in shown if one.tile.id.key.level == 0}
+        finest = {
+            one.tile.id: one.tile
+            for one in shown
+            if one.tile.id.key.level == 0 and one.tile.clip == self._clip
+        }
         layers = [
             _Layer(drive, kind, pyramid)
             for drive, kind in self._drives.values()
@@ -105,7 +117,7 @@ class PointFinder:
         return self._found(Pickable(low, high, points_of), projection, x, y)
 
     def enclosed(self, projection: Projection, outline: Floats) -> dict[str, NDArray[np.int64]]:
-        """All measured points that are seen inside an outline, drawn or not.
+        """All points that are seen inside an outline, drawn or not, but for those clipped off.
 
         Parameters
         ----------
@@ -123,6 +135,8 @@ class PointFinder:
             image = drive.image(kind)
             if image.pyramid.is_ready:
                 points = points_enclosed(drive, image, sight, outline)
+                if self._clip is not None:
+                    points = points[self._clip.holds(drive.xyz(points))]
                 if points.size:
                     found[drive.id] = points
         return found
@@ -143,6 +157,8 @@ class PointFinder:
         if there is None:
             points = layer.pyramid.points(id_.key).ravel()
             points = points[points >= 0]
+            if self._clip is not None:
+                points = points[self._clip.holds(layer.drive.xyz(points))]
             there = TilePoints(id_.drive_id, points, layer.drive.local_xyz(points, self._origin))
         self._searched[id_] = there
         while len(self._searched) > _MOST_REMEMBERED:

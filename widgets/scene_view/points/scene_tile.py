@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.clip import Clip
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileRequest
 from processing.image.tiles import TileKey
@@ -30,8 +31,24 @@ class TileId:
 
 
 @dataclass(frozen=True)
+class Showing:
+    """What is shown of the tiles: in which colours, and of which part of space.
+
+    Attributes
+    ----------
+    look : PointLook
+        With the standard point size, which makes no difference here.
+    clip : Clip or None
+        None: all of it.
+    """
+
+    look: PointLook
+    clip: Clip | None = None
+
+
+@dataclass(frozen=True)
 class SceneTile:
-    """Filled pixels of a tile, in one order throughout.
+    """Filled pixels of a tile, in one order throughout, without those that are clipped off.
 
     Attributes
     ----------
@@ -46,6 +63,10 @@ class SceneTile:
         Mean distance of neighbours.
     age : int
         Of the wish it was made for: places are about the origin of that time.
+    clip : Clip or None
+        What it was clipped to.
+    whole : SceneTile or None
+        The tile before it was clipped.
     """
 
     request: TileRequest
@@ -54,6 +75,8 @@ class SceneTile:
     colours: NDArray[np.uint8]
     spacing_m: float
     age: int = 0
+    clip: Clip | None = None
+    whole: SceneTile | None = None
 
     @property
     def id(self) -> TileId:
@@ -61,10 +84,32 @@ class SceneTile:
         return TileId(self.request.drive_id, self.request.kind, self.request.key)
 
     @property
-    def look(self) -> PointLook:
-        """What its colours show."""
+    def showing(self) -> Showing:
+        """What its colours show, and of which part of space."""
         request = self.request
-        return PointLook(request.attribute, request.low_percent, request.high_percent)
+        look = PointLook(request.attribute, request.low_percent, request.high_percent)
+        return Showing(look, self.clip)
+
+    def clipped(self, clip: Clip | None, origin: NDArray[np.float64]) -> SceneTile:
+        """The tile with exactly the points that a clip leaves.
+
+        Parameters
+        ----------
+        origin : (3,) float64
+            The view's local origin, m, project CRS.
+        """
+        whole = self if self.whole is None else self.whole
+        if clip is None or clip == self.clip:
+            return whole if clip is None else self
+        kept = clip.holds(whole.local_xyz + origin)
+        return replace(
+            whole,
+            points=whole.points[kept],
+            local_xyz=whole.local_xyz[kept],
+            colours=whole.colours[kept],
+            clip=clip,
+            whole=whole,
+        )
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.tile_choice import Camera3D, tiles_in_view
 from processing.points.drive import Drive
-from widgets.scene_view.points.scene_tile import SceneTile, TileId
+from widgets.scene_view.points.scene_tile import SceneTile, Showing, TileId
 from widgets.shared.view_settings import PointLook
 
 _TOGETHER_S = 0.15
@@ -36,29 +36,28 @@ class Wish:
         The view's local origin, m, project CRS.
     age : int
         Raised with every change of drives and origin; told back with the tiles.
-    look : PointLook
-        With the standard point size, which makes no difference here.
+    showing : Showing
     budget_points : int
     is_still : bool
         Whether the camera rests; told back with the choice.
     kept : frozenset of TileId
-        Tiles outside the choice that need the look as well.
+        Tiles outside the choice that are to show the same.
     there : mapping of TileId to SceneTile
         What the view has.
-    known : frozenset of (TileId, PointLook)
-        What of it has the right colours.
+    known : frozenset of (TileId, Showing)
+        What each of them shows.
     """
 
     drives: tuple[tuple[Drive, ImageKind], ...]
     origin: NDArray[np.float64]
     age: int
     camera: Camera3D
-    look: PointLook
+    showing: Showing
     budget_points: int
     is_still: bool
     kept: frozenset[TileId]
     there: Mapping[TileId, SceneTile]
-    known: frozenset[tuple[TileId, PointLook]]
+    known: frozenset[tuple[TileId, Showing]]
 
 
 @dataclass(frozen=True)
@@ -132,13 +131,16 @@ class TileFeed(QObject):
             pyramids.append(pyramid)
         chosen = tuple(
             TileId(*drives[number], key)
-            for number, key in tiles_in_view(pyramids, wish.camera, wish.budget_points)
+            for number, key in tiles_in_view(
+                pyramids, wish.camera, wish.budget_points, clip=wish.showing.clip
+            )
         )
         self._emit_chosen(Choice(wish, chosen))
         wanted = [*chosen, *sorted(wish.kept - set(chosen), key=lambda tile: tile.key.level)]
-        lacking = [tile for tile in wanted if (tile, wish.look) not in wish.known]
-        self._recolour([wish.there[tile] for tile in lacking if tile in wish.there], wish)
-        requests = [_request_of(tile, wish.look) for tile in lacking if tile not in wish.there]
+        lacking = [tile for tile in wanted if (tile, wish.showing) not in wish.known]
+        self._show_anew([wish.there[tile] for tile in lacking if tile in wish.there], wish)
+        look = wish.showing.look
+        requests = [_request_of(tile, look) for tile in lacking if tile not in wish.there]
         self._tiles.keep_only(self._on_tiles_done, set(requests))
         # The cache serves the newest request first, and coarse tiles are to come first.
         for request in reversed(requests):
@@ -146,22 +148,21 @@ class TileFeed(QObject):
                 return
             self._tiles.request(request, self._on_tiles_done)
 
-    def _recolour(self, tiles: Sequence[SceneTile], wish: Wish) -> None:
-        """Give tiles that are there other colours: their points need not be looked up again."""
+    def _show_anew(self, tiles: Sequence[SceneTile], wish: Wish) -> None:
+        """Clip and colour tiles that are there: their points need not be looked up again."""
         drives = {drive.id: drive for drive, _ in wish.drives}
-        look, done, began_at = wish.look, [], time.monotonic()
+        known, done, began_at = dict(wish.known), [], time.monotonic()
         for tile in tiles:
             drive = drives.get(tile.id.drive_id)
             if drive is None or self._is_outdated(wish):
                 break
-            try:
-                shown = colours(
-                    drive, tile.points, look.attribute, look.low_percent, look.high_percent
-                )
-            except UserError:
-                continue  # the image view says why; the points keep the colours they have
-            request = _request_of(tile.id, look)
-            done.append(replace(tile, request=request, colours=shown, age=wish.age))
+            shown = tile
+            if known.get(tile.id) != replace(wish.showing, clip=tile.clip):
+                try:
+                    shown = _coloured(tile, drive, wish.showing.look)
+                except UserError:
+                    continue  # the image view says why; the points keep the colours they have
+            done.append(replace(shown, age=wish.age).clipped(wish.showing.clip, wish.origin))
             if time.monotonic() - began_at > _TOGETHER_S:
                 self._emit_arrived(done)
                 done, began_at = [], time.monotonic()
@@ -173,7 +174,9 @@ class TileFeed(QObject):
 
     def _is_outdated(self, wish: Wish) -> bool:
         with self._changed:
-            return self._is_closed or (self._next is not None and self._next.look != wish.look)
+            return self._is_closed or (
+                self._next is not None and self._next.showing != wish.showing
+            )
 
     def _emit_chosen(self, choice: Choice) -> None:
         if not self._is_closed:
@@ -197,7 +200,14 @@ class TileFeed(QObject):
             spacing_m=drive.image(request.kind).pyramid.spacing_m(request.key),
             age=wish.age,
         )
-        self._emit_arrived((tile,))
+        self._emit_arrived((tile.clipped(wish.showing.clip, wish.origin),))
+
+
+def _coloured(tile: SceneTile, drive: Drive, look: PointLook) -> SceneTile:
+    """The tile before it was clipped, in other colours."""
+    whole = tile if tile.whole is None else tile.whole
+    shown = colours(drive, whole.points, look.attribute, look.low_percent, look.high_percent)
+    return replace(whole, request=_request_of(tile.id, look), colours=shown)
 
 
 def _request_of(tile: TileId, look: PointLook) -> TileRequest:
