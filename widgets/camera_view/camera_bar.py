@@ -26,8 +26,8 @@ class CameraBar(QWidget):
     def __init__(self, view: CameraView, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._view = view
-        self._before = self._button("‹", self.tr("The next better image of the place ([)"))
-        self._after = self._button("›", self.tr("The next image of the place (])"))
+        self._before = self._button("‹", self.tr("The image before in the list (Page Up or [)"))
+        self._after = self._button("›", self.tr("The next image in the list (Page Down or ])"))
         self._images = QComboBox(self)
         self._images.setToolTip(self.tr("The images that see the place, best first"))
         self._images.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
@@ -52,9 +52,9 @@ class CameraBar(QWidget):
         view.stereo_changed.connect(self._show)
         self._show()
 
-    def end_calibration(self) -> None:
-        """The form was closed elsewhere."""
-        self._calibration.setChecked(False)
+    def check_calibration(self, wanted: bool) -> None:  # noqa: FBT001 - as a click on the button
+        """Ask for the form of offsets, or for its end."""
+        self._calibration.setChecked(wanted)
 
     def _lay_out(self) -> None:
         layout = QHBoxLayout(self)
@@ -77,14 +77,15 @@ class CameraBar(QWidget):
     def _show(self) -> None:
         showing = self._view.showing
         count = len(showing.sightings)
+        plain = self.tr("{number}/{count}  {name} · {distance} m")
+        hidden = self.tr("{number}/{count}  {name} · {distance} m (hidden)")
         words = [
-            self.tr("{number}/{count}  {name} · {distance} m").format(
+            (hidden if one.is_hidden else plain).format(
                 number=i + 1,
                 count=count,
                 name=one.image.path.stem,
                 distance=f"{one.distance_m:.0f}",
             )
-            + (self.tr(" (hidden)") if one.is_hidden else "")
             for i, one in enumerate(showing.sightings)
         ]
         if words != [self._images.itemText(i) for i in range(self._images.count())]:

@@ -56,6 +56,10 @@ class CameraPanel(QWidget):
         """The form of offsets."""
         return self._form
 
+    def show_calibration(self, wanted: bool) -> None:  # noqa: FBT001 - a slot of a checked action
+        """Show the form of offsets, or hide it."""
+        self._bar.check_calibration(wanted)
+
     def show_kept_offsets(self) -> None:
         """Offsets were kept or changed elsewhere: images and form show those that count now."""
         self._form.show_kept()

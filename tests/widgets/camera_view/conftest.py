@@ -1,0 +1,104 @@
+"""A street with photographs, and the camera view on a shown window."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from pytestqt.qtbot import QtBot
+
+from processing.cameras.image_list import CameraImage, ImageList
+from processing.cameras.image_store import write_images
+from processing.points.drive import Drive
+from tests.builders import START
+from tests.camera_scene import looking, photograph
+from tests.widgets.builders import OpenMap, imported_drive
+from widgets.camera_view.panel import CameraPanel
+from widgets.camera_view.view import CameraView
+from widgets.shared.cursor import Place
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+def place_at(east: float, north: float, up: float = 0.0) -> Place:
+    """A place, m from the street's start."""
+    easting, northing, height = (START + np.array([east, north, up])).tolist()
+    return Place((easting, northing, height))
+
+
+@dataclass
+class Hand:
+    """A panel and the hand at its mouse and keyboard."""
+
+    qtbot: QtBot
+    map: OpenMap
+    panel: CameraPanel
+
+    @property
+    def view(self) -> CameraView:
+        return self.panel.view
+
+    def look_at(self, place: Place) -> None:
+        """Move the cursor elsewhere and wait for the image."""
+        self.map.shared.cursor.move_to(place)
+        self.wait_sharp()
+
+    def wait_sharp(self) -> None:
+        self.qtbot.waitUntil(lambda: self.view.is_sharp)
+
+    def do(self, work: Callable[[], object]) -> None:
+        work()
+        self.wait_sharp()
+
+    def spot(self, place: Place) -> QPoint:
+        position = self.view.position_of(place)
+        assert position is not None
+        return position.toPoint()
+
+    def click(self, spot: QPoint) -> None:
+        self.qtbot.mouseClick(self.view, LEFT, pos=spot)
+
+    @property
+    def name(self) -> str:
+        taken = self.view.showing.taken
+        return "" if taken is None else taken.image.path.stem
+
+
+def images_below(folder: object) -> tuple[CameraImage, ...]:
+    ways = {"front": (0.0, 1.0, -0.2), "left": (-1.0, -0.2, -0.1)}
+    return tuple(
+        looking(folder / "写真" / f"{name}_{number:04d}.png", (-0.5, along, 2.0), ahead)  # type: ignore[operator]
+        for name, ahead in ways.items()
+        for number, along in enumerate((0.0, 4.0))
+    )
+
+
+@pytest.fixture(scope="module")
+def photographed(tmp_path_factory: pytest.TempPathFactory) -> Drive:
+    """Give a street with two cameras and two images of each; offsets may be kept in it."""
+    folder = tmp_path_factory.mktemp("photographed")
+    drive = imported_drive(folder / "street")
+    images = images_below(folder)
+    for image in images:
+        photograph(image)
+    write_images(drive.folder, ImageList(images))
+    return Drive(drive.folder)
+
+
+@pytest.fixture
+def hand(qtbot: QtBot, photographed: Drive) -> Iterator[Hand]:
+    hand = shown(qtbot, OpenMap((photographed,)))
+    yield hand
+    hand.view.close()
+
+
+def shown(qtbot: QtBot, open_map: OpenMap) -> Hand:
+    panel = CameraPanel(open_map, open_map.shared)
+    qtbot.addWidget(panel)
+    panel.resize(800, 600)
+    with qtbot.waitExposed(panel):
+        panel.show()
+    return Hand(qtbot, open_map, panel)
