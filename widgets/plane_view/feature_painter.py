@@ -23,8 +23,8 @@ Integers = NDArray[np.int64]
 MARGIN_PX = 16.0
 _MOST_SMOOTH = 4_000
 """More pieces than these are painted without smoothed edges."""
-_MOST_WHOLE = 12_000
-"""More pieces than these are thinned to whole pixels."""
+_THINNED_PX = {0: 0.0, 12_000: 1.0, 20_000: 2.0}
+"""From so many pieces on, their ends lie on steps of so many pixels; the shortest are left out."""
 _FILL_ALPHA = 34
 _LEAST_FILL_PX = 3.0
 
@@ -167,6 +167,7 @@ def _paint_lines(
     pieces, numbers, starts = cut_to(pixels, low, high)
     styles = looks.style_of[features.piece_owners[numbers]]
     is_smooth = len(pieces) <= _MOST_SMOOTH
+    step_px = max(step for count, step in _THINNED_PX.items() if len(pieces) >= count)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, is_smooth)
     begins = starts
     if any(style.is_dashed for style in looks.styles):
@@ -175,7 +176,7 @@ def _paint_lines(
         own = np.flatnonzero(styles == number)
         if own.size:
             dashes = dashed(pieces[own], begins[own]) if style.is_dashed else None
-            paint_pieces(painter, pieces[own], style, dashes, is_many=len(pieces) > _MOST_WHOLE)
+            paint_pieces(painter, pieces[own], style, dashes, step_px=step_px)
 
 
 def paint_pieces(
@@ -184,7 +185,7 @@ def paint_pieces(
     style: FeatureStyle,
     dashes: Floats | None = None,
     *,
-    is_many: bool = False,
+    step_px: float = 0.0,
 ) -> None:
     """Paint the pieces of lines: the dark halo below, then the line or its dashes.
 
@@ -193,10 +194,10 @@ def paint_pieces(
     pieces : (k, 2, 2) float64
         px, within the window.
     dashes : (d, 2, 2) float64 or None
-    is_many : bool
-        Thin what is shorter than a pixel.
+    step_px : float
+        Thin what is shorter; 0: nothing.
     """
-    lines = as_lines(thinned(pieces) if is_many else pieces)
+    lines = as_lines(thinned(pieces, step_px) if step_px else pieces)
     halo = style.halo_pen()
     halo.setCapStyle(Qt.PenCapStyle.SquareCap)
     painter.setPen(halo)
@@ -204,7 +205,7 @@ def paint_pieces(
     pen = QPen(QColor(style.colour), style.width_px)
     if dashes is not None:
         pen.setCapStyle(Qt.PenCapStyle.FlatCap)
-        lines = as_lines(thinned(dashes) if is_many else dashes)
+        lines = as_lines(thinned(dashes, step_px) if step_px else dashes)
     painter.setPen(pen)
     painter.drawLines(lines)
 

@@ -52,9 +52,9 @@ def cut_to(pieces: Floats, low: Floats, high: Floats) -> tuple[Floats, Integers,
     return cut, numbers[inside], enter * np.hypot(*way.T)
 
 
-def thinned(pieces: Floats) -> Floats:
-    """Pieces between whole pixels, without those that shrink to nothing: for very many."""
-    whole = np.rint(pieces)
+def thinned(pieces: Floats, step_px: float) -> Floats:
+    """Pieces between whole steps, without those that shrink to nothing: for very many."""
+    whole = np.rint(pieces / step_px) * step_px
     moves = whole[:, 0] != whole[:, 1]
     kept: Floats = whole[moves[:, 0] | moves[:, 1]]
     return kept

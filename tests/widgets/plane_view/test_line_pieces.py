@@ -45,7 +45,9 @@ def test_pieces_keep_their_numbers() -> None:
 
 def test_thinning_drops_what_is_shorter_than_a_pixel_and_leaves_no_gap() -> None:
     places = np.column_stack([np.linspace(0, 20, 201), np.zeros(201)])
-    kept = thinned(np.stack([places[:-1], places[1:]], axis=1))
+    pieces = np.stack([places[:-1], places[1:]], axis=1)
+    assert len(thinned(pieces, 2.0)) == 10
+    kept = thinned(pieces, 1.0)
     assert len(kept) == 20
     assert (kept[1:, 0] == kept[:-1, 1]).all()
     assert (kept[0, 0].tolist(), kept[-1, 1].tolist()) == ([0, 0], [20, 0])
