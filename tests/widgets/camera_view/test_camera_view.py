@@ -195,7 +195,7 @@ def test_the_offset_is_estimated_from_clicked_pairs(hand: Hand) -> None:
     assert taken is not None
     turned = looking(taken.image.path, (-0.5, 4.0, 2.0), (0.02, 1.0, -0.2))
     for place in (
-        place_at(1.0, 6.0),
+        place_at(0.5, 8.0),
         place_at(-2.0, 9.0),
         place_at(2.0, 12.0),
         place_at(0.0, 14.0, 1.0),
