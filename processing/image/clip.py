@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.corridor import Corridor
+from processing.kernels import kernel
 
 Floats = NDArray[np.float64]
 
@@ -54,8 +55,9 @@ class Clip:
 
     def holds(self, xyz: Floats) -> NDArray[np.bool_]:
         """(n,) which of (n, 3) float64 places, m, project CRS, are shown."""
-        planes = np.array(self.planes).reshape(-1, 4)
-        inside: NDArray[np.bool_] = (xyz @ planes[:, :3].T >= planes[:, 3]).all(axis=1)
+        inside = np.empty(len(xyz), np.bool_)
+        planes = np.array(self.planes, dtype=np.float64).reshape(-1, 4)
+        planes_kernel(np.ascontiguousarray(xyz, dtype=np.float64), planes, inside)
         if self.corridor is not None:
             places = np.flatnonzero(inside)
             inside[places] = self.corridor.holds(xyz[places])
@@ -85,3 +87,21 @@ class Clip:
 
 def _planes(normals: Floats, distances: Floats) -> tuple[tuple[float, float, float, float], ...]:
     return tuple((a, b, c, d) for a, b, c, d in np.column_stack([normals, distances]).tolist())
+
+
+@kernel
+def planes_kernel(
+    xyz: NDArray[np.float64], planes: NDArray[np.float64], inside: NDArray[np.bool_]
+) -> None:
+    """Whether places lie on the inner side of all planes; unknown ones (NaN) don't."""
+    for i in range(xyz.shape[0]):
+        holds = True
+        for plane in range(planes.shape[0]):
+            a, b, c, d = planes[plane]
+            holds = holds and a * xyz[i, 0] + b * xyz[i, 1] + c * xyz[i, 2] >= d
+        inside[i] = holds
+
+
+def warm_up() -> None:
+    """Compile the kernel."""
+    planes_kernel(np.zeros((2, 3)), np.zeros((1, 4)), np.empty(2, np.bool_))

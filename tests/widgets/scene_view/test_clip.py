@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from processing.image.clip import Clip
+from processing.image.clip import Clip, planes_kernel
 from processing.image.corridor import Corridor, Slab, corridor_kernel
 from processing.points.drive import Drive
 
@@ -117,3 +117,10 @@ def test_the_plain_loop_gives_the_same() -> None:
     corridor_kernel.py_func(xyz, way, keys, nearest, cells, limits, plain)  # type: ignore[attr-defined]
     assert fast.tolist() == plain.tolist()
     assert 0 < fast.sum() < 300
+
+
+def test_the_plain_loop_over_planes_gives_the_same() -> None:
+    xyz = np.random.default_rng(4).uniform(8, 32, (300, 3))
+    planes, plain = np.array(BOX.planes), np.empty(300, np.bool_)
+    planes_kernel.py_func(xyz, planes, plain)  # type: ignore[attr-defined]
+    assert BOX.holds(xyz).tolist() == plain.tolist()
