@@ -24,6 +24,9 @@ from widgets.shared.snap_state import SnapMark, SnapMode
 EDGE_PX = 8
 """How far beside an edge a click still means it, pixels of the image."""
 
+_MOST_REACHES = 2.0
+"""How many times the reach of the mouse an edge may be away: close up, 8 pixels are far."""
+
 _ALIKE_M = 0.03
 _DRAWN_BEFORE = 1.5
 """What is drawn goes before an edge up to so many times its distance, and 3 cm more."""
@@ -155,6 +158,9 @@ class SnappingHand(MouseTool):
         if hit.place is None or hit.reach_m <= 0 or not modes:
             return None
         own = self._shared.sketch.drawing
+        pointed = self._pointed_at(hit, "" if own is None else own.replaces)
+        if pointed is not None:
+            return pointed, SnapMode.VERTEX
         features = self._near.within(hit.place.xyz, hit.reach_m)
         replaced = "" if own is None else own.replaces
         lines = [_outline(one) for one in features if one.id != replaced]
@@ -172,6 +178,16 @@ class SnappingHand(MouseTool):
             return None
         best = min(wanted, key=lambda one: (_ORDER.index(one.what), one.distance_m))
         return self._place_of(best, lines), _MODE_OF_PLACE[best.what]
+
+    def _pointed_at(self, hit: Hit, replaced: str) -> Place | None:
+        """The drawn vertex under the mouse in the picture, however far behind it the points are."""
+        if SnapMode.VERTEX not in self._shared.snap.modes or hit.vertex < 0:
+            return None
+        feature = None if hit.feature == replaced else self._source.feature(hit.feature)
+        if feature is None or hit.vertex >= len(feature.vertices):
+            return None
+        vertex = feature.vertices[hit.vertex]
+        return Place(vertex.xyz, vertex.measured, vertex.is_occluded)
 
     def _place_of(self, found: LinePlace, lines: list[tuple[Vertex, ...]]) -> Place:
         if found.what == "vertex":
@@ -197,7 +213,7 @@ class SnappingHand(MouseTool):
             found, mode = highest_point(drive, point, hit.reach_m), SnapMode.HIGHEST
         elif SnapMode.EDGE in modes and self.tool.snaps_to_edges:
             edge = edge_beside(drive, point, EDGE_PX)
-            if edge is None:
+            if edge is None or math.dist(edge.xyz, place.xyz) > _MOST_REACHES * hit.reach_m:
                 return None
             return Place(edge.xyz, PointReference(drive.id, edge.point)), SnapMode.EDGE
         else:
