@@ -138,11 +138,35 @@ def front_kernel(
                     met = facing / slope
                     beside = met * (u * away[k, 0] + v * away[k, 1] + w * away[k, 2])
                     inside = met > 0 and met * met - 2 * beside + square <= radii[k] ** 2
+                    # Beyond its disc a plane through so few points says nothing.
                     if not inside:
                         met = distance
                 if (inside or is_own) and np.float32(met) < front[r, c]:
                     front[r, c] = met
                     number[r, c] = k
+
+
+@kernel
+def _slope(front: NDArray[np.float32], cell: tuple[int, int], step: tuple[int, int]) -> float:
+    """How much the inverse range of a surface changes from a cell to the next in a direction.
+
+    A surface goes on to both sides, nearer on one and farther on the other; of both changes the
+    smaller one is taken. What is nearer than both sides is a thin thing, and has no slope.
+    """
+    height, width = front.shape
+    r, c = cell
+    here = 1.0 / front[r, c]
+    largest = 0.0
+    # Over two cells as well: a sparse surface has the same point in neighbouring ones.
+    for far in (1, 2):
+        i, j = r - far * step[0], c - far * step[1]
+        k, m = r + far * step[0], c + far * step[1]
+        if i < 0 or j < 0 or k >= height or m >= width:
+            continue
+        before, after = here - 1.0 / front[i, j], 1.0 / front[k, m] - here
+        if before * after > 0.0:
+            largest = max(largest, min(abs(before), abs(after)) / far)
+    return largest
 
 
 @kernel
@@ -157,35 +181,16 @@ def hidden_kernel(
 
     ``cells``: (n, 2) column and row, −1: outside; ``tolerance``: m, and share of the range.
     The inverse range of a plane is linear in the image, so the far end of a tilted surface
-    within its cell is foretold from the cells beside it; the smaller of the differences to both
-    sides is taken, so that an edge isn't mistaken for a slope, and half of it, as the range is
-    that of the cell's middle.
+    within its cell is foretold from the cells beside it.
     """
-    height, width = front.shape
     for k in range(cells.shape[0]):
         c, r = cells[k, 0], cells[k, 1]
         hidden[k] = False
         if c < 0 or r < 0 or front[r, c] == np.inf:
             continue
-        here = 1.0 / front[r, c]
-        level = np.inf
-        if c > 0:
-            level = abs(here - 1.0 / front[r, c - 1])
-        if c + 1 < width:
-            level = min(level, abs(here - 1.0 / front[r, c + 1]))
-        steep = np.inf
-        if r > 0:
-            steep = abs(here - 1.0 / front[r - 1, c])
-        if r + 1 < height:
-            steep = min(steep, abs(here - 1.0 / front[r + 1, c]))
-        far = here
-        if level < np.inf:
-            far -= level / 2
-        if steep < np.inf:
-            far -= steep / 2
-        if far <= 0.0:
-            continue
-        hidden[k] = ranges[k] > 1.0 / far + tolerance[0] + tolerance[1] * ranges[k]
+        far = 1.0 / front[r, c] - _slope(front, (r, c), (0, 1)) - _slope(front, (r, c), (1, 0))
+        if far > 0.0:
+            hidden[k] = ranges[k] > 1.0 / far + tolerance[0] + tolerance[1] * ranges[k]
 
 
 def warm_up() -> None:

@@ -71,6 +71,17 @@ def test_measured_points_in_sight_are_not_hidden_by_their_own_surface(drive: Dri
     assert picture.hides(points[is_front]).mean() < 0.01
 
 
+def test_a_road_seen_at_a_flat_angle_doesnt_hide_itself(tmp_path: Path) -> None:
+    drive = drive_of(simulated_drive(5, length_m=30.0, range_noise_m=0.006), tmp_path / "d")
+    image = looking(Path("a.jpg"), (-0.5, 0.0, 2.2), (0.0, 1.0, 0.0), focal_px=400.0)
+    picture = DepthPicture(image, [drive])
+    points = drive.xyz(slice(0, drive.count))
+    east, north, up = (points - START).T
+    is_road = (np.abs(east) < 3.8) & (up < 0.02) & (north > 12) & (north < 26)
+    assert is_road.sum() > 2000
+    assert picture.hides(points[is_road]).mean() < 0.02
+
+
 @pytest.mark.parametrize("projection", ["perspective", "equirectangular"])
 def test_a_click_goes_to_the_surface_that_the_pixel_shows(
     drive: Drive, projection: Projection
