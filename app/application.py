@@ -10,6 +10,7 @@ from types import FrameType
 
 from platformdirs import user_documents_path
 from PySide6.QtCore import QTimer
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 
 from app.actions.draw import draw_actions
@@ -51,6 +52,7 @@ from widgets.panels.layers_panel import LayersPanel
 from widgets.panels.processing_panel import ProcessingPanel
 from widgets.panels.project_tree import ProjectTree
 from widgets.panels.review_panel import ReviewPanel
+from widgets.panels.template_panel import TemplatePanel
 from widgets.parts.drawing_bar import DrawingBar
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
@@ -101,6 +103,8 @@ def _do_demo_job(out: Path) -> int:
 def make_application() -> QApplication:
     """The one Qt application, with its look and its language."""
     running = QApplication.instance()
+    # The 3D view keeps what it has drawn when its dock becomes a window of its own.
+    QApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
     application = running if isinstance(running, QApplication) else QApplication(sys.argv[:1])
     application.setApplicationName("Zuka")
     Theme.of(application)
@@ -198,6 +202,9 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         review_panel=ReviewPanel(document, shared, language),
         evaluation_panel=EvaluationPanel(document, shared, language),
         label_panel=LabelPanel(document, shared, language),
+        template_panel=TemplatePanel(
+            document, shared, document.templates, document.do_at_hand, language=language
+        ),
         feature_table=FeatureTable(document, shared, language),
         jobs_panel=JobsPanel(language),
         window=lasting.window,

@@ -29,6 +29,7 @@ from processing.project.found_features import FoundFeatures
 from processing.project.importing import ImportRequest
 from processing.project.project import Project
 from processing.project.runs import Run
+from processing.project.template_store import TemplateStore
 from processing.runner import RunRequest
 from processing.text import Text
 from processing.tools.normals import NORMALS
@@ -122,6 +123,10 @@ class Document(QObject):
         except UserError as error:
             self.refused.emit(error)
             return ()
+
+    def templates(self) -> TemplateStore | None:
+        """The project's templates; None when nothing is open."""
+        return None if self._project is None else TemplateStore(self._project.settings)
 
     def catalogue(self) -> Catalogue:
         """The project's feature kinds, or the bundled ones when nothing is open."""

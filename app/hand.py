@@ -9,6 +9,7 @@ from widgets.mouse_tools.draw_parallel import DrawParallel
 from widgets.mouse_tools.draw_path import DrawPath
 from widgets.mouse_tools.draw_point import DrawPoint
 from widgets.mouse_tools.draw_shape import DrawShape, Shape
+from widgets.mouse_tools.draw_template import DrawTemplate, TemplatePart
 from widgets.mouse_tools.edit_vertices import EditVertices
 from widgets.mouse_tools.measure import MeasureTool
 from widgets.mouse_tools.mouse_tool import DragShape
@@ -40,6 +41,8 @@ def make_toolbox(document: Document) -> MouseToolbox:
         "trim": TrimLine(document, shared),
         "measure": MeasureTool(document, shared),
         "measure-area": MeasureTool(document, shared, is_closed=True),
+        "template": DrawTemplate(shared, TemplatePart.SHAPE),
+        "template-zone": DrawTemplate(shared, TemplatePart.EMPTY_ZONE),
         "paint-brush": PaintBrush(document, shared, at_hand),
         "paint-rectangle": PaintOutline(document, shared, at_hand, DragShape.BOX),
         "paint-lasso": PaintOutline(document, shared, at_hand, DragShape.LASSO),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QWidget
 
 from app.window_contents import Panel
 from app.window_parts import WindowParts
@@ -16,69 +17,54 @@ _BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
 def panels_of(parts: WindowParts) -> tuple[Panel, ...]:
     """All panels; each shares its place with those that are behind it."""
     project, layers = Text("Project", "プロジェクト"), Text("Layers", "レイヤ")
-    processing, attributes = Text("Processing", "処理"), Text("Attributes", "属性")
-    jobs, table = Text("Jobs", "ジョブ"), Text("Table of features", "地物一覧")
     return (
         Panel("layers", layers, parts.layers_panel, _LEFT, 212, 600),
         Panel("project", project, parts.project_tree, _LEFT, 212, 200, narrow_behind="layers"),
+        *_right_panels(parts),
+        *_lower_panels(parts),
+    )
+
+
+def _right_panels(parts: WindowParts) -> tuple[Panel, ...]:
+    """At the right of a wide window; below the layers in a narrow one."""
+    attributes = Text("Attributes", "属性")
+    return (
         Panel("attributes", attributes, parts.attribute_panel, _RIGHT, 248, 420),
-        Panel(
-            "processing",
-            processing,
-            parts.processing_panel,
-            _RIGHT,
-            248,
-            380,
-            narrow_behind="attributes",
+        _right("processing", Text("Processing", "処理"), parts.processing_panel, behind=""),
+        _right("jobs", Text("Jobs", "ジョブ"), parts.jobs_panel),
+        _right("review", Text("Review", "確認"), parts.review_panel, behind="attributes"),
+        _right("labels", Text("Labels", "ラベル"), parts.label_panel, is_hidden=True),
+        _right(
+            "templates", Text("Templates", "テンプレート"), parts.template_panel, is_hidden=True
         ),
-        Panel(
-            "jobs",
-            jobs,
-            parts.jobs_panel,
-            _RIGHT,
-            248,
-            380,
-            behind="processing",
-            narrow_behind="attributes",
-        ),
-        Panel(
-            "review",
-            Text("Review", "確認"),
-            parts.review_panel,
-            _RIGHT,
-            248,
-            380,
-            behind="attributes",
-            narrow_behind="attributes",
-        ),
-        Panel(
-            "labels",
-            Text("Labels", "ラベル"),
-            parts.label_panel,
-            _RIGHT,
-            248,
-            380,
-            behind="processing",
-            narrow_behind="attributes",
-            is_hidden=True,
-        ),
-        Panel(
-            "evaluation",
-            Text("Evaluation", "評価"),
-            parts.evaluation_panel,
-            _BELOW,
-            900,
-            260,
-            is_hidden=True,
-        ),
-        Panel(
-            "features",
-            table,
-            parts.feature_table,
-            _BELOW,
-            900,
-            230,
-            is_hidden=True,
-            key="F6",
-        ),
+    )
+
+
+def _right(
+    id_: str,
+    title: Text,
+    widget: QWidget,
+    *,
+    behind: str = "processing",
+    is_hidden: bool = False,
+) -> Panel:
+    return Panel(
+        id_,
+        title,
+        widget,
+        _RIGHT,
+        248,
+        380,
+        behind=behind,
+        narrow_behind="attributes",
+        is_hidden=is_hidden,
+    )
+
+
+def _lower_panels(parts: WindowParts) -> tuple[Panel, ...]:
+    """Tables, which wait to be called."""
+    evaluation, table = Text("Evaluation", "評価"), Text("Table of features", "地物一覧")
+    return (
+        Panel("evaluation", evaluation, parts.evaluation_panel, _BELOW, 900, 260, is_hidden=True),
+        Panel("features", table, parts.feature_table, _BELOW, 900, 230, is_hidden=True, key="F6"),
     )

@@ -34,6 +34,9 @@ def connect_review(parts: WindowParts) -> None:
     panel.processing_requested.connect(wiring.on_panel_processing_requested)
     panel.ask_count_from(review.count_from)
     parts.project_tree.review_requested.connect(wiring.on_tree_review_requested)
+    parts.document.shared.view_settings.shows_rejected_changed.connect(
+        wiring.on_settings_shows_rejected_changed
+    )
     wiring.keep_keys_to_views()
     wiring.on_review_changed()
 
@@ -82,6 +85,10 @@ class _ReviewWiring(QObject):
 
     def on_sketch_changed(self) -> None:
         self._allow_keys()
+
+    def on_settings_shows_rejected_changed(self) -> None:
+        is_shown = self._parts.document.shared.view_settings.shows_rejected
+        self._parts.window.actions_by_id["show-rejected"].setChecked(is_shown)
 
     def on_panel_processing_requested(self) -> None:
         self._parts.window.show_panel("processing")

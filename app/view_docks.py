@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from itertools import pairwise
 
 from PySide6.QtCore import QByteArray, Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QCloseEvent, QGuiApplication, QResizeEvent
@@ -150,16 +151,15 @@ class ViewDocks(QMainWindow):
         for dock in self._docks.values():
             dock.setFloating(False)
             self.removeDockWidget(dock)
-        for number, column in enumerate(standing.columns):
-            first = self._docks[column[0]]
-            # All in one area, split: columns of one row keep their shares when it is resized.
-            if number == 0:
-                self.addDockWidget(_LEFT, first)
-            else:
-                before = self._docks[standing.columns[number - 1][0]]
-                self.splitDockWidget(before, first, Qt.Orientation.Horizontal)
+        fronts = [self._docks[column[0]] for column in standing.columns]
+        # All in one area, split: columns of one row keep their shares when it is resized.
+        self.addDockWidget(_LEFT, fronts[0])
+        for before, front in pairwise(fronts):
+            self.splitDockWidget(before, front, Qt.Orientation.Horizontal)
+        # Afterwards: a dock that is split while it shares its place takes the other in as a tab.
+        for front, column in zip(fronts, standing.columns, strict=True):
             for behind in column[1:]:
-                self.tabifyDockWidget(first, self._docks[behind])
+                self.tabifyDockWidget(front, self._docks[behind])
         for dock in self._docks.values():
             dock.show()
         self._when_laid_out.start()

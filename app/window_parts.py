@@ -26,6 +26,7 @@ from widgets.panels.layers_panel import LayersPanel
 from widgets.panels.processing_panel import ProcessingPanel
 from widgets.panels.project_tree import ProjectTree
 from widgets.panels.review_panel import ReviewPanel
+from widgets.panels.template_panel import TemplatePanel
 from widgets.parts.drawing_bar import DrawingBar
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
@@ -80,6 +81,7 @@ class WindowParts:
     review_panel: ReviewPanel
     evaluation_panel: EvaluationPanel
     label_panel: LabelPanel
+    template_panel: TemplatePanel
     feature_table: FeatureTable
     jobs_panel: JobsPanel
     window: MainWindow

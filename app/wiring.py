@@ -9,6 +9,7 @@ from PySide6.QtCore import QObject
 from app.drawing_wiring import connect_drawing
 from app.jobs import JobState, JobStatus
 from app.review_wiring import connect_review
+from app.template_wiring import connect_templates
 from app.view_wiring import connect_views
 from app.window_parts import WindowParts, take_down
 from processing.errors import Unsuitable
@@ -38,6 +39,7 @@ def connect_parts(parts: WindowParts) -> None:
     connect_drawing(parts)
     connect_views(parts)
     connect_review(parts)
+    connect_templates(parts)
     parts.window.closed.connect(wiring.on_window_closed)
     wiring.on_undo_stack_changed()
     wiring.on_toolbox_tool_chosen(parts.toolbox.name)

@@ -105,6 +105,7 @@ SUBMENUS: Mapping[str, Text] = {
     "edit/select": Text("Select", "選択"),
     "edit/lines": Text("Lines", "線の編集"),
     "edit/status": Text("Status", "状態"),
+    "draw/templates": Text("Templates", "テンプレート"),
     "draw/kinds": Text("Kinds by number key", "数字キーの種別"),
     "draw/snap": Text("Snap", "スナップ"),
     "draw/plane": Text("Working plane", "作業平面"),

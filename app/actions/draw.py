@@ -42,7 +42,7 @@ def _tool_action(parts: WindowParts, entry: ToolEntry) -> Action:
         entry.text,
         choose,
         entry.menu,
-        (entry.key,),
+        (entry.key,) if entry.key else (),
         entry.icon,
         entry.toolbar,
         is_checkable=True,

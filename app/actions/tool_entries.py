@@ -250,6 +250,30 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
         toolbar=0,
         menu="draw/labels",
     ),
+    ToolEntry(
+        "template",
+        Text("Draw a template", "テンプレートを描く"),
+        "",
+        "mdi6.vector-polyline",
+        Text(
+            "Click the wanted profile in the section, the vertex where the line belongs first.",
+            "断面にあるべき形を描きます。線を作成する位置の頂点を最初にクリックします。",
+        ),
+        toolbar=0,
+        menu="draw/templates",
+    ),
+    ToolEntry(
+        "template-zone",
+        Text("Draw an empty zone", "空白域を描く"),
+        "",
+        "mdi6.vector-polygon",
+        Text(
+            "Draw round where the template has no points.",
+            "テンプレートで点があってはならない範囲を囲みます。",
+        ),
+        toolbar=0,
+        menu="draw/templates",
+    ),
 )
 
 SNAP_HINTS: Mapping[SnapMode, Text] = {

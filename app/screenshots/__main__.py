@@ -19,11 +19,18 @@ from app.screenshots.frame import FRAME
 from app.screenshots.hand import Hand
 from app.screenshots.street import draw_street, open_street
 from app.screenshots.studio import Studio
+from app.screenshots.views import VIEWS
 from app.settings import Settings
 from app.theme import ThemeChoice
 from processing.text import Language
 
-ON_STREET: Mapping[str, Callable[[Studio], None]] = {**FRAME, **DRAWING, **EDITING, **FORMS}
+ON_STREET: Mapping[str, Callable[[Studio], None]] = {
+    **FRAME,
+    **VIEWS,
+    **DRAWING,
+    **EDITING,
+    **FORMS,
+}
 NOTHING_OPEN: Mapping[str, Callable[[Studio], None]] = WITHOUT_STREET
 _LANGUAGES: Mapping[str, tuple[Language, ...]] = {
     "en": ("en",),

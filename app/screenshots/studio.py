@@ -17,18 +17,21 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDialog, QDockWidget, QLineEdit, QWidget
 
 from app.screenshots.hand import CONTROL, PLAIN, Hand
+from app.view_area import AreaLayout
 from app.window_parts import WindowParts
 from processing.points.drive import Drive
 from processing.project.feature import Feature, PointReference, Position
 from widgets.parts.command_palette import CommandPalette
+from widgets.section_view.settings import SectionSettings
 from widgets.shared.cursor import Place
+from widgets.shared.image_lay import ImageLay
 
 _LONGEST_MS = 60_000
 _REST_MS = 15_000
 _PULSE_MS = 60
 _NEAR_M = 0.3
 _SAME_TIMES = 3
-_MOST_STEPS = 20
+_MOST_STEPS = 60
 
 Found = TypeVar("Found", bound=QWidget)
 
@@ -51,8 +54,9 @@ class Studio:
     out: Path
     scratch: Path
     hand: Hand
-    _features: dict[str, Feature] = field(default_factory=dict, init=False)
     _docks: QByteArray = field(default_factory=QByteArray, init=False)
+    _area: AreaLayout = field(default_factory=AreaLayout, init=False)
+    _changes: int = field(default=0, init=False)
 
     @property
     def view(self) -> QWidget:
@@ -164,8 +168,9 @@ class Studio:
 
     def remember(self) -> None:
         """Come back to how the window stands now after each scene."""
-        self._features = self._by_id()
+        self._changes = self._changes_made()
         self._docks = self.parts.window.saveState()
+        self._area = self.parts.window.area.keep()
 
     def restore(self) -> None:
         """Take back what a scene has done."""
@@ -178,19 +183,32 @@ class Studio:
         for _ in range(2):
             self.key(Qt.Key.Key_Escape)
         self.letter("H", CONTROL)
+        parts.review.close()
         for _ in range(_MOST_STEPS):
-            if self._by_id() == self._features:
+            if self._changes_made() <= self._changes:
                 break
             self.letter("Z", CONTROL)
         parts.message_bar.hide()
         for panel in (parts.layers_panel, parts.feature_table):
             for line in panel.findChildren(QLineEdit):
                 line.clear()
-        beside = parts.window.actions_by_id["side-by-side"]
-        if beside.isChecked():
-            beside.trigger()
-        self.act("show-intensity")
+        for switch in ("side-by-side", "show-rejected"):
+            if parts.window.actions_by_id[switch].isChecked():
+                self.act(switch)
+        self._restore_views()
         parts.window.restoreState(self._docks)
+
+    def _restore_views(self) -> None:
+        """Let each view look at the street as it did at first."""
+        parts = self.parts
+        self.act("show-intensity")
+        parts.document.shared.view_settings.lay_image(ImageLay())
+        parts.section_view.set_pinned(False)
+        parts.section_view.use_settings(SectionSettings())
+        parts.camera_view.set_stereo(False)
+        parts.camera_panel.show_calibration(False)  # noqa: FBT003 - a slot
+        parts.window.area.restore(self._area)
+        self.act("along-view")
 
     def leave(self) -> None:
         """Close the window for good."""
@@ -264,8 +282,10 @@ class Studio:
         QTest.qWaitForWindowActive(window)
         self.view.setFocus()
 
-    def _by_id(self) -> dict[str, Feature]:
-        return {feature.id: feature for feature in self.parts.document.features()}
+    def _changes_made(self) -> int:
+        """How many changes of the map could be undone."""
+        project = self.parts.document.project
+        return 0 if project is None else project.history.position
 
     def _grab(self) -> QImage:
         window = self.parts.window
