@@ -9,8 +9,7 @@ from tempfile import TemporaryDirectory
 from types import FrameType
 
 from platformdirs import user_documents_path
-from PySide6.QtCore import QTimer
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, QTimer
 from PySide6.QtWidgets import QApplication
 
 from app.actions.draw import draw_actions
@@ -102,10 +101,11 @@ def _do_demo_job(out: Path) -> int:
 
 def make_application() -> QApplication:
     """The one Qt application, with its look and its language."""
-    running = QApplication.instance()
-    # The 3D view keeps what it has drawn when its dock becomes a window of its own.
-    QApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
-    application = running if isinstance(running, QApplication) else QApplication(sys.argv[:1])
+    application = QApplication.instance()
+    if not isinstance(application, QApplication):
+        # The 3D view keeps what it has drawn when its dock becomes a window of its own.
+        QApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
+        application = QApplication(sys.argv[:1])
     application.setApplicationName("Zuka")
     Theme.of(application)
     return application

@@ -1,0 +1,216 @@
+"""Scenes of the views beside the image: in step with it, and each with what it alone can do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+from PySide6.QtCore import QPoint, Qt
+
+from app.screenshots.hand import CONTROL
+from app.screenshots.street import LEFT, MARKING_M, RIGHT, at
+from app.screenshots.studio import Studio
+from app.view_docks import ViewLayout
+from processing.project.feature import Position
+from widgets.plane_view.view import PlaneView
+from widgets.shared.image_lay import ImageLay
+
+SIGN = (-11396.84, -35134.68, 127.94)
+
+_BEHIND = (-11375.78, -35123.31, 125.51)
+_SECTION, _CAMERA, _MAP, _SCENE = "section", "camera", "map", "scene"
+
+
+def in_step(layout: ViewLayout) -> Callable[[Studio], None]:
+    """A vertex of a curb was clicked in the image; every view shows it."""
+
+    def stand(studio: Studio) -> None:
+        studio.act(f"layout-{layout.value}")
+        studio.settle()
+        vertex = studio.feature("curb_upper", RIGHT).vertices[4].xyz
+        studio.look(RIGHT, vertex, 5)
+        studio.hand.click(studio.view, studio.spot(RIGHT, vertex))
+        if layout is ViewLayout.EARTHWORK:
+            studio.parts.map_view.zoom_by(1.5)
+
+    return stand
+
+
+def across(studio: Studio) -> None:
+    """The street cut across the vehicle's path."""
+    _cut(studio, at(9.0, MARKING_M))
+
+
+def along(studio: Studio) -> None:
+    """Cut along a drawn curb."""
+    vertex = studio.feature("curb_upper", RIGHT).vertices[4].xyz
+    _cut(studio, vertex, chooses=True)
+    section = studio.parts.section_view
+    section.use_settings(replace(section.settings, is_along=True))
+    section.show_everything()
+
+
+def pinned(studio: Studio) -> None:
+    """One place held as two windows, in the layout for checking."""
+    studio.act("layout-checking")
+    studio.settle()
+    _cut(studio, studio.feature("curb_upper", RIGHT).vertices[4].xyz, chooses=True)
+    studio.parts.section_view.set_pinned(True)
+
+
+def heights_larger(studio: Studio) -> None:
+    """Heights drawn five times larger: the camber of the road."""
+    _cut(studio, at(9.0, MARKING_M))
+    section = studio.parts.section_view
+    section.use_settings(replace(section.settings, exaggeration=5.0))
+
+
+def live(studio: Studio) -> None:
+    """The mouse over a curb in the image: the slab follows it."""
+    vertex = studio.feature("curb_upper", RIGHT).vertices[4].xyz
+    studio.look(RIGHT, vertex, 7)
+    studio.bring("view-section")
+    studio.settle()
+    studio.hover(studio.spot(RIGHT, vertex) + QPoint(20, 0))
+
+
+def dragged_in_section(studio: Studio) -> None:
+    """A curb's vertex on its way in the section."""
+    vertex = studio.feature("curb_upper", RIGHT).vertices[4].xyz
+    _cut(studio, vertex, chooses=True)
+    pane = studio.parts.section_view.panes[0]
+    studio.letter("V")
+    studio.parts.section_view.center_on(studio.place(RIGHT, vertex))
+    _zoom(studio, pane, vertex, 10)
+    spot = _spot(studio, pane, RIGHT, vertex)
+    studio.hand.drag(pane, [spot, spot + QPoint(46, -30)], CONTROL)
+
+
+def camera(studio: Studio) -> None:
+    """A sign in the image that sees it best, the map drawn into it."""
+    _photograph(studio, RIGHT, SIGN)
+
+
+def line_in_camera(studio: Studio) -> None:
+    """A white line being drawn in a photograph."""
+    _photograph(studio, RIGHT, at(11.0, MARKING_M))
+    view = studio.parts.camera_view
+    studio.letter("0")
+    for place in (at(9.0, MARKING_M), at(11.0, MARKING_M), at(13.0, MARKING_M)):
+        studio.hand.click(view, _spot(studio, view, RIGHT, place), CONTROL)
+    _hover(studio, view, _spot(studio, view, RIGHT, at(15.0, MARKING_M)))
+
+
+def stereo(studio: Studio) -> None:
+    """The first image was clicked; the other one shows the line of sight."""
+    _photograph(studio, RIGHT, SIGN)
+    view = studio.parts.camera_view
+    view.set_stereo(True)
+    studio.hand.click(view, _spot(studio, view, RIGHT, SIGN))
+    studio.wait(lambda: view.is_sharp)
+
+
+def stereo_measured(studio: Studio) -> None:
+    """Both images were clicked; the place has an error."""
+    stereo(studio)
+    view = studio.parts.camera_view
+    studio.settle()
+    studio.hand.click(view, _spot(studio, view, RIGHT, SIGN))
+
+
+def calibration(studio: Studio) -> None:
+    """How the camera sits on the vehicle."""
+    studio.act("layout-checking")
+    studio.settle()
+    _photograph(studio, RIGHT, SIGN)
+    studio.parts.camera_panel.show_calibration(True)  # noqa: FBT003 - a slot
+
+
+def no_image(studio: Studio) -> None:
+    """A place that no image sees."""
+    studio.look(LEFT, _BEHIND, 5)
+    studio.bring("view-camera")
+    studio.hand.click(studio.view, studio.spot(LEFT, _BEHIND))
+
+
+def map_whole(studio: Studio) -> None:
+    """The street from above: path with stations, what images see, scale, north."""
+    studio.act("layout-earthwork")
+    studio.settle()
+    studio.look(RIGHT, SIGN, 5)
+    studio.parts.document.shared.cursor.move_to(studio.place(RIGHT, SIGN))
+    studio.parts.map_view.show_everything()
+
+
+def map_small(studio: Studio) -> None:
+    """The map as first seen, in its usual place."""
+    studio.look(RIGHT, at(9.0, 0.0), 3)
+    studio.bring("view-map")
+
+
+def lying(lay: ImageLay) -> Callable[[Studio], None]:
+    """The image with the street running another way."""
+
+    def lie(studio: Studio) -> None:
+        studio.parts.document.shared.view_settings.lay_image(lay)
+        if lay.is_vertical:
+            studio.act("side-by-side")
+        studio.settle()
+        studio.look(RIGHT, at(9.0, 0.0), 3)
+
+    return lie
+
+
+def _cut(studio: Studio, xyz: Position, *, chooses: bool = False) -> None:
+    """Click a place in the image, the section beside it; choose the line there as well."""
+    studio.bring("view-section")
+    studio.look(RIGHT, xyz, 5)
+    if not chooses:
+        studio.key(Qt.Key.Key_Escape)
+    studio.hand.click(studio.view, studio.spot(RIGHT, xyz))
+    studio.settle()
+
+
+def _photograph(studio: Studio, drive: str, xyz: Position) -> None:
+    studio.bring("view-camera")
+    studio.look(drive, xyz, 5)
+    studio.parts.document.shared.cursor.move_to(studio.place(drive, xyz))
+    studio.wait(lambda: studio.parts.camera_view.is_sharp)
+    studio.settle()
+
+
+def _spot(studio: Studio, view: PlaneView, drive: str, xyz: Position) -> QPoint:
+    """Where a place is in a view."""
+    at_ = view.position_of(studio.place(drive, xyz))
+    return QPoint() if at_ is None else at_.toPoint()
+
+
+def _zoom(studio: Studio, view: PlaneView, xyz: Position, notches: int) -> None:
+    studio.hand.wheel(view, _spot(studio, view, RIGHT, xyz), notches)
+    studio.settle()
+
+
+def _hover(studio: Studio, view: PlaneView, spot: QPoint) -> None:
+    studio.hand.move(view, spot - QPoint(9, 5))
+    studio.hand.move(view, spot)
+
+
+VIEWS: Mapping[str, Callable[[Studio], None]] = {
+    **{f"views-{layout.value}": in_step(layout) for layout in ViewLayout},
+    "section-across": across,
+    "section-along": along,
+    "section-drag": dragged_in_section,
+    "section-heights": heights_larger,
+    "section-live": live,
+    "section-pinned": pinned,
+    "camera-calibration": calibration,
+    "camera-features": camera,
+    "camera-line": line_in_camera,
+    "camera-none": no_image,
+    "camera-stereo": stereo,
+    "camera-stereo-measured": stereo_measured,
+    "image-mirrored": lying(ImageLay(is_mirrored_across=True)),
+    "image-vertical": lying(ImageLay(is_vertical=True)),
+    "map-small": map_small,
+    "map-whole": map_whole,
+}
