@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QEvent, QPointF, Qt, Signal
 from PySide6.QtGui import (
     QKeyEvent,
@@ -123,8 +124,7 @@ class ImageView(QWidget):
         shared.map_changes.features_changed.connect(self._on_map_features_changed)
         shared.map_changes.drives_changed.connect(self._on_map_drives_changed)
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
-        shared.map_changes.labels_changed.connect(self._images.show_labels)
-        shared.map_changes.labels_changed.connect(self._edges.minimap.show_labels)
+        shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
         shared.view_settings.look_changed.connect(self._on_settings_look_changed)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
         shared.view_settings.image_lay_changed.connect(self._on_settings_image_lay_changed)
@@ -321,6 +321,10 @@ class ImageView(QWidget):
             self._images.make_anew()
             self._edges.minimap.make_anew()
             self.update()
+
+    def _on_map_labels_changed(self, drive: str, points: NDArray[np.int64]) -> None:
+        self._images.show_labels(drive, points)
+        self._edges.minimap.show_labels(drive, points)
 
     def _on_settings_look_changed(self) -> None:
         look = self._shared.view_settings.look
