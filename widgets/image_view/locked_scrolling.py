@@ -22,7 +22,7 @@ def following(
     """What a picture shows when it follows another one along the street.
 
     What is in the middle of the leader along the street comes into the middle, at the same
-    metres per pixel; where the middle is across the street stays.
+    metres per pixel; where the middle is across the street stays, but for a view from above.
 
     Parameters
     ----------
@@ -36,20 +36,27 @@ def following(
     Viewport or None
         None where the picture shows nothing of that place.
     """
-    u = place_along(leader, looking.centre, picture)
-    if u is None:
+    found = place_along(leader, looking.centre, picture)
+    if found is None:
         return None
     metres_per_px = _row_step_m(leader) / looking.zoom_u
     zoom_u = _row_step_m(picture) / metres_per_px
     scaled = replace(viewport, zoom=zoom_u / viewport.stretch) if zoom_u > 0 else viewport
-    return scaled.centred_on(u, viewport.centre[1])
+    return scaled.centred_on(found[0], viewport.centre[1] if found[1] is None else found[1])
 
 
-def place_along(leader: Picture, centre: tuple[float, float], picture: Picture) -> float | None:
-    """Where in a picture, along u, the place of another one's middle is.
+def place_along(
+    leader: Picture, centre: tuple[float, float], picture: Picture
+) -> tuple[float, float | None] | None:
+    """Where in a picture, in u and in v, the place of another one's middle is.
 
     By the time of measuring where both were measured then, or else by the nearest place of the
     way in plan; a view from above by the measured point next to its middle.
+
+    Returns
+    -------
+    tuple of float, or None
+        None where the picture shows nothing of it; v is None for a street, which stays across.
     """
     if not (picture.image.rows and leader.image.rows):
         return None
@@ -58,8 +65,9 @@ def place_along(leader: Picture, centre: tuple[float, float], picture: Picture) 
     moment = _moment(leader, centre[0])
     times = picture.image.row_times
     if times[0] <= moment <= times[-1]:
-        return float(np.interp(moment, times, np.arange(times.size, dtype=np.float64)))
-    return _nearest_row(picture, leader.lay.plan_at(centre[0]))
+        return float(np.interp(moment, times, np.arange(times.size, dtype=np.float64))), None
+    row = _nearest_row(picture, leader.lay.plan_at(centre[0]))
+    return None if row is None else (row, None)
 
 
 def _nearest_row(picture: Picture, plan: Floats) -> float | None:
@@ -82,7 +90,9 @@ def _moment(picture: Picture, u: float) -> float:
     return float(np.interp(u, np.arange(times.size, dtype=np.float64), times))
 
 
-def _by_point(leader: Picture, centre: tuple[float, float], picture: Picture) -> float | None:
+def _by_point(
+    leader: Picture, centre: tuple[float, float], picture: Picture
+) -> tuple[float, float | None] | None:
     row, column = leader.pixel_at(*centre)
     image = leader.image
     row, column = (
@@ -96,7 +106,8 @@ def _by_point(leader: Picture, centre: tuple[float, float], picture: Picture) ->
     if found < 0:
         return None
     rows, columns = picture.image.pixel_of(np.array([found]))
-    return float(picture.places(rows, columns.astype(np.int64))[0, 0])
+    u, v = picture.places(rows, columns.astype(np.int64))[0].tolist()
+    return u, None if picture.rows_go_right else v
 
 
 def _row_step_m(picture: Picture) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from copy import copy
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -14,8 +15,10 @@ from pytestqt.qtbot import QtBot
 
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache
+from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.catalogue import Geometry
+from processing.project.importing import ImportRequest, import_drives
 from tests.mouse_events import move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap, path_tool, place_on
 from widgets.image_view.locked_scrolling import following, place_along
@@ -250,11 +253,46 @@ def test_a_second_pass_follows_by_the_place_in_plan(left_drive: Drive) -> None:
     image.row_times = image.row_times + 3600.0
     lay = replace(picture.lay, plan=picture.lay.plan + np.array([3.0, 0.0]))
     beside = replace(picture, image=image, lay=lay)
-    u = place_along(picture, (200.3, 100.0), beside)
-    assert u is not None
+    found = place_along(picture, (200.3, 100.0), beside)
+    assert found is not None
+    u, v = found
+    assert v is None
     assert np.hypot(*(picture.lay.plan_at(200.3) - lay.plan_at(u))) == pytest.approx(3.0, abs=0.01)
     viewport = Viewport(900, 700, tuple(map(float, picture.size)), picture.stretch)
     assert following(picture, viewport, beside, viewport) is not None
     far = replace(beside, lay=replace(lay, plan=lay.plan + 1000.0))
     assert place_along(picture, (200.3, 100.0), far) is None
     assert following(picture, viewport, far, viewport) is None
+
+
+@pytest.fixture
+def surveyed(tmp_path: Path, left_drive: Drive) -> Drive:
+    """Give the same street as a cloud without rows, which is shown from above."""
+    random = np.random.default_rng(1)
+    points = random.choice(left_drive.count, 20_000, replace=False)
+    cloud = tmp_path / "cloud.xyz"
+    np.savetxt(cloud, left_drive.xyz(points), fmt="%.3f")
+    into = tmp_path / "drives"
+    into.mkdir()
+    (made,) = import_drives(ImportRequest((cloud,), ()), into, SilentMonitor())
+    return Drive(made)
+
+
+def test_a_view_from_above_follows_and_leads(left_drive: Drive, surveyed: Drive) -> None:
+    street = Picture.of(left_drive, ImageKind.TRAJECTORY_CENTER)
+    above = Picture.of(surveyed, ImageKind.TOP_VIEW)
+    image = street.image
+    point = image.nearest_filled(image.rows // 2, image.width // 2, image.width)
+    xyz = left_drive.xyz(np.array([point]))[0]
+    rows, columns = image.pixel_of(np.array([point]))
+    place = street.places(rows, columns.astype(np.int64))[0]
+    found = place_along(street, (float(place[0]), float(place[1])), above)
+    near = surveyed.nearest_point(xyz, 2.0)
+    rows, columns = above.image.pixel_of(np.array([near]))
+    centre = tuple(above.places(rows, columns.astype(np.int64))[0].tolist())
+    assert found == centre
+    back = place_along(above, centre, street)
+    assert back is not None
+    assert back[1] is None
+    away_m = np.diff(street.lay.distance_m(np.array([back[0], place[0]])))[0]
+    assert abs(away_m) < 2.0
