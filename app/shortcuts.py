@@ -102,6 +102,10 @@ FIXED: tuple[FixedKey, ...] = (
         Text("Zoom about the middle", "中央で拡大・縮小"),
         ("+", "-", "="),
     ),
+    FixedKey(
+        Text("Page Up, Page Down in the camera view", "カメラビューでPage Up、Page Down"),
+        Text("The other images that see the place", "その位置を写すほかの画像"),
+    ),
     FixedKey(Text("Home", "Home"), Text("Show everything", "全体を表示"), ("Home",), "everything"),
     FixedKey(
         Text("F", "F"), Text("Centre on the selection", "選択位置を中央に表示"), ("F",), "center"

@@ -14,6 +14,7 @@ from app.window_parts import WindowParts
 from processing.cameras.calibration import CameraOffset
 from processing.errors import UserError
 from processing.formats.profile_dxf import ProfileLook, write_profile_dxf
+from processing.section.cut import Cut
 from processing.text import Text
 
 _KEPT = Text("The camera offsets are kept.", "カメラの補正値を保存しました。")
@@ -31,6 +32,8 @@ def connect_views(parts: WindowParts) -> None:
     section.told.connect(parts.status_line.show_message)
     section.settings_changed.connect(parts.settings.remember_section)
     section.profile_export_requested.connect(wiring.on_section_profile_export_requested)
+    section.cut_changed.connect(wiring.on_section_cut_changed)
+    wiring.on_section_cut_changed(section.cut)
     camera.told.connect(parts.status_line.show_message)
     camera.fields_of_view_changed.connect(map_view.show_fields_of_view)
     parts.camera_panel.offsets_save_requested.connect(wiring.on_camera_offsets_save_requested)
@@ -45,6 +48,9 @@ class _ViewWiring(QObject):
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
         self._evaluation = Evaluation(parts.document)
+
+    def on_section_cut_changed(self, cut: Cut | None) -> None:
+        self._parts.map_view.show_slab(None if cut is None else cut.outline)
 
     def on_section_profile_export_requested(self) -> None:
         document, section = self._parts.document, self._parts.section_view
@@ -82,7 +88,7 @@ class _ViewWiring(QObject):
         for drive in document.drives():
             document.tiles.drop(drive.id)
             document.shared.map_changes.drive_columns_changed.emit(drive.id)
-        self._parts.camera_view.read_images()
+        self._parts.camera_panel.show_kept_offsets()
         document.told.emit(_KEPT)
 
     def on_evaluation_wanted(self) -> None:

@@ -21,6 +21,7 @@ _SHADOW = QColor(11, 13, 16)
 _PLATE = QColor(16, 18, 22, 190)
 _WAY = QColor("#d7c4ff")
 _VIEW = QColor("#f0e442")
+_SLAB = QColor("#56b4e9")
 
 _MARGIN_PX = 12.0
 _MOST_BAR_PX = 160.0
@@ -138,6 +139,27 @@ def paint_fields_of_view(
         painter.setPen(QPen(line, 1.75 if is_best else 1.0))
         painter.drawPolygon(outline)
     painter.setBrush(Qt.BrushStyle.NoBrush)
+
+
+def paint_slab(painter: QPainter, viewport: PlaneViewport, corners: Floats) -> None:
+    """Paint where the section cuts: the slab's outline, and its plane.
+
+    Parameters
+    ----------
+    corners : (4, 2) float64
+        Of the slab on the plane, one after the other.
+    """
+    pixels = viewport.to_screen(corners)
+    middles = (pixels[[0, 1]] + pixels[[3, 2]]) / 2
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    outline = QPolygonF([QPointF(x, y) for x, y in pixels.tolist()])
+    plane = QLineF(QPointF(*middles[0].tolist()), QPointF(*middles[1].tolist()))
+    for colour, wider in ((_SHADOW, 2.0), (_SLAB, 0.0)):
+        painter.setPen(QPen(colour, 1.0 + wider))
+        painter.drawPolygon(outline)
+        painter.setPen(QPen(colour, 1.75 + wider))
+        painter.drawLine(plane)
 
 
 def _thinned(pixels: Floats) -> Floats:

@@ -29,6 +29,7 @@ from widgets.map_view.furniture import (
     paint_fields_of_view,
     paint_north,
     paint_scale_bar,
+    paint_slab,
     paint_ways,
 )
 from widgets.map_view.plan_feed import PlanFeed, PlanWish, ShownPlan, whole_frame
@@ -92,6 +93,7 @@ class MapView(PlaneView):
         self._limit_m: float | None = LIMIT_M
         self._fields: tuple[Floats, ...] = ()
         self._best_field = -1
+        self._slab: Floats | None = None
         self._age = 0
         self._is_closed = False
         self._pictures = PlanPictures()
@@ -135,6 +137,17 @@ class MapView(PlaneView):
         self._best_field = best
         self.set_ground_stale()
 
+    def show_slab(self, corners: Floats | None) -> None:
+        """Mark where the section cuts; None where it doesn't.
+
+        Parameters
+        ----------
+        corners : (4, 2) float64 or None
+            Easting and northing of the slab's corners, m, project CRS.
+        """
+        self._slab = None if corners is None else on_plan(corners)
+        self.update()
+
     @override
     def close(self) -> bool:
         """Stop making pictures; may be called again."""
@@ -162,6 +175,8 @@ class MapView(PlaneView):
 
     @override
     def paint_frame(self, painter: QPainter, viewport: PlaneViewport) -> None:
+        if self._slab is not None:
+            paint_slab(painter, viewport, self._slab)
         paint_scale_bar(painter, viewport)
         paint_north(painter, viewport)
 
@@ -209,7 +224,7 @@ class MapView(PlaneView):
     def on_drives_changed(self) -> None:
         self._age += 1
         self._pictures.clear()
-        self._fields, self._best_field = (), -1
+        self._fields, self._best_field, self._slab = (), -1, None
         self._read_drives()
 
     @override
