@@ -55,71 +55,71 @@
     <context>
         <name>CameraBar</name>
         <message>
-            <source>The next better image of the place ([)</source>
-            <translation type="unfinished" />
+            <source>The image before in the list (Page Up or [)</source>
+            <translation>一覧の前の画像（Page Up または [）</translation>
         </message>
         <message>
-            <source>The next image of the place (])</source>
-            <translation type="unfinished" />
+            <source>The next image in the list (Page Down or ])</source>
+            <translation>一覧の次の画像（Page Down または ]）</translation>
         </message>
         <message>
             <source>The images that see the place, best first</source>
-            <translation type="unfinished" />
+            <translation>この場所が写っている画像（見やすい順）</translation>
         </message>
         <message>
             <source>Stereo</source>
-            <translation type="unfinished" />
+            <translation>ステレオ</translation>
         </message>
         <message>
             <source>Measure a place by two images where points are missing</source>
-            <translation type="unfinished" />
+            <translation>点のない場所を2枚の画像で計測します</translation>
         </message>
         <message>
             <source>Calibration</source>
-            <translation type="unfinished" />
+            <translation>標定調整</translation>
         </message>
         <message>
             <source>Adjust how the camera sits on the vehicle</source>
-            <translation type="unfinished" />
+            <translation>車両に対するカメラの取り付けを調整します</translation>
         </message>
         <message>
             <source>{number}/{count}  {name} · {distance} m</source>
-            <translation type="unfinished" />
+            <translation>{number}/{count}  {name} · {distance} m</translation>
         </message>
         <message>
-            <source> (hidden)</source>
-            <translation type="unfinished" />
+            <source>{number}/{count}  {name} · {distance} m (hidden)</source>
+            <translation>{number}/{count}  {name} · {distance} m（隠れ）</translation>
         </message>
         <message>
             <source>No image</source>
-            <translation type="unfinished" />
+            <translation>画像なし</translation>
         </message>
     </context>
     <context>
         <name>CameraView</name>
         <message>
             <source>There are no camera images. Import a drive together with the list of its images.</source>
-            <translation type="unfinished" />
+            <translation>カメラ画像がありません。画像一覧と一緒に走行データをインポートしてください。</translation>
         </message>
         <message>
             <source>Click a place in another view to see it in the camera images.</source>
-            <translation type="unfinished" />
+            <translation>別のビューで場所をクリックすると、その場所のカメラ画像を表示します。</translation>
         </message>
         <message>
             <source>No image sees this place. The nearest one, {name}, was taken {distance} m away.</source>
-            <translation type="unfinished" />
+            <translation>この場所が写っている画像はありません。最も近い画像 {name} の撮影位置まで {distance} m です。</translation>
         </message>
         <message>
             <source>Fade what is hidden in the image</source>
-            <translation type="unfinished" />
+            <translation>画像で隠れている地物を薄く表示</translation>
         </message>
         <message>
             <source>Reading {name} …</source>
-            <translation type="unfinished" />
+            <translation>{name} を読み込み中…</translation>
         </message>
         <message>
             <source>Something hides the place in this image.</source>
-            <translation type="unfinished" />
+            <translation>この画像では、この場所が手前のものに隠れています。</translation>
         </message>
     </context>
     <context>
@@ -506,7 +506,7 @@
         </message>
         <message>
             <source>Show another image beside this one</source>
-            <translation type="unfinished" />
+            <translation>画像をもう1つ並べて表示</translation>
         </message>
         <message>
             <source>Whole</source>
@@ -529,45 +529,45 @@
         <name>ImageChoice</name>
         <message>
             <source>Direction of travel in the image; exchange its sides</source>
-            <translation type="unfinished" />
+            <translation>画像内の進行方向・左右反転</translation>
         </message>
     </context>
     <context>
         <name>ImageClicks</name>
         <message>
             <source>Click a thing here, then the same one in another view.</source>
-            <translation type="unfinished" />
+            <translation>ここで対象をクリックし、続けて別のビューで同じものをクリックしてください。</translation>
         </message>
         <message>
             <source>Stereo: click the thing in this image.</source>
-            <translation type="unfinished" />
+            <translation>ステレオ: この画像で対象をクリックしてください。</translation>
         </message>
         <message>
             <source>Stereo: go to another image that shows the thing.</source>
-            <translation type="unfinished" />
+            <translation>ステレオ: 同じ対象が写っている別の画像に移ってください。</translation>
         </message>
         <message>
             <source>Stereo: click the same thing on the line. Escape begins again.</source>
-            <translation type="unfinished" />
+            <translation>ステレオ: 線の上で同じものをクリックしてください（Escで最初から）。</translation>
         </message>
     </context>
     <context>
         <name>ImageLay</name>
         <message>
             <source>Street from left to right</source>
-            <translation type="unfinished" />
+            <translation>道路を左から右へ（横向き）</translation>
         </message>
         <message>
             <source>Street upwards</source>
-            <translation type="unfinished" />
+            <translation>道路を下から上へ（縦向き）</translation>
         </message>
         <message>
             <source>Exchange left and right sides</source>
-            <translation type="unfinished" />
+            <translation>道路の左右を反転</translation>
         </message>
         <message>
             <source>Against the direction of travel</source>
-            <translation type="unfinished" />
+            <translation>進行方向を逆にする</translation>
         </message>
     </context>
     <context>
@@ -586,7 +586,7 @@
         </message>
         <message>
             <source>Direction of the street</source>
-            <translation type="unfinished" />
+            <translation>道路の向き</translation>
         </message>
     </context>
     <context>
@@ -751,8 +751,8 @@
             <translation>路面より高い点を非表示</translation>
         </message>
         <message>
-            <source>Show everything up to the sky</source>
-            <translation>すべての高さの点を表示</translation>
+            <source>Hide nothing</source>
+            <translation>非表示にしない</translation>
         </message>
         <message>
             <source>Higher than {metres} m</source>
@@ -792,72 +792,72 @@
         <name>OffsetForm</name>
         <message>
             <source>From points</source>
-            <translation type="unfinished" />
+            <translation>対応点から</translation>
         </message>
         <message>
             <source>Click a thing in the image, then the same thing in another view; repeat.</source>
-            <translation type="unfinished" />
+            <translation>画像で対象をクリックし、別のビューで同じものをクリックします。これを繰り返します。</translation>
         </message>
         <message>
             <source>Drop last pair</source>
-            <translation type="unfinished" />
+            <translation>最後の対応点を削除</translation>
         </message>
         <message>
             <source>Estimate</source>
-            <translation type="unfinished" />
+            <translation>計算</translation>
         </message>
         <message>
             <source>As delivered</source>
-            <translation type="unfinished" />
+            <translation>納品時に戻す</translation>
         </message>
         <message>
             <source>Save</source>
-            <translation type="unfinished" />
+            <translation>保存</translation>
         </message>
         <message>
             <source>Roll</source>
-            <translation type="unfinished" />
+            <translation>ロール</translation>
         </message>
         <message>
             <source>Pitch</source>
-            <translation type="unfinished" />
+            <translation>ピッチ</translation>
         </message>
         <message>
             <source>Yaw</source>
-            <translation type="unfinished" />
+            <translation>ヨー</translation>
         </message>
         <message>
             <source>Right</source>
-            <translation type="unfinished" />
+            <translation>右</translation>
         </message>
         <message>
             <source>Up</source>
-            <translation type="unfinished" />
+            <translation>上</translation>
         </message>
         <message>
             <source>Forward</source>
-            <translation type="unfinished" />
+            <translation>前</translation>
         </message>
         <message>
             <source>Time</source>
-            <translation type="unfinished" />
+            <translation>時刻</translation>
         </message>
         <message>
             <source>Camera “{name}”: added to what was delivered</source>
-            <translation type="unfinished" />
+            <translation>カメラ「{name}」: 納品値に加える補正</translation>
         </message>
         <message>
             <source>Now click the same thing in another view.</source>
-            <translation type="unfinished" />
+            <translation>続けて別のビューで同じものをクリックしてください。</translation>
         </message>
         <message>
             <source>Click a thing in the image.</source>
-            <translation type="unfinished" />
+            <translation>画像で対象をクリックしてください。</translation>
         </message>
         <message numerus="yes">
             <source>%n pair(s), off by {each} px</source>
-            <translation type="unfinished">
-                <numerusform />
+            <translation>
+                <numerusform>対応点 %n 組、残差 {each} px</numerusform>
             </translation>
         </message>
     </context>
@@ -1154,7 +1154,7 @@
         </message>
         <message>
             <source>Without perspective</source>
-            <translation type="unfinished" />
+            <translation>平行投影（遠近なし）</translation>
         </message>
         <message>
             <source>Shade by depth (eye-dome lighting)</source>
@@ -1162,7 +1162,7 @@
         </message>
         <message>
             <source>Show only</source>
-            <translation type="unfinished" />
+            <translation>表示範囲</translation>
         </message>
         <message>
             <source>All points</source>
@@ -1170,15 +1170,15 @@
         </message>
         <message>
             <source>Around what is chosen</source>
-            <translation type="unfinished" />
+            <translation>選択した地物の周辺</translation>
         </message>
         <message>
             <source>Within the section</source>
-            <translation type="unfinished" />
+            <translation>断面の範囲</translation>
         </message>
         <message>
             <source>Around the drive</source>
-            <translation type="unfinished" />
+            <translation>走行軌跡の周辺</translation>
         </message>
     </context>
     <context>
@@ -1265,6 +1265,17 @@
         </message>
     </context>
     <context>
+        <name>SectionMenu</name>
+        <message>
+            <source>Colour by distance from the plane</source>
+            <translation>断面からの距離で色分け</translation>
+        </message>
+        <message>
+            <source>Heights</source>
+            <translation>高さ</translation>
+        </message>
+    </context>
+    <context>
         <name>SectionPane</name>
         <message>
             <source>The section appears here once a recording is open.</source>
@@ -1281,10 +1292,6 @@
         <message>
             <source>This recording has no trajectory: select a drawn line to cut across it.</source>
             <translation>このデータには走行軌跡がありません。作図した線を選択すると、その線の断面が表示されます。</translation>
-        </message>
-        <message>
-            <source>Colour by distance from the plane</source>
-            <translation>断面からの距離で色分け</translation>
         </message>
     </context>
     <context>
@@ -1358,19 +1365,19 @@
         <name>SlabForm</name>
         <message>
             <source>To the left</source>
-            <translation type="unfinished" />
+            <translation>左側</translation>
         </message>
         <message>
             <source>To the right</source>
-            <translation type="unfinished" />
+            <translation>右側</translation>
         </message>
         <message>
             <source>Above the road up to</source>
-            <translation type="unfinished" />
+            <translation>路面からの高さ（上限）</translation>
         </message>
         <message>
             <source>Above the road from</source>
-            <translation type="unfinished" />
+            <translation>路面からの高さ（下限）</translation>
         </message>
     </context>
     <context>
@@ -1565,7 +1572,7 @@
         <name>_Header</name>
         <message>
             <source>Close this image</source>
-            <translation type="unfinished" />
+            <translation>この画像を閉じる</translation>
         </message>
     </context>
     <context>
