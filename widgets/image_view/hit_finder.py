@@ -98,6 +98,13 @@ class HitFinder:
             ray=None if self._snap.plane is None else self._ray(picture, position),
         )
 
+    def place_under(self, position: QPointF) -> Place | None:
+        """The point shown at a position; None where the pixel is empty."""
+        if self.picture is None:
+            return None
+        point = point_under(self.picture, self.viewport, position)
+        return None if point < 0 else place_of(self.picture, point)
+
     def quick_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
         """The same: in the image every point is at hand."""
         return self.exact_hit(position, modifiers)

@@ -19,6 +19,7 @@ from widgets.image_view.shown_cursor import ShownCursor
 from widgets.image_view.tile_images import TileImages
 from widgets.image_view.viewport import Viewport
 from widgets.shared.screen_marks import paint_cross, paint_note, paint_outline, paint_snap
+from widgets.shared.shared_state import SharedState
 from widgets.shared.sketch import Drawing
 from widgets.shared.snap_state import SNAP_NAMES, SnapMark
 from widgets.shared.view_settings import PointLook
@@ -49,6 +50,26 @@ class Overlays:
     outline: QPolygonF | None
     snap: SnapMark | None
     refusal: UserError | None
+
+    @staticmethod
+    def of(
+        shared: SharedState,
+        catalogue: Catalogue,
+        *,
+        cursor: ShownCursor,
+        outline: QPolygonF | None,
+        refusal: UserError | None,
+    ) -> Overlays:
+        """What there is now: a view's own, and what all views share."""
+        return Overlays(
+            drawing=shared.sketch.drawing,
+            catalogue=catalogue,
+            look=shared.view_settings.look,
+            cursor=cursor,
+            outline=outline,
+            snap=shared.snap.mark,
+            refusal=refusal,
+        )
 
 
 class ScenePainter:

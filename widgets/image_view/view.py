@@ -21,7 +21,7 @@ from processing.text import Language
 from widgets.image_view.edges import Edges
 from widgets.image_view.feature_overlay import FeatureOverlay
 from widgets.image_view.feature_places import FeaturePlaces
-from widgets.image_view.hit_finder import HitFinder, place_of, point_under
+from widgets.image_view.hit_finder import HitFinder
 from widgets.image_view.navigation import Navigation, viewport_on
 from widgets.image_view.picture import Picture
 from widgets.image_view.place_search import PlaceSearch
@@ -192,13 +192,11 @@ class ImageView(QWidget):
 
     @override
     def paintEvent(self, event: QPaintEvent) -> None:
-        overlays = Overlays(
-            drawing=self._shared.sketch.drawing,
-            catalogue=self._source.catalogue(),
-            look=self._shared.view_settings.look,
+        overlays = Overlays.of(
+            self._shared,
+            self._source.catalogue(),
             cursor=self._cursor,
             outline=self._gesture.outline,
-            snap=self._shared.snap.mark,
             refusal=self._refusal,
         )
         was_sharp = self._is_sharp
@@ -383,10 +381,7 @@ class ImageView(QWidget):
         self.update()
 
     def _hover(self, position: QPointF) -> None:
-        picture = self._picture
-        point = -1 if picture is None else point_under(picture, self._viewport, position)
-        place = None if picture is None or point < 0 else place_of(picture, point)
-        self._shared.cursor.hover_over(place)
+        self._shared.cursor.hover_over(self._hits.place_under(position))
 
     def _tint(self) -> None:
         picture = self._picture
