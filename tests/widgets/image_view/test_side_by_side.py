@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, Qt
+import shiboken6
+from PySide6.QtCore import SIGNAL, QPoint, Qt
 from PySide6.QtWidgets import QComboBox, QToolButton
 from pytestqt.qtbot import QtBot
 
@@ -296,3 +297,25 @@ def test_a_view_from_above_follows_and_leads(left_drive: Drive, surveyed: Drive)
     assert back[1] is None
     away_m = np.diff(street.lay.distance_m(np.array([back[0], place[0]])))[0]
     assert abs(away_m) < 2.0
+
+
+def test_an_image_that_was_closed_listens_no_longer(
+    qtbot: QtBot, views: ImageViews, open_map: OpenMap
+) -> None:
+    shared = open_map.shared
+
+    def listeners() -> list[int]:
+        return [
+            shared.cursor.receivers(SIGNAL("moved(PyObject)")),
+            shared.view_settings.receivers(SIGNAL("look_changed(PyObject)")),
+            shared.map_changes.receivers(SIGNAL("drives_changed()")),
+            shared.sketch.receivers(SIGNAL("changed()")),
+        ]
+
+    before = listeners()
+    other = views.add()
+    assert other is not None
+    assert all(now > then for now, then in zip(listeners(), before, strict=True))
+    views.close_image(other)
+    qtbot.waitUntil(lambda: not shiboken6.isValid(other))
+    assert listeners() == before
