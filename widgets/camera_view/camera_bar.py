@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QToolButton, QWidget
+from PySide6.QtWidgets import QComboBox, QHBoxLayout, QSizePolicy, QToolButton, QWidget
 
 from widgets.camera_view.view import CameraView
+
+_WIDEST_PX = 320
 
 
 class CameraBar(QWidget):
@@ -30,8 +32,12 @@ class CameraBar(QWidget):
         self._after = self._button("›", self.tr("The next image in the list (Page Down or ])"))
         self._images = QComboBox(self)
         self._images.setToolTip(self.tr("The images that see the place, best first"))
-        self._images.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
-        self._images.setMinimumContentsLength(14)
+        # Long names of files don't make the dock wider: there is a list to read them in.
+        shorter = QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon
+        self._images.setSizeAdjustPolicy(shorter)
+        self._images.setMinimumContentsLength(12)
+        self._images.setMaximumWidth(_WIDEST_PX)
+        self._images.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         # Page up and down go through the images as well: the view keeps the keys.
         self._images.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._stereo = self._button(
@@ -58,10 +64,10 @@ class CameraBar(QWidget):
 
     def _lay_out(self) -> None:
         layout = QHBoxLayout(self)
-        layout.setContentsMargins(8, 0, 8, 0)
+        layout.setContentsMargins(4, 0, 4, 4)
         layout.setSpacing(4)
         layout.addWidget(self._before)
-        layout.addWidget(self._images)
+        layout.addWidget(self._images, 4)
         layout.addWidget(self._after)
         layout.addStretch(1)
         layout.addWidget(self._stereo)

@@ -70,6 +70,8 @@ class CameraView(PlaneView):
     stereo_changed = Signal()
     told = Signal(object)
 
+    FILLED = 1.0
+
     def __init__(
         self,
         source: MapSource,
@@ -346,10 +348,7 @@ class CameraView(PlaneView):
 
     def _scale_of_whole(self) -> float:
         extent = self.extent()
-        if extent is None:
-            return 0.0
-        edges = extent.left(), extent.top(), extent.right(), extent.bottom()
-        return self.viewport.fitted(*edges).scale
+        return 0.0 if extent is None else self.viewport.filled_by(extent, self.FILLED).scale
 
     def _remarks(self) -> list[str]:
         """What the user should know about the image shown, a line each."""

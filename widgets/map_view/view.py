@@ -51,6 +51,7 @@ LIMIT_M = 3.0
 _LIMITS_M = (1.0, 2.0, 3.0, 5.0, 10.0)
 _QUICK_PX, _CLICK_PX, _CLOSE_PX = 1.0, 6.0, 1.0
 _ALONG_SHARE = 0.12
+_STREET_HALF_M = 15.0
 
 
 class MapView(PlaneView):
@@ -165,7 +166,12 @@ class MapView(PlaneView):
         if not self._drives:
             return None
         low, high = self._bounds()
-        return QRectF(low[0], -high[1], *np.maximum(high - low, 1.0).tolist())
+        everything = QRectF(low[0], -high[1], *np.maximum(high - low, 1.0).tolist())
+        street = QRectF()
+        for way in self._ways:
+            street = street.united(way.beside(_STREET_HALF_M))
+        # A beam that went far through a gate makes nobody's street wider.
+        return everything if street.isNull() else street.intersected(everything)
 
     @override
     def paint_ground(self, painter: QPainter, viewport: PlaneViewport) -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from PySide6.QtCore import QPointF, QRectF
 
 from processing.errors import Unsuitable
 from processing.points.drive import Drive
@@ -52,6 +53,12 @@ class Way:
         step = ahead - before
         directions: Floats = step / np.maximum(np.hypot(*step.T), 1e-9)[:, None]
         return directions
+
+    def beside(self, within_m: float) -> QRectF:
+        """The part of the plane about it, so far to each side."""
+        (left, top), (right, bottom) = self.places.min(axis=0), self.places.max(axis=0)
+        path = QRectF(QPointF(left, top), QPointF(right, bottom))
+        return path.adjusted(-within_m, -within_m, within_m, within_m)
 
     def distance_to(self, spot: tuple[float, float]) -> float:
         """Metres from a place of the plane to the nearest place of the path."""

@@ -65,6 +65,9 @@ class PlaneView(QWidget):
     menu_requested = Signal(object)
     viewport_changed = Signal()
 
+    FILLED = 0.9
+    """How much of the window all there is may fill."""
+
     def __init__(
         self,
         source: MapSource,
@@ -78,7 +81,7 @@ class PlaneView(QWidget):
         self._shared = shared
         self._language: Language = language
         self._viewport = PlaneViewport()
-        self._is_placed = False
+        self._is_placed = self._is_whole = False
         self._cursor: Place | None = shared.cursor.place
         self._cursor_before: Place | None = None
         self._map = ProjectedMap(source, shared)
@@ -185,7 +188,7 @@ class PlaneView(QWidget):
 
     def set_viewport(self, viewport: PlaneViewport) -> None:
         """Show this part of the plane, as large."""
-        self._is_placed = True
+        self._is_placed, self._is_whole = True, False
         self._look_through(viewport)
 
     def set_mouse_tool(self, tool: MouseTool | None) -> None:
@@ -202,11 +205,11 @@ class PlaneView(QWidget):
         self.update()
 
     def show_everything(self) -> None:
-        """Show all there is."""
+        """Show all there is, in windows of other sizes too until the user looks elsewhere."""
         extent = self.extent()
         if extent is not None:
-            edges = extent.left(), extent.top(), extent.right(), extent.bottom()
-            self.set_viewport(self._viewport.fitted(*edges))
+            self.set_viewport(self._viewport.filled_by(extent, self.FILLED))
+            self._is_whole = True
 
     def center_on(self, place: Place) -> None:
         """Put a place in the middle; without effect where it isn't shown."""
@@ -277,6 +280,8 @@ class PlaneView(QWidget):
     @override
     def resizeEvent(self, event: QResizeEvent) -> None:
         self._look_through(self._viewport.sized(self.width(), self.height()))
+        if self._is_whole:
+            self.show_everything()
         self._place_first()
 
     @override

@@ -107,15 +107,20 @@ class PlaneViewport:
         scaled = replace(self, scale=self._fitting(right - left, bottom - top))
         return scaled.centred_on((left + right) / 2, (top + bottom) / 2)
 
+    def filled_by(self, extent: QRectF, share: float) -> PlaneViewport:
+        """A rectangle of the plane in the middle, as large as it fits into a share of the sides."""
+        scaled = replace(self, scale=self._fitting(extent.width(), extent.height(), share))
+        return scaled.centred_on(extent.center().x(), extent.center().y())
+
     def shows(self, x: float, y: float, share: float = 1.0) -> bool:
         """Whether a place of the plane is in the widget, or in its middle part of this share."""
         ((right, down),) = self.to_screen(np.array([[x, y]])).tolist()
         is_across = bool(abs(right / self.width - 0.5) <= share / 2)
         return is_across and bool(abs(down / self.height - 0.5) <= share / 2)
 
-    def _fitting(self, wide: float, high: float) -> float:
-        fits_x = _FILLED * self.width / max(wide, 1e-6)
-        fits_y = _FILLED * self.height / max(high * self.exaggeration, 1e-6)
+    def _fitting(self, wide: float, high: float, share: float = _FILLED) -> float:
+        fits_x = share * self.width / max(wide, 1e-6)
+        fits_y = share * self.height / max(high * self.exaggeration, 1e-6)
         return _limited(min(fits_x, fits_y))
 
 

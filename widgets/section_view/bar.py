@@ -4,20 +4,31 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from PySide6.QtCore import QSignalBlocker, Signal, SignalInstance
-from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QHBoxLayout, QLabel, QToolBar, QWidget
+from PySide6.QtCore import QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import (
+    QComboBox,
+    QDoubleSpinBox,
+    QGridLayout,
+    QHBoxLayout,
+    QLabel,
+    QLayout,
+    QWidget,
+)
+from typing_extensions import override
 
+from widgets.parts.icon_button import IconButton
 from widgets.parts.number_field import NumberField
 from widgets.section_view.settings import EXAGGERATIONS, SectionSettings
 from widgets.section_view.standing import LEAST_WIDTH_M, MOST_WIDTH_M
 
 _LEAST_STEP_M, _MOST_STEP_M = 0.05, 100.0
 _TYPED = 2
+_GAP_PX = 8
 
 
-class SectionBar(QToolBar):
-    """The line above the section; what doesn't fit is behind the arrow at its end.
+class SectionBar(QWidget):
+    """The line above the section; where it doesn't fit, numbers take a line of their own.
 
     Signals
     -------
@@ -55,41 +66,105 @@ class SectionBar(QToolBar):
             [f"{factor:g}×" for factor in EXAGGERATIONS],
             self.tr("How many times heights are drawn larger"),
         )
+        self._live = IconButton(
+            "mdi6.cursor-default-click-outline",
+            self.tr("Live"),
+            self.tr("Follow the mouse over lines in any view"),
+            self,
+            is_switch=True,
+        )
+        self._pin = IconButton(
+            "mdi6.pin-outline",
+            self.tr("Pin"),
+            self.tr("Hold the place as two windows, across and along"),
+            self,
+            is_switch=True,
+        )
+        self._template = IconButton(
+            "mdi6.content-duplicate",
+            self.tr("Template…"),
+            self.tr("Draw a profile once and fit it along the street"),
+            self,
+        )
+        self._export = IconButton(
+            "mdi6.file-export-outline",
+            self.tr("Profile as DXF…"),
+            self.tr("Write the ground line with heights, and what crosses it"),
+            self,
+        )
         self._lay_out()
         for box in (self._lying, self._heights):
             box.activated.connect(self._on_settings_edited)
         for field in (self._width, self._step):
             field.valueChanged.connect(self._on_settings_edited)
         self._line.activated.connect(self._on_line_activated)
+        self._live.toggled.connect(self._on_settings_edited)
+        self._pin.toggled.connect(self.pin_toggled)
+        self._template.clicked.connect(self.template_requested)
+        self._export.clicked.connect(self.profile_export_requested)
         self.show_settings(self._settings)
 
     def _lay_out(self) -> None:
-        self.setMovable(False)
-        self.addWidget(self._lying)
-        self.addWidget(self._line)
-        self._named(self.tr("Width"), self._width)
-        self._named(self.tr("Step"), self._step)
-        self._named(self.tr("Heights"), self._heights)
-        self.addSeparator()
-        self._live = self._switch(
-            self.tr("Live"), self.tr("Follow the mouse over lines in any view")
+        self._which = self._group(self._lying, self._line)
+        self._numbers = self._group(
+            *self._named(self.tr("Width"), self._width),
+            *self._named(self.tr("Step"), self._step),
+            *self._named(self.tr("Heights"), self._heights),
         )
-        self._live.toggled.connect(self._on_settings_edited)
-        self._pin = self._switch(
-            self.tr("Pin"), self.tr("Hold the place as two windows, across and along")
+        self._buttons = self._group(self._live, self._pin, self._template, self._export)
+        self._grid = QGridLayout(self)
+        self._grid.setContentsMargins(4, 0, 4, 4)
+        self._grid.setHorizontalSpacing(_GAP_PX)
+        self._grid.setVerticalSpacing(4)
+        self._grid.setColumnStretch(2, 1)
+        # Its width is given by the dock; how many lines it takes follows.
+        self._grid.setSizeConstraint(QLayout.SizeConstraint.SetNoConstraint)
+        self._stand(is_one_line=True)
+
+    @override
+    def sizeHint(self) -> QSize:
+        margins = self._grid.contentsMargins()
+        lines = 1 if self._is_one_line else 2
+        high = max(group.sizeHint().height() for group in self._groups)
+        return QSize(
+            self._wide(is_one_line=self._is_one_line),
+            lines * high + (lines - 1) * 4 + margins.top() + margins.bottom(),
         )
-        self._pin.toggled.connect(self.pin_toggled)
-        self.addSeparator()
-        self._button(
-            self.tr("Template…"),
-            self.tr("Draw a profile once and fit it along the street"),
-            self.template_requested,
-        )
-        self._button(
-            self.tr("Profile as DXF…"),
-            self.tr("Write the ground line with heights, and what crosses it"),
-            self.profile_export_requested,
-        )
+
+    @override
+    def minimumSizeHint(self) -> QSize:
+        return QSize(self._wide(is_one_line=False), self.sizeHint().height())
+
+    @override
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        is_one_line = self.width() >= self._wide(is_one_line=True)
+        if is_one_line != self._is_one_line:
+            self._stand(is_one_line=is_one_line)
+
+    @property
+    def _groups(self) -> tuple[QWidget, QWidget, QWidget]:
+        return self._which, self._numbers, self._buttons
+
+    def _wide(self, *, is_one_line: bool) -> int:
+        """Pixels that one line takes, or the longer of two."""
+        which, numbers, buttons = (group.sizeHint().width() for group in self._groups)
+        margins = self._grid.contentsMargins()
+        wide = which + _GAP_PX + buttons
+        wide = wide + _GAP_PX + numbers if is_one_line else max(wide, numbers)
+        return wide + margins.left() + margins.right()
+
+    def _stand(self, *, is_one_line: bool) -> None:
+        self._is_one_line = is_one_line
+        for group in self._groups:
+            self._grid.removeWidget(group)
+        self._grid.addWidget(self._which, 0, 0)
+        if is_one_line:
+            self._grid.addWidget(self._numbers, 0, 1)
+        else:
+            self._grid.addWidget(self._numbers, 1, 0, 1, 4, Qt.AlignmentFlag.AlignLeft)
+        self._grid.addWidget(self._buttons, 0, 3)
+        self.updateGeometry()
 
     def show_settings(self, settings: SectionSettings) -> None:
         """Show what holds."""
@@ -131,16 +206,19 @@ class SectionBar(QToolBar):
     def _on_line_activated(self, index: int) -> None:
         self.line_wanted.emit(bool(index))
 
-    def _named(self, name: str, field: QWidget) -> None:
-        together = QWidget(self)  # so that neither goes behind the arrow alone
-        label = QLabel(name, together)
+    def _named(self, name: str, field: QWidget) -> tuple[QLabel, QWidget]:
+        label = QLabel(name, self)
         label.setBuddy(field)
+        return label, field
+
+    def _group(self, *parts: QWidget) -> QWidget:
+        together = QWidget(self)
         layout = QHBoxLayout(together)
-        layout.setContentsMargins(6, 0, 0, 0)
+        layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(4)
-        layout.addWidget(label)
-        layout.addWidget(field)
-        self.addWidget(together)
+        for part in parts:
+            layout.addWidget(part)
+        return together
 
     def _choice(self, names: list[str], tip: str) -> QComboBox:
         box = QComboBox(self)
@@ -153,17 +231,3 @@ class SectionBar(QToolBar):
         field = NumberField(low, high, unit="m", decimals=_TYPED, parent=self)
         field.setSingleStep(step)
         return field
-
-    def _button(self, name: str, tip: str, wish: SignalInstance) -> None:
-        action = QAction(name, self)
-        action.setIconText(name)  # or the dots would be taken off
-        action.setToolTip(tip)
-        action.triggered.connect(wish)
-        self.addAction(action)
-
-    def _switch(self, name: str, tip: str) -> QAction:
-        action = QAction(name, self)
-        action.setCheckable(True)
-        action.setToolTip(tip)
-        self.addAction(action)
-        return action

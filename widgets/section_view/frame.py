@@ -24,6 +24,7 @@ _PLATE = QColor(16, 18, 22, 205)
 _WORDS = QColor("#eef2f6")
 _EVERY_X_PX, _EVERY_Y_PX = 72.0, 40.0
 _FIFTHS = 5
+_SEPARATOR = " · "
 
 
 @dataclass(frozen=True)
@@ -32,12 +33,13 @@ class FrameWords:
 
     Attributes
     ----------
-    title : str
+    title : tuple of str
+        What matters most first; what there is no room for is left out.
     left, right : str
         What lies at the two ends of the ruler.
     """
 
-    title: str
+    title: tuple[str, ...]
     left: str
     right: str
 
@@ -121,10 +123,12 @@ def _paint_ends(painter: QPainter, words: FrameWords, band: QRectF) -> None:
     painter.drawText(inner, int(Qt.AlignmentFlag.AlignRight | middle), words.right)
 
 
-def _paint_title(painter: QPainter, viewport: PlaneViewport, title: str) -> None:
+def _paint_title(painter: QPainter, viewport: PlaneViewport, title: tuple[str, ...]) -> None:
     metrics = QFontMetricsF(painter.font())
-    room = viewport.width - LEFT_PX - 12.0
-    shown = metrics.elidedText(title, Qt.TextElideMode.ElideRight, room - 12.0)
+    room = viewport.width - LEFT_PX - 24.0
+    longer = (_SEPARATOR.join(title[:count]) for count in range(len(title), 1, -1))
+    whole = next((one for one in longer if metrics.horizontalAdvance(one) <= room), title[0])
+    shown = metrics.elidedText(whole, Qt.TextElideMode.ElideRight, room)
     plate = QRectF(
         LEFT_PX + 6.0, 6.0, metrics.horizontalAdvance(shown) + 12.0, metrics.height() + 4.0
     )

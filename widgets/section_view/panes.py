@@ -1,9 +1,11 @@
-"""SectionPanes: the picture of a section, or two of them side by side while a place is held."""
+"""SectionPanes: the picture of a section, or two of them while a place is held."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QSplitter, QWidget
+from typing_extensions import override
 
 from processing.text import Language
 from widgets.mouse_tools.mouse_tool import MouseTool
@@ -16,9 +18,13 @@ from widgets.shared.cursor import Place
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
+_LEAST_WIDE_PX = 300
+
 
 class SectionPanes(QSplitter):
     """Both pictures; the second one is there only while a place is held.
+
+    They stand side by side, in a narrow dock one above the other.
 
     Attributes
     ----------
@@ -78,6 +84,14 @@ class SectionPanes(QSplitter):
             if pane.is_clicking and pane.cut is not None:
                 return bool(pane.cut.holds(pane.cut.to_section([place.xyz]))[0])
         return False
+
+    @override
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        is_wide = self.width() >= 2 * _LEAST_WIDE_PX
+        standing = Qt.Orientation.Horizontal if is_wide else Qt.Orientation.Vertical
+        if standing != self.orientation():
+            self.setOrientation(standing)
+        super().resizeEvent(event)
 
     def take_down(self) -> None:
         """Stop looking for points; may be called again."""

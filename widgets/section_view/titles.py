@@ -20,7 +20,6 @@ _PINNED = Text("Pinned", "固定中")
 _EMPTY = Text("no points here", "点がありません")
 _LEFT, _RIGHT = Text("◂ left", "◂ 左"), Text("right ▸", "右 ▸")
 _BACK, _AHEAD = Text("◂ back", "◂ 手前"), Text("ahead ▸", "前方 ▸")
-_SEPARATOR = " · "
 
 
 def line_title(source: MapSource, standing: Standing) -> Text:
@@ -57,16 +56,16 @@ def frame_words(
 ) -> FrameWords:
     """What is written round a section."""
     parts = [
-        *([_PINNED] if is_pinned else []),
         line_title(source, standing),
         station_text(standing),
         *([_EMPTY] if is_empty else []),
+        *([_HEIGHTS.filled(factor=exaggeration)] if exaggeration != 1.0 else []),
+        *([_PINNED] if is_pinned else []),
         _WIDTH.filled(m=round(standing.width_m, 2)),
-        _HEIGHTS.filled(factor=exaggeration),
     ]
     left, right = (_BACK, _AHEAD) if standing.is_along else (_LEFT, _RIGHT)
     return FrameWords(
-        _SEPARATOR.join(part.spoken(language) for part in parts),
+        tuple(part.spoken(language) for part in parts),
         left.spoken(language),
         right.spoken(language),
     )

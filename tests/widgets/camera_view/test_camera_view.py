@@ -173,22 +173,27 @@ def test_escape_forgets_the_first_click_of_stereo(hand: Hand) -> None:
 
 
 def test_offsets_show_at_once_and_are_asked_to_be_kept(hand: Hand) -> None:
+    def column_px() -> float:
+        lay = hand.view.lay()
+        assert lay is not None
+        return float(lay.to_plane(np.array([ON_ROAD.xyz]))[0, 0])
+
     hand.look_at(ON_ROAD)
-    before = hand.spot(ON_ROAD)
-    hand.panel._bar._calibration.setChecked(True)
+    before_px = column_px()
+    hand.panel.show_calibration(True)
     form = hand.panel.form
     form._fields["yaw_deg"].setValue(1.0)
-    assert hand.spot(ON_ROAD).x() < before.x() - 3
+    assert column_px() < before_px - 3
     with hand.qtbot.waitSignal(hand.panel.offsets_save_requested) as asked:
         form._save.click()
     assert asked.args == [{"front": CameraOffset(yaw_deg=1.0)}]
-    hand.panel._bar._calibration.setChecked(False)
-    assert abs(hand.spot(ON_ROAD).x() - before.x()) <= 1
+    hand.panel.show_calibration(False)
+    assert abs(column_px() - before_px) <= 1
 
 
 def test_the_offset_is_estimated_from_clicked_pairs(hand: Hand) -> None:
     hand.look_at(ON_ROAD)
-    hand.panel._bar._calibration.setChecked(True)
+    hand.panel.show_calibration(True)
     form = hand.panel.form
     form._points.setChecked(True)
     taken = hand.view.showing.taken
@@ -213,7 +218,7 @@ def test_the_offset_is_estimated_from_clicked_pairs(hand: Hand) -> None:
     assert "4 pair" in form._facts.text()
     form._reset.click()
     assert form._fields["yaw_deg"].value() == 0
-    hand.panel._bar._calibration.setChecked(False)
+    hand.panel.show_calibration(False)
 
 
 def test_without_images_the_view_says_how_to_get_some(qtbot: QtBot, left_drive: Drive) -> None:

@@ -335,3 +335,21 @@ def test_another_project_is_shown_from_its_own_beginning(hand: Hand) -> None:
     hand.map.shared.map_changes.drives_changed.emit()
     assert hand.view.viewport.shows(5.0, -5.0, 0.01)
     assert hit_at(hand, hand.spot(5, 5)).feature == ""
+
+
+def test_everything_stays_in_windows_of_other_sizes_until_one_looks_elsewhere(hand: Hand) -> None:
+    def is_whole() -> bool:
+        corners = [hand.spot(0, 0), hand.spot(10, 10)]
+        return all(hand.view.rect().contains(corner) for corner in corners)
+
+    hand.view.resize(200, 500)
+    assert is_whole()
+    hand.view.resize(700, 500)
+    assert is_whole()
+    scale = hand.view.viewport.scale
+    hand.view.zoom_by(1.1)
+    hand.view.resize(300, 200)
+    assert hand.view.viewport.scale == pytest.approx(1.1 * scale)
+    hand.view.show_everything()
+    hand.view.resize(500, 400)
+    assert is_whole()

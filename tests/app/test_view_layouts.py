@@ -1,0 +1,66 @@
+"""Each layout shows the views that it promises."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from PySide6.QtWidgets import QDockWidget
+from pytestqt.qtbot import QtBot
+
+from app.application import build_window, make_application
+from app.settings import Settings
+from app.view_docks import ViewLayout
+from app.window_parts import WindowParts
+
+_IN_FRONT = {
+    ViewLayout.DRAWING: ["scene", "section"],
+    ViewLayout.CHECKING: ["section", "camera", "scene"],
+    ViewLayout.EARTHWORK: ["map", "section"],
+    ViewLayout.TWO_SCREENS: ["scene", "section"],
+}
+
+
+@pytest.fixture
+def parts(qtbot: QtBot, tmp_path: Path) -> Iterator[WindowParts]:
+    make_application()
+    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
+    parts.window.resize(1366, 768)
+    parts.window.show()
+    qtbot.waitExposed(parts.window)
+    parts.document.create(tmp_path / "street.zuka", "EPSG:6677")
+    yield parts
+    parts.window.close()
+    parts.window.deleteLater()
+
+
+def in_front(parts: WindowParts) -> list[str]:
+    """The views that are seen, from left to right."""
+    docks = [
+        dock
+        for dock in parts.view_docks.findChildren(QDockWidget)
+        if not dock.visibleRegion().isEmpty()
+    ]
+    docks.sort(key=lambda dock: dock.x())
+    return [dock.objectName().removeprefix("view-") for dock in docks]
+
+
+@pytest.mark.parametrize("before", ViewLayout)
+@pytest.mark.parametrize("layout", ViewLayout)
+def test_a_layout_shows_its_views_whatever_was_before(
+    qtbot: QtBot, parts: WindowParts, before: ViewLayout, layout: ViewLayout
+) -> None:
+    for one in (before, layout):
+        parts.window.area.place(one)
+        qtbot.waitUntil(lambda one=one: in_front(parts) == _IN_FRONT[one])
+    parts.window.area.place(ViewLayout.DRAWING)
+
+
+def test_all_views_are_there_in_each_layout(qtbot: QtBot, parts: WindowParts) -> None:
+    for layout in ViewLayout:
+        parts.window.area.place(layout)
+        qtbot.waitUntil(lambda layout=layout: in_front(parts) == _IN_FRONT[layout])
+        docks = parts.view_docks.findChildren(QDockWidget)
+        assert not any(dock.isHidden() or dock.isFloating() for dock in docks)
+    parts.window.area.place(ViewLayout.DRAWING)

@@ -1,0 +1,42 @@
+"""The bar above the section fits into narrow docks."""
+
+from __future__ import annotations
+
+import pytest
+from PySide6.QtCore import QPoint
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+from pytestqt.qtbot import QtBot
+
+from tests.widgets.section_view.conftest import Hand
+from widgets.section_view.bar import SectionBar
+
+
+@pytest.mark.parametrize("width", [340, 460, 900])
+def test_nothing_in_the_bar_is_cut_or_hidden(qtbot: QtBot, width: int) -> None:
+    host = QWidget()
+    qtbot.addWidget(host)
+    column = QVBoxLayout(host)
+    column.setContentsMargins(0, 0, 0, 0)
+    bar = SectionBar(host)
+    column.addWidget(bar)
+    column.addStretch(1)
+    host.resize(width, 200)
+    host.show()
+    qtbot.waitExposed(host)
+    qtbot.waitUntil(lambda: bar.height() == bar.sizeHint().height())
+    for part in bar.findChildren(QWidget):
+        if part.parentWidget() is not bar:
+            continue
+        assert bar.rect().contains(part.geometry())
+        assert part.width() >= part.sizeHint().width()
+    is_one_line = bar._numbers.mapTo(bar, QPoint()).y() < bar.height() / 2
+    assert is_one_line == (width == 900)
+
+
+def test_held_windows_stand_above_each_other_in_a_narrow_dock(hand: Hand) -> None:
+    hand.view.resize(420, 500)
+    hand.view.set_pinned(True)
+    across, along = hand.view.panes
+    hand.qtbot.waitUntil(lambda: along.geometry().top() > across.geometry().top())
+    hand.view.resize(900, 500)
+    hand.qtbot.waitUntil(lambda: along.geometry().left() > across.geometry().left())
