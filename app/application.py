@@ -19,6 +19,7 @@ from app.actions.help import HelpActions
 from app.actions.layouts import adopt_view_toggles, layout_actions
 from app.actions.process import process_actions
 from app.actions.review import review_actions
+from app.actions.sight import sight_actions
 from app.actions.tool_entries import TOOL_ENTRIES
 from app.actions.view import view_actions
 from app.cli.window_wish import WindowWish
@@ -40,7 +41,7 @@ from app.window_parts import LastingParts, WindowParts
 from app.wiring import connect_lasting, connect_parts
 from processing.text import Language, Text
 from widgets.camera_view.panel import CameraPanel
-from widgets.image_view.view import ImageView
+from widgets.image_view.side_by_side import ImageViews
 from widgets.map_view.view import MapView
 from widgets.panels.attribute_panel import AttributePanel
 from widgets.panels.evaluation_panel import EvaluationPanel
@@ -142,6 +143,7 @@ def _make_lasting(settings: Settings) -> LastingParts:
     theme.choose(settings.theme)
     jobs = JobQueue()
     document = Document(jobs)
+    document.shared.view_settings.lay_image(settings.image_lay)
     review = Review(document, document)
     return LastingParts(
         settings=settings,
@@ -157,8 +159,9 @@ def _make_lasting(settings: Settings) -> LastingParts:
 def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
     document = lasting.document
     shared, tiles = document.shared, document.tiles
-    image_view = ImageView(document, shared, tiles, language=language)
+    image_views = ImageViews(document, shared, tiles, language=language)
     scene_view = SceneView(document, shared, tiles, language=language)
+    scene_view.clipping.set_slab(lasting.settings.slab)
     section_view = SectionView(document, shared, language=language)
     section_view.use_settings(lasting.settings.section)
     camera_panel = CameraPanel(document, shared, language=language)
@@ -176,7 +179,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         document=document,
         review=lasting.review,
         toolbox=lasting.toolbox,
-        image_view=image_view,
+        image_views=image_views,
         scene_view=scene_view,
         section_view=section_view,
         camera_panel=camera_panel,
@@ -217,7 +220,7 @@ def _furnish(parts: WindowParts, files: FileActions, change: WindowChange) -> No
     contents = Contents(
         language=parts.language,
         start_page=parts.start_page,
-        views=ViewArea(parts.image_view, parts.view_docks),
+        views=ViewArea(parts.image_views, parts.view_docks),
         tools=parts.image_bar,
         header=parts.drawing_bar,
         message=parts.message_bar,
@@ -238,6 +241,7 @@ def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -
         *files.actions(),
         *edit_actions(parts),
         *layout_actions(parts),
+        *sight_actions(parts),
         *view_actions(parts, change.speak),
         *draw_actions(parts),
         *process_actions(parts),
@@ -250,7 +254,7 @@ def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -
     parts.start_page.open_requested.connect(files.choose_project)
     parts.start_page.import_requested.connect(files.choose_import)
     parts.start_page.demo_requested.connect(files.open_demo)
-    for view in (parts.image_view, parts.map_view):
+    for view in (parts.image_views, parts.map_view):
         view.open_requested.connect(files.choose_project)
         view.import_requested.connect(files.choose_import)
 

@@ -12,6 +12,13 @@ from widgets.shared.cursor import Place
 QUEUE_ACTIONS = (*QUEUE_KEYS, "review-worst", "review-along", "review-end")
 """Actions that can be done only while a queue is open."""
 
+_LEAST_IMAGE_ZOOM = 2.0
+"""Screen pixels of a pixel of the image."""
+
+_FARTHEST_M = 15.0
+_LEAST_MAP_SCALE = 12.0
+"""Screen pixels of a metre."""
+
 
 def connect_review(parts: WindowParts) -> None:
     """Connect the review with the widgets of a window; again for new ones."""
@@ -48,6 +55,7 @@ class _ReviewWiring(QObject):
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
         self._edited = ""
+        self._is_near = False
 
     def keep_keys_to_views(self) -> None:
         """Enter and letters judge over the views and the queue only: in forms they are typed."""
@@ -61,6 +69,9 @@ class _ReviewWiring(QObject):
 
     def on_review_shown(self, _feature: Feature, place: Place) -> None:
         """Every view has the candidate in its middle; the section cuts through it."""
+        if not self._is_near:
+            self._is_near = True
+            self._come_near()
         for view in self._parts.views:
             if view is not self._parts.camera_view:
                 view.center_on(place)
@@ -70,6 +81,7 @@ class _ReviewWiring(QObject):
         review = self._parts.review
         self._parts.review_panel.show_review(review.progress, review.current)
         self._allow_keys()
+        self._is_near = self._is_near and review.is_open
         current = review.current
         is_judged = current is None or current.status is not Status.CANDIDATE
         if self._edited and (current is None or is_judged or current.id != self._edited):
@@ -100,6 +112,17 @@ class _ReviewWiring(QObject):
         review = self._parts.review
         self._parts.window.show_panel("review")
         review.open((run,), review.progress.state.order)
+
+    def _come_near(self) -> None:
+        """Show what is judged large enough; later the operator's own zoom is kept."""
+        image, scene, map_view = (
+            self._parts.image_view,
+            self._parts.scene_view,
+            self._parts.map_view,
+        )
+        image.zoom_by(max(_LEAST_IMAGE_ZOOM / image.viewport.zoom_v, 1.0))
+        scene.zoom_by(max(scene.camera.distance_m / _FARTHEST_M, 1.0))
+        map_view.zoom_by(max(_LEAST_MAP_SCALE / map_view.viewport.scale, 1.0))
 
     def _allow_keys(self) -> None:
         """While something is drawn, Enter and Delete belong to what is drawn."""

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from datetime import datetime
 from pathlib import Path
+from typing import TypeVar
 
 from platformdirs import user_config_path
 from PySide6.QtCore import QByteArray, QSettings
@@ -14,9 +15,13 @@ from PySide6.QtCore import QByteArray, QSettings
 from app.language import system_language
 from app.theme import ThemeChoice
 from app.view_area import AreaLayout
+from processing.image.corridor import Slab
 from processing.text import Language
 from widgets.parts.recent_project import RecentProject
 from widgets.section_view.settings import SectionSettings
+from widgets.shared.image_lay import ImageLay
+
+_Kept = TypeVar("_Kept")
 
 _MOST_RECENT = 10
 _MOST_USED = 30
@@ -128,15 +133,29 @@ class Settings:
     @property
     def section(self) -> SectionSettings:
         """How sections were cut last."""
-        stored = str(self._store.value("section", ""))
-        try:
-            return SectionSettings(**json.loads(stored)) if stored else SectionSettings()
-        except (ValueError, TypeError):  # of another version
-            return SectionSettings()
+        return self._value("section", SectionSettings)
 
     def remember_section(self, section: SectionSettings) -> None:
         """Cut sections like this the next time."""
         self._store.setValue("section", json.dumps(asdict(section)))
+
+    @property
+    def image_lay(self) -> ImageLay:
+        """Which way images ran last."""
+        return self._value("image_lay", ImageLay)
+
+    def remember_image_lay(self, lay: ImageLay) -> None:
+        """Let images run like this the next time."""
+        self._store.setValue("image_lay", json.dumps(asdict(lay)))
+
+    @property
+    def slab(self) -> Slab:
+        """How far the 3D view showed points around the drive last."""
+        return self._value("slab", Slab)
+
+    def remember_slab(self, slab: Slab) -> None:
+        """Show points so far around the drive the next time."""
+        self._store.setValue("slab", json.dumps(asdict(slab)))
 
     @property
     def layout(self) -> WindowLayout | None:
@@ -165,6 +184,14 @@ class Settings:
         self._store.setValue(_RECENT, [str(project.folder) for project in projects])
         times = ["" if one.opened_at is None else one.opened_at.isoformat() for one in projects]
         self._store.setValue(_OPENED_AT, times)
+
+    def _value(self, name: str, kind: type[_Kept]) -> _Kept:
+        """A value that was kept as JSON; the usual one where that is of another version."""
+        stored = str(self._store.value(name, ""))
+        try:
+            return kind(**json.loads(stored)) if stored else kind()
+        except (ValueError, TypeError):
+            return kind()
 
     def _bytes(self, name: str) -> QByteArray:
         stored = self._store.value(name)

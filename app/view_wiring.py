@@ -29,6 +29,11 @@ def connect_views(parts: WindowParts) -> None:
     """Connect the views with each other and with the window; again for new ones."""
     wiring = _ViewWiring(parts)
     section, camera, map_view = parts.section_view, parts.camera_view, parts.map_view
+    images, bar = parts.image_views, parts.image_bar
+    bar.another_requested.connect(wiring.on_bar_another_requested)
+    images.images_changed.connect(wiring.on_images_changed)
+    parts.scene_view.clipping.changed.connect(wiring.on_clipping_changed)
+    parts.document.shared.view_settings.image_lay_changed.connect(wiring.on_settings_lay_changed)
     section.told.connect(parts.status_line.show_message)
     section.settings_changed.connect(parts.settings.remember_section)
     section.profile_export_requested.connect(wiring.on_section_profile_export_requested)
@@ -50,7 +55,29 @@ class _ViewWiring(QObject):
         self._evaluation = Evaluation(parts.document)
 
     def on_section_cut_changed(self, cut: Cut | None) -> None:
-        self._parts.map_view.show_slab(None if cut is None else cut.outline)
+        outline = None if cut is None else cut.outline
+        self._parts.map_view.show_slab(outline)
+        self._parts.scene_view.clipping.know_section(outline)
+
+    def on_bar_another_requested(self) -> None:
+        self._parts.image_views.add()
+
+    def on_images_changed(self) -> None:
+        self._parts.image_bar.allow_another(self._parts.image_views.can_add)
+
+    def on_clipping_changed(self) -> None:
+        clipping = self._parts.scene_view.clipping
+        self._parts.settings.remember_slab(clipping.slab)
+        actions = self._parts.window.actions_by_id
+        actions[f"clip-{clipping.choice.value}"].setChecked(True)
+
+    def on_settings_lay_changed(self) -> None:
+        lay = self._parts.document.shared.view_settings.image_lay
+        self._parts.settings.remember_image_lay(lay)
+        actions = self._parts.window.actions_by_id
+        actions["image-upwards"].setChecked(lay.is_vertical)
+        actions["image-mirrored"].setChecked(lay.is_mirrored_across)
+        actions["image-reversed"].setChecked(lay.is_reversed_along)
 
     def on_section_profile_export_requested(self) -> None:
         document, section = self._parts.document, self._parts.section_view

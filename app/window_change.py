@@ -17,8 +17,11 @@ from app.translation import Translation
 from app.window_parts import WindowParts
 from processing.errors import UserError
 from processing.text import Language
+from widgets.image_view.side_by_side import ShownImage
 from widgets.image_view.viewport import Viewport
+from widgets.plane_view.viewport import PlaneViewport
 from widgets.scene_view.camera import Camera
+from widgets.scene_view.clipping import ClipChoice
 from widgets.scene_view.view import SceneView
 
 _LAID_OUT_MS = 50
@@ -31,6 +34,10 @@ class _Seen:
     viewport: Viewport | None
     camera: Camera
     is_shaded: bool
+    clip: ClipChoice
+    images: tuple[ShownImage, ...]
+    are_locked: bool
+    map_part: PlaneViewport | None
     tool: str
     parameters: object
     error: UserError | None
@@ -45,13 +52,22 @@ class _Seen:
             viewport=None if image.picture is None else image.viewport,
             camera=parts.scene_view.camera,
             is_shaded=cloud is None or cloud.is_shading_wanted,
+            clip=parts.scene_view.clipping.choice,
+            images=tuple(parts.image_views.images),
+            are_locked=parts.image_views.is_locked,
+            map_part=None if parts.map_view.lay() is None else parts.map_view.viewport,
             tool=panel.tool,
             parameters=None if form is None else form.value(),
             error=parts.message_bar.error,
-            has_focus=focused in (image, parts.scene_view.picture),
+            has_focus=focused in (*parts.image_views.views, parts.scene_view.picture),
         )
 
     def show_again(self, parts: WindowParts) -> None:
+        parts.image_views.arrange(self.images)
+        parts.image_views.lock(self.are_locked)
+        parts.scene_view.clipping.choose(self.clip)
+        if self.map_part is not None:
+            parts.map_view.set_viewport(self.map_part)
         if self.viewport is not None:
             parts.image_view.look_through(self.viewport)
             parts.scene_view.look_from(self.camera)

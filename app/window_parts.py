@@ -14,6 +14,7 @@ from app.view_docks import ViewDocks
 from processing.text import Language
 from widgets.camera_view.panel import CameraPanel
 from widgets.camera_view.view import CameraView
+from widgets.image_view.side_by_side import ImageViews
 from widgets.image_view.view import ImageView
 from widgets.map_view.view import MapView
 from widgets.mouse_tools.toolbox import MouseToolbox
@@ -63,7 +64,7 @@ class WindowParts:
     document: Document
     review: Review
     toolbox: MouseToolbox
-    image_view: ImageView
+    image_views: ImageViews
     scene_view: SceneView
     section_view: SectionView
     camera_panel: CameraPanel
@@ -87,15 +88,20 @@ class WindowParts:
     window: MainWindow
 
     @property
+    def image_view(self) -> ImageView:
+        """The main image; others may stand beside it."""
+        return self.image_views.main
+
+    @property
     def camera_view(self) -> CameraView:
         """The picture in the camera's dock."""
         return self.camera_panel.view
 
     @property
-    def views(self) -> tuple[ImageView | SceneView | SectionView | CameraView | MapView, ...]:
+    def views(self) -> tuple[ImageViews | SceneView | SectionView | CameraView | MapView, ...]:
         """All views of the map."""
         return (
-            self.image_view,
+            self.image_views,
             self.scene_view,
             self.section_view,
             self.camera_view,

@@ -97,6 +97,8 @@ MENUS: tuple[tuple[str, Text], ...] = (
 """Menus from left to right."""
 
 SUBMENUS: Mapping[str, Text] = {
+    "view/image": Text("Image", "画像"),
+    "view/clip": Text("3D shows", "3Dの表示範囲"),
     "view/layouts": Text("Layouts", "レイアウト"),
     "view/section": Text("Section", "断面"),
     "view/theme": Text("Theme", "配色"),

@@ -1,0 +1,109 @@
+"""Sight actions: which way images run, what stands beside them, what 3D leaves out."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from app.actions.action import Action
+from app.window_parts import WindowParts
+from processing.text import Text
+from widgets.scene_view.clipping import ClipChoice
+
+_CLIPS = {
+    ClipChoice.EVERYTHING: Text("All points", "すべての点"),
+    ClipChoice.DRIVE: Text("Around the drive", "走行軌跡の周囲"),
+    ClipChoice.SELECTION: Text("Around what is chosen", "選択した地物の周囲"),
+    ClipChoice.SECTION: Text("Within the section", "断面の範囲"),
+}
+
+
+def sight_actions(parts: WindowParts) -> tuple[Action, ...]:
+    """What images and 3D show of the recording."""
+    return (*_lays(parts), *_beside(parts), *_clips(parts))
+
+
+def _lays(parts: WindowParts) -> tuple[Action, ...]:
+    settings = parts.document.shared.view_settings
+    fields = {
+        "image-upwards": ("is_vertical", Text("Street upwards", "道路を上向きに表示")),
+        "image-mirrored": (
+            "is_mirrored_across",
+            Text("Exchange left and right sides", "左右を反転"),
+        ),
+        "image-reversed": (
+            "is_reversed_along",
+            Text("Against the direction of travel", "進行方向を反転"),
+        ),
+    }
+
+    def turning(id_: str) -> Action:
+        field, text = fields[id_]
+
+        def turn() -> None:
+            lay = settings.image_lay
+            settings.lay_image(replace(lay, **{field: not getattr(lay, field)}))
+
+        return Action(
+            id_,
+            text,
+            turn,
+            "view/image",
+            is_checkable=True,
+            is_checked=getattr(settings.image_lay, field),
+            needs_project=True,
+        )
+
+    return tuple(map(turning, fields))
+
+
+def _beside(parts: WindowParts) -> tuple[Action, ...]:
+    images = parts.image_views
+
+    def lock() -> None:
+        images.lock(parts.window.actions_by_id["lock-scrolling"].isChecked())
+
+    return (
+        Action(
+            "another-image",
+            Text("Another image beside", "別の画像を並べる"),
+            images.add,
+            "view/image",
+            hint=Text(
+                "The other scanner, another kind or attribute of the same place.",
+                "同じ場所の別のスキャナ・画像の種類・表示属性を並べて表示します。",
+            ),
+            needs_project=True,
+        ),
+        Action(
+            "lock-scrolling",
+            Text("Images scroll together", "画像を連動してスクロール"),
+            lock,
+            "view/image",
+            is_checkable=True,
+            is_checked=images.is_locked,
+            needs_project=True,
+        ),
+    )
+
+
+def _clips(parts: WindowParts) -> tuple[Action, ...]:
+    scene = parts.scene_view
+
+    def clipping(choice: ClipChoice) -> Action:
+        def choose() -> None:
+            scene.clipping.choose(choice)
+            chosen = scene.clipping.choice.value
+            parts.window.actions_by_id[f"clip-{chosen}"].setChecked(True)
+
+        return Action(
+            f"clip-{choice.value}",
+            _CLIPS[choice],
+            choose,
+            "view/clip",
+            is_checkable=True,
+            is_checked=scene.clipping.choice is choice,
+            group="clip",
+            needs_project=True,
+        )
+
+    return tuple(clipping(choice) for choice in ClipChoice)
