@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 from types import FrameType
 
 from platformdirs import user_documents_path
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
 from app.actions.draw import draw_actions
@@ -58,6 +58,7 @@ from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
 from widgets.parts.start_page import StartPage
 from widgets.parts.status_line import StatusLine
+from widgets.scene_view.stage_loader import prepare_graphics
 from widgets.scene_view.view import SceneView
 from widgets.section_view.view import SectionView
 
@@ -104,8 +105,7 @@ def make_application() -> QApplication:
     """The one Qt application, with its look and its language."""
     application = QApplication.instance()
     if not isinstance(application, QApplication):
-        # The 3D view keeps what it has drawn when its dock becomes a window of its own.
-        QApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
+        prepare_graphics()
         application = QApplication(sys.argv[:1])
     application.setApplicationName("Zuka")
     Theme.of(application)

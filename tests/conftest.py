@@ -70,10 +70,11 @@ def home_of_tests(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @pytest.fixture(scope="session")
 def qapp_cls() -> type[QApplication]:
     """Give the class of the one application; its windows share graphics, as in the program."""
-    from PySide6.QtCore import Qt
     from PySide6.QtWidgets import QApplication
 
-    QApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
+    from widgets.scene_view.stage_loader import prepare_graphics
+
+    prepare_graphics()
     return QApplication
 
 

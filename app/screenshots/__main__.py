@@ -12,11 +12,13 @@ from tempfile import TemporaryDirectory
 from PySide6.QtTest import QTest
 
 from app.application import build_window, make_application
+from app.screenshots.checking import CHECKING
 from app.screenshots.drawing import DRAWING
 from app.screenshots.editing import EDITING
 from app.screenshots.forms import FORMS, WITHOUT_STREET
 from app.screenshots.frame import FRAME
 from app.screenshots.hand import Hand
+from app.screenshots.painting import PAINTING
 from app.screenshots.street import draw_street, open_street
 from app.screenshots.studio import Studio
 from app.screenshots.views import VIEWS
@@ -27,6 +29,8 @@ from processing.text import Language
 ON_STREET: Mapping[str, Callable[[Studio], None]] = {
     **FRAME,
     **VIEWS,
+    **CHECKING,
+    **PAINTING,
     **DRAWING,
     **EDITING,
     **FORMS,

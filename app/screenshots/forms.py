@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable, Mapping
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QLineEdit, QTreeWidget
+from PySide6.QtWidgets import QCheckBox, QLineEdit, QTreeWidget
 
 from app.catalogue_wish import adopt_catalogue
 from app.screenshots.hand import CONTROL
+from app.screenshots.street import RIGHT, at
 from app.screenshots.studio import Studio
+from processing.project.dropped_files import request_of_files
 from resources import path_of
+from widgets.dialogs.export_map import ExportForm
 from widgets.dialogs.import_drive import ImportForm
 from widgets.dialogs.shortcuts import ShortcutsForm
 
@@ -23,8 +27,11 @@ def import_form(studio: Studio) -> None:
 
 
 def export_form(studio: Studio) -> None:
-    """What is to be written."""
+    """What is to be written: the drawing, and points with their labels."""
     studio.letter("E", CONTROL)
+    form = studio.dialog(ExportForm)
+    *_, labelled = [box for box in form.findChildren(QCheckBox) if "LAS" in box.text()]
+    labelled.setChecked(True)
 
 
 def reference_system(studio: Studio) -> None:
@@ -53,6 +60,18 @@ def catalogue_question(studio: Studio) -> None:
     path = studio.scratch / "office.toml"
     path.write_text("[[kind]]".join([head, *kept]), encoding="utf-8")
     adopt_catalogue(studio.parts, path)
+
+
+def images_missing(studio: Studio) -> None:
+    """A delivery whose images were not delivered: what the camera view says."""
+    delivery = studio.scratch / "without images"
+    shutil.copytree(path_of("sample_street"), delivery, ignore=shutil.ignore_patterns("*.jpg"))
+    document = studio.parts.document
+    document.create(studio.scratch / "images.zuka", "")
+    document.import_files(request_of_files((delivery,), ""))
+    studio.wait(lambda: bool(document.drives()) and not studio.parts.jobs.is_busy)
+    studio.bring("view-camera")
+    studio.parts.document.shared.cursor.move_to(studio.place(RIGHT, at(9.0, 0.5)))
 
 
 def start_recent(studio: Studio) -> None:
@@ -91,4 +110,5 @@ WITHOUT_STREET: Mapping[str, Callable[[Studio], None]] = {
     "start-recent": start_recent,
     "start-empty": start_empty,
     "empty-project": empty_project,
+    "camera-missing": images_missing,
 }

@@ -22,6 +22,7 @@ from app.window_parts import WindowParts
 from processing.points.drive import Drive
 from processing.project.feature import Feature, PointReference, Position
 from widgets.parts.command_palette import CommandPalette
+from widgets.scene_view.clipping import ClipChoice
 from widgets.section_view.settings import SectionSettings
 from widgets.shared.cursor import Place
 from widgets.shared.image_lay import ImageLay
@@ -188,7 +189,10 @@ class Studio:
             if self._changes_made() <= self._changes:
                 break
             self.letter("Z", CONTROL)
+        while parts.template_panel.list.current is not None:
+            parts.template_panel.list.remove()
         parts.message_bar.hide()
+        parts.status_line.clearMessage()
         for panel in (parts.layers_panel, parts.feature_table):
             for line in panel.findChildren(QLineEdit):
                 line.clear()
@@ -207,6 +211,8 @@ class Studio:
         parts.section_view.use_settings(SectionSettings())
         parts.camera_view.set_stereo(False)
         parts.camera_panel.show_calibration(False)  # noqa: FBT003 - a slot
+        parts.image_views.arrange(())
+        parts.scene_view.clipping.choose(ClipChoice.EVERYTHING)
         parts.window.area.restore(self._area)
         self.act("along-view")
 
@@ -234,7 +240,7 @@ class Studio:
         shown: list[QImage] = []
 
         def rests() -> bool:
-            shown.append(self._grab())
+            shown.append(self._grab(self.parts.window))
             scene = self.parts.scene_view
             if scene.isVisible() and scene.cloud is not None and not scene.is_settled:
                 return False
@@ -245,10 +251,20 @@ class Studio:
         self.wait(rests, _REST_MS)
 
     def shoot(self, name: str) -> None:
-        """Keep what the window shows, and what stands before it."""
+        """Keep what the window shows, and what stands before it; its second window by itself."""
         self.settle()
+        docks, window = self.parts.view_docks, self.parts.window
+        if docks.is_apart:
+            self._keep(self._grab(docks), f"{name}-beside")
+            docks.hide()
+            self.settle()
+        self._keep(self._grab(window), name)
+        if docks.is_apart:
+            docks.show()
+
+    def _keep(self, picture: QImage, name: str) -> None:
         path = self.out / f"{name}-{self.parts.language}.png"
-        if not self._grab().save(str(path)):
+        if not picture.save(str(path)):
             message = f"{path} can't be written"
             raise OSError(message)
 
@@ -287,8 +303,7 @@ class Studio:
         project = self.parts.document.project
         return 0 if project is None else project.history.position
 
-    def _grab(self) -> QImage:
-        window = self.parts.window
+    def _grab(self, window: QWidget) -> QImage:
         at = window.frameGeometry()
         picture = window.screen().grabWindow(0, at.x(), at.y(), at.width(), at.height())
         return picture.toImage()

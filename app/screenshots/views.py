@@ -13,12 +13,13 @@ from app.screenshots.studio import Studio
 from app.view_docks import ViewLayout
 from processing.project.feature import Position
 from widgets.plane_view.view import PlaneView
+from widgets.scene_view.clipping import ClipChoice
 from widgets.shared.image_lay import ImageLay
 
 SIGN = (-11396.84, -35134.68, 127.94)
-
 _BEHIND = (-11375.78, -35123.31, 125.51)
-_SECTION, _CAMERA, _MAP, _SCENE = "section", "camera", "map", "scene"
+_AHEAD_M = -9.0
+"""Along the curb, some metres in front of the first image."""
 
 
 def in_step(layout: ViewLayout) -> Callable[[Studio], None]:
@@ -87,26 +88,28 @@ def dragged_in_section(studio: Studio) -> None:
 
 
 def camera(studio: Studio) -> None:
-    """A sign in the image that sees it best, the map drawn into it."""
-    _photograph(studio, RIGHT, SIGN)
+    """A curb in the image that sees it best, the map drawn into it."""
+    _photograph(studio, LEFT, studio.features("curb_upper", LEFT)[-1].vertices[-1].xyz)
 
 
 def line_in_camera(studio: Studio) -> None:
     """A white line being drawn in a photograph."""
-    _photograph(studio, RIGHT, at(11.0, MARKING_M))
     view = studio.parts.camera_view
+    places = [at(_AHEAD_M + further_m, MARKING_M) for further_m in (0.0, 2.0, 4.0, 7.0)]
+    _photograph(studio, LEFT, places[1])
     studio.letter("0")
-    for place in (at(9.0, MARKING_M), at(11.0, MARKING_M), at(13.0, MARKING_M)):
-        studio.hand.click(view, _spot(studio, view, RIGHT, place), CONTROL)
-    _hover(studio, view, _spot(studio, view, RIGHT, at(15.0, MARKING_M)))
+    for place in places[:-1]:
+        studio.hand.click(view, _spot(studio, view, LEFT, place), CONTROL)
+    _hover(studio, view, _spot(studio, view, LEFT, places[-1]))
 
 
 def stereo(studio: Studio) -> None:
     """The first image was clicked; the other one shows the line of sight."""
-    _photograph(studio, RIGHT, SIGN)
+    place = _seen_twice(studio)
+    _photograph(studio, LEFT, place)
     view = studio.parts.camera_view
     view.set_stereo(True)
-    studio.hand.click(view, _spot(studio, view, RIGHT, SIGN))
+    studio.hand.click(view, _spot(studio, view, LEFT, place))
     studio.wait(lambda: view.is_sharp)
 
 
@@ -115,7 +118,7 @@ def stereo_measured(studio: Studio) -> None:
     stereo(studio)
     view = studio.parts.camera_view
     studio.settle()
-    studio.hand.click(view, _spot(studio, view, RIGHT, SIGN))
+    studio.hand.click(view, _spot(studio, view, LEFT, _seen_twice(studio)))
 
 
 def calibration(studio: Studio) -> None:
@@ -159,6 +162,29 @@ def lying(lay: ImageLay) -> Callable[[Studio], None]:
         studio.look(RIGHT, at(9.0, 0.0), 3)
 
     return lie
+
+
+def beside(studio: Studio) -> None:
+    """Two images, scrolled together."""
+    studio.look(RIGHT, at(9.0, 0.0), 3)
+    studio.parts.image_bar.another_requested.emit()
+
+
+def clipped(choice: ClipChoice) -> Callable[[Studio], None]:
+    """3D with nothing but what is around the drive, the chosen line or the section."""
+
+    def clip(studio: Studio) -> None:
+        _cut(studio, studio.feature("curb_upper", RIGHT).vertices[4].xyz, chooses=True)
+        studio.parts.scene_view.clipping.choose(choice)
+        if choice is not ClipChoice.DRIVE:
+            studio.parts.scene_view.center_on_selection()
+
+    return clip
+
+
+def _seen_twice(studio: Studio) -> Position:
+    """A curb's vertex that two images see from far enough apart."""
+    return studio.feature("curb_upper", LEFT).vertices[2].xyz
 
 
 def _cut(studio: Studio, xyz: Position, *, chooses: bool = False) -> None:
@@ -209,8 +235,12 @@ VIEWS: Mapping[str, Callable[[Studio], None]] = {
     "camera-none": no_image,
     "camera-stereo": stereo,
     "camera-stereo-measured": stereo_measured,
+    "image-beside": beside,
     "image-mirrored": lying(ImageLay(is_mirrored_across=True)),
     "image-vertical": lying(ImageLay(is_vertical=True)),
     "map-small": map_small,
     "map-whole": map_whole,
+    "scene-clipped-drive": clipped(ClipChoice.DRIVE),
+    "scene-clipped-line": clipped(ClipChoice.SELECTION),
+    "scene-clipped-section": clipped(ClipChoice.SECTION),
 }
