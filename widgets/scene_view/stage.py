@@ -6,11 +6,14 @@ after it was shown, beside the window's thread.
 
 from __future__ import annotations
 
+import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 
 import numpy as np
 from numpy.typing import NDArray
+from PySide6.QtCore import QMessageLogContext, QtMsgType, qInstallMessageHandler
 from PySide6.QtWidgets import QWidget
 from pyvistaqt import QtInteractor
 from vtkmodules.vtkCommonCore import vtkCommand, vtkLogger, vtkOutputWindow
@@ -30,6 +33,7 @@ _NEAREST_M = 0.1
 _DEPTH_RATIO = 20_000.0
 _LAYERS = 4
 _ROOM_M = 1.0  # beyond the points, for what is drawn about them
+_FORMAT_AGAIN = "Setting a new default format"
 _MOST_TIMES_LEAST = 4.0  # fills the gaps of a road down to some four metres
 
 
@@ -47,7 +51,8 @@ class Stage:
         # Troubles of the graphics are of no use to a surveyor; on Windows they open a window.
         vtkOutputWindow.GetInstance().SetDisplayModeToNever()
         vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-        self.widget = QtInteractor(parent, auto_update=False, multi_samples=0)
+        with _format_taken_as_set():
+            self.widget = QtInteractor(parent, auto_update=False, multi_samples=0)
         self._window = vtkGenericOpenGLRenderWindow.SafeDownCast(self.widget.ren_win)
         self._window.SetNumberOfLayers(_LAYERS)
         self._cloud: vtkRenderer = self.widget.renderer
@@ -153,6 +158,29 @@ class Stage:
         if self._began_at and not self._is_closed:
             seconds, self._began_at = time.perf_counter() - self._began_at, 0.0
             self._told_frame(seconds)
+
+
+@contextmanager
+def _format_taken_as_set() -> Iterator[None]:
+    """Keep Qt from warning of the interactor's format, which the application has already.
+
+    The interactor asks for it again, and Qt compares it with what the driver gave, which is newer.
+    """
+    before: Callable[[QtMsgType, QMessageLogContext, str], None] | None = None
+
+    def pass_on(kind: QtMsgType, context: QMessageLogContext, message: str) -> None:
+        if _FORMAT_AGAIN in message:
+            return
+        if before is not None:
+            before(kind, context, message)
+        else:
+            sys.stderr.write(f"{message}\n")
+
+    before = qInstallMessageHandler(pass_on)
+    try:
+        yield
+    finally:
+        qInstallMessageHandler(before)
 
 
 def _corners(low: NDArray[np.float32], high: NDArray[np.float32]) -> NDArray[np.float64]:
