@@ -101,7 +101,7 @@ class Operator:
         segment = placed.segments[choice.randrange(len(placed.segments))]
         share = choice.choice((0.25, 0.5, 0.75))
         u, v = segment[:2] + share * (segment[2:4] - segment[:2])
-        return self._if_inside(QPointF(self.view.viewport.x_of(u), self.view.viewport.y_of(v)))
+        return self._if_inside(QPointF(*self.view.viewport.position_of(u, v)))
 
     def _if_inside(self, position: QPointF) -> QPoint | None:
         finite = np.isfinite([position.x(), position.y()]).all()
