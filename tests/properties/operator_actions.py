@@ -18,7 +18,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from processing.bench.street_candidates import street_candidates
 from processing.image.attributes import available
+from processing.project.review_state import ReviewOrder
+from tests.processing.project.candidates import found
 from tests.properties.operator_hands import CTRL, FREE, RIGHT, SHIFT, Operator
 
 Action = Callable[[Operator, random.Random], None]
@@ -26,6 +29,7 @@ Action = Callable[[Operator, random.Random], None]
 TOOLS = (
     *("line", "area", "point", "trace", "arc", "spline", "rectangle", "circle", "parallel"),
     *("select", "lasso", "edit", "move", "split", "extend", "trim", "measure", "measure-area"),
+    *("paint-brush", "paint-rectangle", "paint-lasso", "paint-segment", "template"),
 )
 _EDITS = ("join", "reverse", "simplify", "close-lines", "open-lines", "continue-line")
 _STATUSES = ("status-accepted", "status-candidate", "status-rejected")
@@ -36,6 +40,14 @@ _SELECTIONS = (
 _SNAPS = ("vertex", "crossing", "line", "extension", "lowest", "highest", "edge")
 _PLANES = ("plane-level", "plane-fitted", "plane-off", "plane-off")
 _THEMES = ("theme-light", "theme-dark", "theme-system")
+_STANDINGS = (
+    *("layout-drawing", "layout-checking", "layout-earthwork", "layout-two-screens"),
+    *("section-back", "section-forward", "section-far-forward", "section-pin"),
+    *("clip-everything", "clip-drive", "clip-selection", "clip-section"),
+    *("image-upwards", "image-mirrored", "image-reversed", "another-image", "lock-scrolling"),
+    "show-rejected",
+)
+_JUDGEMENTS = ("review-accept", "review-reject", "review-next", "review-back", "review-edit")
 _LETTERS = ("0.15", "12", "2024-05-01", "縁石 A", "", "-3", "９９")
 _DELETE = Qt.Key.Key_Delete
 _MOST_FEATURES, _MOST_COPIED = 80, 10
@@ -325,6 +337,12 @@ def change_theme(operator: Operator, choice: random.Random) -> None:
     operator.trigger(choice.choice((*_THEMES, "side-by-side", "top-view", "along-view")))
 
 
+def stand_otherwise(operator: Operator, choice: random.Random) -> None:
+    """Other layouts, sections, images, parts of the street."""
+    operator.trigger(choice.choice(_STANDINGS))
+    operator.settle()
+
+
 def change_language(operator: Operator, choice: random.Random) -> None:
     wanted = "en" if operator.parts.language == "ja" else "ja"
     operator.trigger(f"language-{wanted}")
@@ -343,6 +361,22 @@ def open_palette(operator: Operator, choice: random.Random) -> None:
             QTest.keyClick(line, choice.choice((Qt.Key.Key_Return, Qt.Key.Key_Escape)))
             dialog.close()
     operator.view.setFocus()
+
+
+# Candidates.
+
+
+def review(operator: Operator, choice: random.Random) -> None:
+    """Judge some candidates; find some first where there are none."""
+    parts = operator.parts
+    document, drive_id = parts.document, parts.document.shared.view_settings.drive_id
+    if not parts.review.is_open or parts.review.current is None:
+        result = street_candidates(document.drive(drive_id), 4, choice.randrange(100))
+        made = found(result, drive=drive_id)
+        document.store_run(made)
+        parts.review.open((made.run.id,), choice.choice(list(ReviewOrder)))
+    for _ in range(3):
+        operator.trigger(choice.choice(_JUDGEMENTS))
 
 
 # The project.
@@ -376,7 +410,7 @@ EDITING: tuple[Action, ...] = (
 )
 LOOKING: tuple[Action, ...] = (
     *(look_elsewhere, look_elsewhere, look_elsewhere, look_at_all, snap_to, work_on_plane),
-    *(change_look, change_drive, open_palette),
+    *(change_look, change_drive, open_palette, stand_otherwise, stand_otherwise, review),
 )
 SELDOM: tuple[Action, ...] = (click_in_3d, change_theme, change_language, run_tool, reopen)
 
