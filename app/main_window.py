@@ -107,7 +107,10 @@ class MainWindow(QMainWindow):
         What belongs to the contents and is no widget of theirs may have ``centralWidget()`` for
         a parent, so that it goes with them.
         """
-        views = None if self._area is None else self._area.keep()
+        views = None
+        if self._area is not None:
+            views = self._area.keep()
+            self._area.take_in()
         self._let_go()
         self._area = contents.views
         self._pages = QStackedWidget()

@@ -83,6 +83,10 @@ class ViewArea(QSplitter):
             self.saveState(), self._docks.saveState(), self.is_apart, self._image.isHidden()
         )
 
+    def take_in(self) -> None:
+        """Have the docks here again, so that they go when this goes."""
+        self._take_apart(is_apart=False)
+
     def restore(self, layout: AreaLayout) -> None:
         """Stand as kept."""
         if not layout.docks.isEmpty():

@@ -28,13 +28,9 @@ from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
 _LIKE_WHOLE = 1.02
+_NEARER = 2.5
 
-_KEY_STEPS = {
-    Qt.Key.Key_PageUp: -1,
-    Qt.Key.Key_BracketLeft: -1,
-    Qt.Key.Key_PageDown: 1,
-    Qt.Key.Key_BracketRight: 1,
-}
+_KEY_STEPS = {Qt.Key.Key_PageUp: -1, Qt.Key.Key_PageDown: 1}
 
 
 class CameraView(PlaneView):
@@ -126,9 +122,14 @@ class CameraView(PlaneView):
         self._show()
 
     def show_place(self, place: Place) -> None:
-        """Show the image that sees a place best, the place in the middle."""
+        """Show the image that sees a place best, the place in the middle.
+
+        An image that was shown whole is enlarged: what is looked at fills the window then.
+        """
         self.showing.look_at(place)
         self._show()
+        if self.lay() is not None and self._is_like_whole:
+            self.zoom_by(_NEARER)
         self.center_on(place)
 
     def prepare(self, places: Sequence[Place]) -> None:
@@ -327,7 +328,7 @@ class CameraView(PlaneView):
         taken = self.showing.taken
         name = "" if taken is None else taken.image.path.name
         if name != self._name:
-            was_whole = not self._name or self.viewport.scale <= self._whole_scale * _LIKE_WHOLE
+            was_whole = not self._name or self._is_like_whole
             self._name = name
             self._is_told_sharp = False
             self.set_ground_stale()
@@ -341,6 +342,10 @@ class CameraView(PlaneView):
             self.image_changed.emit(name)
         self._tell()
         self.update()
+
+    @property
+    def _is_like_whole(self) -> bool:
+        return self.viewport.scale <= self._whole_scale * _LIKE_WHOLE
 
     def _tell(self) -> None:
         self.sightings_changed.emit()

@@ -183,6 +183,9 @@ class SectionPane(PlaneView):
         places = lay.on_plane(picture.section)
         low, high = np.percentile(places, [0.2, 99.8], axis=0)
         (left, top), (right, bottom) = low.tolist(), high.tolist()
+        # The rulers stand on the picture: what they would hide is left free.
+        left -= (right - left) * LEFT_PX / max(self.width() - LEFT_PX, 1.0)
+        bottom += (bottom - top) * BOTTOM_PX / max(self.height() - BOTTOM_PX, 1.0)
         return QRectF(QPointF(left, top), QPointF(right, bottom))
 
     @override

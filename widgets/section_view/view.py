@@ -278,8 +278,6 @@ class SectionView(QWidget):
         if steps:
             is_far = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
             self.step(steps * (_MANY if is_far else 1))
-        elif event.key() == Qt.Key.Key_S and not event.modifiers():
-            self.set_pinned(not self.is_pinned)
         else:
             super().keyPressEvent(event)
 

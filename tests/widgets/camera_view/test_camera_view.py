@@ -52,7 +52,7 @@ def test_the_image_that_sees_the_cursor_best_is_shown_and_others_by_keys(hand: H
     hand.view.setFocus()
     hand.qtbot.keyClick(hand.view, Qt.Key.Key_PageDown)
     assert hand.name == "front_0000"
-    hand.qtbot.keyClick(hand.view, Qt.Key.Key_BracketLeft)
+    hand.qtbot.keyClick(hand.view, Qt.Key.Key_PageUp)
     assert hand.name == "front_0001"
     assert names == ["left_0000.png", "front_0001.png", "front_0000.png", "front_0001.png"]
 

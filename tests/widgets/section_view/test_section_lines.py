@@ -75,8 +75,9 @@ def test_without_a_recording_it_says_what_would_be_here(qtbot: QtBot) -> None:
     assert hand.pane.words() == "The section appears here once a recording is open."
     assert hand.view.cut is None
     assert hand.view.profile_wish() is None
-    for key in (Qt.Key.Key_W, Qt.Key.Key_S):
-        hand.key(key)
+    hand.key(Qt.Key.Key_W)
+    hand.view.set_pinned(True)
+    assert not hand.view.is_pinned
     hand.view.close()
 
 

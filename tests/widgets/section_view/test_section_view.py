@@ -237,10 +237,10 @@ def test_the_mouse_over_no_line_or_in_the_section_itself_moves_nothing(hand: Han
     assert hand.view.standing == before
 
 
-def test_s_holds_the_place_as_two_windows_and_releases_it(hand: Hand) -> None:
+def test_a_place_is_held_as_two_windows_and_released(hand: Hand) -> None:
     before = cut_of(hand)
     with hand.qtbot.waitSignal(hand.view.pinned_changed):
-        hand.key(Qt.Key.Key_S)
+        hand.view.set_pinned(True)
     across, along = hand.view.panes
     assert [pane.isVisible() for pane in (across, along)] == [True, True]
     assert across.standing is not None
@@ -251,7 +251,7 @@ def test_s_holds_the_place_as_two_windows_and_releases_it(hand: Hand) -> None:
     assert cut_of(hand) == before, "held against the cursor"
     hand.key(Qt.Key.Key_W)
     assert cut_of(hand) != before, "but a step is meant"
-    hand.key(Qt.Key.Key_S)
+    hand.view.set_pinned(False)
     assert len(hand.view.panes) == 1
     assert not along.isVisible()
 
