@@ -12,6 +12,16 @@
         </message>
     </context>
     <context>
+        <name>EvaluationPanel</name>
+        <message numerus="yes">
+            <source>%n run(s)</source>
+            <translation>
+                <numerusform>%n run</numerusform>
+                <numerusform>%n runs</numerusform>
+            </translation>
+        </message>
+    </context>
+    <context>
         <name>OffsetForm</name>
         <message numerus="yes">
             <source>%n pair(s), off by {each} px</source>

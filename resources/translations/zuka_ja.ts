@@ -202,6 +202,12 @@
     </context>
     <context>
         <name>EvaluationPanel</name>
+        <message numerus="yes">
+            <source>%n run(s)</source>
+            <translation>
+                <numerusform>実行%n件</numerusform>
+            </translation>
+        </message>
         <message>
             <source>Tool and run</source>
             <translation>ツールと実行</translation>
@@ -559,15 +565,15 @@
         </message>
         <message>
             <source>Street upwards</source>
-            <translation>道路を下から上へ（縦向き）</translation>
+            <translation>道路を上向きに表示</translation>
         </message>
         <message>
             <source>Exchange left and right sides</source>
-            <translation>道路の左右を反転</translation>
+            <translation>左右を反転</translation>
         </message>
         <message>
             <source>Against the direction of travel</source>
-            <translation>進行方向を逆にする</translation>
+            <translation>進行方向を反転</translation>
         </message>
     </context>
     <context>
@@ -1162,7 +1168,7 @@
         </message>
         <message>
             <source>Show only</source>
-            <translation>表示範囲</translation>
+            <translation>3Dの表示範囲</translation>
         </message>
         <message>
             <source>All points</source>
@@ -1170,7 +1176,7 @@
         </message>
         <message>
             <source>Around what is chosen</source>
-            <translation>選択した地物の周辺</translation>
+            <translation>選択した地物の周囲</translation>
         </message>
         <message>
             <source>Within the section</source>
@@ -1178,7 +1184,7 @@
         </message>
         <message>
             <source>Around the drive</source>
-            <translation>走行軌跡の周辺</translation>
+            <translation>走行軌跡の周囲</translation>
         </message>
     </context>
     <context>
