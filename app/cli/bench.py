@@ -11,6 +11,7 @@ from app.language import system_language
 from processing.bench.case import Measurement
 from processing.bench.image_cases import measure_image, measure_switch
 from processing.bench.import_cases import measure_import, measure_import_memory
+from processing.bench.label_case import measure_labels
 from processing.bench.review_case import measure_review
 from processing.bench.start_case import measure_start
 from processing.errors import OutOfRange
@@ -22,6 +23,7 @@ CASES: Mapping[str, Callable[[], Measurement]] = {
     "switch": measure_switch,
     "start": measure_start,
     "review": measure_review,
+    "labels": measure_labels,
     "memory": measure_import_memory,
 }
 """Benchmarks by name, quick ones first."""

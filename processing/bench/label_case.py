@@ -1,0 +1,60 @@
+"""Benchmark of labels: a million points labelled, taken back and labelled again."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+
+from processing.bench.case import Measurement
+from processing.bench.import_cases import seconds_of
+from processing.bench.large_street import write_large_street
+from processing.labels.label_column import labels_of
+from processing.monitor import SilentMonitor
+from processing.project.change import Change
+from processing.project.importing import ImportRequest, import_drives
+from processing.project.label_change import label_changes
+from processing.project.project import Project
+from processing.text import Text
+
+_POINTS = 3_000_000
+_LABELLED = 1_000_000
+_REPEATS = 5
+_CLASS = 2
+
+
+def measure_labels() -> Measurement:
+    """Undo of a lasso over a million points of three; every third one, the worst case on disk."""
+    with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
+        folder = Path(name)
+        cloud, trajectory = write_large_street(folder, _POINTS)
+        with closing(Project.create(folder / "street.zuka", "EPSG:6677")) as project:
+            request = ImportRequest((cloud,), (trajectory,))
+            made = import_drives(request, project.temporary_folder(), SilentMonitor())
+            (drive,) = project.adopt_drives(made)
+            points = np.arange(0, drive.count, drive.count // _LABELLED)[:_LABELLED]
+            change = Change(
+                labels=label_changes(drive.id, points, labels_of(drive, points), _CLASS)
+            )
+            applied_s = seconds_of(_applying(project, change))
+            undone, redone = [], []
+            for _ in range(_REPEATS):
+                undone.append(seconds_of(project.features.undo))
+                redone.append(seconds_of(project.features.redo))
+    return Measurement(
+        "labels",
+        Text("Undo of a lasso over 1 M points", "100万点の投げ縄ラベルの取り消し"),
+        sorted(undone)[_REPEATS // 2],
+        "s",
+        1.0,
+        is_at_most=True,
+        detail=f"applied {applied_s:.3f} s, done again {sorted(redone)[_REPEATS // 2]:.3f} s",
+    )
+
+
+def _applying(project: Project, change: Change) -> Callable[[], object]:
+    label = Text("Label points", "点のラベル")
+    return lambda: project.features.apply(label, change)
