@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QFrame, QScrollArea, QWidget
 
 from app.window_contents import Panel
 from app.window_parts import WindowParts
@@ -26,16 +26,29 @@ def panels_of(parts: WindowParts) -> tuple[Panel, ...]:
 
 
 def _right_panels(parts: WindowParts) -> tuple[Panel, ...]:
-    """At the right of a wide window; below the layers in a narrow one."""
+    """At the right of a wide window; in a narrow one with the layers or below them.
+
+    There each place has as many tabs as can be read.
+    """
     attributes = Text("Attributes", "属性")
     return (
         Panel("attributes", attributes, parts.attribute_panel, _RIGHT, 248, 420),
         _right("processing", Text("Processing", "処理"), parts.processing_panel, behind=""),
-        _right("jobs", Text("Jobs", "ジョブ"), parts.jobs_panel),
+        _right("jobs", Text("Jobs", "ジョブ"), parts.jobs_panel, narrow_behind="layers"),
         _right("review", Text("Review", "確認"), parts.review_panel, behind="attributes"),
-        _right("labels", Text("Labels", "ラベル"), parts.label_panel, is_hidden=True),
         _right(
-            "templates", Text("Templates", "テンプレート"), parts.template_panel, is_hidden=True
+            "labels",
+            Text("Labels", "ラベル"),
+            parts.label_panel,
+            narrow_behind="layers",
+            is_hidden=True,
+        ),
+        _right(
+            "templates",
+            Text("Templates", "テンプレート"),
+            _scrolled(parts.template_panel),
+            narrow_behind="layers",
+            is_hidden=True,
         ),
     )
 
@@ -46,6 +59,7 @@ def _right(
     widget: QWidget,
     *,
     behind: str = "processing",
+    narrow_behind: str = "attributes",
     is_hidden: bool = False,
 ) -> Panel:
     return Panel(
@@ -56,9 +70,19 @@ def _right(
         248,
         380,
         behind=behind,
-        narrow_behind="attributes",
+        narrow_behind=narrow_behind,
         is_hidden=is_hidden,
     )
+
+
+def _scrolled(panel: QWidget) -> QScrollArea:
+    """A panel that is higher than what a low screen has for it."""
+    area = QScrollArea()
+    area.setWidgetResizable(True)
+    area.setFrameShape(QFrame.Shape.NoFrame)
+    area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+    area.setWidget(panel)
+    return area
 
 
 def _lower_panels(parts: WindowParts) -> tuple[Panel, ...]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from itertools import pairwise
 
-from PySide6.QtCore import QByteArray, Qt, QTimer, Signal
+from PySide6.QtCore import QByteArray, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QCloseEvent, QGuiApplication, QResizeEvent
 from PySide6.QtWidgets import QDockWidget, QMainWindow, QTabWidget, QWidget
 from typing_extensions import override
@@ -117,12 +117,16 @@ class ViewDocks(QMainWindow):
             | QMainWindow.DockOption.AllowTabbedDocks
             | QMainWindow.DockOption.GroupedDragging
         )
+        self._when_stacked = QTimer(self, singleShot=True)
+        self._when_stacked.timeout.connect(self._show_titles)
         for view in views:
             dock = QDockWidget(view.title.spoken(language), self)
             dock.setObjectName(f"view-{view.id}")
             dock.setWidget(view.widget)
             self._docks[view.id] = dock
             self.addDockWidget(_RIGHT, dock)
+            for changed in (dock.dockLocationChanged, dock.topLevelChanged, dock.visibilityChanged):
+                changed.connect(self._on_dock_changed)
         self._when_laid_out = QTimer(self, singleShot=True)
         self._when_laid_out.timeout.connect(self._on_laid_out)
         self.setMinimumSize(200, 120)
@@ -213,3 +217,31 @@ class ViewDocks(QMainWindow):
         self.resizeDocks(fronts, widths, Qt.Orientation.Horizontal)
         for dock in fronts:
             dock.raise_()
+
+    def _on_dock_changed(self) -> None:
+        # While Qt moves docks about, their titles stay as they are.
+        self._when_stacked.start()
+
+    def _show_titles(self) -> None:
+        """Tabs name the docks that share a place; a title below would say it twice."""
+        for dock in self._docks.values():
+            others = [one for one in self.tabifiedDockWidgets(dock) if not one.isHidden()]
+            is_tab = bool(others) and not dock.isFloating()
+            empty = dock.titleBarWidget()
+            if is_tab and empty is None:
+                dock.setTitleBarWidget(_NoTitle(dock))
+            elif not is_tab and empty is not None:
+                dock.setTitleBarWidget(None)  # type: ignore[arg-type]  # Qt's own again
+                empty.deleteLater()
+
+
+class _NoTitle(QWidget):
+    """Stands for a title and takes no room; an empty widget would have a size below zero."""
+
+    @override
+    def sizeHint(self) -> QSize:
+        return QSize(0, 0)
+
+    @override
+    def minimumSizeHint(self) -> QSize:
+        return QSize(0, 0)

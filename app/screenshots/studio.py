@@ -11,7 +11,7 @@ from time import monotonic, sleep
 from typing import TypeVar
 
 import numpy as np
-from PySide6.QtCore import QByteArray, QEventLoop, QPoint, Qt, QTimer
+from PySide6.QtCore import QByteArray, QEventLoop, QPoint, QSize, Qt, QTimer
 from PySide6.QtGui import QCursor, QImage
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDialog, QDockWidget, QLineEdit, QWidget
@@ -57,6 +57,7 @@ class Studio:
     hand: Hand
     _docks: QByteArray = field(default_factory=QByteArray, init=False)
     _area: AreaLayout = field(default_factory=AreaLayout, init=False)
+    _size: QSize = field(default_factory=QSize, init=False)
     _changes: int = field(default=0, init=False)
 
     @property
@@ -172,6 +173,7 @@ class Studio:
         self._changes = self._changes_made()
         self._docks = self.parts.window.saveState()
         self._area = self.parts.window.area.keep()
+        self._size = self.parts.window.size()
 
     def restore(self) -> None:
         """Take back what a scene has done."""
@@ -201,6 +203,7 @@ class Studio:
                 self.act(switch)
         self._restore_views()
         parts.window.restoreState(self._docks)
+        parts.window.resize(self._size)
 
     def _restore_views(self) -> None:
         """Let each view look at the street as it did at first."""
@@ -214,7 +217,7 @@ class Studio:
         parts.image_views.arrange(())
         parts.scene_view.clipping.choose(ClipChoice.EVERYTHING)
         parts.window.area.restore(self._area)
-        self.act("along-view")
+        self.act("everything")
 
     def leave(self) -> None:
         """Close the window for good."""

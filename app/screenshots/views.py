@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
+import numpy as np
 from PySide6.QtCore import QPoint, Qt
 
 from app.screenshots.hand import CONTROL
@@ -12,8 +13,10 @@ from app.screenshots.street import LEFT, MARKING_M, RIGHT, at
 from app.screenshots.studio import Studio
 from app.view_docks import ViewLayout
 from processing.project.feature import Position
+from widgets.camera_view.stereo_hand import StereoHand
 from widgets.plane_view.view import PlaneView
 from widgets.scene_view.clipping import ClipChoice
+from widgets.shared.cursor import Place
 from widgets.shared.image_lay import ImageLay
 
 SIGN = (-11396.84, -35134.68, 127.94)
@@ -106,10 +109,13 @@ def line_in_camera(studio: Studio) -> None:
 def stereo(studio: Studio) -> None:
     """The first image was clicked; the other one shows the line of sight."""
     place = _seen_twice(studio)
-    _photograph(studio, LEFT, place)
+    studio.bring("view-camera")
+    studio.parts.document.shared.cursor.move_to(place)
     view = studio.parts.camera_view
+    studio.wait(lambda: view.is_sharp)
+    studio.settle()
     view.set_stereo(True)
-    studio.hand.click(view, _spot(studio, view, LEFT, place))
+    studio.hand.click(view, _spot_of(view, place))
     studio.wait(lambda: view.is_sharp)
 
 
@@ -118,7 +124,7 @@ def stereo_measured(studio: Studio) -> None:
     stereo(studio)
     view = studio.parts.camera_view
     studio.settle()
-    studio.hand.click(view, _spot(studio, view, LEFT, _seen_twice(studio)))
+    studio.hand.click(view, _spot_of(view, _seen_twice(studio)))
 
 
 def calibration(studio: Studio) -> None:
@@ -182,9 +188,19 @@ def clipped(choice: ClipChoice) -> Callable[[Studio], None]:
     return clip
 
 
-def _seen_twice(studio: Studio) -> Position:
-    """A curb's vertex that two images see from far enough apart."""
-    return studio.feature("curb_upper", LEFT).vertices[2].xyz
+def _seen_twice(studio: Studio) -> Place:
+    """A drawn vertex that two images see from far enough apart."""
+    choice = studio.parts.camera_view.showing.images.choice
+    for feature in studio.parts.document.features():
+        for vertex in feature.vertices:
+            xyz = np.array(vertex.xyz)
+            hand = StereoHand()
+            for sighting in choice.seeing(xyz)[:1]:
+                hand.mark(sighting.number, sighting.pixel)
+            if hand.partner(choice, xyz) is not None:
+                return Place(vertex.xyz, vertex.measured)
+    message = "no two images see the same"
+    raise LookupError(message)
 
 
 def _cut(studio: Studio, xyz: Position, *, chooses: bool = False) -> None:
@@ -207,7 +223,11 @@ def _photograph(studio: Studio, drive: str, xyz: Position) -> None:
 
 def _spot(studio: Studio, view: PlaneView, drive: str, xyz: Position) -> QPoint:
     """Where a place is in a view."""
-    at_ = view.position_of(studio.place(drive, xyz))
+    return _spot_of(view, studio.place(drive, xyz))
+
+
+def _spot_of(view: PlaneView, place: Place) -> QPoint:
+    at_ = view.position_of(place)
     return QPoint() if at_ is None else at_.toPoint()
 
 

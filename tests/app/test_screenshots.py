@@ -34,7 +34,8 @@ def test_what_can_not_be_made_is_refused(
 
 
 def test_every_tool_has_a_picture() -> None:
-    shown = {name.partition("-")[2] for name in {**ON_STREET, **NOTHING_OPEN}}
+    names = {**ON_STREET, **NOTHING_OPEN}
+    shown = {*names, *(name.partition("-")[2] for name in names)}
     other_names = {
         "select": "box",
         "edit": "vertices",

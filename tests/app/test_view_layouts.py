@@ -40,7 +40,7 @@ def in_front(parts: WindowParts) -> list[str]:
     docks = [
         dock
         for dock in parts.view_docks.findChildren(QDockWidget)
-        if not dock.visibleRegion().isEmpty()
+        if dock.isVisible() and dock.x() >= 0  # Qt keeps those behind a tab off the window
     ]
     docks.sort(key=lambda dock: dock.x())
     return [dock.objectName().removeprefix("view-") for dock in docks]
@@ -64,3 +64,12 @@ def test_all_views_are_there_in_each_layout(qtbot: QtBot, parts: WindowParts) ->
         docks = parts.view_docks.findChildren(QDockWidget)
         assert not any(dock.isHidden() or dock.isFloating() for dock in docks)
     parts.window.area.place(ViewLayout.DRAWING)
+
+
+def test_a_low_screen_has_room_for_every_panel_and_layout(qtbot: QtBot, parts: WindowParts) -> None:
+    for layout in (ViewLayout.CHECKING, ViewLayout.EARTHWORK, ViewLayout.DRAWING):
+        parts.window.actions_by_id[f"layout-{layout.value}"].trigger()
+        for panel in ("templates", "labels", "processing", "evaluation", "features"):
+            parts.window.show_panel(panel)
+            qtbot.waitUntil(lambda: parts.window.findChild(QDockWidget, "layers").height() > 0)
+            assert (parts.window.width(), parts.window.height()) == (1366, 768)

@@ -6,8 +6,10 @@ from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QSizePolicy, QToolButton, QWidget
 
 from widgets.camera_view.view import CameraView
+from widgets.parts.icon_button import IconButton
 
 _WIDEST_PX = 320
+_MOST_ROOM = 1000
 
 
 class CameraBar(QWidget):
@@ -40,14 +42,20 @@ class CameraBar(QWidget):
         self._images.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         # Page up and down go through the images as well: the view keeps the keys.
         self._images.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._stereo = self._button(
-            self.tr("Stereo"), self.tr("Measure a place by two images where points are missing")
+        self._stereo = IconButton(
+            "mdi6.binoculars",
+            self.tr("Stereo"),
+            self.tr("Measure a place by two images where points are missing"),
+            self,
+            is_switch=True,
         )
-        self._calibration = self._button(
-            self.tr("Calibration"), self.tr("Adjust how the camera sits on the vehicle")
+        self._calibration = IconButton(
+            "mdi6.camera-control",
+            self.tr("Calibration"),
+            self.tr("Adjust how the camera sits on the vehicle"),
+            self,
+            is_switch=True,
         )
-        for button in (self._stereo, self._calibration):
-            button.setCheckable(True)
         self._lay_out()
         self._before.clicked.connect(self._on_before_clicked)
         self._after.clicked.connect(self._on_after_clicked)
@@ -67,7 +75,7 @@ class CameraBar(QWidget):
         layout.setContentsMargins(4, 0, 4, 4)
         layout.setSpacing(4)
         layout.addWidget(self._before)
-        layout.addWidget(self._images, 4)
+        layout.addWidget(self._images, _MOST_ROOM)
         layout.addWidget(self._after)
         layout.addStretch(1)
         layout.addWidget(self._stereo)

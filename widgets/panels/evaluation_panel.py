@@ -73,12 +73,12 @@ class EvaluationPanel(QWidget):
         self._refresh.timeout.connect(self._ask_if_seen)
         self._table = self._new_table()
         self._plot = ReliabilityView(self)
-        self._halves = QSplitter(Qt.Orientation.Vertical, self)
+        self._halves = QSplitter(Qt.Orientation.Horizontal, self)
         self._halves.setChildrenCollapsible(False)
         self._halves.addWidget(self._left_half())
         self._halves.addWidget(self._plot)
-        self._halves.setStretchFactor(0, 3)
-        self._halves.setStretchFactor(1, 2)
+        self._halves.setStretchFactor(0, 1)
+        self._halves.setStretchFactor(1, 0)
         self._pages = QStackedWidget(self)
         self._pages.addWidget(self._empty_page())
         self._pages.addWidget(self._halves)
@@ -117,7 +117,8 @@ class EvaluationPanel(QWidget):
         """A tool over several runs, with those below it; or a tool that was run once."""
         if len(one.runs) > 1:
             tool = name_of_tool(one.tool, self._language)
-            return f"{tool}  ({self.tr('%n run(s)', '', len(one.runs))})"
+            runs_of_it = self.tr("%n run(s)", "", len(one.runs))
+            return f"{tool}  ({runs_of_it})"
         name = name_of_run(RunOfTool(one.tool, one.runs[0]), runs, self._language)
         return name if one.is_whole_tool else f"    {name}"
 

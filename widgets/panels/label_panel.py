@@ -31,6 +31,7 @@ _NAME, _COUNT, _KEY = range(3)
 _LAST_KEY = 9
 _UNKNOWN_COLOUR = "#606060"
 _LEAST_COLUMN_PX = 16
+_LEAST_HIGH_PX = 40
 
 
 class LabelPanel(QWidget):
@@ -62,6 +63,7 @@ class LabelPanel(QWidget):
         self._list.setRootIsDecorated(False)
         self._list.setIndentation(8)
         self._list.setUniformRowHeights(True)
+        self._list.setMinimumHeight(_LEAST_HIGH_PX)
         header = self._list.header()
         header.setStretchLastSection(False)
         header.setMinimumSectionSize(_LEAST_COLUMN_PX)

@@ -27,6 +27,8 @@ Reason = Callable[[str], Text | None]
 """From a tool's id to why it can't run now, or None."""
 
 _ID = Qt.ItemDataRole.UserRole
+_LEAST_HIGH_PX = 40
+"""Of list and form: both can be scrolled, and low screens have other panels too."""
 
 
 class ProcessingPanel(QWidget):
@@ -64,10 +66,12 @@ class ProcessingPanel(QWidget):
         self._list.setHeaderHidden(True)
         self._list.setRootIsDecorated(False)
         self._list.setIndentation(12)
+        self._list.setMinimumHeight(_LEAST_HIGH_PX)
         self._explanation = QLabel(self)
         self._explanation.setWordWrap(True)
         self._scroll = QScrollArea(self)
         self._scroll.setWidgetResizable(True)
+        self._scroll.setMinimumHeight(_LEAST_HIGH_PX)
         self._scroll.setFrameShape(QScrollArea.Shape.NoFrame)
         self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         self._why_not = QLabel(self)

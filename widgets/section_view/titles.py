@@ -10,7 +10,7 @@ from widgets.shared.map_source import MapSource
 _ACROSS = Text("Across {line}", "{line}の横断")
 _ALONG = Text("Along {line}", "{line}の縦断")
 _TRAJECTORY = Text("the trajectory", "走行軌跡")
-_DRAWN = Text("the drawn line “{kind}”", "線「{kind}」")
+_DRAWN = Text("“{kind}”", "「{kind}」")
 _STATION = Text("{m:.2f} m", "{m:.2f} m")
 _BEFORE = Text("{m:.2f} m before its beginning", "始点の{m:.2f} m手前")
 _BEYOND = Text("{m:.2f} m beyond its end", "終点の{m:.2f} m先")
