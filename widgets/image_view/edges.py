@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QWidget
 
 from processing.image.tile_cache import TileCache
-from widgets.image_view.empty_page import EmptyPage
 from widgets.image_view.minimap import Minimap
 from widgets.image_view.picture import Picture
 from widgets.image_view.ruler import Ruler
 from widgets.image_view.viewport import Viewport
+from widgets.parts.opening_page import OpeningPage
 from widgets.shared.view_settings import PointLook
 
 _RULER_PX = 20
@@ -33,7 +34,10 @@ class Edges:
         self._view = view
         self.ruler = Ruler(view)
         self.minimap = Minimap(tiles, view)
-        self.empty = EmptyPage(view)
+        words = QCoreApplication.translate(
+            "EmptyPage", "A recording is shown here as an image: every pixel is a laser point."
+        )
+        self.empty = OpeningPage(words, view)
         self._has_strip = True
 
     def lay_out(self, viewport: Viewport) -> Viewport:
