@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import QFrame, QLabel, QScrollArea, QVBoxLayout, QWidget
+from typing_extensions import override
 
 from processing.project.change import Change
 from processing.project.feature import AttributeValue, Feature, Status
@@ -46,6 +48,7 @@ class AttributePanel(QWidget):
         self._cursor = shared.cursor
         self._language = language
         self._form: AttributeForm | None = None
+        self._is_stale = False
         self._scroll = QScrollArea(self)
         self._scroll.setWidgetResizable(True)
         self._scroll.setFrameShape(QFrame.Shape.NoFrame)
@@ -57,6 +60,12 @@ class AttributePanel(QWidget):
         shared.map_changes.features_changed.connect(self._on_map_features_changed)
         shared.map_changes.drives_changed.connect(self._on_map_drives_changed)
         self._show(())
+
+    @override
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        if self._is_stale:
+            self._show_chosen()
 
     def field(self, id_: str) -> QWidget | None:
         """The widget of an attribute, of ``kind`` or ``status``; None when there is none."""
@@ -108,6 +117,11 @@ class AttributePanel(QWidget):
         words.setAlignment(Qt.AlignmentFlag.AlignTop)
         return words
 
+    def _show_chosen(self) -> None:
+        """Show what is chosen; behind another panel not before it can be seen."""
+        self._is_stale = not self.isVisible()
+        self._show(() if self._is_stale else self._chosen())
+
     def _shown_now(self) -> tuple[Feature, ...]:
         """The features that the form is for, as they are now."""
         return () if self._form is None else self._found(one.id for one in self._form.features)
@@ -140,11 +154,11 @@ class AttributePanel(QWidget):
         # What was typed is meant for those that were chosen until now.
         if self._form is not None:
             self._form.finish()
-        self._show(self._chosen())
+        self._show_chosen()
 
     def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
         if self._selection.features.intersection(ids):
-            self._show(self._chosen())
+            self._show_chosen()
 
     def _on_map_drives_changed(self) -> None:
-        self._show(self._chosen())
+        self._show_chosen()
