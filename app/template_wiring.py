@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, QTimer
 
+from app.panel_room import make_room
 from app.window_parts import WindowParts
 from processing.section.cut import Cut
 from widgets.mouse_tools.draw_template import DrawnProfile, DrawTemplate, TemplatePart
 
 _TOOLS = {TemplatePart.SHAPE: "template", TemplatePart.EMPTY_ZONE: "template-zone"}
+
+_HIGH_SHARE = 0.8
 
 
 def connect_templates(parts: WindowParts) -> None:
@@ -36,6 +39,8 @@ class _TemplateWiring(QObject):
     def __init__(self, parts: WindowParts) -> None:
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
+        self._when_laid_out = QTimer(self, singleShot=True)
+        self._when_laid_out.timeout.connect(self._make_room)
 
     def on_section_cut_changed(self, cut: Cut | None) -> None:
         self._parts.template_panel.use_cut(cut)
@@ -43,16 +48,26 @@ class _TemplateWiring(QObject):
             tool.use_cut(cut)
 
     def on_section_template_requested(self) -> None:
-        self._parts.window.show_panel("templates")
+        self._show_panel()
 
     def on_panel_draw_requested(self, part: TemplatePart) -> None:
         self._parts.view_docks.show_view("section")
         self._parts.toolbox.choose(_TOOLS[part])
 
     def on_tool_drawn(self, drawn: DrawnProfile) -> None:
-        self._parts.window.show_panel("templates")
+        self._show_panel()
         self._parts.template_panel.take_drawn(drawn)
         self._parts.toolbox.choose("select")
 
     def on_panel_fit_requested(self, drive: str, parameters: object) -> None:
         self._parts.document.start_run("template", drive, parameters)
+
+    def _show_panel(self) -> None:
+        panel = self._parts.template_panel
+        was_shown = panel.isVisible()
+        self._parts.window.show_panel("templates")
+        if not was_shown:
+            self._when_laid_out.start()
+
+    def _make_room(self) -> None:
+        make_room(self._parts.window, "templates", _HIGH_SHARE)

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QDockWidget
-
 from app.actions.action import Action
+from app.panel_room import make_room
 from app.view_docks import LAYOUT_NAMES, ViewLayout
 from app.window_parts import WindowParts
 from processing.text import Text
@@ -27,7 +25,7 @@ _HINTS = {
     ),
 }
 
-_ABOVE, _HIGH_SHARE = "layers", 0.75
+_HIGH_SHARE = 0.75
 
 
 def layout_actions(parts: WindowParts) -> tuple[Action, ...]:
@@ -38,7 +36,7 @@ def layout_actions(parts: WindowParts) -> tuple[Action, ...]:
             parts.window.area.place(layout)
             if layout is ViewLayout.CHECKING:
                 parts.window.show_panel("review")
-                _give_room(parts, "review")
+                make_room(parts.window, "review", _HIGH_SHARE)
 
         return Action(
             f"layout-{layout.value}",
@@ -53,14 +51,6 @@ def layout_actions(parts: WindowParts) -> tuple[Action, ...]:
     return tuple(
         standing(layout, f"Ctrl+Alt+{number}") for number, layout in enumerate(ViewLayout, start=1)
     )
-
-
-def _give_room(parts: WindowParts, panel: str) -> None:
-    """Let a panel be high, at the cost of those above it."""
-    window = parts.window
-    docks = [window.findChild(QDockWidget, name) for name in (_ABOVE, panel)]
-    heights = [round(share * window.height()) for share in (1.0 - _HIGH_SHARE, _HIGH_SHARE)]
-    window.resizeDocks([dock for dock in docks if dock], heights, Qt.Orientation.Vertical)
 
 
 def adopt_view_toggles(parts: WindowParts) -> None:

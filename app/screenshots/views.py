@@ -14,6 +14,7 @@ from app.screenshots.studio import Studio
 from app.view_docks import ViewLayout
 from processing.project.feature import Position
 from widgets.camera_view.stereo_hand import StereoHand
+from widgets.camera_view.view import CameraView
 from widgets.plane_view.view import PlaneView
 from widgets.scene_view.clipping import ClipChoice
 from widgets.shared.cursor import Place
@@ -21,6 +22,8 @@ from widgets.shared.image_lay import ImageLay
 
 SIGN = (-11396.84, -35134.68, 127.94)
 _BEHIND = (-11375.78, -35123.31, 125.51)
+_TWO = 2
+_NEARER = 2.5
 _AHEAD_M = -9.0
 """Along the curb, some metres in front of the first image."""
 
@@ -108,11 +111,9 @@ def line_in_camera(studio: Studio) -> None:
 
 def stereo(studio: Studio) -> None:
     """The first image was clicked; the other one shows the line of sight."""
-    place = _seen_twice(studio)
-    studio.bring("view-camera")
-    studio.parts.document.shared.cursor.move_to(place)
     view = studio.parts.camera_view
-    studio.wait(lambda: view.is_sharp)
+    studio.bring("view-camera")
+    place = _seen_twice(studio)
     studio.settle()
     view.set_stereo(True)
     studio.hand.click(view, _spot_of(view, place))
@@ -122,9 +123,10 @@ def stereo(studio: Studio) -> None:
 def stereo_measured(studio: Studio) -> None:
     """Both images were clicked; the place has an error."""
     stereo(studio)
-    view = studio.parts.camera_view
+    view, place = studio.parts.camera_view, studio.parts.document.shared.cursor.place
     studio.settle()
-    studio.hand.click(view, _spot_of(view, _seen_twice(studio)))
+    if place is not None:
+        studio.hand.click(view, _spot_of(view, place))
 
 
 def calibration(studio: Studio) -> None:
@@ -184,23 +186,37 @@ def clipped(choice: ClipChoice) -> Callable[[Studio], None]:
         studio.parts.scene_view.clipping.choose(choice)
         if choice is not ClipChoice.DRIVE:
             studio.parts.scene_view.center_on_selection()
+            studio.parts.scene_view.zoom_by(_NEARER)
 
     return clip
 
 
 def _seen_twice(studio: Studio) -> Place:
-    """A drawn vertex that two images see from far enough apart."""
-    choice = studio.parts.camera_view.showing.images.choice
+    """A drawn vertex that two images see from far enough apart, and nothing hides; looked at."""
+    view, cursor = studio.parts.camera_view, studio.parts.document.shared.cursor
     for feature in studio.parts.document.features():
         for vertex in feature.vertices:
-            xyz = np.array(vertex.xyz)
-            hand = StereoHand()
-            for sighting in choice.seeing(xyz)[:1]:
-                hand.mark(sighting.number, sighting.pixel)
-            if hand.partner(choice, xyz) is not None:
-                return Place(vertex.xyz, vertex.measured)
+            if len(view.showing.images.choice.seeing(np.array(vertex.xyz))) < _TWO:
+                continue
+            place = Place(vertex.xyz, vertex.measured)
+            cursor.move_to(place)
+            studio.wait(lambda: view.is_sharp)
+            if not view.showing.is_hidden and _has_partner(view, place):
+                return place
     message = "no two images see the same"
     raise LookupError(message)
+
+
+def _has_partner(view: CameraView, place: Place) -> bool:
+    """Whether a second click would measure what the first one at a place shows."""
+    lay, depth, hand = view.lay(), view.showing.depth, StereoHand()
+    if lay is None or depth is None:
+        return False
+    across, down = lay.to_plane(np.array([place.xyz]))[0].tolist()
+    hand.mark(view.showing.number, (across, down))
+    seen = depth.quick_point_at((across, down))
+    near = np.array(place.xyz if seen is None else seen.xyz)
+    return hand.partner(view.showing.images.choice, near) is not None
 
 
 def _cut(studio: Studio, xyz: Position, *, chooses: bool = False) -> None:

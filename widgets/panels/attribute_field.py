@@ -5,7 +5,7 @@ from __future__ import annotations
 import unicodedata
 from typing import Final
 
-from PySide6.QtCore import QDate, QLocale, QObject, QRegularExpression, Qt, Signal
+from PySide6.QtCore import QDate, QLocale, QObject, QRegularExpression, QSize, Qt, Signal
 from PySide6.QtGui import QRegularExpressionValidator, QWheelEvent
 from PySide6.QtWidgets import QComboBox, QLineEdit, QSizePolicy, QStyle, QWidget
 from typing_extensions import override
@@ -22,6 +22,7 @@ _PATTERNS = {
     "date": rf"{_DIGIT}{{0,4}}([-/－／]{_DIGIT}{{0,2}}){{0,2}}",
 }
 _LEAST_LETTERS = 6
+_ARROW_PX = 28
 
 
 class Several:
@@ -42,6 +43,12 @@ class QuietBox(QComboBox):
         self.setMinimumContentsLength(_LEAST_LETTERS)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setMaxVisibleItems(20)
+
+    @override
+    def minimumSizeHint(self) -> QSize:
+        # Qt's own has room for what stands there while nothing is chosen.
+        wide = _LEAST_LETTERS * self.fontMetrics().averageCharWidth() + _ARROW_PX
+        return QSize(wide, super().minimumSizeHint().height())
 
     @override
     def wheelEvent(self, event: QWheelEvent) -> None:

@@ -1,0 +1,38 @@
+"""Room for a panel that is worked in, at the cost of those above and below it."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QDockWidget, QMainWindow
+
+_LEAST_PX = 1
+"""Qt makes it as high as the panel needs."""
+
+
+def make_room(window: QMainWindow, panel: str, share: float) -> None:
+    """Let a panel take so much of the window's height.
+
+    Parameters
+    ----------
+    panel : str
+        Its id; nothing happens while it is a window of its own.
+    """
+    dock = window.findChild(QDockWidget, panel)
+    if not isinstance(dock, QDockWidget) or dock.isFloating():
+        return
+    area, stacked = window.dockWidgetArea(dock), window.tabifiedDockWidgets(dock)
+    others = [
+        one
+        for one in window.findChildren(
+            QDockWidget, options=Qt.FindChildOption.FindDirectChildrenOnly
+        )
+        if one is not dock
+        and one not in stacked
+        and one.isVisible()
+        and one.x() >= 0  # Qt keeps those behind a tab off the window
+        and not one.isFloating()
+        and window.dockWidgetArea(one) == area
+    ]
+    left_px = round((1.0 - share) * window.height() / max(len(others), 1))
+    heights = [round(share * window.height()), *([max(left_px, _LEAST_PX)] * len(others))]
+    window.resizeDocks([dock, *others], heights, Qt.Orientation.Vertical)
