@@ -195,10 +195,10 @@ class SceneView(QWidget):
         width, height = max(self.width(), 1), max(self.height(), 1)
         self._hits.projection = Projection(camera, width, height)
         if self._stage is not None and self._cloud is not None:
-            scale = self._stage.scale
-            size_px = round(width * scale), round(height * scale)
+            size_px = round(width * self._stage.scale), round(height * self._stage.scale)
             self._cloud.look_from(camera.for_tiles(self._drives.origin, *size_px))
             self._stage.look(camera)
+            self._map.catch_up()
             self._stage.redraw()
             self._size_points()
         self._paint_overlay()

@@ -62,6 +62,12 @@ class MapLayer(QObject):
         self._shapes = FeatureShapes(self._source.origin(), self._source.features())
         self._soon.start()
 
+    def catch_up(self) -> None:
+        """Tell now what would be told soon: a frame is about to be drawn anyway."""
+        if self._soon.isActive():
+            self._soon.stop()
+            self.outdated.emit()
+
     def show(self, stage: Stage | None) -> None:
         """Draw what is to be seen, once there is a stage."""
         self.replaced = self._replaced_now()
