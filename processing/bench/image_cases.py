@@ -17,7 +17,8 @@ from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from processing.runner import RunRequest, columns_of, run
 from processing.text import Text
-from processing.tools.registry import POINT_TOOLS
+from processing.tools.normals import NORMALS
+from processing.tools.segments import SEGMENTS
 
 _POINTS = 10_000_000
 _REPEATS = 5
@@ -56,7 +57,7 @@ def measure_switch() -> Measurement:
     some seconds after the import.
     """
     with _large_drive() as drive:
-        for tool in POINT_TOOLS.values():
+        for tool in (NORMALS, SEGMENTS):
             request = RunRequest(tool.id, drive, tool.parameters())
             for name, values in columns_of(run(request, SilentMonitor())).items():
                 drive.columns.add(name, values)

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from processing.cameras.camera import Camera
 from processing.cameras.image_list import CameraImage
+
+if TYPE_CHECKING:  # its import takes a third of a second, which the program's start hasn't got
+    from scipy.spatial import cKDTree
 
 REACH_M = 50.0
 """From farther away an image isn't offered."""
@@ -63,7 +66,7 @@ class ImageChoice:
         self.images = tuple(images)
         self.cameras = tuple(Camera(image) for image in self.images)
         self._centres = np.array([image.xyz for image in self.images]).reshape(-1, 3)
-        self._tree = cKDTree(self._centres) if self.images else None
+        self._tree = _tree_of(self._centres) if self.images else None
 
     def seeing(
         self, xyz: NDArray[np.float64], hides: Hides | None = None, *, reach_m: float = REACH_M
@@ -178,3 +181,9 @@ def _view_angles(image: CameraImage) -> tuple[float, float] | None:
     turned = np.arctan2(rays[:, 1], rays[:, 0]) - middle
     turned = (turned + np.pi) % (2 * np.pi) - np.pi
     return float(middle + turned.min()), float(middle + turned.max())
+
+
+def _tree_of(places: NDArray[np.float64]) -> cKDTree:
+    from scipy.spatial import cKDTree
+
+    return cKDTree(places)

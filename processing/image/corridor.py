@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from processing.kernels import kernel
 from processing.points.drive import Drive
+
+if TYPE_CHECKING:  # its import takes a third of a second, which the program's start hasn't got
+    from scipy.spatial import cKDTree
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -135,6 +138,8 @@ class _Index:
         of_way = np.unique(cells @ np.array([columns, 1]))
         keys = np.unique((of_way[:, None] + offsets).ravel())
         middles = corner + (np.column_stack(np.divmod(keys, columns)) + 0.5) * cell_m
+        from scipy.spatial import cKDTree
+
         tree = cKDTree(way[:, :2])
         nearest = np.asarray(tree.query(middles)[1], dtype=np.int64)
         return _Index(way, corner, cell_m, columns, keys, nearest, tree)
