@@ -19,7 +19,6 @@ from typing_extensions import override
 
 from app.application import build_window, make_application
 from app.settings import Settings
-from app.view_docks import ViewLayout
 from app.window_parts import WindowParts
 from processing.bench.street_candidates import street_candidates
 from processing.project.dropped_files import request_of_files
@@ -67,7 +66,7 @@ def _measured(parts: WindowParts, folder: Path, count: int) -> dict[str, list[fl
         finished=now,
     )
     parts.document.store_run(made)
-    parts.window.area.place(ViewLayout.CHECKING)
+    parts.window.actions_by_id["layout-checking"].trigger()
     _wait(lambda: parts.scene_view.is_settled)
     sharp_sections: list[bool] = []
     parts.section_view.sharpened.connect(lambda: sharp_sections.append(True))
