@@ -25,7 +25,6 @@ from processing.image.colour_maps import (
 )
 from processing.image.kinds import ImageKind
 from processing.points.classes import point_classes, read_classes
-from processing.points.classes import point_classes
 from processing.points.drive import Drive
 from tests.builders import simulated_drive
 from tests.processing.image.recordings import drive_of, small_drive
