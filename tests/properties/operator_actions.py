@@ -18,11 +18,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from processing.bench.street_candidates import street_candidates
 from processing.image.attributes import available
-from processing.project.review_state import ReviewOrder
-from tests.processing.project.candidates import found
 from tests.properties.operator_hands import CTRL, FREE, RIGHT, SHIFT, Operator
+from tests.properties.operator_views import review, stand_otherwise
 
 Action = Callable[[Operator, random.Random], None]
 
@@ -40,14 +38,6 @@ _SELECTIONS = (
 _SNAPS = ("vertex", "crossing", "line", "extension", "lowest", "highest", "edge")
 _PLANES = ("plane-level", "plane-fitted", "plane-off", "plane-off")
 _THEMES = ("theme-light", "theme-dark", "theme-system")
-_STANDINGS = (
-    *("layout-drawing", "layout-checking", "layout-earthwork", "layout-two-screens"),
-    *("section-back", "section-forward", "section-far-forward", "section-pin"),
-    *("clip-everything", "clip-drive", "clip-selection", "clip-section"),
-    *("image-upwards", "image-mirrored", "image-reversed", "another-image", "lock-scrolling"),
-    "show-rejected",
-)
-_JUDGEMENTS = ("review-accept", "review-reject", "review-next", "review-back", "review-edit")
 _LETTERS = ("0.15", "12", "2024-05-01", "縁石 A", "", "-3", "９９")
 _DELETE = Qt.Key.Key_Delete
 _MOST_FEATURES, _MOST_COPIED = 80, 10
@@ -337,12 +327,6 @@ def change_theme(operator: Operator, choice: random.Random) -> None:
     operator.trigger(choice.choice((*_THEMES, "side-by-side", "top-view", "along-view")))
 
 
-def stand_otherwise(operator: Operator, choice: random.Random) -> None:
-    """Other layouts, sections, images, parts of the street."""
-    operator.trigger(choice.choice(_STANDINGS))
-    operator.settle()
-
-
 def change_language(operator: Operator, choice: random.Random) -> None:
     wanted = "en" if operator.parts.language == "ja" else "ja"
     operator.trigger(f"language-{wanted}")
@@ -361,22 +345,6 @@ def open_palette(operator: Operator, choice: random.Random) -> None:
             QTest.keyClick(line, choice.choice((Qt.Key.Key_Return, Qt.Key.Key_Escape)))
             dialog.close()
     operator.view.setFocus()
-
-
-# Candidates.
-
-
-def review(operator: Operator, choice: random.Random) -> None:
-    """Judge some candidates; find some first where there are none."""
-    parts = operator.parts
-    document, drive_id = parts.document, parts.document.shared.view_settings.drive_id
-    if not parts.review.is_open or parts.review.current is None:
-        result = street_candidates(document.drive(drive_id), 4, choice.randrange(100))
-        made = found(result, drive=drive_id)
-        document.store_run(made)
-        parts.review.open((made.run.id,), choice.choice(list(ReviewOrder)))
-    for _ in range(3):
-        operator.trigger(choice.choice(_JUDGEMENTS))
 
 
 # The project.
