@@ -200,9 +200,11 @@ def _start_of(
     for turn in _FIRST_TURNS.tolist():
         monitor.check()
         at = replace(frame, heading_rad=frame.heading_rad + turn)
-        nothing_known = Expected(np.zeros(POSE), _SPREAD)
-        fit = searched(shape, reader.slab(at), nothing_known, _FIRST_REACH_M, TILTS_RAD)
+        unknown = Expected(np.zeros(POSE), _SPREAD)
+        slab = reader.slab(at)
+        fit = searched(shape, slab, unknown, _FIRST_REACH_M, TILTS_RAD, monitor=monitor)
         for _ in range(2):
+            monitor.check()
             step = _Step(at, fit)
             at = Frame(step.place, step.heading_rad)
             pose = np.array([0.0, 0.0, fit.pose[TILT], 0.0, fit.pose[GRADE]])
@@ -234,7 +236,8 @@ class _Walker:
         while len(steps) < _MOST_STEPS and lost_m <= patience:
             monitor.check()
             frame = direction.next_frame(settings.step_m, self._road, is_seen=lost_m == 0.0)
-            step = _Step(frame, self._fit(frame, tilt, direction.grade, lost_m))
+            fit = self._fit(frame, tilt, direction.grade, lost_m, monitor=monitor)
+            step = _Step(frame, fit)
             fits = step.fit.score >= settings.least_score
             if fits and lost_m >= _LONG_LOST_M and not self._goes_on(direction, step):
                 # What looks like the shape in one section alone is something else.
@@ -251,7 +254,9 @@ class _Walker:
                 break
         return steps
 
-    def _fit(self, frame: Frame, tilt: float, grade: float, lost_m: float) -> PlaceFit:
+    def _fit(
+        self, frame: Frame, tilt: float, grade: float, lost_m: float, *, monitor: Monitor
+    ) -> PlaceFit:
         pose = np.array([0.0, 0.0, tilt, 0.0, grade])
         expected = Expected(pose, self._spread)
         slab = self._reader.slab(frame, self._way)
@@ -262,7 +267,7 @@ class _Walker:
             min(most, near + more * lost_m)
             for near, more, most in zip(_LOST_REACH_M, _LOST_PER_M, _MOST_LOST_M, strict=True)
         )
-        again = searched(self._shape, slab, expected, (reach[0], reach[1]))
+        again = searched(self._shape, slab, expected, (reach[0], reach[1]), monitor=monitor)
         if again.score >= self._settings.least_score:
             return again
         return PlaceFit(pose, max(fit.score, again.score), fit.seen)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.monitor import Monitor
 from processing.templates.fit_kernels import (
     HEIGHT,
     OFFSET,
@@ -25,6 +26,7 @@ _Floats = NDArray[np.float64]
 _FEWEST = 12
 _SEARCHED_POINTS = 400
 _SEARCH_STEP_M = 0.02
+_SEARCHED_AT_ONCE = 250  # poses between two checks: some 10 ms
 TILTS_RAD = (0.0, math.radians(-3.0), math.radians(3.0))
 """Searched where nothing is known of the tilt."""
 _BEST_KEPT = 3
@@ -79,6 +81,8 @@ def searched(
     expected: Expected,
     reach: tuple[float, float],
     tilts: tuple[float, ...] = (0.0,),
+    *,
+    monitor: Monitor,
 ) -> PlaceFit:
     """The best pose within some offset and height of the one expected; nearer ones go before.
 
@@ -86,6 +90,10 @@ def searched(
     ----------
     tilts : tuple of float
         Tried besides, from the one expected, rad.
+
+    Raises
+    ------
+    Cancelled
     """
     if slab.points.size < _FEWEST:
         return _nothing(expected)
@@ -93,11 +101,15 @@ def searched(
     scores = np.empty(len(poses))
     step = float(max(1, slab.points.size // _SEARCHED_POINTS))
     limits = (1.5 * shape.tolerance_m, shape.reach_m, step)
-    search_kernel(slab.local, poses, shape.segments, shape.zones, limits, scores)
+    for first in range(0, len(poses), _SEARCHED_AT_ONCE):
+        monitor.check()
+        some = slice(first, first + _SEARCHED_AT_ONCE)
+        search_kernel(slab.local, poses[some], shape.segments, shape.zones, limits, scores[some])
     away = (poses - expected.pose)[:, [OFFSET, HEIGHT]] / np.maximum(reach, _SEARCH_STEP_M)
     scores -= _AWAY_COSTS * (away**2).sum(axis=1)
     best = _nothing(expected)
     for start in _far_apart(poses, scores):
+        monitor.check()
         moved = Expected(poses[start], expected.spread)
         found = _refined_from(shape, slab, moved, poses[start])
         if found.score > best.score:
