@@ -33,7 +33,8 @@ _Integers = NDArray[np.int64]
 _CLICKS, _ASIDE_PX = 400, 8
 _SNAPPED_M, _FOLLOWED_M = 0.02, 0.03
 _LEAST_LENGTH_M = 20.0
-_STEP_M = 0.005  # true lines are taken so densely that their steps add nothing to a distance
+STEP_M = 0.005
+"""True lines are taken so densely that their steps add nothing to a distance."""
 _SEEN_M, _SEEN_POINTS = 0.10, 3  # a place is seen where so many points lie so near
 _HOLE_M = 1.0
 _JOINED_M = 0.6  # curbs and dropped curbs whose ends are this near are one line
@@ -106,7 +107,7 @@ def read_true_lines(path: Path) -> list[TrueLine]:
     lines = []
     for feature in json.loads(path.read_text(encoding="utf-8"))["features"]:
         facts = feature["properties"]
-        places, along = _densely(np.array(feature["geometry"]["coordinates"], dtype=np.float64))
+        places, along = densely(np.array(feature["geometry"]["coordinates"], dtype=np.float64))
         is_covered = np.zeros(along.size, np.bool_)
         for section in facts["sections"]:
             inside = (along >= section["u0"]) & (along <= section["u1"])
@@ -121,7 +122,7 @@ def snapped_clicks(drive: Drive, lines: list[TrueLine], kind: str) -> Score:
     pulses = np.asarray(drive.columns["pulse"])
     tree, edges = cKDTree(xyz), cKDTree(np.vstack([line.xyz for line in lines]))
     of_kind = [line for line in lines if line.kind == kind]
-    places = np.vstack([line.xyz[_seen(tree, line.xyz) & line.is_covered] for line in of_kind])
+    places = np.vstack([line.xyz[seen(tree, line.xyz) & line.is_covered] for line in of_kind])
     random = np.random.default_rng(0)
     off: list[float] = []
     seconds: list[float] = []
@@ -153,15 +154,15 @@ def followed_lines(drive: Drive, lines: list[TrueLine], what: str) -> Score:
     length, good, number, whole, seconds = 0.0, 0.0, 0, 0, 0.0
     off: list[_Floats] = []
     for line in lines:
-        for stretch in _seen_stretches(_seen(tree, line.xyz)):
+        for stretch in _seen_stretches(seen(tree, line.xyz)):
             wanted = line.xyz[stretch]
             start, end = (int(tree.query(place)[1]) for place in (wanted[0], wanted[-1]))
             began = time.thread_time()
             traced = trace(drive, start, end)
             seconds += time.thread_time() - began
-            distances = _off_polyline(wanted, traced.xyz)
-            length += len(wanted) * _STEP_M
-            good += float((distances <= _FOLLOWED_M).sum()) * _STEP_M
+            distances = off_polyline(wanted, traced.xyz)
+            length += len(wanted) * STEP_M
+            good += float((distances <= _FOLLOWED_M).sum()) * STEP_M
             number, whole = number + 1, whole + int(traced.is_complete)
             off.append(distances)
     if not number:
@@ -205,14 +206,15 @@ def _joined(lines: list[TrueLine]) -> list[TrueLine]:
     return [line for line in joined if line.kind == "joined"]
 
 
-def _densely(corners: _Floats) -> tuple[_Floats, _Floats]:
+def densely(corners: _Floats) -> tuple[_Floats, _Floats]:
+    """Places every 5 mm on a polyline, (n, 3) float64, and how far along it each is, m."""
     lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
     ends = np.concatenate([[0.0], np.cumsum(lengths)])
-    along = np.arange(0.0, ends[-1], _STEP_M)
+    along = np.arange(0.0, ends[-1], STEP_M)
     return np.column_stack([np.interp(along, ends, corners[:, k]) for k in range(3)]), along
 
 
-def _seen(tree: cKDTree, places: _Floats) -> NDArray[np.bool_]:
+def seen(tree: cKDTree, places: _Floats) -> NDArray[np.bool_]:
     """Where this drive, not only the other scanner, has points on the edge."""
     counts = tree.query_ball_point(places, _SEEN_M, return_length=True)
     return np.asarray(counts >= _SEEN_POINTS)
@@ -221,12 +223,13 @@ def _seen(tree: cKDTree, places: _Floats) -> NDArray[np.bool_]:
 def _seen_stretches(is_seen: NDArray[np.bool_]) -> list[slice]:
     """Stretches of 20 m and more without a hole of over a metre."""
     seen = np.flatnonzero(is_seen)
-    parts = np.split(seen, np.flatnonzero(np.diff(seen) * _STEP_M > _HOLE_M) + 1)
+    parts = np.split(seen, np.flatnonzero(np.diff(seen) * STEP_M > _HOLE_M) + 1)
     spans = [slice(int(part[0]), int(part[-1]) + 1) for part in parts if part.size]
-    return [span for span in spans if (span.stop - span.start) * _STEP_M >= _LEAST_LENGTH_M]
+    return [span for span in spans if (span.stop - span.start) * STEP_M >= _LEAST_LENGTH_M]
 
 
-def _off_polyline(places: _Floats, corners: _Floats) -> _Floats:
+def off_polyline(places: _Floats, corners: _Floats) -> _Floats:
+    """(n,) distance of (n, 3) places from a polyline, m; inf where it has no length."""
     if corners.shape[0] < 2:
         return np.full(places.shape[0], np.inf)
     best = np.full(places.shape[0], np.inf)
