@@ -12,7 +12,7 @@ from enum import Enum
 from itertools import pairwise
 
 from PySide6.QtCore import QByteArray, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QAction, QCloseEvent, QGuiApplication, QResizeEvent
+from PySide6.QtGui import QAction, QCloseEvent, QGuiApplication, QResizeEvent, QScreen
 from PySide6.QtWidgets import QDockWidget, QMainWindow, QTabWidget, QWidget
 from typing_extensions import override
 
@@ -176,8 +176,7 @@ class ViewDocks(QMainWindow):
         # A tool window leaves the keys of its parent working.
         self.setParent(window, _APART | Qt.WindowType.WindowMaximizeButtonHint)
         self.setWindowTitle(self.tr("Zuka – views"))
-        others = [one for one in QGuiApplication.screens() if one is not window.screen()]
-        room = (others[0] if others else window.screen()).availableGeometry()
+        room = _second_screen(window).availableGeometry()
         size = room.size() * _SECOND_SCREEN_SHARE
         self.resize(size)
         self.move(room.center() - self.rect().center())
@@ -245,3 +244,14 @@ class _NoTitle(QWidget):
     @override
     def minimumSizeHint(self) -> QSize:
         return QSize(0, 0)
+
+
+def _second_screen(window: QWidget) -> QScreen:
+    """A screen that the window isn't on; its own where there is no other.
+
+    ``QWidget.screen`` isn't asked: Python may then delete the screen, and Qt crashes later.
+    """
+    own = QGuiApplication.screenAt(window.frameGeometry().center())
+    screens = QGuiApplication.screens()
+    here = screens[0].geometry() if own is None else own.geometry()
+    return next((one for one in screens if one.geometry() != here), screens[0])

@@ -12,7 +12,7 @@ from typing import TypeVar
 
 import numpy as np
 from PySide6.QtCore import QByteArray, QEventLoop, QPoint, QSize, Qt, QTimer
-from PySide6.QtGui import QCursor, QImage
+from PySide6.QtGui import QCursor, QGuiApplication, QImage
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDialog, QDockWidget, QLineEdit, QWidget
 
@@ -308,7 +308,8 @@ class Studio:
 
     def _grab(self, window: QWidget) -> QImage:
         at = window.frameGeometry()
-        picture = window.screen().grabWindow(0, at.x(), at.y(), at.width(), at.height())
+        screen = QGuiApplication.primaryScreen()
+        picture = screen.grabWindow(0, at.x(), at.y(), at.width(), at.height())
         return picture.toImage()
 
 

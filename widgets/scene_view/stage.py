@@ -135,6 +135,9 @@ class Stage:
         for layer in self._layers[1:]:
             self._window.RemoveRenderer(layer)
         self.widget.close()
+        # It would keep Python's name for a surface that Qt deletes with the window; whatever Qt
+        # makes at the same address later is then taken for that surface.
+        self.widget._forget_context()  # type: ignore[no-untyped-call]  # noqa: SLF001 - none is public
 
     def _set_pass(self, shading: vtkEDLShading | None) -> None:
         # VTK's types forget that no pass means its own way of drawing.
