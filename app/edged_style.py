@@ -17,7 +17,6 @@ _DOCK_ICONS = {
 }
 _DARKEST_LIGHT = 128
 _RADIUS_PX = 2.0
-_BESIDE_TAB_PX = 12
 
 
 class EdgedStyle(QProxyStyle):
@@ -49,18 +48,6 @@ class EdgedStyle(QProxyStyle):
         edge = QRectF(option.rect).adjusted(0.5, 0.5, -0.5, -0.5)
         painter.drawRoundedRect(edge, _RADIUS_PX, _RADIUS_PX)
         painter.restore()
-
-    @override
-    def pixelMetric(
-        self,
-        metric: QStyle.PixelMetric,
-        option: QStyleOption | None = None,
-        widget: QWidget | None = None,
-    ) -> int:
-        # Four panels share a narrow place: their names are to be read.
-        if metric == QStyle.PixelMetric.PM_TabBarTabHSpace:
-            return _BESIDE_TAB_PX
-        return super().pixelMetric(metric, option, widget)
 
     @override
     def standardIcon(

@@ -9,8 +9,8 @@ _LEAST_PX = 1
 """Qt makes it as high as the panel needs."""
 
 
-def make_room(window: QMainWindow, panel: str, share: float) -> None:
-    """Let a panel take so much of the window's height.
+def make_room(window: QMainWindow, panel: str, high_px: int) -> None:
+    """Let a panel be so high, as far as those beside it allow.
 
     Parameters
     ----------
@@ -33,6 +33,6 @@ def make_room(window: QMainWindow, panel: str, share: float) -> None:
         and not one.isFloating()
         and window.dockWidgetArea(one) == area
     ]
-    left_px = round((1.0 - share) * window.height() / max(len(others), 1))
-    heights = [round(share * window.height()), *([max(left_px, _LEAST_PX)] * len(others))]
+    left_px = (window.height() - high_px) // max(len(others), 1)
+    heights = [high_px, *([max(left_px, _LEAST_PX)] * len(others))]
     window.resizeDocks([dock, *others], heights, Qt.Orientation.Vertical)

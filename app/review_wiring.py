@@ -72,10 +72,21 @@ class _ReviewWiring(QObject):
         if not self._is_near:
             self._is_near = True
             self._come_near()
+        self._show_its_image(place)
         for view in self._parts.views:
             if view is not self._parts.camera_view:
                 view.center_on(place)
         self._parts.camera_view.show_place(place)
+
+    def _show_its_image(self, place: Place) -> None:
+        """A candidate that the shown scanner didn't see is shown in the image of its own."""
+        settings = self._parts.document.shared.view_settings
+        if place.measured is None or place.measured.drive == settings.drive_id:
+            return
+        if self._parts.image_view.position_of(place) is None:
+            kinds = self._parts.document.drive(place.measured.drive).image_kinds
+            kind = settings.image_kind if settings.image_kind in kinds else kinds[0]
+            settings.show_image(place.measured.drive, kind)
 
     def on_review_changed(self) -> None:
         review = self._parts.review

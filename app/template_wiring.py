@@ -11,7 +11,7 @@ from widgets.mouse_tools.draw_template import DrawnProfile, DrawTemplate, Templa
 
 _TOOLS = {TemplatePart.SHAPE: "template", TemplatePart.EMPTY_ZONE: "template-zone"}
 
-_HIGH_SHARE = 0.8
+_TEMPLATES_PX = 600
 
 
 def connect_templates(parts: WindowParts) -> None:
@@ -70,4 +70,4 @@ class _TemplateWiring(QObject):
             self._when_laid_out.start()
 
     def _make_room(self) -> None:
-        make_room(self._parts.window, "templates", _HIGH_SHARE)
+        make_room(self._parts.window, "templates", _TEMPLATES_PX)

@@ -25,7 +25,7 @@ _HINTS = {
     ),
 }
 
-_HIGH_SHARE = 0.75
+_REVIEW_PX = 600
 
 
 def layout_actions(parts: WindowParts) -> tuple[Action, ...]:
@@ -36,7 +36,7 @@ def layout_actions(parts: WindowParts) -> tuple[Action, ...]:
             parts.window.area.place(layout)
             if layout is ViewLayout.CHECKING:
                 parts.window.show_panel("review")
-                make_room(parts.window, "review", _HIGH_SHARE)
+                make_room(parts.window, "review", _REVIEW_PX)
 
         return Action(
             f"layout-{layout.value}",

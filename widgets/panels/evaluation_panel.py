@@ -34,6 +34,7 @@ from widgets.shared.shared_state import SharedState
 
 _WAIT_MS = 400
 _WIDE = 1.4
+_BESIDE_TABLE_PX = 24
 
 
 class EvaluationPanel(QWidget):
@@ -111,6 +112,7 @@ class EvaluationPanel(QWidget):
                 self._set_cell(number, column, words)
         self._pages.setCurrentIndex(1 if self._evaluations else 0)
         self._table.setCurrentCell(min(row, len(self._evaluations) - 1), 0)
+        self._share_room()
         self._show_plot()
 
     def _name_of(self, one: RunEvaluation, runs: Mapping[str, Run]) -> str:
@@ -254,6 +256,14 @@ class EvaluationPanel(QWidget):
         wanted = Qt.Orientation.Horizontal if is_wide else Qt.Orientation.Vertical
         if self._halves.orientation() is not wanted:
             self._halves.setOrientation(wanted)
+        self._share_room()
+
+    def _share_room(self) -> None:
+        """Beside each other the table takes what its columns need, the curve the rest."""
+        if self._halves.orientation() is Qt.Orientation.Horizontal:
+            columns = self._table.horizontalHeader().length() + _BESIDE_TABLE_PX
+            table = min(columns, self.width() - self._plot.sizeHint().width())
+            self._halves.setSizes([table, self.width() - table])
 
     @override
     def changeEvent(self, event: QEvent) -> None:
