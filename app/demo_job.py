@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from PySide6.QtCore import QEvent, QEventLoop, QPointF, Qt, QTimer
-from PySide6.QtGui import QMouseEvent
+from PySide6.QtGui import QGuiApplication, QMouseEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.cli.image import write_image
@@ -216,8 +216,7 @@ class _DemoJob:
         QTimer.singleShot(_SETTLE_MS, loop.quit)
         loop.exec()
         path = self._out / name
-        screen = self._parts.window.screen()
-        picture = screen.grabWindow(self._parts.window.winId())
+        picture = QGuiApplication.primaryScreen().grabWindow(self._parts.window.winId())
         if not picture.save(str(path)):
             with told_as_user_error(path):
                 path.touch()
