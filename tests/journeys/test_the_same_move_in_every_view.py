@@ -131,8 +131,10 @@ def show(street: Surveyor, name: str, place: Place) -> None:
         parts.camera_view.zoom_by(6.0)
         parts.camera_view.center_on(place)
     else:
-        parts.map_view.zoom_by(40.0)
-        parts.map_view.center_on(place)
+        # Clicks find the points that are in the picture, so it has to be there.
+        with bot.waitSignal(parts.map_view.sharpened, timeout=WAIT_MS):
+            parts.map_view.zoom_by(40.0)
+            parts.map_view.center_on(place)
 
 
 def undo(street: Surveyor) -> None:
