@@ -90,7 +90,7 @@ def test_an_import_that_is_refused_leaves_an_older_project_as_it_was(document, t
 
 def test_a_project_that_cannot_be_opened_leaves_the_open_one(document, tmp_path, qtbot):
     document.create(tmp_path / "p.zuka", "")
-    with qtbot.waitSignal(document.refused):
+    with qtbot.waitSignal(document.refused, timeout=30_000):
         assert not document.open(tmp_path / "nowhere.zuka")
     assert document.project.name == "p"
 
@@ -98,7 +98,7 @@ def test_a_project_that_cannot_be_opened_leaves_the_open_one(document, tmp_path,
 def test_the_reference_system_can_be_said_later_but_not_wrongly(document, tmp_path, qtbot):
     document.create(tmp_path / "p.zuka", "")
     assert document.crs() == ""
-    with qtbot.waitSignal(document.refused):
+    with qtbot.waitSignal(document.refused, timeout=30_000):
         assert not document.set_reference_system("EPSG:1")
     assert document.set_reference_system("epsg:6677")
     assert document.crs() == "EPSG:6677"

@@ -42,7 +42,7 @@ def test_progress_is_told_with_its_words(qtbot, jobs):
     words = Text("half", "半分")
     told = []
     jobs.changed.connect(lambda status: told.append((status.fraction, status.text)))
-    with qtbot.waitSignal(jobs.finished):
+    with qtbot.waitSignal(jobs.finished, timeout=30_000):
         jobs.start(TITLE, lambda monitor: monitor.report(0.5, words))
     assert (0.5, words) in told
 
@@ -71,7 +71,7 @@ def test_a_waiting_job_can_be_cancelled_before_it_starts(qtbot, jobs):
     jobs.start(TITLE, lambda monitor: gate.wait(10))
     waiting = jobs.start(TITLE, lambda monitor: started.append(True))
     jobs.cancel(waiting)
-    with qtbot.waitSignal(jobs.cancelled):
+    with qtbot.waitSignal(jobs.cancelled, timeout=30_000):
         gate.set()
     assert not started
 
@@ -82,7 +82,7 @@ def test_what_is_prepared_does_not_hold_up_what_is_asked_for(qtbot, jobs):
     with qtbot.waitSignal(jobs.finished) as told:
         asked = jobs.start(TITLE, lambda monitor: "asked")
     assert told.args == [asked, "asked"]
-    with qtbot.waitSignal(jobs.finished):
+    with qtbot.waitSignal(jobs.finished, timeout=30_000):
         gate.set()
 
 

@@ -162,7 +162,7 @@ def test_docks_stay_where_they_were_put(qtbot: QtBot, street: WindowParts) -> No
     before = stand()
     assert before["project"][0]
     speak(qtbot, street, "ja")
-    qtbot.waitUntil(lambda: stand() == before)
+    qtbot.waitUntil(lambda: stand() == before, timeout=30_000)
 
 
 def test_a_line_that_is_being_drawn_goes_on_in_the_new_views(

@@ -79,12 +79,12 @@ def test_a_chosen_theme_shows_at_once_and_is_remembered(
 
     actions = parts.window.actions_by_id
     actions["theme-dark"].trigger()
-    qtbot.waitUntil(lambda: ground() < 0.1)
+    qtbot.waitUntil(lambda: ground() < 0.1, timeout=30_000)
     assert settings.theme is ThemeChoice.DARK
     assert actions["theme-dark"].isChecked()
     assert not actions["theme-system"].isChecked()
     actions["theme-light"].trigger()
-    qtbot.waitUntil(lambda: ground() > 0.7)
+    qtbot.waitUntil(lambda: ground() > 0.7, timeout=30_000)
     assert settings.theme is ThemeChoice.LIGHT
 
 

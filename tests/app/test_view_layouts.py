@@ -53,14 +53,14 @@ def test_a_layout_shows_its_views_whatever_was_before(
 ) -> None:
     for one in (before, layout):
         parts.window.area.place(one)
-        qtbot.waitUntil(lambda one=one: in_front(parts) == _IN_FRONT[one])
+        qtbot.waitUntil(lambda one=one: in_front(parts) == _IN_FRONT[one], timeout=30_000)
     parts.window.area.place(ViewLayout.DRAWING)
 
 
 def test_all_views_are_there_in_each_layout(qtbot: QtBot, parts: WindowParts) -> None:
     for layout in ViewLayout:
         parts.window.area.place(layout)
-        qtbot.waitUntil(lambda layout=layout: in_front(parts) == _IN_FRONT[layout])
+        qtbot.waitUntil(lambda layout=layout: in_front(parts) == _IN_FRONT[layout], timeout=30_000)
         docks = parts.view_docks.findChildren(QDockWidget)
         assert not any(dock.isHidden() or dock.isFloating() for dock in docks)
     parts.window.area.place(ViewLayout.DRAWING)
@@ -71,5 +71,7 @@ def test_a_low_screen_has_room_for_every_panel_and_layout(qtbot: QtBot, parts: W
         parts.window.actions_by_id[f"layout-{layout.value}"].trigger()
         for panel in ("templates", "labels", "processing", "evaluation", "features"):
             parts.window.show_panel(panel)
-            qtbot.waitUntil(lambda: parts.window.findChild(QDockWidget, "layers").height() > 0)
+            qtbot.waitUntil(
+                lambda: parts.window.findChild(QDockWidget, "layers").height() > 0, timeout=30_000
+            )
             assert (parts.window.width(), parts.window.height()) == (1366, 768)

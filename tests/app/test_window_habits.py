@@ -140,7 +140,7 @@ def test_the_pressed_key_does_what_it_was_given_to(
     parts = start()
     assert parts.document.create(tmp_path / "p.zuka", "EPSG:6677")
     parts.window.activateWindow()
-    qtbot.waitUntil(parts.window.isActiveWindow)
+    qtbot.waitUntil(parts.window.isActiveWindow, timeout=30_000)
     qtbot.keyClick(parts.window, Qt.Key.Key_J, Qt.KeyboardModifier.ControlModifier)
     assert parts.document.shared.view_settings.look.attribute == "height"
 

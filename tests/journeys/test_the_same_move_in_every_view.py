@@ -161,7 +161,7 @@ def drag(street: Surveyor, name: str, start: Place, goal: Place, keys=NO_KEYS) -
         return at.toPoint()
 
     before = parts.document.shared.map_changes.features_changed
-    with bot.waitSignal(before, timeout=5000):
+    with bot.waitSignal(before, timeout=WAIT_MS):
         move_mouse(target, spot(start))
         bot.mousePress(target, LEFT, NO_KEYS, spot(start))
         middle = (spot(start) + spot(goal)) / 2

@@ -47,7 +47,7 @@ class Hand:
         self.wait_sharp()
 
     def wait_sharp(self) -> None:
-        self.qtbot.waitUntil(lambda: self.view.is_sharp)
+        self.qtbot.waitUntil(lambda: self.view.is_sharp, timeout=30_000)
 
     def do(self, work: Callable[[], object]) -> None:
         work()

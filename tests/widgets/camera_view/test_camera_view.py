@@ -84,8 +84,8 @@ def test_a_prepared_place_is_shown_at_once(hand: Hand) -> None:
     images = hand.view.showing.images.images
     wanted = next(taken.image for taken in images if taken.image.path.stem == "left_0000")
     darkroom = hand.view._darkroom
-    hand.qtbot.waitUntil(lambda: darkroom.photo(wanted) is not None)
-    hand.qtbot.waitUntil(lambda: darkroom.depth(wanted) is not None)
+    hand.qtbot.waitUntil(lambda: darkroom.photo(wanted) is not None, timeout=30_000)
+    hand.qtbot.waitUntil(lambda: darkroom.depth(wanted) is not None, timeout=30_000)
     hand.view.show_place(ON_WALL)
     assert hand.name == "left_0000"
     assert hand.view.is_sharp
@@ -248,7 +248,7 @@ def test_a_missing_file_is_named_and_the_next_image_shown(
     hand.look_at(ON_ROAD)
     assert hand.name == "front_0000"
     hand.map.shared.cursor.move_to(ON_WALL)
-    qtbot.waitUntil(lambda: hand.view.lay() is None)
+    qtbot.waitUntil(lambda: hand.view.lay() is None, timeout=30_000)
     assert "left_000" in hand.view.words()
     hand.view.close()
 
@@ -280,7 +280,7 @@ def test_what_is_hidden_in_one_image_is_shown_in_another(
     place = place_at(-7.0, -1.0, 1.0)
     hand.map.shared.cursor.move_to(place)
     assert hand.name == "a_0000"
-    qtbot.waitUntil(lambda: hand.name == "b_0000")
+    qtbot.waitUntil(lambda: hand.name == "b_0000", timeout=30_000)
     sightings = hand.view.showing.sightings
     assert [one.is_hidden for one in sightings if one.image == inside] == [True]
     hand.view.close()

@@ -93,7 +93,7 @@ def hand(qtbot: QtBot, open_map: OpenMap, tiles: TileCache, left_drive: Drive) -
     view = ImageView(open_map, open_map.shared, tiles)
     qtbot.addWidget(view)
     view.resize(900, 700)
-    with qtbot.waitSignal(view.sharpened):
+    with qtbot.waitSignal(view.sharpened, timeout=30_000):
         view.show()
     view.show_everything()
     hand = Hand(qtbot, open_map, view, left_drive)

@@ -267,7 +267,7 @@ def test_a_feature_drawn_on_one_drive_is_clicked_on_the_other(
         hand.drive.nearest_point(right_drive.xyz(np.array([point]))[0], 0.3) for point in others
     ]
     hand.take(Select(hand.map, hand.map.shared))
-    with hand.qtbot.waitSignal(hand.view.features_placed):
+    with hand.qtbot.waitSignal(hand.view.features_placed, timeout=30_000):
         hand.map.shared.map_changes.features_changed.emit((feature.id,))
     hand.click(hand.spot(shown_at[0]))
     assert hand.map.shared.selection.features == {feature.id}

@@ -250,9 +250,9 @@ def test_the_empty_view_offers_what_would_fill_it(qtbot: QtBot, tiles: TileCache
     qtbot.addWidget(view)
     view.show()
     import_button, open_button = view.findChildren(QPushButton)
-    with qtbot.waitSignal(view.import_requested):
+    with qtbot.waitSignal(view.import_requested, timeout=30_000):
         qtbot.mouseClick(import_button, Qt.MouseButton.LeftButton)
-    with qtbot.waitSignal(view.open_requested):
+    with qtbot.waitSignal(view.open_requested, timeout=30_000):
         qtbot.mouseClick(open_button, Qt.MouseButton.LeftButton)
     qtbot.mouseClick(view, Qt.MouseButton.LeftButton, pos=QPoint(10, 10))
     qtbot.mouseMove(view, QPoint(12, 12))
@@ -271,12 +271,12 @@ def test_closing_the_project_empties_the_view(hand: Hand) -> None:
 
 
 def test_an_attribute_that_the_points_lack_is_refused_in_words(hand: Hand) -> None:
-    with hand.qtbot.waitSignal(hand.view._images.changed):
+    with hand.qtbot.waitSignal(hand.view._images.changed, timeout=30_000):
         hand.map.shared.view_settings.change_look(attribute="segment")
         hand.view.repaint()
     assert hand.view._images.refusal is not None
     hand.view.grab()
-    with hand.qtbot.waitSignal(hand.view.sharpened):
+    with hand.qtbot.waitSignal(hand.view.sharpened, timeout=30_000):
         hand.map.shared.view_settings.change_look(attribute="height")
     assert hand.view._images.refusal is None
 

@@ -75,7 +75,7 @@ def test_the_street_runs_as_the_lay_says(hand: Hand, lay: ImageLay) -> None:
 
 @every_lay
 def test_what_is_painted_turns_with_the_picture(hand: Hand, lay: ImageLay) -> None:
-    with hand.qtbot.waitSignal(hand.view.sharpened):
+    with hand.qtbot.waitSignal(hand.view.sharpened, timeout=30_000):
         hand.map.shared.view_settings.change_look(attribute="height")
     turn(hand, lay)
     points = hand.points_across(5)

@@ -40,7 +40,7 @@ def views(
     views = ImageViews(open_map, open_map.shared, tiles)
     qtbot.addWidget(views)
     views.resize(900, 800)
-    with qtbot.waitSignal(views.sharpened):
+    with qtbot.waitSignal(views.sharpened, timeout=30_000):
         views.show()
     yield views
     views.close()
@@ -93,7 +93,7 @@ def test_an_image_is_closed_by_its_button(qtbot: QtBot, views: ImageViews) -> No
         for button in views.findChildren(QToolButton)
         if button.text() == "✕" and button.isVisible()
     )
-    with qtbot.waitSignal(views.images_changed):
+    with qtbot.waitSignal(views.images_changed, timeout=30_000):
         qtbot.mouseClick(close, LEFT)
     assert views.views == (views.main,)
     assert views.images == ()
@@ -317,5 +317,5 @@ def test_an_image_that_was_closed_listens_no_longer(
     assert other is not None
     assert all(now > then for now, then in zip(listeners(), before, strict=True))
     views.close_image(other)
-    qtbot.waitUntil(lambda: not shiboken6.isValid(other))
+    qtbot.waitUntil(lambda: not shiboken6.isValid(other), timeout=30_000)
     assert listeners() == before

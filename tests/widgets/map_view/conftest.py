@@ -36,7 +36,7 @@ class Hand:
         assert lay is not None
         x, y = lay.to_plane(np.array([place.xyz]))[0].tolist()
         viewport = self.view.viewport
-        with self.qtbot.waitSignal(self.view.sharpened):
+        with self.qtbot.waitSignal(self.view.sharpened, timeout=30_000):
             self.view.set_viewport(
                 viewport.zoomed(px_per_m / viewport.scale, 0.0, 0.0).centred_on(x, y)
             )
@@ -101,7 +101,7 @@ def hand(qtbot: QtBot, open_map: OpenMap, tiles: TileCache, left_drive: Drive) -
     view = MapView(open_map, open_map.shared, tiles)
     qtbot.addWidget(view)
     view.resize(900, 700)
-    with qtbot.waitSignal(view.sharpened):
+    with qtbot.waitSignal(view.sharpened, timeout=30_000):
         view.show()
     yield Hand(qtbot, open_map, view, left_drive)
     view.close()

@@ -82,7 +82,7 @@ def test_what_is_high_above_the_road_is_hidden_until_it_is_wanted(hand: Hand) ->
     assert below is None or below.xyz[2] <= top.xyz[2] - 1.0
     told: list[object] = []
     hand.view.limit_changed.connect(told.append)
-    with hand.qtbot.waitSignal(hand.view.sharpened):
+    with hand.qtbot.waitSignal(hand.view.sharpened, timeout=30_000):
         hand.view.set_limit(None)
     hand.view.set_limit(None)
     assert told == [None]
@@ -97,7 +97,7 @@ def test_the_limit_is_chosen_in_the_menu(hand: Hand) -> None:
     (limits,) = [one.menu() for one in menu.actions() if one.menu() is not None]
     checked = [one for one in limits.actions() if one.isChecked()]
     assert [one.data() for one in checked] == [LIMIT_M]
-    with hand.qtbot.waitSignal(hand.view.limit_changed):
+    with hand.qtbot.waitSignal(hand.view.limit_changed, timeout=30_000):
         limits.actions()[0].trigger()
     assert hand.view.limit_m is None
     menu.deleteLater()
@@ -115,27 +115,27 @@ def test_the_picture_is_never_blank_while_the_wheel_turns(hand: Hand) -> None:
 
 
 def test_a_wish_that_is_overtaken_still_ends_in_a_sharp_picture(hand: Hand) -> None:
-    with hand.qtbot.waitSignal(hand.view.sharpened):
+    with hand.qtbot.waitSignal(hand.view.sharpened, timeout=30_000):
         for _ in range(12):
             hand.view.set_viewport(hand.view.viewport.panned(5.0, 3.0))
 
 
 def test_another_colour_is_shown(hand: Hand) -> None:
     before = hand.view.grab().toImage()
-    with hand.qtbot.waitSignal(hand.view.sharpened):
+    with hand.qtbot.waitSignal(hand.view.sharpened, timeout=30_000):
         hand.map.shared.view_settings.change_look(attribute="height")
     assert hand.view.grab().toImage() != before
 
 
 def test_a_colour_that_a_drive_does_not_have_leaves_the_view_alive(hand: Hand) -> None:
-    with hand.qtbot.waitSignal(hand.view.sharpened):
+    with hand.qtbot.waitSignal(hand.view.sharpened, timeout=30_000):
         hand.map.shared.view_settings.change_look(attribute="segment")
-    with hand.qtbot.waitSignal(hand.view.sharpened):
+    with hand.qtbot.waitSignal(hand.view.sharpened, timeout=30_000):
         hand.map.shared.view_settings.change_look(attribute="intensity")
 
 
 def test_results_of_a_tool_are_shown_when_they_come(hand: Hand) -> None:
-    with hand.qtbot.waitSignal(hand.view.sharpened):
+    with hand.qtbot.waitSignal(hand.view.sharpened, timeout=30_000):
         hand.map.shared.map_changes.drive_columns_changed.emit(hand.drive.id)
 
 
@@ -199,7 +199,7 @@ def test_a_closed_project_leaves_nothing_and_another_one_is_shown_whole(
     assert hand.view.lay() is None
     hand.click(QPoint(450, 350))
     hand.map.all_drives = (right_drive,)
-    with hand.qtbot.waitSignal(hand.view.sharpened):
+    with hand.qtbot.waitSignal(hand.view.sharpened, timeout=30_000):
         hand.map.shared.map_changes.drives_changed.emit()
     corners = (Place(right_drive.info.lowest), Place(right_drive.info.highest))
     assert all(hand.view.rect().contains(hand.spot(corner)) for corner in corners)
@@ -218,7 +218,7 @@ def test_a_drive_without_trajectory_is_shown_without_a_limit(
     view = MapView(alone, alone.shared, tiles)
     qtbot.addWidget(view)
     view.resize(600, 500)
-    with qtbot.waitSignal(view.sharpened):
+    with qtbot.waitSignal(view.sharpened, timeout=30_000):
         view.show()
     top = _wall_top(drive)
     spot = view.position_of(top)

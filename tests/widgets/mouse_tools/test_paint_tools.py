@@ -148,7 +148,7 @@ def test_escape_undo_or_another_tool_in_the_middle_of_a_stroke_drop_it(easel, en
 
 def test_escape_without_a_stroke_gives_the_hand_back(easel, qtbot):
     tool = brush(easel)
-    with qtbot.waitSignal(tool.finished):
+    with qtbot.waitSignal(tool.finished, timeout=30_000):
         tool.leave()
 
 

@@ -78,12 +78,12 @@ def test_it_asks_for_numbers_when_it_is_seen_and_only_then(
     with qtbot.waitSignal(panel._refresh.timeout):
         open_map.shared.map_changes.features_changed.emit(("a",))
     assert not asked
-    with qtbot.waitSignal(panel.evaluation_wanted):
+    with qtbot.waitSignal(panel.evaluation_wanted, timeout=30_000):
         panel.show()
     panel.show_evaluations(())
     for _ in range(5):  # many changes, one question
         open_map.shared.map_changes.features_changed.emit(("a",))
-    with qtbot.waitSignal(panel.evaluation_wanted):
+    with qtbot.waitSignal(panel.evaluation_wanted, timeout=30_000):
         pass
     assert len(asked) == 2
 

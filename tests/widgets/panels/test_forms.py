@@ -73,7 +73,7 @@ def test_what_is_set_comes_back(form: ParameterForm) -> None:
 def test_what_is_typed_is_the_value(qtbot: QtBot, form: ParameterForm) -> None:
     field = form.field("radius_m")
     assert isinstance(field, NumberField)
-    with qtbot.waitSignal(form.changed):
+    with qtbot.waitSignal(form.changed, timeout=30_000):
         type_into(qtbot, field, "2.125")
     assert form.value() == Settings(radius_m=2.125)
 

@@ -29,7 +29,7 @@ def panel(qtbot, street) -> LabelPanel:
     shown.resize(260, 520)
     shown.show()
     qtbot.waitExposed(shown)
-    qtbot.waitUntil(lambda: not shown.tally.is_counting)
+    qtbot.waitUntil(lambda: not shown.tally.is_counting, timeout=30_000)
     return shown
 
 
@@ -45,13 +45,13 @@ def test_the_panel_counts_the_points_of_each_label_as_they_change(qtbot, street,
     make_column(drive)
     points = np.arange(2500)
     write_labels(drive, points, np.where(points < 2000, 11, 240).astype(np.uint8))
-    with qtbot.waitSignal(panel.tally.changed):
+    with qtbot.waitSignal(panel.tally.changed, timeout=30_000):
         street.shared.map_changes.labels_changed.emit(drive.id, points)
     assert rows(panel)["Road surface"] == ("2,000", "")
     # A code that the table of classes lacks is shown by its number.
     assert rows(panel)["Class 240"] == ("500", "")
     write_labels(drive, points, np.zeros(2500, np.uint8))
-    with qtbot.waitSignal(panel.tally.changed):
+    with qtbot.waitSignal(panel.tally.changed, timeout=30_000):
         street.shared.map_changes.labels_changed.emit(drive.id, points)
     assert "Class 240" not in rows(panel)
     assert panel.tally.by_code[0] == drive.count
@@ -99,6 +99,6 @@ def test_a_damaged_column_counts_nothing_and_stops_nothing(qtbot, street):
     (drive.folder / "label.bin").write_bytes(b"\x01\x02")
     panel = LabelPanel(street, street.shared, "ja")
     qtbot.addWidget(panel)
-    qtbot.waitUntil(lambda: not panel.tally.is_counting)
+    qtbot.waitUntil(lambda: not panel.tally.is_counting, timeout=30_000)
     assert not panel.tally.by_code.any()
     assert rows(panel)["路面"] == ("", "")

@@ -74,7 +74,7 @@ def test_an_empty_map_says_what_would_be_here_and_offers_the_way(
     qtbot: QtBot, panel: ReviewPanel
 ) -> None:
     assert any("judged here" in words for words in labels(panel))
-    with qtbot.waitSignal(panel.processing_requested):
+    with qtbot.waitSignal(panel.processing_requested, timeout=30_000):
         qtbot.mouseClick(button(panel, "Find something"), Qt.MouseButton.LeftButton)
 
 
@@ -128,7 +128,7 @@ def test_when_all_are_decided_the_evaluation_is_offered(
     assert "All candidates are decided." in labels(panel)
     assert not card(panel).isVisible()
     assert not button(panel, "Accept  (").isEnabled()
-    with qtbot.waitSignal(panel.evaluation_requested):
+    with qtbot.waitSignal(panel.evaluation_requested, timeout=30_000):
         qtbot.mouseClick(button(panel, "See how good"), Qt.MouseButton.LeftButton)
 
 
@@ -147,7 +147,7 @@ def test_every_button_names_its_key_and_asks_for_its_deed(
 ) -> None:
     run, features = store(open_map)
     panel.show_review(ReviewProgress(ReviewState((run,)), left=8, place=1), features[0])
-    with qtbot.waitSignal(getattr(panel, signal)):
+    with qtbot.waitSignal(getattr(panel, signal), timeout=30_000):
         qtbot.mouseClick(button(panel, words), Qt.MouseButton.LeftButton)
     assert not button(panel, words).hasFocus()
 

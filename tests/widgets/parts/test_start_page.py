@@ -44,7 +44,7 @@ def test_the_start_page_has_three_ways_to_begin(
     qtbot: QtBot, page: StartPage, place: int, wish: str
 ) -> None:
     button = page.findChildren(QPushButton)[place]
-    with qtbot.waitSignal(getattr(page, f"{wish}_requested")):
+    with qtbot.waitSignal(getattr(page, f"{wish}_requested"), timeout=30_000):
         qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
 
 
@@ -52,7 +52,7 @@ def test_the_start_page_has_three_ways_to_begin(
 def test_the_buttons_are_pressed_by_the_keyboard(
     qtbot: QtBot, page: StartPage, key: Qt.Key
 ) -> None:
-    with qtbot.waitSignal(page.open_requested):
+    with qtbot.waitSignal(page.open_requested, timeout=30_000):
         qtbot.keyClick(page.findChildren(QPushButton)[1], key)
 
 

@@ -29,7 +29,7 @@ def image_of(hand: Hand) -> QImage:
     hand.sharpen()
     # Two frames: features are put into the scene by the event loop, and then drawn.
     for _ in range(2):
-        with hand.qtbot.waitSignal(hand.picture.frameSwapped):
+        with hand.qtbot.waitSignal(hand.picture.frameSwapped, timeout=30_000):
             hand.picture.update()
     return hand.view.grab().toImage()
 
@@ -78,7 +78,7 @@ def test_a_click_into_the_sky_leaves_the_cursor(hand: Hand) -> None:
 def test_the_mouse_tells_the_point_below_it(hand: Hand) -> None:
     place = place_on(hand.drive, hand.road_points(1)[0])
     hand.look_at(place, 2.0)
-    with hand.qtbot.waitSignal(hand.map.shared.cursor.hovered):
+    with hand.qtbot.waitSignal(hand.map.shared.cursor.hovered, timeout=30_000):
         hand.move(hand.spot(place))
     hover = hand.map.shared.cursor.hover
     assert hover is not None

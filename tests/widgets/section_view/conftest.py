@@ -41,7 +41,7 @@ class Hand:
 
     def do(self, work: Callable[[], object]) -> None:
         """Do something after which the section is painted anew."""
-        with self.qtbot.waitSignal(self.view.sharpened):
+        with self.qtbot.waitSignal(self.view.sharpened, timeout=30_000):
             work()
 
     def line(self, *vertices: Vertex) -> Feature:
@@ -121,7 +121,7 @@ def shown(qtbot: QtBot, open_map: OpenMap) -> Hand:
     qtbot.addWidget(view)
     view.resize(900, 600)
     if open_map.all_drives and view.standing is not None:
-        with qtbot.waitSignal(view.sharpened):
+        with qtbot.waitSignal(view.sharpened, timeout=30_000):
             view.show()
     else:
         view.show()

@@ -23,7 +23,7 @@ def test_nothing_in_the_bar_is_cut_or_hidden(qtbot: QtBot, width: int) -> None:
     host.resize(width, 200)
     host.show()
     qtbot.waitExposed(host)
-    qtbot.waitUntil(lambda: bar.height() == bar.sizeHint().height())
+    qtbot.waitUntil(lambda: bar.height() == bar.sizeHint().height(), timeout=30_000)
     for part in bar.findChildren(QWidget):
         if part.parentWidget() is not bar:
             continue
@@ -37,6 +37,6 @@ def test_held_windows_stand_above_each_other_in_a_narrow_dock(hand: Hand) -> Non
     hand.view.resize(420, 500)
     hand.view.set_pinned(True)
     across, along = hand.view.panes
-    hand.qtbot.waitUntil(lambda: along.geometry().top() > across.geometry().top())
+    hand.qtbot.waitUntil(lambda: along.geometry().top() > across.geometry().top(), timeout=30_000)
     hand.view.resize(900, 500)
-    hand.qtbot.waitUntil(lambda: along.geometry().left() > across.geometry().left())
+    hand.qtbot.waitUntil(lambda: along.geometry().left() > across.geometry().left(), timeout=30_000)

@@ -239,7 +239,7 @@ def test_the_mouse_over_no_line_or_in_the_section_itself_moves_nothing(hand: Han
 
 def test_a_place_is_held_as_two_windows_and_released(hand: Hand) -> None:
     before = cut_of(hand)
-    with hand.qtbot.waitSignal(hand.view.pinned_changed):
+    with hand.qtbot.waitSignal(hand.view.pinned_changed, timeout=30_000):
         hand.view.set_pinned(True)
     across, along = hand.view.panes
     assert [pane.isVisible() for pane in (across, along)] == [True, True]
