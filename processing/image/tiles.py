@@ -174,6 +174,9 @@ class TilePyramid:
             table = np.load(path) if path is not None else None
         except (OSError, ValueError, EOFError):
             return None
+        except SystemError:
+            # Python 3.11 may stumble over the file's header while another thread parses too.
+            return None
         is_whole = table is not None and table.shape == (int(self._starts[-1]), VALUES)
         return table if is_whole else None
 
