@@ -1,33 +1,16 @@
-"""Navigation: how wheel, drag and keys move the picture."""
+"""What is shown of an image when it comes, and when the wheel is turned."""
 
 from __future__ import annotations
 
 import numpy as np
-from PySide6.QtCore import QPointF, Qt
-from PySide6.QtGui import QCursor, QWheelEvent
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QWheelEvent
 
 from widgets.image_view.picture import Picture
 from widgets.image_view.viewport import Viewport
-from widgets.mouse_tools.gesture import REACH_PX
-from widgets.shared.mouse_shape import drawing_cursor
-from widgets.shared.snap_state import SnapMode
+from widgets.plane_view.navigation import ZOOM_PER_NOTCH, notches_of
 
-NOTCH = 120.0
-ZOOM_PER_NOTCH = 1.25
 _ALONG_PER_NOTCH = 0.12  # of the window's size along the street
-_KEY_SHARE = 0.1  # of the window's size
-
-_ARROWS = {
-    Qt.Key.Key_Left: (1, 0),
-    Qt.Key.Key_Right: (-1, 0),
-    Qt.Key.Key_Up: (0, 1),
-    Qt.Key.Key_Down: (0, -1),
-}
-_ZOOMS = {
-    Qt.Key.Key_Plus: ZOOM_PER_NOTCH,
-    Qt.Key.Key_Equal: ZOOM_PER_NOTCH,
-    Qt.Key.Key_Minus: 1 / ZOOM_PER_NOTCH,
-}
 
 
 def viewport_on(picture: Picture, before: Picture | None, viewport: Viewport) -> Viewport:
@@ -65,64 +48,10 @@ def _row_at_the_same_time(picture: Picture, before: Picture, viewport: Viewport)
     return int(np.searchsorted(times, moment))
 
 
-class Navigation:
-    """Remembers a drag that pushes the picture; everything else is a function of the event."""
-
-    def __init__(self) -> None:
-        self._from: QPointF | None = None
-        self.is_space_down = False
-
-    def mouse_shape(self, modes: frozenset[SnapMode]) -> QCursor:
-        """What the mouse looks like over a picture while clicks snap to these."""
-        if self.is_space_down:
-            return QCursor(Qt.CursorShape.OpenHandCursor)
-        return drawing_cursor(modes, REACH_PX)
-
-    @property
-    def is_panning(self) -> bool:
-        """Whether a drag is pushing the picture."""
-        return self._from is not None
-
-    def starts_with(self, button: Qt.MouseButton) -> bool:
-        """Whether a press of this button begins to push."""
-        is_space_drag = button == Qt.MouseButton.LeftButton and self.is_space_down
-        return button == Qt.MouseButton.MiddleButton or is_space_drag
-
-    def begin(self, position: QPointF) -> None:
-        """Take hold of the picture."""
-        self._from = position
-
-    def dragged(self, viewport: Viewport, position: QPointF) -> Viewport:
-        """The picture pushed to where the mouse is."""
-        if self._from is None:
-            return viewport
-        moved = position - self._from
-        self._from = position
-        return viewport.panned(moved.x(), moved.y())
-
-    def end(self) -> None:
-        """Let go."""
-        self._from = None
-
-    @staticmethod
-    def wheeled(viewport: Viewport, event: QWheelEvent) -> Viewport:
-        """Zoomed at the mouse; with Shift moved along the drive."""
-        angle = event.angleDelta()
-        # Some systems turn a wheel with Shift into a sideways one.
-        notches = (angle.y() or angle.x()) / NOTCH
-        if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
-            return viewport.rolled(notches * _ALONG_PER_NOTCH)
-        position = event.position()
-        return viewport.zoomed(ZOOM_PER_NOTCH**notches, position.x(), position.y())
-
-    @staticmethod
-    def keyed(viewport: Viewport, key: int) -> Viewport | None:
-        """Moved or zoomed by a key; None for keys that do neither."""
-        for arrow, (right, down) in _ARROWS.items():
-            if key == arrow:
-                share_px = _KEY_SHARE * viewport.width, _KEY_SHARE * viewport.height
-                return viewport.panned(right * share_px[0], down * share_px[1])
-        for zoom, factor in _ZOOMS.items():
-            if key == zoom:
-                return viewport.zoomed(factor, *viewport.middle)
-        return None
+def wheeled(viewport: Viewport, event: QWheelEvent) -> Viewport:
+    """Zoomed at the mouse; with Shift moved along the drive."""
+    notches = notches_of(event)
+    if event.modifiers() & Qt.KeyboardModifier.ShiftModifier:
+        return viewport.rolled(notches * _ALONG_PER_NOTCH)
+    position = event.position()
+    return viewport.zoomed(ZOOM_PER_NOTCH**notches, position.x(), position.y())

@@ -22,7 +22,7 @@ from widgets.image_view.edges import Edges
 from widgets.image_view.feature_overlay import FeatureOverlay
 from widgets.image_view.feature_places import FeaturePlaces
 from widgets.image_view.hit_finder import HitFinder
-from widgets.image_view.navigation import Navigation, viewport_on
+from widgets.image_view.navigation import viewport_on, wheeled
 from widgets.image_view.picture import Picture
 from widgets.image_view.place_search import PlaceSearch
 from widgets.image_view.scene_painter import Overlays, ScenePainter
@@ -33,6 +33,7 @@ from widgets.image_view.viewport import Viewport
 from widgets.mouse_tools.gesture import Gesture
 from widgets.mouse_tools.menu_wish import MenuWish
 from widgets.mouse_tools.mouse_tool import MouseTool
+from widgets.plane_view.navigation import Navigation
 from widgets.shared.cursor import Place
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
@@ -213,7 +214,7 @@ class ImageView(QWidget):
     @override
     def wheelEvent(self, event: QWheelEvent) -> None:
         if self._picture is not None:
-            self._look_through(self._navigation.wheeled(self._viewport, event))
+            self._look_through(wheeled(self._viewport, event))
             self._hover(event.position())
         event.accept()
 

@@ -1,12 +1,13 @@
-"""Navigation: how wheel, drag and keys move a plane under the window."""
+"""Navigation: how wheel, drag and keys move a picture under the window, the same in every view."""
 
 from __future__ import annotations
+
+from typing import Protocol, Self, TypeVar
 
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QCursor, QWheelEvent
 
 from widgets.mouse_tools.gesture import REACH_PX
-from widgets.plane_view.viewport import PlaneViewport
 from widgets.shared.mouse_shape import drawing_cursor
 from widgets.shared.snap_state import SnapMode
 
@@ -26,6 +27,31 @@ _ZOOMS = {
     Qt.Key.Key_Equal: ZOOM_PER_NOTCH,
     Qt.Key.Key_Minus: 1 / ZOOM_PER_NOTCH,
 }
+
+
+class Movable(Protocol):
+    """What is shown of a picture, and how large; every change gives a new one."""
+
+    @property
+    def width(self) -> float:
+        """Of the window, screen pixels."""
+
+    @property
+    def height(self) -> float:
+        """Of the window, screen pixels."""
+
+    @property
+    def middle(self) -> tuple[float, float]:
+        """The middle of the window, widget pixels."""
+
+    def panned(self, right_px: float, down_px: float, /) -> Self:
+        """The picture pushed by so many screen pixels."""
+
+    def zoomed(self, factor: float, x: float, y: float, /) -> Self:
+        """Larger or smaller; what is at the position stays there."""
+
+
+Shown = TypeVar("Shown", bound=Movable)
 
 
 def notches_of(event: QWheelEvent) -> float:
@@ -64,7 +90,7 @@ class Navigation:
         """Take hold of the picture."""
         self._from = position
 
-    def dragged(self, viewport: PlaneViewport, position: QPointF) -> PlaneViewport:
+    def dragged(self, viewport: Shown, position: QPointF) -> Shown:
         """The picture pushed to where the mouse is."""
         if self._from is None:
             return viewport
@@ -77,7 +103,7 @@ class Navigation:
         self._from = None
 
     @staticmethod
-    def keyed(viewport: PlaneViewport, key: int) -> PlaneViewport | None:
+    def keyed(viewport: Shown, key: int) -> Shown | None:
         """Moved or zoomed by a key; None for keys that do neither."""
         for arrow, (right, down) in _ARROWS.items():
             if key == arrow:
@@ -85,5 +111,5 @@ class Navigation:
                 return viewport.panned(right * share_px[0], down * share_px[1])
         for zoom, factor in _ZOOMS.items():
             if key == zoom:
-                return viewport.zoomed(factor, viewport.width / 2, viewport.height / 2)
+                return viewport.zoomed(factor, *viewport.middle)
         return None

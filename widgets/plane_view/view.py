@@ -234,7 +234,7 @@ class PlaneView(QWidget):
     def zoom_by(self, factor: float) -> None:
         """Zoom about the middle."""
         viewport = self._viewport
-        self.set_viewport(viewport.zoomed(factor, viewport.width / 2, viewport.height / 2))
+        self.set_viewport(viewport.zoomed(factor, *viewport.middle))
 
     def position_of(self, place: Place) -> QPointF | None:
         """Where a place is in this widget; None where it isn't shown."""

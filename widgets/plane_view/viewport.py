@@ -60,6 +60,11 @@ class PlaneViewport:
             self.height / 2 - y * self.scale_y,
         )
 
+    @property
+    def middle(self) -> tuple[float, float]:
+        """The middle of the widget, pixels."""
+        return self.width / 2, self.height / 2
+
     def to_screen(self, places: Floats) -> Floats:
         """(..., 2) plane coordinates to (..., 2) pixels; NaN stays NaN."""
         scales = np.array([self.scale, self.scale_y])

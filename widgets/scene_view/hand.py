@@ -11,11 +11,11 @@ from PySide6.QtGui import QKeyEvent, QMouseEvent, QWheelEvent
 from typing_extensions import override
 
 from widgets.mouse_tools.gesture import DRAG_PX, Gesture
+from widgets.plane_view.navigation import notches_of
 from widgets.scene_view.hits import SceneHits
 from widgets.scene_view.pilot import Pilot, keyed, moved_along, zoomed
 from widgets.shared.shared_state import SharedState
 
-_NOTCH = 120.0
 _LOOK_UP_MS = 30
 _LEAST_POINT_PX, _MOST_POINT_PX = 1.0, 12.0
 
@@ -153,9 +153,7 @@ class Hand(QObject):
     def _on_wheel(self, event: QWheelEvent) -> None:
         if not self.is_enabled:
             return
-        angle = event.angleDelta()
-        # Some systems turn a wheel with Shift into a sideways one.
-        notches = (angle.y() or angle.x()) / _NOTCH
+        notches = notches_of(event)
         camera = self._hits.projection.camera
         if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
             settings = self._shared.view_settings
