@@ -62,6 +62,8 @@ class ImageView(QWidget):
         The buttons of the empty view.
     sharpened
         The last tile that was missing in the window has come and is painted.
+    tile_came
+        A tile that was missing has come, and is painted soon.
     features_placed
         Every vertex of another drive has found its point of this one, or none.
     menu_requested(wish: MenuWish)
@@ -73,6 +75,7 @@ class ImageView(QWidget):
     open_requested = Signal()
     import_requested = Signal()
     sharpened = Signal()
+    tile_came = Signal()
     features_placed = Signal()
     menu_requested = Signal(object)
     looked = Signal()
@@ -113,6 +116,7 @@ class ImageView(QWidget):
         self._edges.empty.import_requested.connect(self.import_requested)
         self._edges.minimap.place_chosen.connect(self._on_minimap_place_chosen)
         self._images.changed.connect(self.update)
+        self._images.changed.connect(self.tile_came)
         self._listen()
         self._places.read_all()
         self._on_settings_image_changed()
@@ -145,6 +149,11 @@ class ImageView(QWidget):
     def picture(self) -> Picture | None:
         """What is shown; None while the view is empty."""
         return self._picture
+
+    @property
+    def is_sharp(self) -> bool:
+        """Whether no tile was missing when it was painted last."""
+        return self._is_sharp
 
     def set_mouse_tool(self, tool: MouseTool | None) -> None:
         """Tell this tool from now on what the mouse does; None: a click puts the cursor."""
