@@ -62,8 +62,6 @@ class ImageView(QWidget):
         The buttons of the empty view.
     sharpened
         The last tile that was missing in the window has come and is painted.
-    tile_came
-        A tile that was missing has come, and is painted soon.
     features_placed
         Every vertex of another drive has found its point of this one, or none.
     menu_requested(wish: MenuWish)
@@ -75,7 +73,6 @@ class ImageView(QWidget):
     open_requested = Signal()
     import_requested = Signal()
     sharpened = Signal()
-    tile_came = Signal()
     features_placed = Signal()
     menu_requested = Signal(object)
     looked = Signal()
@@ -97,6 +94,7 @@ class ImageView(QWidget):
         self._is_sharp = False
         self._viewport = Viewport()
         self._images = TileImages(tiles)
+        self._images.setParent(self)
         self._places = FeaturePlaces(source)
         self._overlay = FeatureOverlay(self._places, shared.view_settings)
         self._hits = HitFinder(self._overlay, shared.snap)
@@ -116,7 +114,6 @@ class ImageView(QWidget):
         self._edges.empty.import_requested.connect(self.import_requested)
         self._edges.minimap.place_chosen.connect(self._on_minimap_place_chosen)
         self._images.changed.connect(self.update)
-        self._images.changed.connect(self.tile_came)
         self._listen()
         self._places.read_all()
         self._on_settings_image_changed()
@@ -149,11 +146,6 @@ class ImageView(QWidget):
     def picture(self) -> Picture | None:
         """What is shown; None while the view is empty."""
         return self._picture
-
-    @property
-    def is_sharp(self) -> bool:
-        """Whether no tile was missing when it was painted last."""
-        return self._is_sharp
 
     def set_mouse_tool(self, tool: MouseTool | None) -> None:
         """Tell this tool from now on what the mouse does; None: a click puts the cursor."""
@@ -394,8 +386,7 @@ class ImageView(QWidget):
         self._shared.cursor.hover_over(self._hits.place_under(position))
 
     def _tint(self) -> None:
-        picture = self._picture
-        chosen = self._shared.selection.points
+        picture, chosen = self._picture, self._shared.selection.points
         if picture is not None:
             self._images.tint(chosen.get(picture.drive.id, np.empty(0, np.int64)))
             self.update()
