@@ -25,6 +25,7 @@ def command(arguments: argparse.Namespace) -> int:
                 ),
             )
     project = Project.open(arguments.project, writing=False)
+    project.find_sources()
     request = ExportRequest(
         formats=tuple(dict.fromkeys(arguments.format)),
         folder=arguments.out,

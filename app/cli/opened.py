@@ -66,6 +66,7 @@ def opened_input(arguments: argparse.Namespace, monitor: Monitor) -> Iterator[Op
             )
         project = Project.open(inputs[0], writing=False)
         try:
+            project.find_sources()
             yield OpenedInput(project.drives, project.crs, project.catalogue)
         finally:
             project.close()

@@ -15,7 +15,7 @@ _FILE_NAME = "images.json"
 
 def write_images(folder: Path, images: ImageList) -> None:
     """Note a drive's images in its folder."""
-    noted = [{**dataclasses.asdict(image), "path": str(image.path)} for image in images]
+    noted = [{**dataclasses.asdict(image), "path": str(image.path.absolute())} for image in images]
     path = folder / _FILE_NAME
     with told_as_user_error(path):
         path.write_text(json.dumps(noted, ensure_ascii=False), encoding="utf-8")

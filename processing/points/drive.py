@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,8 @@ from processing.image.kinds import ImageKind
 from processing.image.nearest import nearest_point
 from processing.image.point_image import PointCloudImage
 from processing.points.columns import Columns
-from processing.points.drive_info import DriveInfo, read_drive_info
+from processing.points.drive_info import DriveInfo, SourceFile, read_drive_info
+from processing.points.file_places import FolderMove, folder_of, path_now
 from processing.points.source_order import sources_of
 from processing.points.trajectory import Trajectory
 from processing.points.turns import Turns
@@ -25,6 +27,9 @@ from processing.points.turns_file import read_turns
 from processing.text import Text
 
 Points = NDArray[np.int64] | slice
+
+SCAN = "scan"
+"""What :class:`DriveInfo` says of rows that are the sweeps of a standing scanner."""
 
 _WITH_TURNS = (
     ImageKind.TRAJECTORY_CENTER,
@@ -44,8 +49,8 @@ class Drive:
 
     Attributes
     ----------
-    delivered_images : ImageList or None
-        Camera images taken on this drive, oriented as they were delivered.
+    noted_images : ImageList or None
+        Camera images taken on this drive, where and as they were delivered.
 
     Raises
     ------
@@ -57,8 +62,10 @@ class Drive:
         self._folder = folder
         self.info: DriveInfo = read_drive_info(folder)
         self.columns = Columns(folder, self.info.count)
-        self.delivered_images: ImageList | None = read_images(folder)
+        self.noted_images: ImageList | None = read_images(folder)
         self._offsets = read_offsets(folder)
+        self._moves: tuple[FolderMove, ...] = ()
+        self._delivered_images = self.noted_images
         self._images: ImageList | None = None
         self._check_columns()
         self.turns: Turns | None = read_turns(folder)
@@ -82,8 +89,37 @@ class Drive:
 
     @property
     def delivered_files(self) -> tuple[Path, ...]:
-        """The files it was imported from, which nothing may ever write."""
-        return tuple(Path(source.path) for source in self.info.sources)
+        """The files it was imported from, which nothing may ever write; where noted, where now."""
+        noted = [Path(source.path) for source in self.info.sources]
+        now = [self.source_path(source) for source in self.info.sources]
+        return tuple(dict.fromkeys(noted + now))
+
+    def source_path(self, source: SourceFile) -> Path:
+        """Where one of ``info.sources`` is now, as far as is known."""
+        return path_now(source.path, self._moves)
+
+    def use_moves(self, moves: tuple[FolderMove, ...]) -> bool:
+        """Look for delivered files and camera images where their folders are now.
+
+        Returns
+        -------
+        bool
+            Whether any of them is elsewhere than it was thought to be.
+        """
+        noted = {folder_of(source.path) for source in self.info.sources}
+        noted |= {folder_of(str(image.path)) for image in self.noted_images or ()}
+        mine = tuple(move for move in moves if move.noted in noted)
+        if mine == self._moves:
+            return False
+        self._moves, self._images = mine, None
+        if self.noted_images is not None:
+            self._delivered_images = ImageList(
+                tuple(
+                    replace(image, path=path_now(str(image.path), mine))
+                    for image in self.noted_images
+                )
+            )
+        return True
 
     @property
     def trajectory(self) -> Trajectory | None:
@@ -92,6 +128,11 @@ class Drive:
         if self._trajectory is None and path.is_file():
             self._trajectory = _read_trajectory(path)
         return self._trajectory
+
+    @property
+    def delivered_images(self) -> ImageList | None:
+        """Camera images, where they are now, oriented as they were delivered."""
+        return self._delivered_images
 
     @property
     def images(self) -> ImageList | None:
@@ -120,7 +161,14 @@ class Drive:
     @property
     def image_kinds(self) -> tuple[ImageKind, ...]:
         """The kinds of image that this drive can be shown as."""
-        return _WITH_TURNS if self.turns is not None else (ImageKind.TOP_VIEW,)
+        if self.turns is not None:
+            return _WITH_TURNS
+        return (ImageKind.SCAN if self.info.rows_by == SCAN else ImageKind.TOP_VIEW,)
+
+    @property
+    def pixel_kind(self) -> ImageKind:
+        """The kind whose pixels hold one pulse or cell each, so that neighbours are true ones."""
+        return self.image_kinds[-1]
 
     def xyz(self, points: Points) -> NDArray[np.float64]:
         """Coordinates of points.

@@ -8,12 +8,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import BadFile, MissingInput
 from processing.formats.las_results import write_results
 from processing.labels.label_column import labels_of
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
-from processing.text import Text
+from processing.project.source_check import require_delivered
 
 _STRETCH = 4_000_000
 _ENDINGS = (".las", ".laz")
@@ -41,40 +40,16 @@ def write_labelled_points(
         It is another one now; a column of labels is damaged.
     NoSpace, InUse, Cancelled
     """
-    sources = sorted({s.path for drive in drives for s in drive.info.sources if s.points})
-    for source in sources:
-        _check(Path(source), drives)
-    names = _names_of([Path(source) for source in sources])
+    noted = [(drive, one) for drive in drives for one in drive.info.sources if one.points]
+    for drive, one in noted:
+        require_delivered(one, drive.source_path(one), monitor.check)
+    sources = sorted({drive.source_path(one) for drive, one in noted})
+    names = _names_of(sources)
     for number, (source, name) in enumerate(zip(sources, names, strict=True)):
         part = PartMonitor(monitor, number / len(sources), (number + 1) / len(sources))
         labels, classes = _in_file_order(drives, source, part)
         results = {"classification": np.where(labels > 0, labels, classes), "label": labels}
-        write_results(Path(source), place(name), results, part)
-
-
-def _check(source: Path, drives: Sequence[Drive]) -> None:
-    sizes = {s.size for drive in drives for s in drive.info.sources if Path(s.path) == source}
-    if not source.is_file():
-        raise MissingInput(
-            Text("The delivered file is no longer there.", "納品ファイルが元の場所にありません。"),
-            Text.same(str(source)),
-            Text(
-                "Put it back; its points are needed for the output.",
-                "出力に必要なため、元の場所に戻してください。",
-            ),
-        )
-    if {source.stat().st_size} != sizes:
-        raise BadFile(
-            Text(
-                "The delivered file has changed since it was imported.",
-                "納品ファイルがインポート後に変更されています。",
-            ),
-            Text.same(str(source)),
-            Text(
-                "Put the delivered one back; its points are needed for the output.",
-                "出力に必要なため、納品されたファイルに戻してください。",
-            ),
-        )
+        write_results(source, place(name), results, part)
 
 
 def _names_of(sources: Sequence[Path]) -> list[str]:
@@ -89,13 +64,15 @@ def _names_of(sources: Sequence[Path]) -> list[str]:
     return names
 
 
-def _in_file_order(drives: Sequence[Drive], source: str, monitor: Monitor) -> tuple[_Codes, _Codes]:
+def _in_file_order(
+    drives: Sequence[Drive], source: Path, monitor: Monitor
+) -> tuple[_Codes, _Codes]:
     """Labels and delivered classes of all points of a file, in its order."""
     mine = [
         (drive, number, one.points)
         for drive in drives
         for number, one in enumerate(drive.info.sources)
-        if one.path == source
+        if drive.source_path(one) == source
     ]
     labels = np.zeros(sum(points for _, _, points in mine), np.uint8)
     classes = np.zeros_like(labels)

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import MissingInput
 from processing.formats.las_results import write_results
 from processing.monitor import Monitor
 from processing.points.drive import Drive
+from processing.project.source_check import require_delivered
 from processing.text import Text
 from processing.tools.tool import PointResult
 
@@ -49,9 +49,11 @@ def write_point_results(
     ------
     MissingInput
         A delivered file is no longer where it was.
+    BadFile
+        It is another one now.
     NoSpace, Cancelled
     """
-    sources = _sources(results)
+    sources = _sources(results, monitor)
     paths = []
     for number, source in enumerate(sources):
         path = output
@@ -66,21 +68,14 @@ def write_point_results(
 _WRITING = Text("Writing {name}", "{name} を書き込み中")
 
 
-def _sources(results: Sequence[tuple[Drive, PointResult]]) -> list[Path]:
-    sources = {s.path for drive, _ in results for s in drive.info.sources if s.points}
-    for source in sources:
-        if not Path(source).is_file():
-            raise MissingInput(
-                Text(
-                    "The delivered file is no longer there.", "納品ファイルが元の場所にありません。"
-                ),
-                Text.same(source),
-                Text(
-                    "Put it back; its points are needed for the output.",
-                    "出力に必要なため、元の場所に戻してください。",
-                ),
-            )
-    return [Path(source) for source in sorted(sources)]
+def _sources(results: Sequence[tuple[Drive, PointResult]], monitor: Monitor) -> list[Path]:
+    found = set()
+    for drive, _ in results:
+        for source in drive.info.sources:
+            if source.points:
+                require_delivered(source, drive.source_path(source), monitor.check)
+                found.add(drive.source_path(source))
+    return sorted(found)
 
 
 def _in_file_order(
@@ -89,7 +84,7 @@ def _in_file_order(
     found: dict[str, NDArray[Any]] = {}
     count = _points_of_file(results, source)
     for drive, result in results:
-        paths = [Path(s.path) for s in drive.info.sources]
+        paths = [drive.source_path(s) for s in drive.info.sources]
         if source not in paths:
             continue
         number = paths.index(source)
@@ -123,7 +118,10 @@ def _keep_delivered(
 
 def _points_of_file(results: Sequence[tuple[Drive, PointResult]], source: Path) -> int:
     return sum(
-        s.points for drive, _ in results for s in drive.info.sources if Path(s.path) == source
+        s.points
+        for drive, _ in results
+        for s in drive.info.sources
+        if drive.source_path(s) == source
     )
 
 

@@ -32,6 +32,7 @@ from processing.project.reference_system import (
     write_reference_system,
 )
 from processing.project.runs import Runs
+from processing.project.source_files import HOMES, SourceFiles
 from processing.text import Text
 from resources import path_of
 
@@ -54,6 +55,8 @@ class Project:
     ----------
     settings : ProjectSettings
         What else is remembered with the project, by name.
+    sources : SourceFiles
+        The delivered files and camera images.
     """
 
     def __init__(self, folder: Path, *, writing: bool) -> None:
@@ -75,6 +78,8 @@ class Project:
                 self._folders = DriveFolders(folder, self._database, self.settings)
                 self._origin = self._stored_origin()
             self._drives = {id_: Drive(self._folders.path_of(id_)) for id_ in self._folders.ids}
+            self.sources = SourceFiles(folder, self.settings, writing=writing)
+            self.sources.use_known(self.drives)
             labels.correct(self.history.pending_labels(), writing=writing)
             if writing:
                 self._folders.remove_leftovers()
@@ -184,24 +189,14 @@ class Project:
         """One drive; KeyError when there is none of that id."""
         return self._drives[id]
 
-    def source_notes(self) -> tuple[Text, ...]:
-        """What is to be said of delivered files that are gone or changed; drives do without."""
-        notes = []
+    def find_sources(self) -> None:
+        """Look where delivered files and camera images are now; may wait for file systems.
+
+        A window asks ``sources.survey`` in a thread of its own instead.
+        """
+        moves = self.sources.survey(self.drives).moves_found(lambda: None)
         for drive in self.drives:
-            for source in drive.info.sources:
-                path = Path(source.path)
-                try:
-                    is_as_delivered = path.stat().st_size == source.size
-                except OSError:
-                    is_as_delivered = False
-                if source.points and not is_as_delivered:
-                    notes.append(
-                        Text(
-                            "{drive}: the delivered file {path} is missing or has changed.",
-                            "{drive}: 納品ファイル {path} が見つからないか、変更されています。",
-                        ).filled(drive=drive.info.name, path=path)
-                    )
-        return tuple(notes)
+            drive.use_moves(moves)
 
     def temporary_folder(self) -> Path:
         """A new name for a folder of an import; what is left there goes at the next opening."""
@@ -236,13 +231,16 @@ class Project:
             return ()
         crs = self._crs_with(new)
         origin = self._origin if self._drives else _origin_of(new[0])
+        homes = self.sources.homes_with(drive.id for drive in new)
         arriving = {drive.id: folder for drive, folder in zip(new, folders, strict=True)}
         with self._folders.adopting(arriving) as connection:
             write_setting(connection, _ORIGIN, origin.tolist())
+            write_setting(connection, HOMES, homes)
             if crs != self.crs:
                 self._write_crs(connection, crs)
         self._origin = origin
         self.settings.took(_ORIGIN, origin.tolist())
+        self.settings.took(HOMES, homes)
         if crs != self.crs:
             self._took_crs(crs)
         for drive in new:

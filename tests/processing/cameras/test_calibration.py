@@ -162,14 +162,15 @@ def test_one_pair_is_too_few_and_one_place_determines_nothing() -> None:
 
 def test_offsets_are_kept_beside_the_drive_and_count_everywhere(tmp_path: Path) -> None:
     drive = small_drive(tmp_path / "d")[0]
-    write_images(drive.folder, ImageList((IMAGE,)))
+    image = replace(IMAGE, path=tmp_path / IMAGE.path)
+    write_images(drive.folder, ImageList((image,)))
     drive = Drive(drive.folder)
-    assert drive.images == ImageList((IMAGE,))
+    assert drive.images == ImageList((image,))
     drive.keep_camera_offsets({"front": CameraOffset(yaw_deg=1.0), "left": CameraOffset()})
     for opened in (drive, Drive(drive.folder)):
         assert opened.images is not None
         assert opened.images[0].kappa_deg != IMAGE.kappa_deg
-        assert opened.delivered_images == ImageList((IMAGE,))
+        assert opened.delivered_images == ImageList((image,))
     assert set(Drive(drive.folder).camera_offsets) == {"front"}
 
 

@@ -175,13 +175,13 @@ def test_a_damaged_drive_is_named_and_left_as_it_was(tmp_path, imported, damage)
 def test_missing_delivered_files_are_only_noted(tmp_path, imported):
     with closing(Project.create(tmp_path / "a.zuka", "")) as project:
         drive = project.adopt_drive(finished_import(project, imported))
-        assert project.source_notes() == ()
         source = drive.info.sources[0]
         moved = dataclasses.replace(source, path=str(tmp_path / "gone.laz"))
         write_drive_info(drive.folder, dataclasses.replace(drive.info, sources=(moved,)))
     with closing(Project.open(tmp_path / "a.zuka")) as project:
-        (note,) = project.source_notes()
-        assert "gone.laz" in note.ja
+        (trouble,) = project.sources.survey(project.drives).look(lambda: None).troubles
+        assert trouble.path.name == "gone.laz"
+        assert trouble.drives == (drive.id,)
 
 
 def test_a_system_that_the_drives_are_not_in_is_refused(tmp_path, imported):
