@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import OutOfRange, Unsuitable
-from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
 from processing.monitor import Monitor
 from processing.points.drive import Drive
@@ -169,7 +168,7 @@ def _columns(
     tool: Tool, request: RunRequest, monitor: Monitor, points_per_block: int
 ) -> PointResult:
     """What a tool says about every point, block by block."""
-    image = _image_of(request.drive)
+    image = request.drive.image(request.drive.pixel_kind)
     results = results_of(tool, image.row_starts)
     total = max(request.drive.count, 1)
     compute = tool.compute
@@ -181,12 +180,6 @@ def _columns(
         points = _block_of(request.drive, image, block.rows_with_overlap)
         results.add(block, compute(points, request.parameters, monitor))
     return results.finished()
-
-
-def _image_of(drive: Drive) -> PointCloudImage:
-    """The image whose pixels hold one pulse or cell each, so that neighbours are true ones."""
-    has_turns = drive.turns is not None
-    return drive.image(ImageKind.TRAJECTORY_REVERSIBLE if has_turns else ImageKind.TOP_VIEW)
 
 
 def _block_of(drive: Drive, image: PointCloudImage, rows: range) -> PointBlock:

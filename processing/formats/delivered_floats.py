@@ -25,8 +25,11 @@ _SCALES_M = (0.0001, 0.001)
 _LARGEST_INTEGER = 2_000_000_000
 _FARTHEST_M = 1e9
 _LONGEST_TIME_S = 1e11
+_LARGEST_INDEX = 2**31 - 1
 _FULL = 65535.0
+_INTENSITY_RANGES = ((0.0, 1.0), (0.0, 255.0), (0.0, _FULL), (-100.0, 100.0), (-2048.0, 2047.0))
 _SMALL_COLUMNS = ("return_number", "number_of_returns", "classification")
+_OF_SCANS = ("scan", "scanner_place")
 
 
 @dataclass(frozen=True)
@@ -41,7 +44,10 @@ class FloatFile:
         Gives the points in the file's order, as often as asked: dicts with ``xyz`` (n, 3) float64
         and, the same ones in every block, ``time``, ``intensity``, ``return_number``,
         ``number_of_returns``, ``classification``, ``scan_angle_deg`` (n,), ``color`` (n, 3)
-        uint16, ``origin`` (n, 3) float64. NaN or infinite coordinates: no point.
+        uint16, ``origin`` (n, 3) float64. NaN or infinite coordinates: no point. Scans of a
+        standing scanner have ``grid`` (n, 2) int64: sweep and place in it, −1 where unknown;
+        ``scan`` (n,): number in the file from 1; ``scanner_place`` (n, 3) float64: where the
+        scanner stood, m. A block is of one scan, and scans follow one another.
     """
 
     path: Path
@@ -59,6 +65,7 @@ class _Summary:
     intensity_low: float
     intensity_high: float
     is_intensity_integral: bool
+    scanner_places: tuple[tuple[int, Vector3], ...]
 
 
 def info_of(file: FloatFile) -> PointFileInfo:
@@ -83,7 +90,8 @@ def info_of(file: FloatFile) -> PointFileInfo:
         has_time="time" in summary.names,
         has_color="color" in summary.names,
         first_time=summary.first_time,
-        attributes=summary.names,
+        attributes=tuple(name for name in summary.names if name not in _OF_SCANS),
+        scanner_places=summary.scanner_places,
     )
 
 
@@ -92,7 +100,8 @@ def chunks_of(file: FloatFile, chunk_points: int) -> Iterator[PointChunk]:
 
     Coordinates become integers of 0.1 mm (1 mm where the points lie more than 200 km apart) from
     an offset of whole metres. Intensities that are whole numbers of 16 bits stay; others are
-    mapped linearly to 0 to 65535 from the customary range they lie in.
+    mapped linearly to 0 to 65535 from the customary range they lie in. Where a file has several
+    scans, the scan's number is the scanner's.
 
     Raises
     ------
@@ -123,7 +132,7 @@ def _chunk_columns(
     columns: dict[str, NDArray[np.generic]] = {
         "xyz": integers.astype(np.int32),
         "intensity": _intensity(values, summary),
-        "scanner": np.zeros(count, dtype=np.uint16),
+        "scanner": _scanners(values, summary),
         "user_data": np.zeros(count, dtype=np.uint8),
     }
     for name in _SMALL_COLUMNS:
@@ -139,7 +148,17 @@ def _chunk_columns(
     for name in ("color", "origin"):
         if name in values:
             columns[name] = values[name]
+    if "grid" in values:
+        indices = values["grid"].astype(np.int64)
+        is_index = (indices >= 0) & (indices <= _LARGEST_INDEX)
+        columns["grid"] = np.where(is_index, indices, -1).astype(np.int32)
     return columns
+
+
+def _scanners(values: Block, summary: _Summary) -> NDArray[np.uint16]:
+    if len(summary.scanner_places) < 2:
+        return np.zeros(values["xyz"].shape[0], dtype=np.uint16)
+    return _bounded(values["scan"], 0, _FULL).astype(np.uint16)
 
 
 def _intensity(values: Block, summary: _Summary) -> NDArray[np.uint16]:
@@ -160,9 +179,9 @@ def _intensity_range(low: float, high: float) -> tuple[float, float]:
     """The customary range in which a file's intensities lie; its own where they lie in none.
 
     The files of one drive must come to one brightness, so their own extremes won't do: shares,
-    bytes, 16 bits, decibels.
+    bytes, 16 bits, decibels, the twelve bits with sign of some scanners.
     """
-    for least, most in ((0.0, 1.0), (0.0, 255.0), (0.0, float(_FULL)), (-100.0, 100.0)):
+    for least, most in _INTENSITY_RANGES:
         if least <= low and high <= most:
             return least, most
     return low, high
@@ -212,6 +231,7 @@ def _read_summary(key: _Key) -> _Summary:
     low, high, is_integral = np.inf, -np.inf, True
     names: tuple[str, ...] = ()
     first_time = np.nan
+    places: dict[int, Vector3] = {}
     for block in key.file.blocks():
         names = tuple(name for name in block if name != "xyz")
         good = _usable(block["xyz"])
@@ -227,6 +247,8 @@ def _read_summary(key: _Key) -> _Summary:
             if values.size:
                 low, high = min(low, float(values.min())), max(high, float(values.max()))
                 is_integral = is_integral and bool((values == np.rint(values)).all())
+        if "scan" in block:
+            places[int(block["scan"][good][0])] = _vector(block["scanner_place"][0])
         if "time" in block and count == 0:
             first_time = float(block["time"][good][0])
         count += xyz.shape[0]
@@ -239,10 +261,11 @@ def _read_summary(key: _Key) -> _Summary:
         intensity_low=low,
         intensity_high=high,
         is_intensity_integral=is_integral,
+        scanner_places=tuple(places.items()),
     )
 
 
-def _vector(values: NDArray[np.float64]) -> Vector3:
+def _vector(values: NDArray[np.generic]) -> Vector3:
     x, y, z = (float(value) for value in values)
     return (x, y, z)
 

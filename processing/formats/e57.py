@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,15 +27,20 @@ _SPHERICAL = ("sphericalRange", "sphericalAzimuth", "sphericalElevation")
 _INVALID = ("cartesianInvalidState", "sphericalInvalidState")
 _COLOR = ("colorRed", "colorGreen", "colorBlue")
 _INTENSITY = "intensity"
+_COLUMN, _ROW = "columnIndex", "rowIndex"
+_RETURN, _RETURNS = "returnIndex", "returnCount"
+_SWEEP_NAMED = "pointGroupingSchemes/groupingByLine/idElementName"
+_LARGEST_INDEX = 2**31 - 1
 _EIGHT_BITS = 255.0
 _FULL = 65535.0
 
 
 def open_e57(path: Path) -> FloatFile:
-    """The points of all scans of an E57 file, poses applied.
+    """The points of all scans of an E57 file, poses applied, with their cells of the scan's grid.
 
     Points that the scanner marked invalid are left out. Where only some scans have intensities
-    or colours, the others' are 0.
+    or colours, the others' are 0. A sweep of the grid is what the file groups points by; where it
+    doesn't say, a column.
 
     Raises
     ------
@@ -69,11 +75,11 @@ def _scan_blocks(
         )
         if not position or scan.point_count > _MOST_POINTS_A_BYTE * path.stat().st_size:
             raise _bad_scan(path, number)
-        wanted = (*position, *_INVALID, _INTENSITY, *_COLOR)
+        wanted = (*position, *_INVALID, _INTENSITY, *_COLOR, _COLUMN, _ROW, _RETURN, _RETURNS)
         fields = [field for field in wanted if field in scan.point_fields]
         data, buffers = _buffers(file, fields, min(_BLOCK_POINTS, max(scan.point_count, 1)))
         turn, shift = scan.rotation_matrix, scan.translation
-        brightest = _brightest(scan)
+        facts = _ScanFacts(number + 1, known, _brightest(scan), _grid_fields(scan))
         reader = scan.points.reader(buffers)
     while True:
         with _damage_told(path):
@@ -85,10 +91,31 @@ def _scan_blocks(
         for name in _INVALID:
             if name in values:
                 valid &= values[name] == 0
-        block = _block({name: v[valid] for name, v in values.items()}, known, brightest)
+        block = _block({name: v[valid] for name, v in values.items()}, facts)
         # Not @: on some builds of the linear algebra library it warns about unused lanes.
         block["xyz"] = np.einsum("ij,nj->ni", turn, block["xyz"].astype(np.float64)) + shift
+        block["scanner_place"] = np.broadcast_to(
+            np.asarray(shift, dtype=np.float64), block["xyz"].shape
+        )
         yield block
+
+
+@dataclass(frozen=True)
+class _ScanFacts:
+    """A scan's number in the file, what any scan has, its highest colour, and its grid's fields."""
+
+    number: int
+    known: set[str]
+    brightest: float
+    grid_fields: tuple[str, str] | None
+
+
+def _grid_fields(scan: ScanHeader) -> tuple[str, str] | None:
+    """The indices of a point's sweep and of its place in it; None where a scan lacks them."""
+    if not {_COLUMN, _ROW} <= set(scan.point_fields):
+        return None
+    named = scan.node[_SWEEP_NAMED].value() if scan.node.isDefined(_SWEEP_NAMED) else _COLUMN
+    return (_ROW, _COLUMN) if named == _ROW else (_COLUMN, _ROW)
 
 
 def _buffers(
@@ -106,7 +133,7 @@ def _buffers(
     return data, buffers
 
 
-def _block(values: dict[str, NDArray[np.float64]], known: set[str], brightest: float) -> Block:
+def _block(values: dict[str, NDArray[np.float64]], facts: _ScanFacts) -> Block:
     if _CARTESIAN[0] in values:
         xyz = np.column_stack([values[name] for name in _CARTESIAN])
     else:
@@ -115,14 +142,24 @@ def _block(values: dict[str, NDArray[np.float64]], known: set[str], brightest: f
         xyz = np.column_stack(
             [level * np.cos(azimuth), level * np.sin(azimuth), distance * np.sin(elevation)]
         )
-    block: Block = {"xyz": xyz}
-    nothing = np.zeros(xyz.shape[0])
+    known, count = facts.known, xyz.shape[0]
+    block: Block = {"xyz": xyz, "scan": np.full(count, facts.number)}
+    nothing = np.zeros(count)
     if _INTENSITY in known:
         block["intensity"] = values.get(_INTENSITY, nothing)
     if set(_COLOR) <= known:
         channels = np.column_stack([values.get(name, nothing) for name in _COLOR])
-        color = np.nan_to_num(channels * (_FULL / brightest))
+        color = np.nan_to_num(channels * (_FULL / facts.brightest))
         block["color"] = np.clip(np.rint(color), 0, _FULL).astype(np.uint16)
+    if {_RETURN, _RETURNS} <= known:
+        block["return_number"] = values.get(_RETURN, nothing) + 1
+        block["number_of_returns"] = np.maximum(values.get(_RETURNS, nothing), 1)
+    if {_COLUMN, _ROW} <= known:
+        block["grid"] = np.full((count, 2), -1)
+    if facts.grid_fields is not None:
+        indices = np.column_stack([values[name] for name in facts.grid_fields])
+        is_index = (indices >= 0) & (indices <= _LARGEST_INDEX)
+        block["grid"] = np.where(is_index, indices, -1).astype(np.int64)
     return block
 
 

@@ -24,12 +24,16 @@ _SINGLE = {
     "classification": ("classification", "class"),
     "scan_angle_deg": ("scanangledeg", "scanangle", "scananglerank"),
 }
+GRID_NAMES = (("columnindex", "column", "col"), ("rowindex", "row"))
+"""A structured scan's column, which is taken as a sweep, and row: plain names."""
+
 _EIGHT_TO_SIXTEEN_BITS = 257
+_FULL = 65535.0
 
 
 def has_position(names: tuple[str, ...]) -> bool:
     """Whether fields of these names give x, y and z."""
-    known = {_plain(name) for name in names}
+    known = {plain_name(name) for name in names}
     return all(any(name in known for name in axis) for axis in _POSITION)
 
 
@@ -51,9 +55,10 @@ def block_of(
     -------
     Block
         As :class:`processing.formats.delivered_floats.FloatFile` says. ``theta`` (rad) is the
-        scan angle where no other is. Colours of 8 bits become 16 bits, those of 0 to 1 too.
+        scan angle where no other is. Colours of 8 bits become 16 bits, those of 0 to 1 too. A
+        column of a scan's grid is a sweep.
     """
-    named = {_plain(name): values for name, values in fields.items()}
+    named = {plain_name(name): values for name, values in fields.items()}
     shift = np.array(offset)
     position = _together(named, _POSITION)
     if position is None:
@@ -72,6 +77,9 @@ def block_of(
     origin = _together(named, _ORIGIN)
     if origin is not None:
         block["origin"] = np.column_stack(origin).astype(np.float64) + shift
+    grid = _together(named, GRID_NAMES)
+    if grid is not None:
+        block["grid"] = np.column_stack([whole_numbers(values) for values in grid])
     return block
 
 
@@ -83,18 +91,26 @@ def _together(
     return values if len(values) == len(names) else None
 
 
-def _plain(name: str) -> str:
+def plain_name(name: str) -> str:
     """CloudCompare writes ``scalar_GpsTime``, others ``gps_time`` or ``GPS time``; one form."""
     return name.lower().removeprefix("scalar_").replace("_", "").replace(" ", "").strip('"/#')
 
 
+def whole_numbers(values: NDArray[np.generic]) -> NDArray[np.int64]:
+    """Indices: (n,) int64 below 2³¹, −1 for what can't be one."""
+    numbers = values.astype(np.float64)
+    is_whole = (numbers >= 0) & (numbers < 2**31) & (numbers == np.floor(numbers))
+    return np.where(is_whole, numbers, -1).astype(np.int64)
+
+
 def _sixteen_bits(channel: NDArray[np.generic]) -> NDArray[np.uint16]:
     numbers = np.nan_to_num(channel.astype(np.float64))
+    highest = float(numbers.max(initial=0.0))
+    is_share = channel.dtype.kind == "f" and highest <= 1.0
     if channel.dtype == np.uint16:
         factor = 1.0
-    elif channel.dtype == np.float32:
-        factor = 65535.0
+    elif is_share and (channel.dtype == np.float32 or (numbers != np.rint(numbers)).any()):
+        factor = _FULL
     else:
-        is_eight_bits = numbers.size == 0 or numbers.max() < 256
-        factor = float(_EIGHT_TO_SIXTEEN_BITS) if is_eight_bits else 1.0
-    return np.clip(np.rint(numbers * factor), 0, 65535).astype(np.uint16)
+        factor = float(_EIGHT_TO_SIXTEEN_BITS) if highest < 256 else 1.0
+    return np.clip(np.rint(numbers * factor), 0, _FULL).astype(np.uint16)

@@ -12,9 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import told_as_user_error
+from processing.formats.field_names import GRID_NAMES, plain_name, whole_numbers
 from processing.formats.las_crs import crs_of
 from processing.formats.las_header import RECORD_SIZES, LasHeader, damaged, read_header
-from processing.formats.las_records import extra_dimensions
+from processing.formats.las_records import ExtraDimension, extra_dimensions
 from processing.formats.laz_chunks import read_chunk_table
 from processing.formats.point_chunk import PointChunk, PointFileInfo
 from processing.text import Text
@@ -85,13 +86,17 @@ def read_info(path: Path) -> PointFileInfo:
     )
 
 
-def read_chunks(path: Path, chunk_points: int = 1_000_000) -> Iterator[PointChunk]:
+def read_chunks(
+    path: Path, chunk_points: int = 1_000_000, *, after: int = 0
+) -> Iterator[PointChunk]:
     """The points of a LAS, LAZ or COPC file, in the file's order.
 
     Parameters
     ----------
     chunk_points : int
         Points in a chunk at most, unless one compressed chunk of the file is larger.
+    after : int
+        Points to leave out, the end of a chunk of an earlier reading.
 
     Raises
     ------
@@ -100,12 +105,16 @@ def read_chunks(path: Path, chunk_points: int = 1_000_000) -> Iterator[PointChun
         limits of its integers, or 10 km and ten extents outside the header's box, is damage.
     """
     header = read_header(path)
-    label_at, first = _label_at(header), 0
-    layers = _NEEDED_LAYERS | (lazrs.SELECTIVE_DECOMPRESS_ALL_EXTRA_BYTES if label_at else 0)
-    for records in read_records(header, chunk_points, layers):
+    label, grid, first = _label_of(header), _grid_of(header), after
+    has_extra = label is not None or grid is not None
+    layers = _NEEDED_LAYERS | (lazrs.SELECTIVE_DECOMPRESS_ALL_EXTRA_BYTES if has_extra else 0)
+    for records in read_records(header, chunk_points, layers, after=after):
         chunk = PointChunk(_columns(records, header.point_format))
-        if label_at:
-            chunk.columns[_LABEL] = records[:, label_at].copy()
+        if label is not None:
+            chunk.columns[_LABEL] = _extra(records, header, label)
+        if grid is not None:
+            indices = [whole_numbers(_extra(records, header, one)) for one in grid]
+            chunk.columns["grid"] = np.column_stack(indices).astype(np.int32)
         _check_places(chunk.columns["xyz"], header, first)
         yield chunk
         first += chunk.count
@@ -146,7 +155,7 @@ def _end_spans(count: int, points: int) -> list[tuple[int, int]]:
 
 
 def read_records(
-    header: LasHeader, chunk_points: int, selection: int | None = None
+    header: LasHeader, chunk_points: int, selection: int | None = None, *, after: int = 0
 ) -> Iterator[NDArray[np.uint8]]:
     """The point records, decoded.
 
@@ -154,6 +163,8 @@ def read_records(
     ----------
     selection : int or None
         Layers to decode of formats 6 to 10, as lazrs counts them; None for all.
+    after : int
+        As :func:`read_chunks`.
 
     Yields
     ------
@@ -169,9 +180,10 @@ def read_records(
         if header.is_compressed:
             chunks = read_chunk_table(header, file)
             for begin, end in chunks.groups(chunk_points):
-                yield chunks.decoded(file, begin, end, selection)
+                if chunks.first[begin] >= after:
+                    yield chunks.decoded(file, begin, end, selection)
             return
-        for start in range(0, header.count, chunk_points):
+        for start in range(after, header.count, chunk_points):
             yield _plain_records(header, file, start, min(start + chunk_points, header.count))
 
 
@@ -281,12 +293,31 @@ def _first_time(header: LasHeader) -> float:
     return float(time) if abs(time) < _LONGEST_TIME_S else float("nan")
 
 
-def _label_at(header: LasHeader) -> int:
-    """Byte of an extra dimension for labels of one byte, as exporting writes it; 0 without."""
+def _described(header: LasHeader) -> tuple[ExtraDimension, ...]:
     vlr, standard = header.vlr("LASF_Spec", 4), RECORD_SIZES[header.point_format]
-    described = extra_dimensions(b"" if vlr is None else vlr.data, header.point_size - standard)
-    own = (one for one in described if (one.name, one.dtype) == (_LABEL, "u1"))
-    return next((standard + one.at for one in own), 0)
+    return extra_dimensions(b"" if vlr is None else vlr.data, header.point_size - standard)
+
+
+def _label_of(header: LasHeader) -> ExtraDimension | None:
+    """The extra dimension for labels of one byte, as exporting writes it."""
+    own = (one for one in _described(header) if (one.name, one.dtype) == (_LABEL, "u1"))
+    return next(own, None)
+
+
+def _grid_of(header: LasHeader) -> tuple[ExtraDimension, ExtraDimension] | None:
+    """The extra dimensions that say a point's column and row in a structured scan."""
+    plain = {plain_name(one.name): one for one in _described(header) if one.dtype}
+    found = [next((plain[name] for name in names if name in plain), None) for names in GRID_NAMES]
+    column, row = found
+    return None if column is None or row is None else (column, row)
+
+
+def _extra(
+    records: NDArray[np.uint8], header: LasHeader, dimension: ExtraDimension
+) -> NDArray[np.generic]:
+    at = RECORD_SIZES[header.point_format] + dimension.at
+    values: NDArray[np.generic] = _field(records, at, f"<{dimension.dtype}")
+    return values
 
 
 def _extra_dimensions(header: LasHeader) -> tuple[str, ...]:

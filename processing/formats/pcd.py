@@ -1,4 +1,4 @@
-"""PCD, the Point Cloud Library's format: ascii and binary."""
+"""PCD, the Point Cloud Library's format: ascii and binary, organised as an image or not."""
 
 from __future__ import annotations
 
@@ -31,6 +31,7 @@ class _Header:
     count: int
     is_text: bool
     size: int
+    grid: tuple[int, int] | None
 
 
 def is_pcd(start: bytes) -> bool:
@@ -40,7 +41,9 @@ def is_pcd(start: bytes) -> bool:
 
 
 def open_pcd(path: Path) -> FloatFile:
-    """A PCD file.
+    """A PCD file; where it is organised as an image, each point has its cell.
+
+    A column of the image is taken as a sweep.
 
     Raises
     ------
@@ -53,8 +56,15 @@ def open_pcd(path: Path) -> FloatFile:
 
 
 def _blocks(header: _Header) -> Iterator[Block]:
+    done = 0
     for fields in _text_fields(header) if header.is_text else _binary_fields(header):
-        yield block_of(_with_colors(fields))
+        block = block_of(_with_colors(fields))
+        count = block["xyz"].shape[0]
+        if header.grid is not None:
+            rows, columns = np.divmod(np.arange(done, done + count), header.grid[0])
+            block["grid"] = np.column_stack([columns, rows])
+        yield block
+        done += count
 
 
 def _with_colors(fields: dict[str, NDArray[np.generic]]) -> dict[str, NDArray[np.generic]]:
@@ -142,7 +152,15 @@ def _header_of(path: Path, said: dict[str, list[str]], size: int) -> _Header:
     count = int(said["POINTS"][0])
     if not is_whole or count < 0 or not has_position(names) or said["DATA"][0] not in _STORAGES:
         raise ValueError(said["DATA"])
-    return _Header(path, names, np.dtype(fields), columns, count, said["DATA"][0] == "ascii", size)
+    is_text = said["DATA"][0] == "ascii"
+    grid = _grid_of(said, count)
+    return _Header(path, names, np.dtype(fields), columns, count, is_text, size, grid)
+
+
+def _grid_of(said: dict[str, list[str]], count: int) -> tuple[int, int] | None:
+    """Width and height of an organised cloud; None where it is a mere list of points."""
+    width, height = (int((said.get(word) or ["0"])[0]) for word in ("WIDTH", "HEIGHT"))
+    return (width, height) if min(width, height) > 1 and width * height == count else None
 
 
 _STORAGES = ("ascii", "binary")

@@ -41,6 +41,9 @@ class PointFileInfo:
         Whether points refer to waveform packets.
     attributes : tuple of str
         Names of the columns of a chunk but ``xyz``, then names of extra dimensions.
+    scanner_places : tuple of (int, tuple of float)
+        Of files of standing scanners: each scan's number, which is that of its points' scanner
+        where there are several, and where the scanner stood, m.
     """
 
     path: Path
@@ -60,6 +63,7 @@ class PointFileInfo:
     point_format: int = -1
     has_waveforms: bool = False
     attributes: tuple[str, ...] = ()
+    scanner_places: tuple[tuple[int, Vector3], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -73,7 +77,8 @@ class PointChunk:
         ``number_of_returns``, ``classification``, ``user_data`` uint8; and where the file has
         them ``time`` float64 (s, NaN where it is no time), ``scan_angle_deg`` float32, ``color``
         (n, 3) uint16, ``origin`` (n, 3) float64 (where the scanner was, m), ``label`` uint8
-        (painted by hand, from an extra dimension of LAS).
+        (painted by hand, from an extra dimension of LAS), ``grid`` (n, 2) int32 (a structured
+        scan's sweep and the place in it; −1 where unknown).
     """
 
     # Any: the columns differ in type.

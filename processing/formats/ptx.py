@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -12,13 +13,27 @@ from processing.errors import BadFile, told_as_user_error
 from processing.formats.delivered_floats import Block, FloatFile
 from processing.formats.field_names import block_of
 from processing.formats.las_header import damaged
-from processing.formats.text_numbers import TextPart, number_blocks
+from processing.formats.text_numbers import NumberLines
 from processing.text import Text
 
-_HEADER_LINES = 10
-_POSE_LINES = 4
+_PLACE_LINES, _POSE_LINES = 4, 4
 _NAMES = ("x", "y", "z", "intensity", "red", "green", "blue")
-_LEAST_LINE_BYTES = 8
+_WIDTHS = (7, 4, 3)
+_LEAST_LINE_BYTES = 6
+
+
+@dataclass(frozen=True)
+class _Scan:
+    """One scan's header: its number in the file, its grid and its pose (4, 4)."""
+
+    number: int
+    sweeps: int
+    sweep_length: int
+    pose: NDArray[np.float64]
+
+    @property
+    def cells(self) -> int:
+        return self.sweeps * self.sweep_length
 
 
 def is_ptx(start: bytes) -> bool:
@@ -29,9 +44,9 @@ def is_ptx(start: bytes) -> bool:
 
 
 def open_ptx(path: Path) -> FloatFile:
-    """The points of all scans of a PTX file, moved by their poses.
+    """The points of all scans of a PTX file, moved by their poses, with their cells of the grid.
 
-    Cells of the grid without a return (0 0 0) are left out.
+    Cells of the grid without a return (0 0 0) are left out. The grid's columns are the sweeps.
 
     Raises
     ------
@@ -44,55 +59,57 @@ def open_ptx(path: Path) -> FloatFile:
 
 
 def _blocks(path: Path) -> Iterator[Block]:
-    done = 0
-    while (scan := _scan_at(path, done)) is not None:
-        count, pose, width = scan
-        left = count
-        part = TextPart(path, skip=done + _HEADER_LINES, limit=count)
-        for numbers in number_blocks(part, width) if count else ():
-            left -= numbers.shape[0]
-            yield _block(numbers, pose)
-        if left:
-            raise _ends_early(path, count - left, count)
-        done += _HEADER_LINES + count
+    with told_as_user_error(path), path.open("rb") as file:
+        size = path.stat().st_size
+        lines = NumberLines(path, file)
+        number = 0
+        while (scan := _next_scan(path, lines, number + 1, size)) is not None:
+            number, done = scan.number, 0
+            # The widest lines have colours, others intensity, or neither.
+            words = lines.width()
+            columns = next((width for width in _WIDTHS if words >= width), _WIDTHS[-1])
+            for numbers in lines.numbers(columns, scan.cells):
+                yield _block(numbers, scan, done)
+                done += numbers.shape[0]
+            if done < scan.cells:
+                raise _ends_early(path, done, scan.cells)
 
 
-def _block(numbers: NDArray[np.float64], pose: NDArray[np.float64]) -> Block:
-    measured = numbers[numbers[:, :3].any(axis=1)]
+def _block(numbers: NDArray[np.float64], scan: _Scan, first_cell: int) -> Block:
+    is_measured = numbers[:, :3].any(axis=1)
+    measured = numbers[is_measured]
     fields = {name: measured[:, i] for i, name in enumerate(_NAMES[: measured.shape[1]])}
     block = block_of(fields)
     # The pose multiplies from the right: rows are the scanner's axes, the last one its place.
-    block["xyz"] = np.einsum("ni,ij->nj", measured[:, :3], pose[:3, :3]) + pose[3, :3]
+    block["xyz"] = np.einsum("ni,ij->nj", measured[:, :3], scan.pose[:3, :3]) + scan.pose[3, :3]
+    cells = first_cell + np.flatnonzero(is_measured)
+    block["grid"] = np.column_stack(np.divmod(cells, scan.sweep_length))
+    block["scan"] = np.full(cells.size, scan.number)
+    block["scanner_place"] = np.broadcast_to(scan.pose[3, :3], (cells.size, 3))
     return block
 
 
-def _scan_at(path: Path, line: int) -> tuple[int, NDArray[np.float64], int] | None:
-    """Points, pose and numbers on a line of the scan whose header is there; None at the end."""
-    sizes = _lines(path, line, 2, 1)
+def _next_scan(path: Path, lines: NumberLines, number: int, size: int) -> _Scan | None:
+    """The scan whose header comes next; None at the end of the file."""
+    sizes = _taken(lines, 2, 1)
     if sizes.size == 0:
         return None
     if sizes.shape[0] < 2 or not (np.isfinite(sizes).all() and (sizes >= 0).all()):
         raise _ends_early(path, 0, 0)
-    count = int(min(sizes.prod(), 1e15))
-    if count * _LEAST_LINE_BYTES > path.stat().st_size:
-        raise _ends_early(path, path.stat().st_size // _LEAST_LINE_BYTES, count)
-    pose = _lines(path, line + _HEADER_LINES - _POSE_LINES, _POSE_LINES, 4)
-    if pose.shape[0] < _POSE_LINES or not np.isfinite(pose).all():
-        raise _ends_early(path, 0, count)
-    return count, pose, _width(path, line + _HEADER_LINES)
+    sweeps, sweep_length = (int(min(value, 1e9)) for value in sizes[:, 0])
+    # Held against the file, a count can't make anything be allocated.
+    if sweeps * sweep_length * _LEAST_LINE_BYTES > size + 1:
+        raise _ends_early(path, size // _LEAST_LINE_BYTES, sweeps * sweep_length)
+    place = _taken(lines, _PLACE_LINES, 3)
+    pose = _taken(lines, _POSE_LINES, 4)
+    if place.shape[0] + pose.shape[0] < _PLACE_LINES + _POSE_LINES or not np.isfinite(pose).all():
+        raise _ends_early(path, 0, sweeps * sweep_length)
+    return _Scan(number, sweeps, sweep_length, pose)
 
 
-def _lines(path: Path, skip: int, limit: int, columns: int) -> NDArray[np.float64]:
-    found = list(number_blocks(TextPart(path, skip=skip, limit=limit), columns))
+def _taken(lines: NumberLines, limit: int, columns: int) -> NDArray[np.float64]:
+    found = list(lines.numbers(columns, limit))
     return np.concatenate(found) if found else np.empty((0, columns))
-
-
-def _width(path: Path, line: int) -> int:
-    """How many numbers a point has: with colours, with intensity, or bare."""
-    with told_as_user_error(path), path.open("rb") as file:
-        own = next((text for i, text in enumerate(file) if i == line), b"")
-    words = len(own.split())
-    return next(width for width in (7, 4, 3) if words >= width or width == 3)
 
 
 def _ends_early(path: Path, whole: int, count: int) -> BadFile:

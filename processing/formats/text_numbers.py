@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,58 +38,120 @@ class TextPart:
     limit: int | None = None
 
 
-def number_blocks(part: TextPart, columns: int) -> Iterator[NDArray[np.float64]]:
-    """The numbers of a part of a text file.
+class NumberLines:
+    """The lines of an open text file, taken one stretch after the other.
+
+    Blank lines and lines that begin with ``#`` or ``//`` are passed over. Numbers are divided by
+    blanks, tabs, commas or semicolons.
 
     Parameters
     ----------
-    columns : int
-        How many numbers to take of each line; more on the line are passed over.
-
-    Yields
-    ------
-    (k, columns) float64
-        Blank lines and lines that begin with ``#`` or ``//`` are left out. Numbers are divided
-        by blanks, tabs, commas or semicolons.
-
-    Raises
-    ------
-    MissingInput, NoSpace, BadFile
-        The file can't be read, or a line doesn't begin with so many numbers: names the line.
+    path : Path
+        For messages.
+    file : BinaryIO
+        Open at the first line; read by this object alone.
     """
-    skip, left = part.skip, part.limit
-    for first_line, lines in _line_blocks(part):
-        kept = [
+
+    def __init__(self, path: Path, file: BinaryIO) -> None:
+        self._path = path
+        self._file = file
+        self._following_line = 1 + _lines_before(file)
+        self._data = file.read(_BLOCK_BYTES)
+        self._rest = b""
+        self._kept: list[tuple[int, bytes]] = []
+        self._taken = 0
+
+    def skip(self, lines: int) -> None:
+        """Pass over so many lines, or all that are left.
+
+        Raises
+        ------
+        MissingInput, NoSpace, BadFile
+            As :meth:`numbers`.
+        """
+        while lines and self._has_more():
+            passed = min(lines, len(self._kept) - self._taken)
+            self._taken += passed
+            lines -= passed
+
+    def width(self) -> int:
+        """Words in the next line, which is not taken; 0 at the end."""
+        return len(self._kept[self._taken][1].split()) if self._has_more() else 0
+
+    def numbers(self, columns: int, limit: int | None = None) -> Iterator[NDArray[np.float64]]:
+        """The numbers of the next lines.
+
+        Parameters
+        ----------
+        columns : int
+            How many numbers to take of each line; more on the line are passed over.
+        limit : int or None
+            Lines to take; None for all that are left.
+
+        Yields
+        ------
+        (k, columns) float64
+
+        Raises
+        ------
+        MissingInput, NoSpace, BadFile
+            The file can't be read, or a line doesn't begin with so many numbers: names the line.
+        """
+        while (limit is None or limit > 0) and self._has_more():
+            end = len(self._kept) if limit is None else self._taken + limit
+            lines = self._kept[self._taken : end]
+            self._taken += len(lines)
+            yield _parsed(self._path, lines, columns)
+            if limit is not None:
+                limit -= len(lines)
+
+    def _has_more(self) -> bool:
+        """Whether a line is at hand, after reading on if need be."""
+        while self._taken == len(self._kept) and self._data:
+            self._kept, self._taken = self._next_lines(), 0
+        return self._taken < len(self._kept)
+
+    def _next_lines(self) -> list[tuple[int, bytes]]:
+        """Whole lines with separators made blanks, each with its number in the file."""
+        with told_as_user_error(self._path):
+            following = self._file.read(_BLOCK_BYTES)
+        # The last line may lack its end.
+        data = self._rest + self._data + (b"" if following else b"\n")
+        head, end, self._rest = data.rpartition(b"\n")
+        first_line, self._data = self._following_line, following
+        if not end:
+            raise _bad_line(self._path, first_line, b"")
+        lines = head.translate(_SEPARATORS).split(b"\n")
+        self._following_line += len(lines)
+        return [
             (first_line + i, line)
             for i, line in enumerate(lines)
             if line.strip() and not line.lstrip().startswith(_COMMENTS)
         ]
-        passed = min(skip, len(kept))
-        skip -= passed
-        kept = kept[passed:] if left is None else kept[passed : passed + left]
-        if kept:
-            yield _parsed(part.path, kept, columns)
-        if left is not None:
-            left -= len(kept)
-            if left == 0:
-                return
 
 
-def _line_blocks(part: TextPart) -> Iterator[tuple[int, list[bytes]]]:
-    """Whole lines with separators made blanks, and the number of the first one in the file."""
+def number_blocks(part: TextPart, columns: int) -> Iterator[NDArray[np.float64]]:
+    """The numbers of a part of a text file: (k, columns) float64 at a time.
+
+    Raises
+    ------
+    MissingInput, NoSpace, BadFile
+        As :meth:`NumberLines.numbers`.
+    """
     with told_as_user_error(part.path), part.path.open("rb") as file:
-        line = file.read(part.start).count(b"\n") + 1
-        rest, data = b"", file.read(_BLOCK_BYTES)
-        while data:
-            following = file.read(_BLOCK_BYTES)
-            # The last line may lack its end.
-            head, end, tail = (rest + data + (b"" if following else b"\n")).rpartition(b"\n")
-            if not end:
-                raise _bad_line(part.path, line, b"")
-            lines = head.translate(_SEPARATORS).split(b"\n")
-            yield line, lines
-            line += len(lines)
-            rest, data = tail, following
+        file.seek(part.start)
+        lines = NumberLines(part.path, file)
+        lines.skip(part.skip)
+        yield from lines.numbers(columns, part.limit)
+
+
+def _lines_before(file: BinaryIO) -> int:
+    """Line ends before the place where the file stands; it stands there again afterwards."""
+    start, lines = file.tell(), 0
+    file.seek(0)
+    while (left := start - file.tell()) > 0:
+        lines += file.read(min(left, _BLOCK_BYTES)).count(b"\n")
+    return lines
 
 
 def _parsed(path: Path, lines: list[tuple[int, bytes]], columns: int) -> NDArray[np.float64]:

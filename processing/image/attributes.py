@@ -22,7 +22,6 @@ from processing.image.colour_maps import (
     stretched,
 )
 from processing.image.drive_sample import value_at_percent
-from processing.image.kinds import ImageKind
 from processing.image.normals import RowLayout, SurfaceShapes, surface_shapes
 from processing.text import Text
 
@@ -192,9 +191,7 @@ def _shape(drive: Drive, points: _Points) -> _Colours:
 
 
 def _surfaces(drive: Drive, points: _Points) -> SurfaceShapes:
-    turns = drive.turns
-    kind = ImageKind.TOP_VIEW if turns is None else ImageKind.TRAJECTORY_REVERSIBLE
-    image = drive.image(kind)
+    image = drive.image(drive.pixel_kind)
     pulses, row_starts, doubled_origins = image.layout[:3]
     layout = RowLayout(pulses, row_starts, doubled_origins // 2, image.segments)
     return surface_shapes(drive.columns["xyz"], drive.info.scale, layout, points, SHOWN_RADIUS_M)

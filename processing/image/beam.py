@@ -62,7 +62,7 @@ def beam_at(
     Returns
     -------
     tuple of two (3,) tuples, or None
-        Origin (m, project CRS) and unit direction. None for a top view, outside the image, and
+        Origin (m, project CRS) and unit direction. None without turns, outside the image, and
         where a turn has too few points to say.
     """
     turns = drive.turns

@@ -13,7 +13,7 @@ class PixelGrid:
     """Rows and columns of consecutive points.
 
     The points of a row are consecutive and ordered by column; points that share a pixel (several
-    returns of one pulse, several points of a top-view cell) are consecutive too, the shown one
+    returns of one pulse, several points of a cell) are consecutive too, the shown one
     first.
 
     Attributes

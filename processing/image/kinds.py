@@ -8,13 +8,23 @@ from processing.text import Text
 
 
 class ImageKind(Enum):
-    """How a recording is folded into rows (specification ch. 3; Takahashi 2022, 3.3 to 3.6)."""
+    """How a recording is folded into rows (specification ch. 3; Takahashi 2022, 3.3 to 3.6).
+
+    Clouds without revolutions have cells for pulses: of a grid seen from above, or of the grid of
+    a standing scanner, one sweep to a row.
+    """
 
     TRAJECTORY_CENTER = "trajectory-center"
     FEATURE_CENTER = "feature-center"
     REVERSIBLE = "reversible"
     TRAJECTORY_REVERSIBLE = "trajectory-reversible"
     TOP_VIEW = "top-view"
+    SCAN = "scan"
+
+    @property
+    def follows_way(self) -> bool:
+        """Whether its rows follow one another along the way of a vehicle."""
+        return self not in (ImageKind.TOP_VIEW, ImageKind.SCAN)
 
     @property
     def title(self) -> Text:
@@ -28,4 +38,5 @@ _TITLES = {
     ImageKind.REVERSIBLE: Text("Reversible", "可逆"),
     ImageKind.TRAJECTORY_REVERSIBLE: Text("Trajectory-based reversible", "軌跡ベースの可逆"),
     ImageKind.TOP_VIEW: Text("Top view", "上面"),
+    ImageKind.SCAN: Text("The scan's own image", "スキャン画像"),
 }

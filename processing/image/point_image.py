@@ -40,9 +40,9 @@ class PointCloudImage:
     ----------
     kind : ImageKind
     pulses : (n,) int64
-        The column ``pulse``: not decreasing; for a top view the cell of every point.
+        The column ``pulse``: not decreasing; for a top view or a scan the cell of every point.
     folding : Revolutions or int
-        The recording's turns; for a top view the number of cells per row.
+        The recording's turns; for a top view or a scan the number of cells per row.
     coordinates : Coordinates, optional
         Where the points are; without them there is no pyramid.
 
@@ -60,7 +60,7 @@ class PointCloudImage:
     segments : (rows,) int32
         Stretches between stops. No row is empty but inside a gap of at most 1.0 s.
     row_times : (rows,) float64
-        Time of the left edge, s; NaN for the top view.
+        Time of the left edge, s; NaN for a top view and a scan.
     row_widths : (rows,) int64
         Columns of each row.
     layout : PixelLayout
@@ -103,8 +103,7 @@ class PointCloudImage:
     def of_drive(cls, drive: Drive, kind: ImageKind) -> Self:
         """The image of a drive that has what the kind needs."""
         turns = drive.turns
-        has_turns = turns is not None and kind is not ImageKind.TOP_VIEW
-        folding = turns if turns is not None and has_turns else drive.info.cells_per_row
+        folding = drive.info.cells_per_row if turns is None else turns
         coordinates = Coordinates(
             drive.columns["xyz"], drive.info.scale, drive.info.offset, folder=drive.folder
         )

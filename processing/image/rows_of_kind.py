@@ -136,7 +136,7 @@ def plan_of_turns(kind: ImageKind, turns: Revolutions, pulses: _Integers) -> Row
 
 
 def plan_of_cells(cells_per_row: int, cells: _Integers) -> RowPlan:
-    """The rows of a top view, whose cells play the pulses.
+    """The rows of a top view or a standing scanner's grid, whose cells play the pulses.
 
     Parameters
     ----------

@@ -51,15 +51,17 @@ class DriveInfo:
     clock_offset_s : float
         What was added to the delivered times to bring them to the trajectory's clock.
     rows_by : str
-        How rows were found: ``trajectory``, ``origins``, ``scan-angle``, ``periodicity``; or
-        ``top-view`` where there are none.
+        How rows were found: ``trajectory``, ``origins``, ``scan-angle``, ``periodicity``; ``scan``
+        for the sweeps of a standing scanner's own grid; or ``top-view`` where there are none.
     rows_reason : Text
         Why there are no turns; empty when there are.
     cell_m, cells_per_row
-        Top view only: size of a cell, and cells in a row; else 0.
+        Without turns only: size of a cell of the top view, 0 for a scan; cells in a row or sweep.
     source_runs : tuple of SourceRun
         Where in the files the points were; empty where the columns ``source_file`` and
         ``source_index`` say it.
+    scanner_place : tuple of float or None
+        Where a standing scanner was, m, project CRS; None for others and where it is not known.
     """
 
     id: str
@@ -78,6 +80,7 @@ class DriveInfo:
     cell_m: float = 0.0
     cells_per_row: int = 0
     source_runs: tuple[SourceRun, ...] = ()
+    scanner_place: Triple | None = None
 
 
 def write_drive_info(folder: Path, info: DriveInfo) -> None:
@@ -126,6 +129,13 @@ def _from_json(values: dict[str, Any]) -> DriveInfo:
     sources = tuple(SourceFile(**source) for source in values["sources"])
     runs = tuple(SourceRun(**run) for run in values["source_runs"])
     reason = Text(**values["rows_reason"])
-    read = {"sources": sources, "rows_reason": reason, "source_runs": runs}
+    place = values.get("scanner_place")
+    stood = None if place is None else (float(place[0]), float(place[1]), float(place[2]))
+    read = {
+        "sources": sources,
+        "rows_reason": reason,
+        "source_runs": runs,
+        "scanner_place": stood,
+    }
     rest = {**values, **triples, **read}
     return DriveInfo(**rest)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 from uuid import uuid4
@@ -17,9 +17,11 @@ from processing.cameras.image_store import write_images
 from processing.errors import told_as_user_error
 from processing.monitor import Monitor, PartMonitor
 from processing.points.columns import Columns, ColumnWriter, column_path
-from processing.points.drive import write_trajectory
+from processing.points.drive import SCAN, write_trajectory
 from processing.points.drive_info import DriveInfo, SourceFile, write_drive_info
 from processing.points.ordering import POINTS_AT_ONCE, read_stretch, sort_points, stretches
+from processing.points.scan_grid import COLUMN, ScanGrid, order_by_grid, remove_grid_column
+from processing.points.scan_place import Place, checked_place
 from processing.points.top_view import TopView, top_view_of
 from processing.points.trajectory import Trajectory
 from processing.points.turns import NoTurns, RecordedPoints, find_turns, trajectory_from_origins
@@ -31,6 +33,7 @@ from processing.text import Text
 _SAMPLE_POINTS = 200_000
 _FINDING = Text("Finding turns and pulses of {name}", "{name} の回転とパルスを推定中")
 _SORTING = Text("Restoring the time order of {name}", "{name} の時刻順を復元中")
+_GRID = Text("Reading the grid of the scan {name}", "{name} のスキャン格子を確認中")
 _CELLS = Text("Ordering {name} for the top view", "{name} を上面画像用に並べ替え中")
 
 
@@ -46,6 +49,8 @@ class BuildPlan:
         Camera images, noted in each drive.
     shared_sources : frozenset of int
         Files that hold the points of several recordings.
+    scanner_places : mapping
+        By file and scanner: where a standing scanner was, m, as the file says.
     """
 
     sources: tuple[SourceFile, ...]
@@ -54,6 +59,7 @@ class BuildPlan:
     images: ImageList | None
     is_adjusted_standard: bool | None = None
     shared_sources: frozenset[int] = frozenset()
+    scanner_places: Mapping[tuple[int, int], Place] = field(default_factory=dict)
 
 
 def build_drive(writer: RecordingWriter, plan: BuildPlan, monitor: Monitor) -> Path:
@@ -63,7 +69,8 @@ def build_drive(writer: RecordingWriter, plan: BuildPlan, monitor: Monitor) -> P
     -----
     1. Points go into time order if the files lost it.
     2. The trajectory is chosen and the points' clock set to its; origins per point make their own.
-    3. Turns and pulses are found; where there are none, points are ordered for the top view.
+    3. A standing scanner's grid is taken as it is, else turns and pulses are found; where there
+       are neither, points are ordered for the top view.
     4. The facts are written.
 
     Returns
@@ -84,7 +91,7 @@ def build_drive(writer: RecordingWriter, plan: BuildPlan, monitor: Monitor) -> P
     trajectory, offset = _trajectory_of(writer, plan, name)
     monitor.report(0.4, _FINDING.filled(name=name))
     finding = PartMonitor(monitor, 0.4, 1.0)
-    reason, rows_by, view = _rows_of(writer, trajectory, name, finding)
+    found = _rows_of(writer, trajectory, name, finding)
     if trajectory is not None:
         write_trajectory(folder, trajectory)
     if plan.images is not None:
@@ -105,12 +112,14 @@ def build_drive(writer: RecordingWriter, plan: BuildPlan, monitor: Monitor) -> P
             for i, s in enumerate(plan.sources)
         ),
         clock_offset_s=offset,
-        rows_by=rows_by,
-        rows_reason=reason,
-        cell_m=view.cell_m if view else 0.0,
-        cells_per_row=view.cells_per_row if view else 0,
+        rows_by=found.rows_by,
+        rows_reason=found.reason,
+        cell_m=found.cell_m,
+        cells_per_row=found.cells_per_row,
         source_runs=writer.sources.runs,
+        scanner_place=_scanner_place(writer, plan, found),
     )
+    remove_grid_column(folder)
     write_drive_info(folder, info)
     final = folder.with_name(info.id)
     with told_as_user_error(final):
@@ -176,16 +185,33 @@ def _shift_times(folder: Path, count: int, offset_s: float) -> None:
         shifted.rmdir()
 
 
+@dataclass(frozen=True)
+class _FoundRows:
+    """What `DriveInfo` says of rows."""
+
+    reason: Text
+    rows_by: str
+    cell_m: float = 0.0
+    cells_per_row: int = 0
+
+
 def _rows_of(
     writer: RecordingWriter, trajectory: Trajectory | None, name: str, monitor: Monitor
-) -> tuple[Text, str, TopView | None]:
+) -> _FoundRows:
     folder = writer.folder
+    contradiction: Text | None = None
+    if COLUMN in writer.names and trajectory is None:
+        monitor.report(0.0, _GRID.filled(name=name))
+        grid = order_by_grid(folder, writer.count, lambda: _names_to_sort(writer), monitor)
+        if isinstance(grid, ScanGrid):
+            return _FoundRows(grid.told, SCAN, cells_per_row=grid.sweep_length)
+        contradiction = grid.reason
     if writer.has_times:
         points = RecordedPoints(folder, writer.count, writer.lattice.scale, writer.lattice.offset)
         found = find_turns(points, trajectory, monitor)
         if not isinstance(found, NoTurns):
             write_turns(folder, found)
-            return Text("", ""), found.method, None
+            return _FoundRows(Text("", ""), found.method)
         reason = found.reason
     else:
         reason = Text(
@@ -193,7 +219,27 @@ def _rows_of(
             "点に時刻がないため行を決められません。上面画像で表示します。",
         )
     monitor.report(0.5, _CELLS.filled(name=name))
-    return reason, "top-view", _order_for_top_view(writer, monitor)
+    view = _order_for_top_view(writer, monitor)
+    return _FoundRows(contradiction or reason, "top-view", view.cell_m, view.cells_per_row)
+
+
+def _names_to_sort(writer: RecordingWriter) -> tuple[str, ...]:
+    """All columns; those that say where points were delivered are among them."""
+    writer.write_source_columns()
+    return writer.names
+
+
+def _scanner_place(writer: RecordingWriter, plan: BuildPlan, found: _FoundRows) -> Place | None:
+    if found.rows_by != SCAN or len(writer.points_of_source) != 1:
+        return None
+    source = next(iter(writer.points_of_source))
+    return checked_place(
+        Columns(writer.folder, writer.count),
+        writer.lattice.scale,
+        writer.lattice.offset,
+        found.cells_per_row,
+        plan.scanner_places.get((source, writer.scanner)),
+    )
 
 
 def _order_for_top_view(writer: RecordingWriter, monitor: Monitor) -> TopView:
@@ -208,8 +254,7 @@ def _order_for_top_view(writer: RecordingWriter, monitor: Monitor) -> TopView:
         integers = columns["xyz"]
         return view.cells_of(integers * scale + offset), -integers[:, 2].astype(np.int64)
 
-    writer.write_source_columns()
-    sort_points(folder, writer.names, count, by_cell, PartMonitor(monitor, 0.5, 0.9))
+    sort_points(folder, _names_to_sort(writer), count, by_cell, PartMonitor(monitor, 0.5, 0.9))
     with ColumnWriter(folder) as cells:
         for start, stop in stretches(count, POINTS_AT_ONCE // 4):
             monitor.check()

@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from processing.cameras.image_list import ImageList
 from processing.errors import UNCHANGED, BadFile, told_as_user_error
 from processing.formats.image_list import read_image_list
+from processing.formats.point_chunk import Vector3
 from processing.formats.point_files import PointChunk, PointFileInfo, read_chunks
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive_info import SourceFile
@@ -113,6 +114,7 @@ def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple
             images,
             _is_adjusted_standard(files),
             _shared_sources(writers),
+            _scanner_places(files),
         )
         folders = []
         for number, writer in enumerate(writers):
@@ -227,6 +229,11 @@ def _read_file(plan: _ReadPlan, writers: list[RecordingWriter], monitor: Monitor
                 writer = RecordingWriter(folder, lattice, scanner, keeps_angles=angles)
                 writers.append(writer)
             writer.add(columns, lattice, plan.source, own)
+            if len(info.scanner_places) > 1:
+                # Scans follow one another, and a file may have more than may be open at a time.
+                for other in writers:
+                    if other is not writer:
+                        other.close()
         start += chunk.count
         monitor.report(start / max(info.count, 1), text)
 
@@ -269,6 +276,15 @@ def _is_adjusted_standard(files: tuple[PointFileInfo, ...]) -> bool | None:
 def _shared_sources(writers: list[RecordingWriter]) -> frozenset[int]:
     uses = Counter(source for writer in writers for source in writer.points_of_source)
     return frozenset(source for source, count in uses.items() if count > 1)
+
+
+def _scanner_places(files: tuple[PointFileInfo, ...]) -> dict[tuple[int, int], Vector3]:
+    """By file and scanner number, which is 0 where a file has one scan."""
+    return {
+        (source, scan if len(info.scanner_places) > 1 else 0): place
+        for source, info in enumerate(files)
+        for scan, place in info.scanner_places
+    }
 
 
 def _checksum(path: Path) -> str:

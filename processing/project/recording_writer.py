@@ -16,7 +16,7 @@ from processing.points.source_order import SourceOrder
 from processing.project.lattice import Lattice, move_between
 
 _ALWAYS = ("xyz", "time", "intensity", "return_number", "number_of_returns", "classification")
-_WHERE_DELIVERED = ("color", "origin", "label")
+_WHERE_DELIVERED = ("color", "origin", "label", "grid")
 _ANGLE = "scan_angle_deg"
 
 

@@ -17,6 +17,7 @@ _MOST_SAMPLES = 2_000
 _PROBED_ROWS = 24
 _POINTS_PER_ROW = 64
 _MOST_STRETCH = 24.0
+_LEAST_OF_SWEEP = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,7 +35,9 @@ class DriveLay:
     left_columns_are_high : bool
         Whether columns grow towards the left side of the drive.
     plan : (k, 2) float64
-        Easting and northing of the way at the sampled rows, m; NaN in a top view.
+        Easting and northing of the way at the sampled rows, m; NaN without a way.
+    rows_go_left : bool
+        Whether a scanner that stood swept from right to left.
     """
 
     sampled_rows: Floats
@@ -42,6 +45,7 @@ class DriveLay:
     stretch: float
     left_columns_are_high: bool
     plan: Floats
+    rows_go_left: bool = False
 
     @property
     def length_m(self) -> float:
@@ -63,6 +67,8 @@ class DriveLay:
 
 def lay_of(drive: Drive, image: PointCloudImage) -> DriveLay:
     """Measure how a drive lies in its image, from a few of its rows."""
+    if image.kind is ImageKind.SCAN:
+        return _lay_of_scan(drive, image)
     if image.kind is ImageKind.TOP_VIEW:
         ends = np.array([0.0, max(image.width, 1)])
         unknown = np.full((2, 2), np.nan)
@@ -86,6 +92,54 @@ def lay_of(drive: Drive, image: PointCloudImage) -> DriveLay:
         left_columns_are_high=turns > 0,
         plan=places[:, :2],
     )
+
+
+def _lay_of_scan(drive: Drive, image: PointCloudImage) -> DriveLay:
+    """Sweeps of a scanner that stood: the sky is up, and one sees them from where it stood."""
+    rows = np.unique(np.linspace(0, max(image.rows - 1, 0), _MOST_SAMPLES).astype(np.int64))
+    filled = np.flatnonzero(np.diff(image.row_starts) >= _LEAST_OF_SWEEP)
+    probed = filled[np.linspace(0, filled.size - 1, min(_PROBED_ROWS, filled.size)).astype(int)]
+    profiles = [_profile(drive, image, int(row)) for row in probed]
+    rises = [_rise(profile) for profile in profiles]
+    step_m = _column_step_m(profiles)
+    return DriveLay(
+        rows.astype(np.float64),
+        (rows * step_m).astype(np.float64),
+        1.0,
+        left_columns_are_high=bool(np.sum(np.sign(rises)) > 0),
+        plan=np.full((rows.size, 2), np.nan),
+        rows_go_left=_sweeps_go_left(drive, image, filled),
+    )
+
+
+def _rise(profile: _Profile) -> float:
+    """Correlation of heights with columns."""
+    heights = profile.xyz[:, 2] - profile.xyz[:, 2].mean()
+    columns = profile.columns - profile.columns.mean()
+    size = float(np.linalg.norm(heights) * np.linalg.norm(columns))
+    return float(heights @ columns) / size if size > 0 else 0.0
+
+
+def _sweeps_go_left(drive: Drive, image: PointCloudImage, filled: NDArray[np.int64]) -> bool:
+    """Whether the sweeps followed one another counter-clockwise about the scanner."""
+    place = drive.info.scanner_place
+    if place is None or filled.size < 2:
+        return False
+    sampled = filled[np.linspace(0, filled.size - 1, min(_MOST_SAMPLES, filled.size)).astype(int)]
+    starts, ends = image.row_starts[sampled], image.row_starts[sampled + 1]
+    # One beam of each sweep, level enough to tell a direction.
+    bearings = [
+        _bearing(drive.xyz(slice(int(start), int(end), max(1, (end - start) // 16))) - place)
+        for start, end in zip(starts.tolist(), ends.tolist(), strict=True)
+    ]
+    turned = np.diff(np.unwrap(np.array(bearings)))
+    return bool(np.median(turned) > 0)
+
+
+def _bearing(beams: Floats) -> float:
+    """Direction in plan of the beam that is longest in plan, rad counter-clockwise from east."""
+    east, north = beams[np.hypot(beams[:, 0], beams[:, 1]).argmax(), :2]
+    return float(np.arctan2(north, east))
 
 
 def _places_of_rows(drive: Drive, image: PointCloudImage, rows: NDArray[np.int64]) -> Floats:

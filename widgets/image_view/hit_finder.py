@@ -11,7 +11,6 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QPolygonF
 
 from processing.image.beam import beam_at
-from processing.image.kinds import ImageKind
 from processing.project.catalogue import Geometry
 from processing.project.feature import PointReference
 from widgets.image_view.feature_overlay import FeatureOverlay
@@ -147,7 +146,7 @@ class HitFinder:
         return inside, -1, -1
 
     def _ray(self, picture: Picture, position: QPointF) -> Ray | None:
-        if picture.image.kind is ImageKind.TOP_VIEW:
+        if not picture.image.kind.follows_way:
             return None
         row, column = picture.pixel_at(*self.viewport.to_picture(position.x(), position.y()))
         beam = beam_at(picture.drive, picture.image, row, column)

@@ -60,7 +60,7 @@ def place_along(
     """
     if not (picture.image.rows and leader.image.rows):
         return None
-    if not (leader.rows_go_right and picture.rows_go_right):
+    if not (leader.image.kind.follows_way and picture.image.kind.follows_way):
         return _by_point(leader, centre, picture)
     moment = _moment(leader, centre[0])
     times = picture.image.row_times
@@ -107,7 +107,7 @@ def _by_point(
         return None
     rows, columns = picture.image.pixel_of(np.array([found]))
     u, v = picture.places(rows, columns.astype(np.int64))[0].tolist()
-    return u, None if picture.rows_go_right else v
+    return u, None if picture.image.kind.follows_way else v
 
 
 def _row_step_m(picture: Picture) -> float:

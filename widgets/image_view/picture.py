@@ -39,9 +39,10 @@ class Picture:
     Attributes
     ----------
     rows_go_right : bool
-        Rows from left to right; a top view has them from top to bottom, north up.
+        Rows from left to right, sweeps of a scan too; a top view has them from top to bottom,
+        north up.
     is_flipped : bool
-        Columns run against v: the left side of the drive is up.
+        Columns run against v: the left side of the drive is up, as is the sky in a scan.
     """
 
     drive: Drive
@@ -78,8 +79,13 @@ class Picture:
         return None if drive is None else Picture.of(drive, settings.image_kind)
 
     def turned(self, wanted: ImageLay) -> ImageLay:
-        """How it is turned where this is wanted: a top view has north up in any case."""
-        return wanted if self.rows_go_right else ImageLay()
+        """How it is turned where this is wanted.
+
+        A top view has north up in any case; a scan is seen from where the scanner stood.
+        """
+        if self.rows_go_right and self.image.kind.follows_way:
+            return wanted
+        return ImageLay(is_reversed_along=self.lay.rows_go_left)
 
     @property
     def size(self) -> tuple[int, int]:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QPainterPath, QPolygonF
 
-from processing.image.kinds import ImageKind
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature
 from widgets.image_view.picture import Picture
@@ -60,7 +59,7 @@ def segments_between(places: Floats, geometry: Geometry, picture: Picture) -> Fl
     starts = np.arange(count if closes else count - 1)
     joined = np.column_stack([places[starts], places[(starts + 1) % count], starts])
     joined = joined[np.isfinite(joined[:, :4]).all(axis=1)]
-    return joined if picture.image.kind is ImageKind.TOP_VIEW else _around_the_seam(joined, picture)
+    return _around_the_seam(joined, picture) if picture.image.kind.follows_way else joined
 
 
 def path_of_segments(segments: Floats) -> QPainterPath:

@@ -96,11 +96,11 @@ class ImageChoice(QWidget):
             [(ATTRIBUTES[name].title.spoken(self._language), name) for name in names],
             settings.look.attribute,
         )
-        lay = ImageLay() if settings.image_kind is ImageKind.TOP_VIEW else settings.image_lay
+        lay = settings.image_lay if settings.image_kind.follows_way else ImageLay()
         arrow = _ARROWS[lay.is_vertical, lay.is_reversed_along]
         # The spaces keep clear of the mark that tells of a menu.
         self._lay.setText(f"{arrow} ⇋  " if lay.is_mirrored_across else f"{arrow}  ")
-        self._lay.setEnabled(settings.image_kind is not ImageKind.TOP_VIEW)
+        self._lay.setEnabled(settings.image_kind.follows_way)
 
     def _on_menu_about_to_show(self) -> None:
         self._menu.clear()
