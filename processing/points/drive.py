@@ -31,9 +31,6 @@ Points = NDArray[np.int64] | slice
 SCAN = "scan"
 """What :class:`DriveInfo` says of rows that are the sweeps of a standing scanner."""
 
-SCAN = "scan"
-"""What :class:`DriveInfo` says of rows that are the sweeps of a standing scanner."""
-
 _WITH_TURNS = (
     ImageKind.TRAJECTORY_CENTER,
     ImageKind.FEATURE_CENTER,
