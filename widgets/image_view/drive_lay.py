@@ -101,15 +101,28 @@ def _lay_of_scan(drive: Drive, image: PointCloudImage) -> DriveLay:
     probed = filled[np.linspace(0, filled.size - 1, min(_PROBED_ROWS, filled.size)).astype(int)]
     profiles = [_profile(drive, image, int(row)) for row in probed]
     rises = [_rise(profile) for profile in profiles]
-    step_m = _column_step_m(profiles)
+    column_step_m = _column_step_m(profiles)
+    row_step_m = _row_step_m(drive, image, probed)
+    stretch = row_step_m / column_step_m if column_step_m > 0 and row_step_m > 0 else 1.0
     return DriveLay(
         rows.astype(np.float64),
-        (rows * step_m).astype(np.float64),
-        1.0,
+        rows.astype(np.float64) * (row_step_m or column_step_m),
+        float(np.clip(stretch, 1 / _MOST_STRETCH, _MOST_STRETCH)),
         left_columns_are_high=bool(np.sum(np.sign(rises)) > 0),
         plan=np.full((rows.size, 2), np.nan),
         rows_go_left=_sweeps_go_left(drive, image, filled),
     )
+
+
+def _row_step_m(drive: Drive, image: PointCloudImage, rows: NDArray[np.int64]) -> float:
+    """Distance of neighbours in sweeps that follow each other; as `_column_step_m` takes it."""
+    steps = [np.empty(0)]
+    for row in rows[rows + 1 < image.rows].tolist():
+        pair = image.raster(range(row, row + 2), range(image.width))
+        both = pair[:, (pair >= 0).all(axis=0)]
+        steps.append(np.linalg.norm(drive.xyz(both[1]) - drive.xyz(both[0]), axis=1))
+    joined = np.concatenate(steps)
+    return float(np.percentile(joined, 20)) if joined.size else 0.0
 
 
 def _rise(profile: _Profile) -> float:

@@ -78,12 +78,17 @@ class Picture:
         drive = drives.get(settings.drive_id)
         return None if drive is None else Picture.of(drive, settings.image_kind)
 
+    @property
+    def follows_way(self) -> bool:
+        """Whether it shows a drive from end to end: no view from above, no standing scanner."""
+        return self.rows_go_right and self.image.kind.follows_way
+
     def turned(self, wanted: ImageLay) -> ImageLay:
         """How it is turned where this is wanted.
 
         A top view has north up in any case; a scan is seen from where the scanner stood.
         """
-        if self.rows_go_right and self.image.kind.follows_way:
+        if self.follows_way:
             return wanted
         return ImageLay(is_reversed_along=self.lay.rows_go_left)
 

@@ -1,4 +1,4 @@
-"""Ruler: metres along the drive at the edge of the picture."""
+"""Ruler: metres along the drive at the edge of the picture; a scan has none to show."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
+from processing.image.kinds import ImageKind
 from widgets.image_view.picture import Picture
 from widgets.image_view.viewport import Viewport
 
@@ -39,7 +40,9 @@ class Ruler(QWidget):
         picture = self._picture
         with QPainter(self) as painter:
             painter.fillRect(self.rect(), _BACKGROUND)
-            if picture is not None and picture.lay.length_m > 0:
+            # A pixel of a scan is an angle; how wide that is on the ground differs by place.
+            is_measured = picture is not None and picture.image.kind is not ImageKind.SCAN
+            if picture is not None and is_measured and picture.lay.length_m > 0:
                 self._paint_ticks(painter, picture)
 
     def _paint_ticks(self, painter: QPainter, picture: Picture) -> None:
