@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +33,7 @@ from processing.runner import RunRequest
 from processing.text import Text
 from processing.tools.normals import NORMALS
 from processing.tools.segments import SEGMENTS
+from processing.tools.tool import FinishedColumns
 from resources import path_of
 from widgets.shared.cursor import Cursor
 from widgets.shared.map_changes import MapChanges
@@ -256,15 +256,17 @@ class Document(QObject):
         """Run a tool on a drive in the background; gives the job's id."""
         drive = self.drive(drive_id)
         beside = tuple(other for other in self.drives() if other is not drive)
-        title, work = run_work(RunRequest(tool, drive, parameters, beside))
+        project = self._needed()
+        request = RunRequest(tool, drive, parameters, beside)
+        title, work = run_work(request, project.temporary_folder())
 
         def take(done: FinishedRun) -> None:
-            if done.found is None:
+            if done.columns is not None:
                 self._store_columns(drive, done.columns)
-            else:
+            if done.found is not None:
                 self.store_run(done.found)
 
-        return self._adoption.start(self._needed(), title, work, take, lane=lane)
+        return self._adoption.start(project, title, work, take, lane=lane)
 
     def store_run(self, found: FoundFeatures) -> bool:
         """Put a run and its candidates on the map as one undoable step; says whether it could."""
@@ -337,9 +339,8 @@ class Document(QObject):
                 if not all(drive.columns.has(column.name) for column in tool.outputs):
                     self.start_run(tool.id, drive.id, tool.parameters(), lane=Lane.PREPARED)
 
-    def _store_columns(self, drive: Drive, columns: Mapping[str, NDArray[Any]]) -> None:
-        for name, values in columns.items():
-            drive.columns.add(name, values)
+    def _store_columns(self, drive: Drive, found: FinishedColumns) -> None:
+        found.hand_over(drive.columns)
         self.tiles.drop(drive.id)
         self.shared.map_changes.drive_columns_changed.emit(drive.id)
 

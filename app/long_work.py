@@ -34,12 +34,12 @@ def import_work(
     return Text("Import {names}", "{names} のインポート").filled(names=names), work
 
 
-def run_work(request: RunRequest) -> tuple[Text, Callable[[Monitor], FinishedRun]]:
-    """A tool is run on a drive."""
+def run_work(request: RunRequest, into: Path) -> tuple[Text, Callable[[Monitor], FinishedRun]]:
+    """A tool is run on a drive; what it says about points comes to lie in ``into``."""
     title = Text("{tool}: {name}", "{tool}: {name}").filled(
         tool=tool_of(request.tool).name, name=request.drive.info.name
     )
-    return title, lambda monitor: finished_run(request, monitor)
+    return title, lambda monitor: finished_run(request, into, monitor)
 
 
 def export_work(

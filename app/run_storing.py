@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from datetime import UTC, datetime
-from typing import Any
-
-from numpy.typing import NDArray
+from pathlib import Path
 
 from processing.monitor import Monitor
 from processing.project.found_features import FoundFeatures, found_features
-from processing.runner import RunRequest, columns_of, run, tool_of
-from processing.tools.tool import CandidateResult
+from processing.runner import RunRequest, run, tool_of
+from processing.tools.tool import CandidateResult, FinishedColumns
 
 
 @dataclass(frozen=True)
@@ -21,18 +18,23 @@ class FinishedRun:
 
     Attributes
     ----------
-    columns : mapping of str to array
-        By column name; empty for a tool that finds candidates.
+    columns : FinishedColumns or None
+        In a folder on the drive's disk; None for a tool that finds candidates.
     found : FoundFeatures or None
         The run with its candidates; None for a tool that says something about points.
     """
 
-    columns: Mapping[str, NDArray[Any]] = field(default_factory=dict)  # each column's own dtype
+    columns: FinishedColumns | None = None
     found: FoundFeatures | None = None
 
 
-def finished_run(request: RunRequest, monitor: Monitor) -> FinishedRun:
+def finished_run(request: RunRequest, into: Path, monitor: Monitor) -> FinishedRun:
     """Run a tool and make of what it gives what the project stores; for a worker's thread.
+
+    Parameters
+    ----------
+    into : Path
+        A new folder on the drive's disk, for columns.
 
     Raises
     ------
@@ -40,9 +42,9 @@ def finished_run(request: RunRequest, monitor: Monitor) -> FinishedRun:
         As :func:`processing.runner.run`; `Cancelled`.
     """
     started = datetime.now(UTC)
-    result = run(request, monitor)
+    result = run(request, monitor, into=into)
     if not isinstance(result, CandidateResult):
-        return FinishedRun(columns=columns_of(result))
+        return FinishedRun(columns=result)
     found = found_features(
         result,
         tool_of(request.tool),

@@ -2,24 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import shutil
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import OutOfRange, Unsuitable
+from processing.errors import OutOfRange, Unsuitable, told_as_user_error
 from processing.image.point_image import PointCloudImage
 from processing.monitor import Monitor
+from processing.points.columns import Columns
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
 from processing.text import Text
-from processing.tools.blocks import POINTS_PER_BLOCK, blocks_of, results_of
+from processing.tools.blocks import POINTS_PER_BLOCK, JoinedResults, blocks_of
 from processing.tools.registry import TOOLS
-from processing.tools.tool import CandidateResult, Needs, PointBlock, PointResult, Tool
+from processing.tools.tool import CandidateResult, FinishedColumns, Needs, PointBlock, Tool
 
-RunResult = PointResult | CandidateResult
+RunResult = FinishedColumns | CandidateResult
 
 
 @dataclass(frozen=True)
@@ -44,20 +48,26 @@ class RunRequest:
 
 
 def run(
-    request: RunRequest, monitor: Monitor, *, points_per_block: int = POINTS_PER_BLOCK
+    request: RunRequest,
+    monitor: Monitor,
+    *,
+    into: Path,
+    points_per_block: int = POINTS_PER_BLOCK,
 ) -> RunResult:
     """Run a tool on a whole drive; the drive itself isn't changed.
 
     Parameters
     ----------
+    into : Path
+        A folder that isn't there yet, for the columns of a tool that says something about points;
+        on the drive's disk where the drive is to have them. Removed again if the run fails.
     points_per_block : int
         What is held in memory at a time; the result doesn't depend on it.
 
     Returns
     -------
-    PointResult or CandidateResult
-        A column for every point of the drive, which
-        :meth:`processing.points.columns.Columns.add` stores; or what the tool found.
+    FinishedColumns or CandidateResult
+        A column file for each of the tool's outputs; or what the tool found.
 
     Raises
     ------
@@ -65,6 +75,8 @@ def run(
         The drive lacks what the tool needs.
     OutOfRange
         There is no such tool, or parameters contradict each other.
+    NoSpace
+        The disk can't hold the columns.
     Cancelled
         Nothing is kept.
     """
@@ -79,15 +91,17 @@ def run(
     if tool.find is not None:
         result = tool.find(request.drive, request.parameters, monitor)
     else:
-        result = _columns(tool, request, monitor, points_per_block)
-    monitor.check()
+        result = _columns(tool, request, monitor, into, points_per_block)
     monitor.report(1.0, text)
     return result
 
 
 def columns_of(result: RunResult) -> Mapping[str, NDArray[Any]]:
-    """The columns of a result, by name; none where it holds candidates."""
-    return result.columns if isinstance(result, PointResult) else {}
+    """The columns of a result, by name, mapped; none where it holds candidates."""
+    if isinstance(result, CandidateResult):
+        return {}
+    columns = Columns(result.folder, result.count)
+    return {name: columns[name] for name in result.names}
 
 
 def tool_of(name: str) -> Tool:
@@ -165,21 +179,37 @@ _NEEDS: Mapping[Needs, _Need] = {
 
 
 def _columns(
-    tool: Tool, request: RunRequest, monitor: Monitor, points_per_block: int
-) -> PointResult:
+    tool: Tool, request: RunRequest, monitor: Monitor, into: Path, points_per_block: int
+) -> FinishedColumns:
     """What a tool says about every point, block by block."""
     image = request.drive.image(request.drive.pixel_kind)
-    results = results_of(tool, image.row_starts)
     total = max(request.drive.count, 1)
     compute = tool.compute
     if tool.compute_of is not None:
         compute = tool.compute_of(request.drive, request.beside, request.parameters, monitor)
-    for block in blocks_of(image.row_starts, tool.overlap_rows, points_per_block):
+    with (
+        _removed_on_failure(into),
+        closing(JoinedResults(tool.outputs, image.row_starts, into)) as results,
+    ):
+        for block in blocks_of(image.row_starts, tool.overlap_rows, points_per_block):
+            monitor.check()
+            monitor.report(float(image.row_starts[block.rows.start]) / total)
+            points = _block_of(request.drive, image, block.rows_with_overlap)
+            results.add(block, compute(points, request.parameters, monitor))
+        finished = results.finished(monitor)
         monitor.check()
-        monitor.report(float(image.row_starts[block.rows.start]) / total)
-        points = _block_of(request.drive, image, block.rows_with_overlap)
-        results.add(block, compute(points, request.parameters, monitor))
-    return results.finished()
+    return finished
+
+
+@contextmanager
+def _removed_on_failure(folder: Path) -> Iterator[None]:
+    with told_as_user_error(folder):
+        folder.mkdir(parents=True)
+    try:
+        yield
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
 
 
 def _block_of(drive: Drive, image: PointCloudImage, rows: range) -> PointBlock:

@@ -9,15 +9,17 @@ from pathlib import Path
 from app.cli.opened import OpenedInput, opened_input, terminal_monitor
 from app.cli.output import print_lines
 from processing.errors import OutOfRange
+from processing.formats.safe_write import refuse_inputs
 from processing.monitor import Monitor, PartMonitor
 from processing.project.feature import Feature
 from processing.project.feature_files import check_ending, write_feature_file
 from processing.project.found_features import found_features
-from processing.project.point_results import write_point_results
-from processing.runner import RunRequest, RunResult, run, tool_of
+from processing.project.point_results import check_point_output, write_point_results
+from processing.project.scratch_folder import scratch_folder
+from processing.runner import RunRequest, check_needs, run, tool_of
 from processing.text import Text
 from processing.tools.parameters import filled_in
-from processing.tools.tool import CandidateResult, PointResult, Tool
+from processing.tools.tool import CandidateResult, FinishedColumns, Tool
 
 _RUNNING = 0.8
 
@@ -28,15 +30,20 @@ def command(arguments: argparse.Namespace) -> int:
     parameters = filled_in(tool.parameters, _settings(arguments.set))
     _check_output(tool, arguments.output)
     monitor = terminal_monitor()
-    with opened_input(arguments, monitor) as opened:
-        columns: list[PointResult] = []
+    with (
+        opened_input(arguments, monitor) as opened,
+        scratch_folder(arguments.output.parent) as scratch,
+    ):
+        _check_first(tool, opened, arguments.output, monitor)
+        columns: list[FinishedColumns] = []
         features: list[Feature] = []
         for number, drive in enumerate(opened.drives):
             share = _RUNNING / len(opened.drives)
             part = PartMonitor(monitor, number * share, (number + 1) * share)
             started = datetime.now(UTC)
             beside = tuple(other for other in opened.drives if other is not drive)
-            result: RunResult = run(RunRequest(tool.id, drive, parameters, beside), part)
+            request = RunRequest(tool.id, drive, parameters, beside)
+            result = run(request, part, into=scratch / str(number))
             if isinstance(result, CandidateResult):
                 times = {"started": started, "finished": datetime.now(UTC)}
                 found = found_features(result, tool, parameters, drive.id, **times)
@@ -53,12 +60,25 @@ def command(arguments: argparse.Namespace) -> int:
     return 0
 
 
+def _check_first(tool: Tool, opened: OpenedInput, output: Path, monitor: Monitor) -> None:
+    """Refuse what can't come to a good end before hours of work are spent on it."""
+    for drive in opened.drives:
+        check_needs(tool, drive)
+    if tool.find is None:
+        check_point_output(opened.drives, output, monitor)
+    else:
+        refuse_inputs(output, _delivered(opened))
+
+
+def _delivered(opened: OpenedInput) -> list[Path]:
+    return [path for drive in opened.drives for path in drive.delivered_files]
+
+
 def _write_features(
     features: list[Feature], opened: OpenedInput, output: Path, monitor: Monitor
 ) -> tuple[Path, ...]:
-    delivered = [path for drive in opened.drives for path in drive.delivered_files]
     write_feature_file(
-        output, features, opened.catalogue, opened.crs, monitor=monitor, never=delivered
+        output, features, opened.catalogue, opened.crs, monitor=monitor, never=_delivered(opened)
     )
     return (output,)
 

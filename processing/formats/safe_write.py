@@ -35,7 +35,7 @@ def written_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
     NoSpace, MissingInput, BadFile
         What the operating system says, of the body's own writing too.
     """
-    _refuse_inputs(path, never)
+    refuse_inputs(path, never)
     temporary = path.with_name(f".{path.stem}-{uuid.uuid4().hex[:8]}{path.suffix}")
     with told_as_user_error(path):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -49,7 +49,14 @@ def written_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
             raise
 
 
-def _refuse_inputs(path: Path, never: Iterable[Path]) -> None:
+def refuse_inputs(path: Path, never: Iterable[Path]) -> None:
+    """Refuse to write where an input of the work is.
+
+    Raises
+    ------
+    InUse
+        ``path`` is one of ``never``.
+    """
     with told_as_user_error(path):
         for source in never:
             is_same_name = source.resolve() == path.resolve()

@@ -100,20 +100,27 @@ def unite_kernel(parents: _Integers, one: _Integers, other: _Integers) -> None:
 
 
 @kernel
-def renumber_kernel(
-    numbers: NDArray[np.int32], parents: _Integers, order: NDArray[np.int32]
-) -> None:
-    """Replace numbers by the rank, by first appearance, of what they were joined to.
+def renumber_kernel(numbers: NDArray[np.int32], gone: _Integers, ranks: _Integers) -> None:
+    """Close up numbers of which some give way to others.
 
-    ``order``: −1 for every number; holds the ranks afterwards.
+    ``gone``: those that give way, rising; ``ranks``: what each becomes. Any other falls by as many
+    as are gone below it.
     """
-    rank = 0
+    before, after = -1, -1
     for i in range(numbers.size):
-        root = parents[numbers[i]]
-        if order[root] < 0:
-            order[root] = rank
-            rank += 1
-        numbers[i] = order[root]
+        number = numbers[i]
+        if number != before:
+            low, high = 0, gone.size
+            while low < high:
+                middle = (low + high) // 2
+                if gone[middle] < number:
+                    low = middle + 1
+                else:
+                    high = middle
+            before, after = number, number - low
+            if low < gone.size and gone[low] == number:
+                after = ranks[low]
+        numbers[i] = after
 
 
 @kernel

@@ -118,6 +118,7 @@ class Columns:
         self._folder = folder
         self._count = count
         self._maps: dict[str, NDArray[Any]] = {}
+        self._held: dict[str, NDArray[Any]] = {}
 
     @property
     def count(self) -> int:
@@ -170,9 +171,35 @@ class Columns:
             finally:
                 temporary.unlink(missing_ok=True)
 
+    def take_over(self, name: str, file: Path) -> None:
+        """Let a finished file be a column, by a rename; replaces an older one.
+
+        Parameters
+        ----------
+        file : Path
+            A value for each point, as `COLUMN_TYPES` says, on the folder's own disk.
+
+        Raises
+        ------
+        MissingInput, InUse
+            The file is gone, or a program holds the older column; that one stays.
+        """
+        dtype, width = COLUMN_TYPES[name]
+        path = column_path(self._folder, name)
+        with told_as_user_error(path):
+            if file.stat().st_size != self._count * width * np.dtype(dtype).itemsize:
+                message = f"column {name}: a file for other points than {self._count}"
+                raise ValueError(message)
+            self.release(name)
+            file.replace(path)
+
     def hold(self, name: str, values: NDArray[Any]) -> None:
         """Let a column be these values, in memory only: (n,) or (n, k), not to be changed."""
-        self._maps[name] = values
+        self._maps[name] = self._held[name] = values
+
+    def held(self, name: str) -> NDArray[Any] | None:
+        """The values that :meth:`hold` keeps in place of the file's, or None."""
+        return self._held.get(name)
 
     def release(self, name: str) -> None:
         """Forget the map of a column; arrays already handed out stay valid."""

@@ -9,12 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.formats.las_results import write_results
-from processing.labels.label_column import labels_of
+from processing.labels.label_column import LABEL
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
+from processing.points.ordering import read_stretch
+from processing.project.delivered_order import DeliveredOrder, Values
+from processing.project.scratch_folder import scratch_folder
 from processing.project.source_check import require_delivered
 
-_STRETCH = 4_000_000
+_DEALING = 0.2
+_CLASS = "classification"
 _ENDINGS = (".las", ".laz")
 _Codes = NDArray[np.uint8]
 
@@ -43,13 +47,47 @@ def write_labelled_points(
     noted = [(drive, one) for drive in drives for one in drive.info.sources if one.points]
     for drive, one in noted:
         require_delivered(one, drive.source_path(one), monitor.check)
+    for drive in drives:
+        _check_codes(drive)
     sources = sorted({drive.source_path(one) for drive, one in noted})
-    names = _names_of(sources)
-    for number, (source, name) in enumerate(zip(sources, names, strict=True)):
-        part = PartMonitor(monitor, number / len(sources), (number + 1) / len(sources))
-        labels, classes = _in_file_order(drives, source, part)
-        results = {"classification": np.where(labels > 0, labels, classes), "label": labels}
-        write_results(source, place(name), results, part)
+    paths = [place(name) for name in _names_of(sources)]
+    if not paths:
+        return
+    with scratch_folder(paths[0].parent) as scratch:
+        order = DeliveredOrder(drives, _codes_of, scratch)
+        order.prepare(PartMonitor(monitor, 0.0, _DEALING))
+        share = (1.0 - _DEALING) / len(paths)
+        for number, (source, path) in enumerate(zip(sources, paths, strict=True)):
+            first = _DEALING + number * share
+            part = PartMonitor(monitor, first, first + share)
+            write_results(source, path, _results_of(order, source), part)
+
+
+def _check_codes(drive: Drive) -> None:
+    """Refuse columns of another length than the drive's before anything is written."""
+    for name in (LABEL, _CLASS):
+        if drive.columns.has(name):
+            _ = drive.columns[name]
+
+
+def _codes_of(drive: Drive, start: int, stop: int) -> Values:
+    """Labels of points, and the classes they have with them."""
+    labels = _column(drive, LABEL, start, stop)
+    classes = _column(drive, _CLASS, start, stop)
+    return {_CLASS: np.where(labels > 0, labels, classes), LABEL: labels}
+
+
+def _column(drive: Drive, name: str, start: int, stop: int) -> _Codes:
+    held = drive.columns.held(name)
+    if held is not None:
+        return np.asarray(held[start:stop])
+    if not drive.columns.has(name):
+        return np.zeros(stop - start, np.uint8)
+    return np.asarray(read_stretch(drive.folder, name, start, stop))
+
+
+def _results_of(order: DeliveredOrder, source: Path) -> Callable[[int, int], Values]:
+    return lambda start, stop: order.values(source, start, stop)
 
 
 def _names_of(sources: Sequence[Path]) -> list[str]:
@@ -62,26 +100,3 @@ def _names_of(sources: Sequence[Path]) -> list[str]:
             name, number = f"{source.stem}-{number}{ending}", number + 1
         names.append(name)
     return names
-
-
-def _in_file_order(
-    drives: Sequence[Drive], source: Path, monitor: Monitor
-) -> tuple[_Codes, _Codes]:
-    """Labels and delivered classes of all points of a file, in its order."""
-    mine = [
-        (drive, number, one.points)
-        for drive in drives
-        for number, one in enumerate(drive.info.sources)
-        if drive.source_path(one) == source
-    ]
-    labels = np.zeros(sum(points for _, _, points in mine), np.uint8)
-    classes = np.zeros_like(labels)
-    for drive, number, _ in mine:
-        for start in range(0, drive.count, _STRETCH):
-            monitor.check()
-            points = np.arange(start, min(start + _STRETCH, drive.count))
-            files, indices = drive.sources(start, int(points[-1]) + 1)
-            own = files == number
-            labels[indices[own]] = labels_of(drive, points[own])
-            classes[indices[own]] = drive.columns["classification"][points[own]]
-    return labels, classes

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
@@ -10,40 +11,44 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.formats.las_results import write_results
-from processing.monitor import Monitor
+from processing.formats.safe_write import refuse_inputs, written_safely
+from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
+from processing.points.ordering import read_stretch
+from processing.project.delivered_order import DeliveredOrder, Values
+from processing.project.scratch_folder import scratch_folder
 from processing.project.source_check import require_delivered
 from processing.text import Text
-from processing.tools.tool import PointResult
+from processing.tools.tool import FinishedColumns
 
-_STRETCH = 4_000_000
+_DEALING = 0.2
 _PARTS = {
     "normal": (("normal_x", "normal_y", "normal_z"), 127.0),
     "shape": (("linearity", "planarity", "scattering"), 255.0),
 }
 """Columns of three small integers: the names of their parts in files, and what makes them 1."""
 
-_COLOR, _SEEN = "color", "is_seen"
+_COLOR, _SEEN_COLOR, _SEEN = "color", "seen_color", "is_seen"
 _SIXTEEN_BITS = np.uint16(257)
 """Makes the brightest of 8 bits the brightest of 16."""
 
 
-def write_point_results(
-    results: Sequence[tuple[Drive, PointResult]], output: Path, monitor: Monitor
-) -> tuple[Path, ...]:
-    """Write results beside the points of the files that the drives came from.
+def check_point_output(
+    drives: Sequence[Drive], output: Path, monitor: Monitor
+) -> tuple[tuple[Path, Path], ...]:
+    """Look at what an output of points needs, before any work is spent on it.
 
     Parameters
     ----------
-    results : sequence of (Drive, PointResult)
+    drives : sequence of Drive
         All drives of the input.
     output : Path
         LAS or LAZ; where there are several files, their names are added to its own.
 
     Returns
     -------
-    tuple of Path
-        One for each delivered file, its points in its order.
+    tuple of (Path, Path)
+        Each delivered file, and where its points are written.
 
     Raises
     ------
@@ -51,83 +56,114 @@ def write_point_results(
         A delivered file is no longer where it was.
     BadFile
         It is another one now.
+    InUse
+        The output would overwrite a delivered file.
+    """
+    found = set()
+    for drive in drives:
+        for source in drive.info.sources:
+            if source.points:
+                require_delivered(source, drive.source_path(source), monitor.check)
+                found.add(drive.source_path(source))
+    sources = sorted(found)
+    paths = _paths_of(sources, output)
+    for path in paths:
+        refuse_inputs(path, _delivered(drives))
+    return tuple(zip(sources, paths, strict=True))
+
+
+def write_point_results(
+    results: Sequence[tuple[Drive, FinishedColumns]], output: Path, monitor: Monitor
+) -> tuple[Path, ...]:
+    """Write results beside the points of the files that the drives came from.
+
+    Parameters
+    ----------
+    results : sequence of (Drive, FinishedColumns)
+        All drives of the input.
+    output : Path
+        As :func:`check_point_output`.
+
+    Returns
+    -------
+    tuple of Path
+        One for each delivered file, its points in its order; all are written, or none.
+
+    Raises
+    ------
+    MissingInput, BadFile, InUse
+        As :func:`check_point_output`.
     NoSpace, Cancelled
     """
-    sources = _sources(results, monitor)
-    paths = []
-    for number, source in enumerate(sources):
-        path = output
-        if len(sources) > 1:
-            path = output.with_name(f"{output.stem}-{source.stem}{output.suffix}")
-        monitor.report(number / len(sources), _WRITING.filled(name=path.name))
-        write_results(source, path, _in_file_order(results, source), monitor)
-        paths.append(path)
-    return tuple(paths)
+    drives = [drive for drive, _ in results]
+    files = check_point_output(drives, output, monitor)
+    with ExitStack() as whole:
+        scratch = whole.enter_context(scratch_folder(output.parent))
+        order = DeliveredOrder(drives, _reader_of(results), scratch)
+        order.prepare(PartMonitor(monitor, 0.0, _DEALING))
+        share = (1.0 - _DEALING) / max(1, len(files))
+        for number, (source, path) in enumerate(files):
+            first = _DEALING + number * share
+            monitor.report(first, _WRITING.filled(name=path.name))
+            part = PartMonitor(monitor, first, first + share)
+            temporary = whole.enter_context(written_safely(path, never=_delivered(drives)))
+            write_results(source, temporary, _results_of(order, source), part)
+    return tuple(path for _, path in files)
 
 
 _WRITING = Text("Writing {name}", "{name} を書き込み中")
 
 
-def _sources(results: Sequence[tuple[Drive, PointResult]], monitor: Monitor) -> list[Path]:
-    found = set()
-    for drive, _ in results:
-        for source in drive.info.sources:
-            if source.points:
-                require_delivered(source, drive.source_path(source), monitor.check)
-                found.add(drive.source_path(source))
-    return sorted(found)
+def _delivered(drives: Sequence[Drive]) -> list[Path]:
+    return [path for drive in drives for path in drive.delivered_files]
 
 
-def _in_file_order(
-    results: Sequence[tuple[Drive, PointResult]], source: Path
-) -> dict[str, NDArray[Any]]:
-    found: dict[str, NDArray[Any]] = {}
-    count = _points_of_file(results, source)
-    for drive, result in results:
-        paths = [drive.source_path(s) for s in drive.info.sources]
-        if source not in paths:
-            continue
-        number = paths.index(source)
-        for start in range(0, drive.count, _STRETCH):
-            stretch = slice(start, min(start + _STRETCH, drive.count))
-            files, indices = drive.sources(stretch.start, stretch.stop)
-            own = files == number
-            places = indices[own]
-            for name, values in result.columns.items():
-                for part, part_values in _spread(name, values[stretch][own]):
-                    shape = (count, *part_values.shape[1:])
-                    whole = found.setdefault(part, np.zeros(shape, part_values.dtype))
-                    whole[places] = part_values
-            _keep_delivered(found, drive, stretch, (own, places))
-    return found
+def _paths_of(sources: Sequence[Path], output: Path) -> list[Path]:
+    """A path of its own for each, numbered where files of several folders have one name."""
+    if len(sources) == 1:
+        return [output]
+    paths: list[Path] = []
+    taken: set[str] = set()
+    for source in sources:
+        name, number = f"{output.stem}-{source.stem}{output.suffix}", 2
+        while name.lower() in taken:
+            name = f"{output.stem}-{source.stem}-{number}{output.suffix}"
+            number += 1
+        taken.add(name.lower())
+        paths.append(output.with_name(name))
+    return paths
 
 
-def _keep_delivered(
-    found: dict[str, NDArray[Any]],
-    drive: Drive,
-    stretch: slice,
-    chosen: tuple[NDArray[np.bool_], NDArray[np.int64]],
-) -> None:
-    """Where no camera saw a point it keeps the colour that it was delivered with."""
-    if _COLOR not in found or not drive.columns.has(_COLOR):
-        return
-    own, places = chosen
-    is_unseen = found[_SEEN][places] == 0
-    found[_COLOR][places[is_unseen]] = drive.columns[_COLOR][stretch][own][is_unseen]
+def _reader_of(
+    results: Sequence[tuple[Drive, FinishedColumns]],
+) -> Callable[[Drive, int, int], Values]:
+    of_drive = {drive.id: result for drive, result in results}
+
+    def read(drive: Drive, start: int, stop: int) -> Values:
+        result = of_drive[drive.id]
+        values = {name: result.read(name, start, stop) for name in result.names}
+        if _SEEN_COLOR in values:
+            seen = values.pop(_SEEN_COLOR).astype(np.uint16) * _SIXTEEN_BITS
+            if drive.columns.has(_COLOR):
+                # Where no camera saw a point it keeps the colour that it was delivered with.
+                is_unseen = values[_SEEN] == 0
+                delivered = read_stretch(drive.folder, _COLOR, start, stop)
+                seen[is_unseen] = delivered[is_unseen]
+            values[_COLOR] = seen
+        return values
+
+    return read
 
 
-def _points_of_file(results: Sequence[tuple[Drive, PointResult]], source: Path) -> int:
-    return sum(
-        s.points
-        for drive, _ in results
-        for s in drive.info.sources
-        if drive.source_path(s) == source
-    )
+def _results_of(order: DeliveredOrder, source: Path) -> Callable[[int, int], Values]:
+    def part(start: int, stop: int) -> Values:
+        found = order.values(source, start, stop)
+        return dict(one for name, values in found.items() for one in _spread(name, values))
+
+    return part
 
 
 def _spread(name: str, values: NDArray[Any]) -> list[tuple[str, NDArray[Any]]]:
-    if name == "seen_color":
-        return [(_COLOR, values.astype(np.uint16) * _SIXTEEN_BITS)]
     if name not in _PARTS:
         return [(name, values)]
     parts, one = _PARTS[name]

@@ -17,7 +17,7 @@ from processing.templates.guide import LineDirection, RoadDirection
 from processing.templates.place_fit import TILTS_RAD, Expected, PlaceFit, refined, searched
 from processing.templates.profile_template import ProfileTemplate
 from processing.templates.shape import Shape
-from processing.templates.slab import Frame, SlabReader
+from processing.templates.slab import STRETCH_M, Frame, SlabReader
 from processing.text import Text
 
 _Floats = NDArray[np.float64]
@@ -55,6 +55,8 @@ class FitSettings:
         A line goes on over this without its shape.
     search_m : float
         So far beyond its end the shape is looked for again, as another line.
+    stretch_m : float
+        Length of street that is read at a time; what is found doesn't depend on it.
     """
 
     step_m: float = 0.5
@@ -63,6 +65,7 @@ class FitSettings:
     least_score: float = 0.7
     longest_gap_m: float = 5.0
     search_m: float = 15.0
+    stretch_m: float = STRETCH_M
 
 
 @dataclass(frozen=True)
@@ -223,7 +226,8 @@ class _Walker:
         self._shape = shape
         self._settings = settings
         self._way = way
-        self._reader = SlabReader(drive, settings.width_m, shape.box(max(_MOST_LOST_M)))
+        box = shape.box(max(_MOST_LOST_M))
+        self._reader = SlabReader(drive, settings.width_m, box, settings.stretch_m)
         self._road = RoadDirection(drive.trajectory)
         scale = max(1.0, settings.step_m / _SPREAD_STEP_M)
         self._spread = _SPREAD * np.array([scale, scale, 1.0, 1.0, 1.0])

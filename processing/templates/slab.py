@@ -16,7 +16,9 @@ from processing.templates.fit_kernels import slab_kernel
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
-_STRETCH_M = 8.0
+STRETCH_M = 8.0
+"""Length of street that is read at a time."""
+
 _MOST_PER_SLAB = 2500
 """More points than this make a fit slower, not better."""
 
@@ -78,14 +80,21 @@ class SlabReader:
         Thickness of a slab.
     box : tuple of float
         Least and largest offset and height about a frame that a slab holds, m.
+    stretch_m : float
+        Length of street that is read at a time.
     """
 
     def __init__(
-        self, drive: Drive, width_m: float, box: tuple[float, float, float, float]
+        self,
+        drive: Drive,
+        width_m: float,
+        box: tuple[float, float, float, float],
+        stretch_m: float = STRETCH_M,
     ) -> None:
         self._drive = drive
         self._width_m = width_m
         self._box = box
+        self._stretch_m = stretch_m
         self._cut: Cut | None = None
         self._origin = np.zeros(3)
         self._points: _Integers = np.empty(0, np.int64)
@@ -132,8 +141,8 @@ class SlabReader:
 
     def _read(self, frame: Frame, way: int) -> None:
         half = max(-self._box[0], self._box[1]) + 0.5
-        length = _STRETCH_M + self._width_m
-        middle = frame.place + way * (_STRETCH_M / 2 - self._width_m) * frame.along
+        length = self._stretch_m + self._width_m
+        middle = frame.place + way * (self._stretch_m / 2 - self._width_m) * frame.along
         cut = Cut(
             (float(middle[0]), float(middle[1]), float(middle[2])),
             (float(frame.right[0]), float(frame.right[1])),

@@ -2,20 +2,25 @@
 
 A block brings the rows beyond its own that the tool asked for. Values of single points are taken
 from the block that owns the point; numbers of components are joined through the points that two
-blocks share, then numbered anew.
+blocks share. Results go to column files as they come: nothing the size of the recording is held.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.segment_kernels import renumber_kernel, roots_kernel, unite_kernel
-from processing.tools.tool import OutputColumn, PointResult, Tool
+from processing.monitor import Monitor, SilentMonitor
+from processing.points.columns import ColumnWriter
+from processing.text import Text
+from processing.tools.components import ComponentColumn
+from processing.tools.tool import FinishedColumns, OutputColumn, PointResult
 
 COMPONENT_COLUMNS = frozenset({"segment"})
 """Results that number the parts of a recording instead of saying something about one point."""
@@ -65,91 +70,94 @@ def blocks_of(
 
 
 class JoinedResults:
-    """Results of blocks, in order, as columns of the whole recording.
+    """Results of blocks, in order, as column files of the whole recording.
 
     Parameters
     ----------
     outputs : tuple of OutputColumn
         What the tool gives.
     row_starts : (rows + 1,) int64
+    folder : Path
+        Where the columns are written; exists.
     """
 
-    def __init__(self, outputs: tuple[OutputColumn, ...], row_starts: NDArray[np.int64]) -> None:
+    def __init__(
+        self, outputs: tuple[OutputColumn, ...], row_starts: NDArray[np.int64], folder: Path
+    ) -> None:
         self._row_starts = row_starts
-        count = int(row_starts[-1]) if row_starts.size else 0
-        self._columns: dict[str, NDArray[Any]] = {
-            output.name: np.zeros(
-                (count,) if output.width == 1 else (count, output.width), output.dtype
-            )
-            for output in outputs
-        }
+        self._folder = folder
+        self._outputs = outputs
+        self._columns = ColumnWriter(folder)
         self._components = {
-            output.name: _JoinedComponents(count)
+            output.name: ComponentColumn(folder, output.name)
             for output in outputs
             if output.name in COMPONENT_COLUMNS
         }
 
     def add(self, block: Block, result: PointResult) -> None:
-        """Take in the next block's result."""
+        """Take in the next block's result.
+
+        Raises
+        ------
+        NoSpace
+        """
         start, stop = (int(self._row_starts[row]) for row in _ends(block.rows))
         first, end = (int(self._row_starts[row]) for row in _ends(block.rows_with_overlap))
-        for name, column in self._columns.items():
-            if name in self._components:
-                self._components[name].add(result.columns[name], first, end)
-            else:
-                column[start:stop] = result.columns[name][start - first : stop - first]
+        for name, joined in self._components.items():
+            joined.add(result.columns[name], first, end)
+        self._append(
+            {
+                name: values[start - first : stop - first]
+                for name, values in result.columns.items()
+                if name not in self._components
+            }
+        )
 
-    def finished(self) -> PointResult:
-        """The columns of the whole recording."""
-        whole = {name: joined.finished() for name, joined in self._components.items()}
-        return PointResult({**self._columns, **whole})
+    def finished(self, monitor: Monitor) -> FinishedColumns:
+        """The columns of the whole recording.
 
+        Raises
+        ------
+        NoSpace, Cancelled
+        """
+        if self._row_starts.size < 2:
+            self._append(
+                {
+                    output.name: np.empty((0, output.width), output.dtype)
+                    for output in self._outputs
+                    if output.name not in self._components
+                }
+            )
+        for joined in self._components.values():
+            joined.finish(monitor)
+        self.close()
+        count = int(self._row_starts[-1]) if self._row_starts.size else 0
+        return FinishedColumns(self._folder, tuple(one.name for one in self._outputs), count)
 
-class _JoinedComponents:
-    """Components of blocks, united where they share points.
+    def close(self) -> None:
+        """Close the files; may be called again."""
+        self._columns.close()
+        for joined in self._components.values():
+            joined.close()
 
-    Every component of every block gets a number of its own; ``roots`` say which are the same.
-    """
-
-    def __init__(self, count: int) -> None:
-        self._numbers = np.zeros(count, np.int32)
-        self._known_end = 0
-        self._used = 0
-        self._pairs: list[NDArray[np.int64]] = []
-
-    def add(self, labels: NDArray[np.int32], first: int, end: int) -> None:
-        """Take in the labels of the points ``first … end − 1``."""
-        numbers = labels.astype(np.int64) + self._used
-        self._used += int(labels.max(initial=-1)) + 1
-        known = max(0, min(self._known_end, end) - first)
-        if known:
-            seam = np.stack([self._numbers[first : first + known], numbers[:known]])
-            self._pairs.append(np.unique(seam, axis=1).astype(np.int64))
-        self._numbers[first + known : end] = numbers[known:]
-        self._known_end = max(self._known_end, end)
-
-    def finished(self) -> NDArray[np.int32]:
-        """(n,) int32: components numbered by their first points."""
-        parents = np.arange(self._used, dtype=np.int64)
-        for pair in self._pairs:
-            unite_kernel(parents, np.ascontiguousarray(pair[0]), np.ascontiguousarray(pair[1]))
-        roots_kernel(parents)
-        order = np.full(self._used, -1, np.int32)
-        renumber_kernel(self._numbers, parents, order)
-        return self._numbers
-
-
-def results_of(tool: Tool, row_starts: NDArray[np.int64]) -> JoinedResults:
-    """Where a tool's results are gathered."""
-    return JoinedResults(tool.outputs, row_starts)
+    # The type of a column's values is the column's own.
+    def _append(self, values: Mapping[str, NDArray[Any]]) -> None:
+        if values:
+            self._columns.append(values)
 
 
 def warm_up() -> None:
     """Compile the kernels."""
-    joined = _JoinedComponents(2)
-    joined.add(np.zeros(2, np.int32), 0, 2)
-    joined.add(np.zeros(1, np.int32), 1, 2)
-    joined.finished()
+    row_starts = np.arange(5, dtype=np.int64)
+    outputs = (OutputColumn("segment", "int32", 1, Text("", "")),)
+    with TemporaryDirectory() as folder:
+        joined = JoinedResults(outputs, row_starts, Path(folder))
+        # Two points that only the last block joins.
+        for block, labels in zip(
+            blocks_of(row_starts, 1, 1), ([0, 1], [0, 1, 2], [0, 1, 0], [0, 0]), strict=True
+        ):
+            joined.add(block, PointResult({"segment": np.array(labels, np.int32)}))
+        joined.finished(SilentMonitor())
 
 
 def _ends(rows: range) -> tuple[int, int]:

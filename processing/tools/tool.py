@@ -7,9 +7,11 @@ every point, of a drive where it finds things: no project, no view, no global.
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
+from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
@@ -17,7 +19,9 @@ from numpy.typing import NDArray
 
 from processing.image.grid import PixelGrid
 from processing.monitor import Monitor
+from processing.points.columns import Columns, column_path
 from processing.points.drive import Drive
+from processing.points.ordering import read_stretch
 from processing.text import Text
 
 CandidateValue = str | float | int | bool | None
@@ -68,6 +72,44 @@ class PointResult:
     """
 
     columns: Mapping[str, NDArray[Any]] = field(default_factory=dict)  # dtype is the column's own
+
+
+@dataclass(frozen=True)
+class FinishedColumns:
+    """What a tool says about every point of a drive: whole column files in a folder of their own.
+
+    Attributes
+    ----------
+    folder : Path
+        Holds nothing else; whoever got it removes it or hands the columns over.
+    names : tuple of str
+    count : int
+        Points of the drive.
+    """
+
+    folder: Path
+    names: tuple[str, ...]
+    count: int
+
+    def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
+        """Values of the points ``start … stop − 1``: (k,) or (k, width), of the column's dtype."""
+        return read_stretch(self.folder, name, start, stop)
+
+    def hand_over(self, columns: Columns) -> None:
+        """Make them the columns of a drive on the same disk; the folder is gone afterwards.
+
+        Raises
+        ------
+        InUse, NoSpace
+            A column can't be replaced; it and those behind it stay as they were.
+        """
+        for name in self.names:
+            columns.take_over(name, column_path(self.folder, name))
+        self.remove()
+
+    def remove(self) -> None:
+        """Remove what is left of the folder; may be called again."""
+        shutil.rmtree(self.folder, ignore_errors=True)
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,9 @@ from processing.project.dropped_files import request_of_files
 from processing.project.feature import Feature
 from processing.project.importing import import_drives
 from processing.project.project import Project
-from processing.runner import RunRequest, columns_of, run
+from processing.runner import RunRequest, run
 from processing.tools.registry import POINT_TOOLS
+from processing.tools.tool import FinishedColumns
 from resources import path_of
 from tests.properties.operator_actions import Action
 from tests.properties.operator_hands import Operator
@@ -39,9 +40,10 @@ def imported_street(folder: Path) -> Path:
         found = import_drives(request, project.temporary_folder(), SilentMonitor())
         for drive in project.adopt_drives(found):
             for tool in POINT_TOOLS.values():
-                result = run(RunRequest(tool.id, drive, tool.parameters()), SilentMonitor())
-                for name, values in columns_of(result).items():
-                    drive.columns.add(name, values)
+                request = RunRequest(tool.id, drive, tool.parameters())
+                result = run(request, SilentMonitor(), into=project.temporary_folder())
+                assert isinstance(result, FinishedColumns)
+                result.hand_over(drive.columns)
     return folder
 
 

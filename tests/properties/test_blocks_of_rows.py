@@ -1,21 +1,152 @@
-"""A tool gives the same to the bit, whether a recording is cut into blocks or not."""
+"""A tool gives the same, whether a recording is cut into blocks or not: points to the bit."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from uuid import uuid4
+
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
+from processing.cameras.image_list import ImageList
+from processing.cameras.image_store import write_images
 from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
-from processing.tools.blocks import blocks_of, results_of
+from processing.runner import RunRequest, columns_of, run
+from processing.templates.fit import FitSettings, fit_along
+from processing.templates.fitted_lines import FittedLine, fitted_lines
+from processing.tools.blocks import JoinedResults, blocks_of
+from processing.tools.colour import COLOUR, ColourParameters
 from processing.tools.normals import NORMALS, NormalsParameters
+from processing.tools.registry import POINT_TOOLS, TOOLS
 from processing.tools.segments import SEGMENTS, SegmentsParameters
-from processing.tools.tool import PointBlock, PointResult, Tool
-from tests.processing.image.recordings import random_recording, small_drive
+from processing.tools.template import TEMPLATE
+from processing.tools.tool import FinishedColumns, PointBlock, PointResult
+from tests.builders import simulated_drive
+from tests.camera_scene import looking, photograph
+from tests.processing.image.recordings import (
+    drive_of,
+    random_recording,
+    small_drive,
+    without_turns,
+)
+from tests.processing.templates.curb_street import CURB, CURB_FRAME, recorded
+
+Columns = Mapping[str, np.ndarray]
+BLOCKS = (
+    (NORMALS.id, NormalsParameters()),
+    (NORMALS.id, NormalsParameters(radius_m=2.0)),
+    (SEGMENTS.id, SegmentsParameters()),
+    (SEGMENTS.id, SegmentsParameters(bend_deg=180.0, distance_m=0.1, spacing_ratio=1.2)),
+)
+"""Tools that look at neighbours in the image."""
+WITH_IMAGES = (
+    (COLOUR.id, ColourParameters()),
+    (COLOUR.id, ColourParameters(regards_hidden=False)),
+)
+STRETCHES = (TEMPLATE.id,)
+"""Tools that find candidates, and read the street a stretch at a time."""
+
+
+def test_every_tool_is_shown_to_give_the_same_by_blocks() -> None:
+    shown = {tool for tool, _ in (*BLOCKS, *WITH_IMAGES)}
+    assert shown == set(POINT_TOOLS), "give a new tool a line in BLOCKS or WITH_IMAGES"
+    assert shown | set(STRETCHES) == set(TOOLS), "a new tool that finds needs a test of its own"
+
+
+@pytest.fixture(scope="module")
+def drives(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Drive]:
+    folder = tmp_path_factory.mktemp("drives")
+    flat = small_drive(folder / "flat", 7, multi_return_share=0.2, lost_share=0.2)[0]
+    return {
+        "street": small_drive(folder / "street", 7, multi_return_share=0.2, lost_share=0.2)[0],
+        "top view": without_turns(flat),
+    }
+
+
+def by_blocks(drive: Drive, tool: str, parameters: object, points: int) -> Columns:
+    into = drive.folder.parent / uuid4().hex
+    request = RunRequest(tool, drive, parameters)
+    result = run(request, SilentMonitor(), into=into, points_per_block=points)
+    assert isinstance(result, FinishedColumns)
+    columns = {name: np.array(values) for name, values in columns_of(result).items()}
+    result.remove()
+    return columns
+
+
+def assert_same(one: Columns, other: Columns) -> None:
+    assert one.keys() == other.keys()
+    for name, values in one.items():
+        assert values.dtype == other[name].dtype
+        np.testing.assert_array_equal(values, other[name])
+
+
+@pytest.mark.parametrize("cloud", ["street", "top view"])
+@pytest.mark.parametrize(("tool", "parameters"), BLOCKS)
+@given(points=st.integers(1, 12_000))
+@example(points=1)
+@settings(max_examples=8)
+def test_a_cloud_by_blocks_is_the_whole_cloud(
+    drives: Mapping[str, Drive], cloud: str, tool: str, parameters: object, points: int
+) -> None:
+    drive = drives[cloud]
+    whole = by_blocks(drive, tool, parameters, drive.count)
+    assert_same(by_blocks(drive, tool, parameters, points), whole)
+
+
+@pytest.fixture(scope="module")
+def photographed(tmp_path_factory: pytest.TempPathFactory) -> Drive:
+    folder = tmp_path_factory.mktemp("photographed")
+    drive = drive_of(simulated_drive(3, pulses_per_turn=200.0, length_m=4.0), folder / "d")
+    images = [
+        looking(folder / f"{number}.png", (-0.5, along, 2.0), (0.3, 1.0, -0.3), size=(240, 180))
+        for number, along in enumerate((0.5, 2.5))
+    ]
+    for image in images:
+        photograph(image)
+    write_images(drive.folder, ImageList(tuple(images)))
+    return Drive(drive.folder)
+
+
+@pytest.mark.parametrize(("tool", "parameters"), WITH_IMAGES)
+@given(points=st.integers(1, 12_000))
+@settings(max_examples=4)
+def test_colours_of_blocks_are_those_of_the_whole(
+    photographed: Drive, tool: str, parameters: object, points: int
+) -> None:
+    whole = by_blocks(photographed, tool, parameters, photographed.count)
+    assert whole["is_seen"].any()
+    size = max(points, photographed.count // 12)
+    assert_same(by_blocks(photographed, tool, parameters, size), whole)
+
+
+@pytest.fixture(scope="module")
+def curb(tmp_path_factory: pytest.TempPathFactory) -> Drive:
+    return recorded(tmp_path_factory.mktemp("curb"), without=(18.0, 21.0))
+
+
+def followed(drive: Drive, stretch_m: float) -> tuple[FittedLine, ...]:
+    settled = FitSettings(stretch_m=stretch_m)
+    walk = fit_along(drive, CURB, CURB_FRAME, settled, SilentMonitor())
+    return fitted_lines(drive, walk, settled, SilentMonitor())
+
+
+@given(stretch_m=st.floats(2.0, 30.0))
+@settings(max_examples=4)
+def test_a_template_gives_the_same_lines_whatever_is_read_at_a_time(
+    curb: Drive, stretch_m: float
+) -> None:
+    whole, parts = followed(curb, 80.0), followed(curb, stretch_m)
+    assert len(whole) == len(parts) >= 2
+    for one, other in zip(whole, parts, strict=True):
+        assert np.abs(one.xyz - other.xyz).max() < 0.001
+        np.testing.assert_array_equal(one.points, other.points)
 
 
 def block_of(image: PointCloudImage, xyz: np.ndarray, rows: range) -> PointBlock:
@@ -28,48 +159,6 @@ def block_of(image: PointCloudImage, xyz: np.ndarray, rows: range) -> PointBlock
         classification=np.zeros(count, np.uint8),
         grid=grid,
     )
-
-
-def by_blocks(
-    tool: Tool, image: PointCloudImage, xyz: np.ndarray, parameters: object, points: int
-) -> PointResult:
-    results = results_of(tool, image.row_starts)
-    for block in blocks_of(image.row_starts, tool.overlap_rows, points):
-        part = block_of(image, xyz, block.rows_with_overlap)
-        results.add(block, tool.compute(part, parameters, SilentMonitor()))
-    return results.finished()
-
-
-def assert_same(one: PointResult, other: PointResult) -> None:
-    assert one.columns.keys() == other.columns.keys()
-    for name, values in one.columns.items():
-        assert values.dtype == other.columns[name].dtype
-        np.testing.assert_array_equal(values, other.columns[name])
-
-
-@pytest.fixture(scope="module")
-def drive(tmp_path_factory: pytest.TempPathFactory) -> Drive:
-    folder = tmp_path_factory.mktemp("drive") / "d"
-    return small_drive(folder, 7, multi_return_share=0.2, lost_share=0.2)[0]
-
-
-@pytest.mark.parametrize(
-    ("tool", "parameters"),
-    [
-        (NORMALS, NormalsParameters()),
-        (SEGMENTS, SegmentsParameters()),
-        (SEGMENTS, SegmentsParameters(bend_deg=180.0, distance_m=0.1, spacing_ratio=1.2)),
-    ],
-)
-@given(points=st.integers(1, 12_000))
-@settings(max_examples=15)
-def test_a_street_by_blocks_is_the_whole_street(
-    drive: Drive, tool: Tool, parameters: object, points: int
-) -> None:
-    image = drive.image(ImageKind.TRAJECTORY_REVERSIBLE)
-    xyz = drive.xyz(slice(None))
-    whole = tool.compute(block_of(image, xyz, range(image.rows)), parameters, SilentMonitor())
-    assert_same(by_blocks(tool, image, xyz, parameters, points), whole)
 
 
 @given(
@@ -89,8 +178,16 @@ def test_components_of_random_points_by_blocks_are_those_of_the_whole(
     xyz = np.column_stack([columns * 0.25, rows * 0.25, columns * 0.0])
     xyz += np.random.default_rng(seed).normal(0, spread, xyz.shape)
     parameters = SegmentsParameters(bend_deg=180.0)
-    whole = SEGMENTS.compute(block_of(image, xyz, range(image.rows)), parameters, SilentMonitor())
-    assert_same(by_blocks(SEGMENTS, image, xyz, parameters, points), whole)
+
+    def components(rows: range) -> PointResult:
+        return SEGMENTS.compute(block_of(image, xyz, rows), parameters, SilentMonitor())
+
+    with TemporaryDirectory() as folder:
+        results = JoinedResults(SEGMENTS.outputs, image.row_starts, Path(folder))
+        for block in blocks_of(image.row_starts, SEGMENTS.overlap_rows, points):
+            results.add(block, components(block.rows_with_overlap))
+        joined = columns_of(results.finished(SilentMonitor()))
+        assert_same(joined, components(range(image.rows)).columns)
 
 
 @given(
@@ -111,15 +208,16 @@ def test_blocks_own_every_row_once_and_bring_the_overlap(
         assert len(blocks) <= 1
 
 
-def test_a_component_that_only_its_far_end_joins_gets_one_number() -> None:
-    # A U: two arms that only the last row connects, in blocks of a row each.
-    recording_rows = 12
-    row_starts = np.arange(recording_rows + 1, dtype=np.int64) * 2
-    labels_whole = np.zeros(2 * recording_rows, np.int32)
-    results = results_of(SEGMENTS, row_starts)
-    for block in blocks_of(row_starts, 1, 2):
-        rows = block.rows_with_overlap
-        is_last = rows.stop == recording_rows
-        arms = np.tile(np.array([0, 0 if is_last else 1], np.int32), len(rows))
-        results.add(block, PointResult({"segment": arms}))
-    assert results.finished().columns["segment"].tolist() == labels_whole.tolist()
+def test_a_component_that_only_its_far_end_joins_gets_one_number(tmp_path: Path) -> None:
+    # A U: two arms that only the last row connects, in blocks of a row each; a dot stands aside.
+    rows = 12
+    row_starts = np.arange(rows + 1, dtype=np.int64) * 3
+    results = JoinedResults(SEGMENTS.outputs, row_starts, tmp_path)
+    for block in blocks_of(row_starts, 1, 3):
+        has_last = block.rows_with_overlap.stop == rows
+        wide = [[0, 0 if has_last else 1, (1 if has_last else 2) + row]
+                for row in range(len(block.rows_with_overlap))]  # fmt: skip
+        results.add(block, PointResult({"segment": np.array(wide, np.int32).ravel()}))
+    found = columns_of(results.finished(SilentMonitor()))["segment"].reshape(rows, 3)
+    assert (found[:, :2] == 0).all()
+    assert found[:, 2].tolist() == list(range(1, rows + 1))

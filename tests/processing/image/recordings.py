@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -11,9 +12,10 @@ from numpy.typing import NDArray
 
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
-from processing.points.drive_info import DriveInfo, write_drive_info
+from processing.points.drive_info import DriveInfo, read_drive_info, write_drive_info
 from processing.points.turns import Turns
 from processing.points.turns_file import write_turns
+from processing.text import Text
 from tests.builders import SimulatedDrive, simulated_drive
 
 Integers = NDArray[np.int64]
@@ -150,3 +152,17 @@ def small_drive(folder: Path, seed: int = 0, **changes: Any) -> tuple[Drive, Sim
     """A drive of some 10,000 points with its truth."""
     simulated = simulated_drive(seed, length_m=4.0, **changes)
     return drive_of(simulated, folder), simulated
+
+
+def without_turns(drive: Drive) -> Drive:
+    """The same folder as a top view of one cell per pulse."""
+    (drive.folder / "turns.npz").unlink()
+    info = dataclasses.replace(
+        read_drive_info(drive.folder),
+        rows_by="top-view",
+        rows_reason=Text("The points have no times.", "点に時刻がありません。"),
+        cell_m=0.1,
+        cells_per_row=400,
+    )
+    write_drive_info(drive.folder, info)
+    return Drive(drive.folder)

@@ -15,13 +15,14 @@ from processing.cameras.image_store import write_images
 from processing.errors import Cancelled, MissingInput, Unsuitable
 from processing.image.attributes import available, colours
 from processing.monitor import SilentMonitor
+from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.point_results import write_point_results
 from processing.runner import RunRequest, columns_of, run
 from processing.text import Text
 from processing.tools.colour import ColourParameters
-from processing.tools.tool import PointResult
+from processing.tools.tool import FinishedColumns
 from tests.builders import SimulatedDrive, simulated_drive, write_laz, write_trajectory_csv
 from tests.camera_scene import SURFACE_COLOURS, looking, photograph
 from tests.processing.image.recordings import drive_of
@@ -83,9 +84,18 @@ def drive(tmp_path: Path, street: SimulatedDrive, images: tuple[CameraImage, ...
     return with_images(drive_of(street, tmp_path / "d"), images)
 
 
+def found_by(request: RunRequest, **more: int) -> dict[str, np.ndarray]:
+    """The columns of a run, read; its folder is gone."""
+    found = run(request, SilentMonitor(), into=request.drive.folder.parent / "found", **more)
+    assert isinstance(found, FinishedColumns)
+    columns = {name: np.array(values) for name, values in columns_of(found).items()}
+    found.remove()
+    return columns
+
+
 def coloured(drive: Drive, **parameters: object) -> dict[str, np.ndarray]:
     request = RunRequest("colour", drive, ColourParameters(**parameters))  # type: ignore[arg-type]
-    return dict(columns_of(run(request, SilentMonitor())))
+    return found_by(request)
 
 
 def share_right(found: dict[str, np.ndarray], street: SimulatedDrive, surface: int) -> float:
@@ -125,15 +135,17 @@ def test_far_points_are_left_uncoloured(drive: Drive) -> None:
 
 def test_many_blocks_give_the_same_colours_as_one(drive: Drive) -> None:
     request = RunRequest("colour", drive, ColourParameters())
-    whole = columns_of(run(request, SilentMonitor()))
-    cut = columns_of(run(request, SilentMonitor(), points_per_block=5_000))
+    whole = found_by(request)
+    cut = found_by(request, points_per_block=5_000)
     same = (whole["seen_color"] == cut["seen_color"]).all(axis=1)
     assert same.all()
 
 
 def test_it_can_be_cancelled_between_images(drive: Drive) -> None:
+    into = drive.folder.parent / "found"
     with pytest.raises(Cancelled):
-        run(RunRequest("colour", drive, ColourParameters()), Told(stops_after=6))
+        run(RunRequest("colour", drive, ColourParameters()), Told(stops_after=6), into=into)
+    assert not into.exists()
 
 
 def test_missing_images_are_told_and_the_others_used(drive: Drive) -> None:
@@ -141,7 +153,8 @@ def test_missing_images_are_told_and_the_others_used(drive: Drive) -> None:
     for image in drive.images.images[:3]:
         image.path.unlink()
     told = Told()
-    found = columns_of(run(RunRequest("colour", drive, ColourParameters()), told))
+    request = RunRequest("colour", drive, ColourParameters())
+    found = columns_of(run(request, told, into=drive.folder.parent / "found"))
     assert any("3 of 6 camera images are missing" in text for text in told.texts)
     assert found["is_seen"].any()
 
@@ -204,7 +217,10 @@ def test_the_output_has_the_colours_where_las_keeps_them(
     drive = Drive(folder)
     seen = np.arange(drive.count) % 3 == 0
     color = np.where(seen[:, None], [[255, 16, 0]], 0).astype(np.uint8)
-    result = PointResult({"seen_color": color, "is_seen": seen.astype(np.uint8)})
+    (tmp_path / "found").mkdir()
+    with ColumnWriter(tmp_path / "found") as writer:
+        writer.append({"seen_color": color, "is_seen": seen})
+    result = FinishedColumns(tmp_path / "found", ("seen_color", "is_seen"), drive.count)
     (output,) = write_point_results([(drive, result)], tmp_path / "out.laz", SilentMonitor())
     before, after = laspy.read(source), laspy.read(output)
     assert after.header.point_format.id == 7

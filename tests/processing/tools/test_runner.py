@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
+from uuid import uuid4
 
 import numpy as np
 import pytest
@@ -24,7 +25,7 @@ from processing.tools.registry import POINT_TOOLS, TOOLS
 from processing.tools.segments import SEGMENTS, SegmentsParameters
 from processing.tools.tool import Needs
 from tests.camera_scene import looking, photograph
-from tests.processing.image.recordings import small_drive
+from tests.processing.image.recordings import small_drive, without_turns
 
 
 class Watching:
@@ -54,24 +55,15 @@ def drive(tmp_path: Path) -> Drive:
     return Drive(made.folder)
 
 
-def without_turns(drive: Drive) -> Drive:
-    """The same folder as a top view of one cell per pulse."""
-    (drive.folder / "turns.npz").unlink()
-    info = dataclasses.replace(
-        read_drive_info(drive.folder),
-        rows_by="top-view",
-        rows_reason=Text("The points have no times.", "点に時刻がありません。"),
-        cell_m=0.1,
-        cells_per_row=400,
-    )
-    write_drive_info(drive.folder, info)
-    return Drive(drive.folder)
+def new_in(drive: Drive) -> Path:
+    """A folder for results that isn't there yet."""
+    return drive.folder.parent / uuid4().hex
 
 
 @pytest.mark.parametrize("name", list(POINT_TOOLS))
 def test_a_tool_gives_what_it_declares_and_the_drive_can_store_it(drive: Drive, name: str) -> None:
     tool = TOOLS[name]
-    result = run(RunRequest(name, drive, tool.parameters()), SilentMonitor())
+    result = run(RunRequest(name, drive, tool.parameters()), SilentMonitor(), into=new_in(drive))
     assert set(columns_of(result)) == {output.name for output in tool.outputs}
     for output in tool.outputs:
         values = columns_of(result)[output.name]
@@ -87,13 +79,15 @@ def test_a_tool_gives_what_it_declares_and_the_drive_can_store_it(drive: Drive, 
 def test_a_tool_runs_on_a_cloud_without_turns(drive: Drive, name: str) -> None:
     flat = without_turns(drive)
     assert flat.image_kinds == (ImageKind.TOP_VIEW,)
-    result = run(RunRequest(name, flat, TOOLS[name].parameters()), SilentMonitor())
+    result = run(
+        RunRequest(name, flat, TOOLS[name].parameters()), SilentMonitor(), into=new_in(flat)
+    )
     assert all(len(values) == flat.count for values in columns_of(result).values())
 
 
 def test_progress_rises_to_one_and_says_what_is_done(drive: Drive) -> None:
     watching = Watching()
-    run(RunRequest("segments", drive, SegmentsParameters()), watching)
+    run(RunRequest("segments", drive, SegmentsParameters()), watching, into=new_in(drive))
     assert watching.fractions == sorted(watching.fractions)
     assert watching.fractions[-1] == 1.0
     assert "Segments" in watching.texts[0].en
@@ -102,8 +96,10 @@ def test_progress_rises_to_one_and_says_what_is_done(drive: Drive) -> None:
 
 @pytest.mark.parametrize("checks", [0, 1, 2])
 def test_cancelling_leaves_nothing(drive: Drive, checks: int) -> None:
+    into = new_in(drive)
     with pytest.raises(Cancelled):
-        run(RunRequest("normals", drive, NormalsParameters()), Watching(checks))
+        run(RunRequest("normals", drive, NormalsParameters()), Watching(checks), into=into)
+    assert not into.exists()
     assert not drive.columns.has("normal")
 
 
@@ -132,7 +128,9 @@ def test_a_tool_that_needs_a_trajectory_refuses_a_drive_without_one(drive: Drive
 def test_a_drive_without_delivered_classes_can_be_processed(drive: Drive) -> None:
     (drive.folder / "classification.bin").unlink()
     again = Drive(drive.folder)
-    result = run(RunRequest("segments", again, SegmentsParameters()), SilentMonitor())
+    result = run(
+        RunRequest("segments", again, SegmentsParameters()), SilentMonitor(), into=new_in(again)
+    )
     assert columns_of(result)["segment"].max() > 0
 
 
@@ -144,14 +142,17 @@ def test_a_drive_without_points_gives_empty_columns(drive: Drive) -> None:
         if path.stem not in names:
             path.unlink()
     write_drive_info(drive.folder, dataclasses.replace(read_drive_info(drive.folder), count=0))
-    result = run(RunRequest("normals", Drive(drive.folder), NormalsParameters()), SilentMonitor())
-    assert columns_of(result)["normal"].shape == (0, 3)
+    for tool in (NORMALS, SEGMENTS):
+        request = RunRequest(tool.id, Drive(drive.folder), tool.parameters())
+        found = columns_of(run(request, SilentMonitor(), into=new_in(drive)))
+        for output in tool.outputs:
+            assert found[output.name].shape == ((0,) if output.width == 1 else (0, output.width))
 
 
 def test_contradicting_distances_are_refused(drive: Drive) -> None:
     parameters = SegmentsParameters(distance_m=2.0, farthest_m=1.0)
     with pytest.raises(OutOfRange) as refusal:
-        run(RunRequest("segments", drive, parameters), SilentMonitor())
+        run(RunRequest("segments", drive, parameters), SilentMonitor(), into=new_in(drive))
     assert "2 m" in refusal.value.remedy.en
 
 
@@ -168,8 +169,8 @@ def test_every_tool_explains_its_parameters_in_both_languages() -> None:
 
 def test_many_blocks_give_the_same_as_one(drive: Drive) -> None:
     request = RunRequest("segments", drive, SegmentsParameters())
-    whole = columns_of(run(request, SilentMonitor()))["segment"]
+    whole = columns_of(run(request, SilentMonitor(), into=new_in(drive)))["segment"]
     watching = Watching()
-    cut = columns_of(run(request, watching, points_per_block=500))["segment"]
+    cut = columns_of(run(request, watching, into=new_in(drive), points_per_block=500))["segment"]
     np.testing.assert_array_equal(cut, whole)
     assert len(watching.fractions) > 5

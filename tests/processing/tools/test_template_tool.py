@@ -35,7 +35,9 @@ def street(tmp_path_factory: pytest.TempPathFactory) -> Drive:
 
 def run_with(drive: Drive, **values: float | str) -> CandidateResult:
     parameters = filled_in(TemplateParameters, values)
-    result = run(RunRequest(TEMPLATE.id, drive, parameters), SilentMonitor())
+    result = run(
+        RunRequest(TEMPLATE.id, drive, parameters), SilentMonitor(), into=drive.folder / "new"
+    )
     assert isinstance(result, CandidateResult)
     return result
 
