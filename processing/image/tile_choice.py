@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import heapq
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,9 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.clip import Clip
-from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST, STEPS
+from processing.image.tile_descent import (
+    COLUMN,
+    END,
+    FIRST,
+    LEVEL,
+    LINE,
+    MET_VALUES,
+    ROW,
+    choice_kernel,
+    descent_kernel,
+)
+from processing.image.tile_kernels import HIGHEST, LOWEST
 from processing.image.tiles import TILE, TileKey, TilePyramid
 
+Floats = NDArray[np.float64]
 Triple = tuple[float, float, float]
 
 FINE_ENOUGH_PX = 1.0
@@ -95,7 +106,7 @@ def tiles_in_view(
 
     The tile with the widest gaps on the screen is replaced by its children until all are fine
     enough or the budget is spent. A tile stays until all its children in view are chosen, so
-    there are no holes.
+    there are no holes. Pyramids whose bounds aren't all exact yet are taken as they are sketched.
 
     Parameters
     ----------
@@ -106,89 +117,65 @@ def tiles_in_view(
     -------
     list of (index of the pyramid, tile)
     """
-    views = [_seen(pyramid, camera, clip) for pyramid in pyramids]
-    gaps: list[tuple[float, int, TileKey]] = []
-    chosen: list[tuple[int, TileKey]] = []
-    spent = 0
-    for number, (pyramid, seen) in enumerate(zip(pyramids, views, strict=True)):
-        top = pyramid.top
-        line = pyramid.index(top)
-        if seen.is_visible[line]:
-            spent += int(seen.counts[line])
-            heapq.heappush(gaps, (-float(seen.gap_px[line]), number, top))
-    while gaps:
-        gap, number, key = heapq.heappop(gaps)
-        pyramid, seen = pyramids[number], views[number]
-        children = [
-            child for child in pyramid.children(key) if seen.is_visible[pyramid.index(child)]
-        ]
-        more = sum(int(seen.counts[pyramid.index(child)]) for child in children)
-        more -= int(seen.counts[pyramid.index(key)])
-        if -gap <= FINE_ENOUGH_PX or not children or spent + more > budget_points:
-            chosen.append((number, key))
-            continue
-        spent += more
-        for child in children:
-            heapq.heappush(gaps, (-float(seen.gap_px[pyramid.index(child)]), number, child))
-    return sorted(chosen, key=lambda choice: -choice[1].level)
-
-
-@dataclass(frozen=True)
-class _Seen:
-    """What a camera sees of the tiles of a pyramid; each (tiles,) in the table's order."""
-
-    is_visible: NDArray[np.bool_]
-    gap_px: NDArray[np.float64]
-    counts: NDArray[np.float64]
-
-
-def _seen(pyramid: TilePyramid, camera: Camera3D, clip: Clip | None) -> _Seen:
-    table = pyramid.table
-    # An empty tile's bounds are infinite, from which no arithmetic may start.
-    is_filled = table[:, COUNT] > 0
-    low = np.where(is_filled[:, None], table[:, LOWEST], 0.0) - np.array(camera.origin)
-    high = np.where(is_filled[:, None], table[:, HIGHEST], 0.0) - np.array(camera.origin)
-    position = np.array(camera.position)
-    distance = np.linalg.norm(np.maximum(0, np.maximum(low - position, position - high)), axis=1)
-    # Gaps across rows are the wider ones nearly everywhere, and the ones that show.
-    spacing = table[:, STEPS].max(axis=1)
-    for level in range(pyramid.levels):
-        rows, columns = pyramid.shape(level)
-        start = pyramid.index(TileKey(level, 0, 0))
-        spacing[start : start + rows * columns] *= 1 << level
-    spacing = np.where(spacing, spacing, np.linalg.norm(high - low, axis=1) / TILE)
-    if camera.parallel_height_m is not None:
-        gap_px = spacing * camera.height_px / camera.parallel_height_m
-    else:
-        across = 2 * np.tan(np.radians(camera.angle_deg) / 2)
-        gap_px = spacing * camera.height_px / (across * np.maximum(distance, 1e-3))
-    is_visible = is_filled & _in_frustum(low, high, camera)
+    planes, eye = _frustum(camera), _eye(camera)
     if clip is not None:
-        places = np.flatnonzero(is_visible)
-        is_visible[places] = clip.may_hold(table[places, LOWEST], table[places, HIGHEST])
-    return _Seen(is_visible, gap_px, table[:, COUNT])
+        # What a clip shows has a·x + b·y + c·z ≥ d.
+        planes = np.concatenate([planes, -np.array(clip.planes).reshape(-1, 4)])
+    met = [_met(pyramid, eye, planes) for pyramid in pyramids]
+    ends = np.cumsum([0, *(len(one) for one in met)])
+    for one, first in zip(met, ends[:-1], strict=True):
+        one[:, [FIRST, END]] += first
+    tiles = np.concatenate([np.empty((0, MET_VALUES)), *met])
+    of_pyramid = np.repeat(np.arange(len(met)), np.diff(ends))
+    is_shown = np.ones(len(tiles), np.bool_)
+    if clip is not None and clip.corridor is not None:
+        for number, pyramid in enumerate(pyramids):
+            own = slice(int(ends[number]), int(ends[number + 1]))
+            facts = pyramid.facts[tiles[own, LINE].astype(np.int64)]
+            is_shown[own] = clip.corridor.may_hold(facts[:, LOWEST], facts[:, HIGHEST])
+    is_chosen = np.zeros(len(tiles), np.bool_)
+    roots = ends[:-1][np.diff(ends) > 0].astype(np.int64)
+    limits = np.array([FINE_ENOUGH_PX, float(budget_points)])
+    choice_kernel(tiles, roots, is_shown, limits, is_chosen)
+    chosen = np.flatnonzero(is_chosen)
+    chosen = chosen[np.argsort(-tiles[chosen, LEVEL], kind="stable")]
+    keys = tiles[chosen][:, [LEVEL, ROW, COLUMN]].astype(np.int64).tolist()
+    return [
+        (number, TileKey(*key))
+        for number, key in zip(of_pyramid[chosen].tolist(), keys, strict=True)
+    ]
 
 
-def _in_frustum(
-    low: NDArray[np.float64], high: NDArray[np.float64], camera: Camera3D
-) -> NDArray[np.bool_]:
-    """Which boxes are not wholly outside one of the planes of the view."""
-    position = np.array(camera.position)
+def _met(pyramid: TilePyramid, eye: Floats, planes: Floats) -> Floats:
+    """The tiles of a pyramid that a view may want; see :mod:`processing.image.tile_descent`."""
+    facts = pyramid.facts
+    met = np.empty((len(facts), MET_VALUES))
+    return met[: descent_kernel(facts, pyramid.shapes, eye, planes, met)].copy()
+
+
+def _eye(camera: Camera3D) -> Floats:
+    is_parallel = camera.parallel_height_m is not None
+    across = camera.parallel_height_m or 2 * math.tan(math.radians(camera.angle_deg) / 2)
+    place = np.array(camera.origin) + np.array(camera.position)
+    return np.array([*place, camera.height_px / across, float(is_parallel), FINE_ENOUGH_PX])
+
+
+def _frustum(camera: Camera3D) -> Floats:
+    """(k, 4): planes a, b, c, d about what is seen, where a·x + b·y + c·z ≤ d."""
+    position = np.array(camera.origin) + np.array(camera.position)
     forward = np.array(camera.direction) / np.linalg.norm(camera.direction)
     right = np.cross(forward, camera.up)
     right /= np.linalg.norm(right)
     up = np.cross(right, forward)
-    inside = np.ones(low.shape[0], dtype=np.bool_)
     aspect = camera.width_px / max(camera.height_px, 1)
+    planes = []
     for side, share in ((right, aspect), (-right, aspect), (up, 1.0), (-up, 1.0)):
         if camera.parallel_height_m is not None:
             normal, offset = side, share * camera.parallel_height_m / 2
         else:
             slope = share * math.tan(math.radians(camera.angle_deg) / 2)
             normal, offset = side - slope * forward, 0.0
-        # The box's corner that is farthest inside.
-        corner = np.where(normal > 0, low, high)
-        inside &= (corner - position) @ normal <= offset
+        planes.append([*normal, offset + float(position @ normal)])
     if camera.parallel_height_m is None:
-        inside &= (np.where(forward > 0, high, low) - position) @ forward > 0
-    return inside
+        planes.append([*-forward, -float(position @ forward)])
+    return np.array(planes)

@@ -15,6 +15,9 @@ VALUES = 9
 """Columns of the table of tiles; behind them lie the weights of the two distances."""
 
 _TILE_BITS = 8
+TILE = 1 << _TILE_BITS
+"""Rows and columns of a tile."""
+
 _SAMPLED_ROWS = 8  # distances are taken in every eighth row: a mean needs no more
 
 

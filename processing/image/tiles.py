@@ -7,23 +7,24 @@ they are apart.
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.coordinates import Coordinates
-from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST, STEPS, VALUES, tile_kernel
+from processing.image.tile_bounds import PORTION_POINTS, TileBounds
+from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST, STEPS
+from processing.image.tile_kernels import TILE as TILE
+from processing.monitor import Monitor
 
 if TYPE_CHECKING:  # the image makes its pyramid, so importing it here would be a circle
     from processing.image.point_image import PointCloudImage
 
-TILE = 256
-_POINTS_AT_ONCE = 4_000_000
+
+_FEW_PIXELS = 4096
 
 
 @dataclass(frozen=True, order=True)
@@ -51,12 +52,8 @@ class TilePyramid:
 
     def __init__(self, image: PointCloudImage, coordinates: Coordinates) -> None:
         self._image = image
-        self._coordinates = coordinates
-        self._lock = threading.Lock()
-        self._table: NDArray[np.float64] | None = None
         self._shapes = _shapes_of(image.rows, image.width)
-        sizes = [rows * columns for rows, columns in self._shapes]
-        self._starts = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
+        self._bounds = TileBounds(image, coordinates, self._shapes)
         self.levels = len(self._shapes)
 
     @property
@@ -113,7 +110,7 @@ class TilePyramid:
             m, project CRS.
         """
         values = self.table[self.index(key)]
-        if values[COUNT] == 0:
+        if values[0] > values[3]:
             return None
         return np.stack([values[LOWEST], values[HIGHEST]])
 
@@ -122,31 +119,81 @@ class TilePyramid:
         return int(self.table[self.index(key), COUNT])
 
     def spacing_m(self, key: TileKey) -> float:
-        """Mean distance of neighbours in a tile, along and across rows; 0 where unknown."""
-        return float(self.table[self.index(key), STEPS].mean()) * (1 << key.level)
+        """Mean distance of neighbours in a tile, along and across rows.
+
+        Where it isn't known yet, or where no pixels are neighbours, as if the points lay evenly.
+        """
+        facts = self.facts[self.index(key)]
+        steps = float(facts[STEPS].mean()) * (1 << key.level)
+        return steps or _even_spacing_m(facts)
 
     def index(self, key: TileKey) -> int:
-        """The tile's line in `table`."""
+        """The tile's line in `table` and `facts`."""
         _, columns = self._shapes[key.level]
-        return int(self._starts[key.level]) + key.row * columns + key.column
+        return int(self._bounds.starts[key.level]) + key.row * columns + key.column
+
+    @property
+    def shapes(self) -> NDArray[np.int64]:
+        """(levels, 3): rows and columns of tiles, and the line of `facts` where a level begins."""
+        return np.column_stack([np.array(self._shapes), self._bounds.starts[:-1]])
+
+    @property
+    def facts(self) -> NDArray[np.float64]:
+        """What is known of the tiles now; as `table`, but not all of it exact.
+
+        Each tile is about where it says; see :class:`TileBounds`.
+        """
+        self._bounds.sketch()
+        return self._bounds.facts
 
     @property
     def is_ready(self) -> bool:
-        """Whether bounds can be asked for without waiting."""
-        return self._table is not None
+        """Whether exact bounds can be asked for without waiting."""
+        return self._bounds.is_whole
 
-    def prepare(self) -> None:
-        """Make the table of bounds or read it; some seconds for 100 million points."""
-        with self._lock:
-            if self._table is None:
-                self._table = self._read() if self._path else None
-            if self._table is None:
-                self._table = self._computed()
-                self._write(self._table)
+    def sketch(self) -> None:
+        """Know roughly where tiles are, of a short recording exactly.
+
+        Takes a fraction of a second, however long the recording is.
+        """
+        self._bounds.sketch()
+
+    def extend(self, near: NDArray[np.float64] | None = None, points: int = PORTION_POINTS) -> bool:
+        """Make some more of the bounds exact, near a place first; says whether all are now.
+
+        Parameters
+        ----------
+        near : (3,) float64, optional
+            m, project CRS.
+        points : int
+            Of about so many points.
+        """
+        return self._bounds.extend(near, points)
+
+    def keep(self) -> None:
+        """Write what :meth:`extend` has worked out, which otherwise happens from time to time."""
+        self._bounds.keep()
+
+    def is_exact(self, key: TileKey) -> bool:
+        """Whether a tile's bounds are exact by now."""
+        last = min((key.row + 1) << key.level, self._shapes[0][0])
+        return self._bounds.are_exact(np.arange(key.row << key.level, last))
+
+    def prepare(self, monitor: Monitor | None = None) -> None:
+        """Make all bounds exact or read them; some seconds for 100 million points.
+
+        Raises
+        ------
+        Cancelled
+            The monitor was told to stop; what was worked out is kept.
+        """
+        while not self._bounds.extend():
+            if monitor is not None:
+                monitor.check()
 
     @property
     def table(self) -> NDArray[np.float64]:
-        """Facts on all tiles, level after level; made when first asked for.
+        """Facts on all tiles, level after level; waits until all are exact.
 
         Returns
         -------
@@ -154,100 +201,23 @@ class TilePyramid:
             Lowest and highest coordinates (m, project CRS), number of filled pixels, distance of
             neighbours along and across rows at level 0 (m).
         """
-        if self._table is None:
+        if not self._bounds.is_whole:
             self.prepare()
-        table = self._table
-        if table is None:
-            message = "the table was not made"
-            raise RuntimeError(message)
-        return table
-
-    @property
-    def _path(self) -> Path | None:
-        folder = self._coordinates.folder
-        return folder / f"tile_bounds_{self._image.kind.value}.npy" if folder else None
-
-    def _read(self) -> NDArray[np.float64] | None:
-        path = self._path
-        try:
-            # What can be computed again is computed again when the file is lost or damaged.
-            table = np.load(path) if path is not None else None
-        except (OSError, ValueError, EOFError):
-            return None
-        except SystemError:
-            # Python 3.11 may stumble over the file's header while another thread parses too.
-            return None
-        is_whole = table is not None and table.shape == (int(self._starts[-1]), VALUES)
-        return table if is_whole else None
-
-    def _write(self, table: NDArray[np.float64]) -> None:
-        path = self._path
-        if path is None:
-            return
-        temporary = path.with_suffix(f".{threading.get_ident()}.part")
-        try:
-            with temporary.open("wb") as file:
-                np.save(file, table)
-            temporary.replace(path)
-        except OSError:
-            # A read-only or full disk: the table is made again next time.
-            temporary.unlink(missing_ok=True)
-
-    def _computed(self) -> NDArray[np.float64]:
-        sums = np.zeros((int(self._starts[-1]), VALUES + 2))
-        sums[:, LOWEST] = np.inf
-        sums[:, HIGHEST] = -np.inf
-        tile_columns = np.array([columns for _, columns in self._shapes])
-        scale = np.array(self._coordinates.scale)
-        image = self._image
-        for rows in _row_stretches(image.row_starts, _POINTS_AT_ONCE):
-            start, stop = int(image.row_starts[rows.start]), int(image.row_starts[rows.stop])
-            integers = self._coordinates.stretch(start, stop)
-            columns = image.columns_of(start, stop)
-            tile_kernel(
-                integers,
-                columns,
-                image.row_starts[rows.start : rows.stop + 1] - start,
-                scale,
-                rows.start,
-                self._starts,
-                tile_columns,
-                sums,
-            )
-        self._unite(sums)
-        table = sums[:, :VALUES]
-        table[:, LOWEST] = table[:, LOWEST] * scale + np.array(self._coordinates.offset)
-        table[:, HIGHEST] = table[:, HIGHEST] * scale + np.array(self._coordinates.offset)
-        return np.ascontiguousarray(table)
-
-    def _unite(self, sums: NDArray[np.float64]) -> None:
-        """Bounds and distances of coarser tiles from those of their children."""
-        weights = sums[:, VALUES:]
-        for level in range(1, self.levels):
-            for key in self.keys(level):
-                below = sums[[self.index(child) for child in self.children(key)]]
-                line = self.index(key)
-                sums[line, LOWEST] = below[:, LOWEST].min(axis=0)
-                sums[line, HIGHEST] = below[:, HIGHEST].max(axis=0)
-                sums[line, STEPS] = below[:, STEPS].sum(axis=0)
-                weights[line] = below[:, VALUES:].sum(axis=0)
-        # The square of the mean root is less moved by jumps between objects than the mean.
-        means = np.divide(sums[:, STEPS], weights, out=np.zeros_like(weights), where=weights > 0)
-        sums[:, STEPS] = means**2
+        return self._bounds.facts
 
 
 def _shapes_of(rows: int, width: int) -> list[tuple[int, int]]:
+    """Rows and columns of tiles, level by level.
+
+    The last levels have one tile each, the coarsest of few pixels: so a hundred drives can be
+    drawn together, each with something.
+    """
     shapes = [(max(1, -(-rows // TILE)), max(1, -(-width // TILE)))]
-    while shapes[-1] != (1, 1):
+    while shapes[-1] != (1, 1) or (rows * width) >> 2 * (len(shapes) - 1) > _FEW_PIXELS:
         shapes.append(((shapes[-1][0] + 1) // 2, (shapes[-1][1] + 1) // 2))
     return shapes
 
 
-def _row_stretches(row_starts: NDArray[np.int64], points: int) -> Iterator[range]:
-    """Consecutive rows with about so many points each."""
-    rows, first = row_starts.size - 1, 0
-    while first < rows:
-        wanted = np.searchsorted(row_starts, row_starts[first] + points, side="right") - 1
-        end = min(rows, max(first + 1, int(wanted)))
-        yield range(first, end)
-        first = end
+def _even_spacing_m(facts: NDArray[np.float64]) -> float:
+    size = facts[HIGHEST] - facts[LOWEST]
+    return float(np.hypot(size[0], size[1])) / TILE if np.isfinite(size).all() else 0.0

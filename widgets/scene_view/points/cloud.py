@@ -62,6 +62,7 @@ class Cloud(QObject):
         self._feed = TileFeed(tiles)
         self._feed.chosen.connect(self._on_feed_chosen)
         self._feed.arrived.connect(self._on_feed_arrived)
+        self._feed.surveyed.connect(self._wish)
         self._drives: tuple[tuple[Drive, ImageKind], ...] = ()
         self._origin: Floats = np.zeros(3)
         self._age = 0
@@ -260,7 +261,7 @@ class Cloud(QObject):
         if wish.age != self._age or wish.is_still is self._is_moving:
             return
         self._chosen[wish.is_still] = frozenset(choice.tiles)
-        self._is_chosen = wish.camera == self._camera
+        self._is_chosen = choice.is_final and wish.camera == self._camera
         self._show()
 
     def _on_feed_arrived(self, tiles: tuple[SceneTile, ...]) -> None:

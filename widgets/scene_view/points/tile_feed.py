@@ -18,10 +18,14 @@ from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.tile_choice import Camera3D, tiles_in_view
 from processing.points.drive import Drive
 from widgets.scene_view.points.scene_tile import SceneTile, Showing, TileId
+from widgets.scene_view.points.tile_survey import TileSurvey
 from widgets.shared.view_settings import PointLook
 
 _TOGETHER_S = 0.15
 """Tiles that were coloured within this time are told together, since each telling is a frame."""
+
+_SURVEYED_S = 0.5
+_PAUSE_S = 0.05
 
 
 @dataclass(frozen=True)
@@ -62,10 +66,17 @@ class Wish:
 
 @dataclass(frozen=True)
 class Choice:
-    """The tiles to draw for a wish."""
+    """The tiles to draw for a wish.
+
+    Attributes
+    ----------
+    is_final : bool
+        Whether the places of these tiles are known exactly, so that the choice stays.
+    """
 
     wish: Wish
     tiles: tuple[TileId, ...]
+    is_final: bool
 
 
 class TileFeed(QObject):
@@ -76,11 +87,15 @@ class TileFeed(QObject):
     Signals
     -------
     chosen(choice: Choice), arrived(tiles: tuple[SceneTile, ...])
+    surveyed()
+        More is known of where tiles are: another choice may be better.
+
         Sent from other threads, so received through the window's event queue.
     """
 
     chosen = Signal(object)
     arrived = Signal(object)
+    surveyed = Signal()
 
     def __init__(self, tiles: TileCache) -> None:
         super().__init__()
@@ -89,6 +104,8 @@ class TileFeed(QObject):
         self._next: Wish | None = None
         self._current: Wish | None = None
         self._is_closed = False
+        self._survey = TileSurvey()
+        self._told_at = 0.0
         self._worker = threading.Thread(target=self._work, name="scene tiles", daemon=True)
         self._worker.start()
 
@@ -105,37 +122,36 @@ class TileFeed(QObject):
             self._next = None
             self._changed.notify()
         self._worker.join()
+        self._survey.close()
         self._tiles.keep_only(self._on_tiles_done, ())
 
     def _work(self) -> None:
         while True:
             with self._changed:
-                while self._next is None and not self._is_closed:
+                while self._next is None and not self._is_closed and self._survey.is_finished:
                     self._changed.wait()
+                if self._next is None and self._current is not None and not self._current.is_still:
+                    self._changed.wait(_PAUSE_S)  # who moves needs the time for frames
                 if self._is_closed:
                     return
                 wish, self._next = self._next, None
-                self._current = wish
+                self._current = wish or self._current
             if wish is not None:
+                self._survey.use(wish.drives, wish.camera)
                 self._fulfil(wish)
+            elif self._survey.go_on() or time.monotonic() - self._told_at > _SURVEYED_S:
+                self._told_at = time.monotonic()
+                self._emit_surveyed()
 
     def _fulfil(self, wish: Wish) -> None:
-        drives, pyramids = [], []
-        for drive, kind in wish.drives:
-            try:
-                pyramid = drive.image(kind).pyramid
-                pyramid.prepare()
-            except UserError:
-                continue  # the image view says why; here the drive's points are just not there
-            drives.append((drive.id, kind))
-            pyramids.append(pyramid)
-        chosen = tuple(
-            TileId(*drives[number], key)
-            for number, key in tiles_in_view(
-                pyramids, wish.camera, wish.budget_points, clip=wish.showing.clip
-            )
+        surveyed = self._survey.opened
+        pyramids = [pyramid for _, pyramid in surveyed]
+        found = tiles_in_view(pyramids, wish.camera, wish.budget_points, clip=wish.showing.clip)
+        chosen = tuple(TileId(*surveyed[number][0], key) for number, key in found)
+        is_final = self._survey.has_opened_all and all(
+            pyramids[number].is_exact(key) for number, key in found
         )
-        self._emit_chosen(Choice(wish, chosen))
+        self._emit_chosen(Choice(wish, chosen, is_final))
         wanted = [*chosen, *sorted(wish.kept - set(chosen), key=lambda tile: tile.key.level)]
         lacking = [tile for tile in wanted if (tile, wish.showing) not in wish.known]
         self._show_anew([wish.there[tile] for tile in lacking if tile in wish.there], wish)
@@ -171,6 +187,10 @@ class TileFeed(QObject):
     def _emit_arrived(self, tiles: Sequence[SceneTile]) -> None:
         if tiles and not self._is_closed:
             self.arrived.emit(tuple(tiles))
+
+    def _emit_surveyed(self) -> None:
+        if not self._is_closed:
+            self.surveyed.emit()
 
     def _is_outdated(self, wish: Wish) -> bool:
         with self._changed:
