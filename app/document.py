@@ -16,6 +16,7 @@ from app.long_work import export_work, import_work, imported_words, run_work
 from app.run_storing import FinishedRun
 from app.undo import UndoStack
 from processing.errors import OutOfRange, UserError
+from processing.image.attributes import telling_attribute
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache
 from processing.monitor import Monitor
@@ -383,6 +384,7 @@ class Document(QObject):
         if not drives or settings.drive_id in {drive.id for drive in drives}:
             return
         settings.show_image(drives[0].id, _best_kind(drives[0], settings.image_kind))
+        settings.change_look(attribute=telling_attribute(drives[0], settings.look.attribute))
 
 
 def _changed_meanwhile() -> UserError:

@@ -23,6 +23,7 @@ from processing.image.colour_maps import (
 )
 from processing.image.drive_sample import value_at_percent
 from processing.image.normals import RowLayout, SurfaceShapes, surface_shapes
+from processing.points.ordering import read_stretch
 from processing.text import Text
 
 if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a circle
@@ -126,6 +127,33 @@ def colours(
 def available(drive: Drive) -> tuple[str, ...]:
     """Ids of the attributes that a drive can be shown by."""
     return tuple(name for name, attribute in ATTRIBUTES.items() if not _lacks(drive, attribute))
+
+
+def telling_attribute(drive: Drive, wanted: str) -> str:
+    """What a drive is best shown by at first: what is wanted, unless it is the same everywhere.
+
+    Colour-only clouds have an intensity of 0 throughout; others have nothing but their shape.
+    """
+    ways = (wanted, *(name for name in _TELLING if name != wanted))
+    names = available(drive)
+    return next((name for name in ways if name in names and _varies(drive, name)), "height")
+
+
+_TELLING = ("intensity", "color", "height")
+_PIECES, _PIECE_POINTS = 16, 512
+
+
+def _varies(drive: Drive, attribute: str) -> bool:
+    """Whether a column as delivered holds more than one value; others are taken to."""
+    if attribute not in ("intensity", "color") or not drive.columns.has(attribute):
+        return True
+    first = read_stretch(drive.folder, attribute, 0, 1)
+    starts = np.linspace(0, max(0, drive.count - _PIECE_POINTS), _PIECES).astype(np.int64)
+    pieces = (
+        read_stretch(drive.folder, attribute, start, start + _PIECE_POINTS)
+        for start in starts.tolist()
+    )
+    return any((piece != first).any() for piece in pieces)
 
 
 def _lacks(drive: Drive, attribute: Attribute) -> bool:

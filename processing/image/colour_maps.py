@@ -77,11 +77,15 @@ def segment_colours(segments: NDArray[np.int32]) -> Colours:
 def stretched(values: NDArray[np.floating], low: float, high: float) -> NDArray[np.uint8]:
     """Numbers between low and high as 0 to 255; outside they are clipped.
 
+    Where low and high are the same, numbers that are the same too are in the middle.
+
     Returns
     -------
     (n,) uint8
     """
-    scaled = (values - low) * (256 / max(high - low, 1e-9))
+    if high <= low:
+        return np.asarray(128 + np.clip(np.sign(values - low) * 128, -128, 127), dtype=np.uint8)
+    scaled = (values - low) * (256 / (high - low))
     return np.asarray(np.clip(scaled, 0, 255), dtype=np.uint8)
 
 

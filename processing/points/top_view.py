@@ -12,6 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+_LEAST_CELL_M = 1e-3
+_MOST_CELLS = 1e10
+_COARSEST, _FINEST = 7, 24
+_POINTS_TO_GO_FINER = 8
+_ODD_SHARE = 0.001
+_LEAST_SAMPLE = 1_000
+
 
 @dataclass(frozen=True)
 class TopView:
@@ -22,13 +29,15 @@ class TopView:
     west, north : float
         Easting of the left edge, northing of the upper edge, metres.
     cell_m : float
-    cells_per_row : int
+    cells_per_row, rows : int
+        A point outside is in the nearest cell at the edge.
     """
 
     west: float
     north: float
     cell_m: float
     cells_per_row: int
+    rows: int
 
     def cells_of(self, xyz: NDArray[np.float64]) -> NDArray[np.int64]:
         """The cell of every point, row by row from the north-west.
@@ -45,7 +54,8 @@ class TopView:
         columns = np.floor((xyz[:, 0] - self.west) / self.cell_m).astype(np.int64)
         rows = np.floor((self.north - xyz[:, 1]) / self.cell_m).astype(np.int64)
         np.clip(columns, 0, self.cells_per_row - 1, out=columns)
-        return np.asarray(np.maximum(rows, 0) * self.cells_per_row + columns)
+        np.clip(rows, 0, self.rows - 1, out=rows)
+        return np.asarray(rows * self.cells_per_row + columns)
 
 
 def top_view_of(
@@ -64,13 +74,46 @@ def top_view_of(
         Number of all points.
     lowest, highest : (3,) float64
         Extent.
+
+    Notes
+    -----
+    1. The grid covers the points but for odd ones: what one point in a thousand at either end
+       spreads over is left out where it is more than half of what the others need.
+    2. The area of the points is that of the filled cells of a coarse grid over the sample, made
+       finer as long as its filled cells hold several points.
+    3. A cell is the share of a point in that area.
     """
-    width, height = (max(float(highest[axis] - lowest[axis]), 1e-3) for axis in (0, 1))
-    side = 128
-    columns = np.minimum(((sample[:, 0] - lowest[0]) / width * side).astype(int), side - 1)
-    rows = np.minimum(((sample[:, 1] - lowest[1]) / height * side).astype(int), side - 1)
-    filled_share = np.unique(rows * side + columns).size / side**2
-    cell_m = math.sqrt(filled_share * width * height / max(count, 1))
-    # Not finer than 10,000 times the extent allows: a handful of points needs no vast picture.
-    cell_m = max(cell_m, max(width, height) / 100_000, 1e-3)
-    return TopView(float(lowest[0]), float(highest[1]), cell_m, int(width / cell_m) + 1)
+    low, high = _without_odd_points(sample[:, :2], lowest[:2], highest[:2])
+    width, height = (max(float(side), _LEAST_CELL_M) for side in high - low)
+    area = _covered_area(sample[:, :2] - low, width, height)
+    cell_m = math.sqrt(area / max(count, 1))
+    # What tiles need grows with the cells, filled or not; long strips may have fine ones.
+    cell_m = max(cell_m, math.sqrt(width * height / _MOST_CELLS), _LEAST_CELL_M)
+    cell_m = max(cell_m, max(width, height) / 1e7)
+    columns, rows = int(width / cell_m) + 1, int(height / cell_m) + 1
+    return TopView(float(low[0]), float(high[1]), cell_m, columns, rows)
+
+
+def _without_odd_points(
+    sample: NDArray[np.float64], lowest: NDArray[np.float64], highest: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if sample.shape[0] < _LEAST_SAMPLE:
+        return lowest, highest
+    ends = np.quantile(sample, [_ODD_SHARE, 1 - _ODD_SHARE], axis=0)
+    margin = (ends[1] - ends[0]) / 2
+    return np.maximum(lowest, ends[0] - margin), np.minimum(highest, ends[1] + margin)
+
+
+def _covered_area(places: NDArray[np.float64], width: float, height: float) -> float:
+    """m² of a plan that points cover, from a sample of them."""
+    area = width * height
+    for level in range(_COARSEST, _FINEST):
+        side = max(width, height) / 2**level
+        columns = int(width / side) + 1
+        across, down = (np.floor(axis / side).astype(np.int64) for axis in places.T)
+        inside = (across >= 0) & (down >= 0) & (across * side <= width) & (down * side <= height)
+        filled = np.unique(down[inside] * columns + across[inside]).size
+        if level > _COARSEST and inside.sum() < _POINTS_TO_GO_FINER * filled:
+            return area
+        area = min(area, filled * side * side)
+    return area

@@ -12,7 +12,7 @@ from processing.cameras.colouring import colours_from_images
 from processing.cameras.image_list import CameraImage, ImageList
 from processing.cameras.image_store import write_images
 from processing.errors import BadFile, MissingInput, Unsuitable
-from processing.image.attributes import ATTRIBUTES, available, colours
+from processing.image.attributes import ATTRIBUTES, available, colours, telling_attribute
 from processing.image.colour_maps import (
     EMPTY_COLOUR,
     UNKNOWN_COLOUR,
@@ -74,6 +74,21 @@ def test_intensity_is_grey_between_its_percentiles(drive: Drive) -> None:
     assert (grey[:, 0] == grey[:, 2]).all()
     wanted = np.clip((values - low) / (high - low) * 256, 0, 255).astype(int)
     np.testing.assert_allclose(grey[:, 0].astype(int), wanted, atol=1)
+
+
+@pytest.mark.parametrize(
+    ("intensity", "color", "shown"),
+    [("varied", "varied", "intensity"), ("same", "varied", "color"), ("same", "same", "height")],
+)
+def test_what_tells_something_is_shown_first(
+    tmp_path: Path, intensity: str, color: str, shown: str
+) -> None:
+    drive, _ = small_drive(tmp_path / "d")
+    varied = np.arange(drive.count) % 200
+    drive.columns.add("intensity", varied if intensity == "varied" else np.zeros(drive.count))
+    drive.columns.add("color", np.zeros((drive.count, 3)) + (varied[:, None], 0)[color == "same"])
+    assert telling_attribute(drive, "intensity") == shown
+    assert telling_attribute(drive, "normal") == "normal"
 
 
 def test_walls_are_blue_and_the_road_is_red_by_normal(tmp_path: Path) -> None:
@@ -233,7 +248,7 @@ def test_ramps_rise_evenly_in_lightness_and_height_goes_in_steps() -> None:
 def test_numbers_are_stretched_and_clipped() -> None:
     values = np.array([-5.0, 0.0, 5.0, 10.0, 99.0])
     assert stretched(values, 0.0, 10.0).tolist() == [0, 0, 128, 255, 255]
-    assert stretched(np.array([3.0]), 3.0, 3.0).tolist() == [0]
+    assert stretched(np.array([2.0, 3.0, 4.0]), 3.0, 3.0).tolist() == [0, 128, 255]
 
 
 def test_segments_keep_their_colours_and_neighbours_differ() -> None:
