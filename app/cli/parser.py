@@ -74,6 +74,10 @@ def _add_reading_commands(commands: _Commands[_Parser]) -> None:
     measuring = commands.add_parser("bench", help="the project's own benchmarks")
     measuring.add_argument("names", nargs="*", metavar="NAME")
     measuring.add_argument("--json", action="store_true")
+    measuring.add_argument("--markdown", type=Path, metavar="FILE", help="a table as well")
+    measuring.add_argument("--points", type=int, metavar="N", help="of the large project")
+    measuring.add_argument("--most-points", type=int, metavar="N", help="of any benchmark")
+    measuring.add_argument("--project", type=Path, metavar="PROJECT", help="the large project")
     measuring.set_defaults(module="bench")
 
 

@@ -7,14 +7,14 @@ import statistics
 import subprocess
 import sys
 
-from processing.bench.case import Measurement
+from processing.bench.case import BenchWish, Measurement
 from processing.bench.start_case import no_window
 from processing.text import Text
 
 _COUNT = 50
 
 
-def measure_review() -> Measurement:
+def measure_review(wish: BenchWish) -> tuple[Measurement, ...]:  # noqa: ARG001 - it takes no points
     """Milliseconds until five views have the next of 50 candidates in their middle, painted.
 
     Raises
@@ -32,7 +32,7 @@ def measure_review() -> Measurement:
         raise no_window(done.stderr)
     times = json.loads(done.stdout.splitlines()[-1])
     centred, sharp = sorted(times["centred"]), sorted(times["sharp"])
-    return Measurement(
+    row = Measurement(
         "review",
         Text("Next candidate in every view", "次の候補を全ビューに表示"),
         centred[int(0.95 * (len(centred) - 1))],
@@ -45,3 +45,4 @@ def measure_review() -> Measurement:
             f"{sharp[int(0.95 * (len(sharp) - 1))]:.0f} ms"
         ),
     )
+    return (row,)

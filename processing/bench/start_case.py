@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 
-from processing.bench.case import Measurement
+from processing.bench.case import BenchWish, Measurement
 from processing.errors import MissingInput
 from processing.text import Text
 
@@ -32,7 +32,7 @@ with tempfile.TemporaryDirectory() as folder:
 """
 
 
-def measure_start() -> Measurement:
+def measure_start(wish: BenchWish) -> tuple[Measurement, ...]:  # noqa: ARG001 - it takes no points
     """Seconds from starting the process to a painted window that takes events.
 
     Raises
@@ -50,7 +50,7 @@ def measure_start() -> Measurement:
             raise no_window(done.stderr)
         times.append(float(done.stdout.split()[-1]) - start)
     warm = sorted(times[1:])
-    return Measurement(
+    row = Measurement(
         "start",
         Text("Window usable after start", "起動から操作可能になるまで"),
         warm[_REPEATS // 2],
@@ -59,6 +59,7 @@ def measure_start() -> Measurement:
         is_at_most=True,
         detail=f"first {times[0]:.2f} s, then {warm[0]:.2f} … {warm[-1]:.2f} s",
     )
+    return (row,)
 
 
 def no_window(told: str) -> MissingInput:

@@ -1,0 +1,88 @@
+"""BenchWindow: a real window, a hand at it, and what tells when its views were painted."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QPoint
+from PySide6.QtOpenGLWidgets import QOpenGLWidget
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QWidget
+
+from app.painted_frames import PaintedFrames, Pulse, wait_until
+from app.screenshots.hand import Hand
+from app.window_parts import WindowParts
+from widgets.image_view.minimap import Minimap
+from widgets.image_view.tile_images import TileImages
+
+Found = dict[str, list[float]]
+"""Seconds by what took them."""
+
+
+class BenchWindow:
+    """What steps are done with.
+
+    Parameters
+    ----------
+    parts : WindowParts
+        Of a window that is shown, with a project open.
+    project, out : Path
+        The project's folder, and one for exports.
+
+    Attributes
+    ----------
+    pulse : Pulse
+        Tells how long the window answered nothing.
+    image : QWidget
+        The main image; ``image_frames`` tells when it was painted.
+    picture : QWidget
+        The 3D picture, with ``picture_frames``.
+    tiles : TileImages
+        Of the main image.
+    minimap : Minimap
+        The strip with the whole drive.
+    """
+
+    def __init__(self, parts: WindowParts, project: Path, out: Path) -> None:
+        self.parts = parts
+        self.project = project
+        self.out = out
+        self.hand = Hand()
+        self.pulse = Pulse(parts.window)
+        self.image: QWidget = parts.image_view
+        self.image_frames = PaintedFrames(self.image)
+        self.minimap = parts.image_view.findChildren(Minimap)[0]
+        self.tiles = parts.image_view.findChildren(TileImages)[0]
+        wait_until(lambda: parts.scene_view.picture is not None, self.pulse.felt)
+        self.picture = _picture_of(parts)
+        self.picture_frames = PaintedFrames(self.picture, self.picture.frameSwapped)
+
+    @property
+    def middle(self) -> QPoint:
+        """Of the main image."""
+        return self.image.rect().center()
+
+    def act(self, id_: str) -> None:
+        """Choose a command."""
+        self.parts.window.actions_by_id[id_].trigger()
+
+    def activate(self) -> None:
+        """Let keys come to the window."""
+        self.parts.window.activateWindow()
+        QTest.qWaitForWindowActive(self.parts.window)
+        self.image.setFocus()
+
+    def rest(self) -> None:
+        """Wait until nothing is loaded, computed or drawn any more."""
+        parts, felt = self.parts, self.pulse.felt
+        wait_until(lambda: not parts.jobs.is_busy, felt)
+        wait_until(lambda: self.tiles.is_complete, felt)
+        wait_until(lambda: parts.scene_view.is_settled, felt)
+
+
+def _picture_of(parts: WindowParts) -> QOpenGLWidget:
+    picture = parts.scene_view.picture
+    if not isinstance(picture, QOpenGLWidget):
+        message = "the 3D picture is not drawn by OpenGL"
+        raise TypeError(message)
+    return picture

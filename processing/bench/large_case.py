@@ -1,0 +1,48 @@
+"""Benchmark of a large project: imported, opened, looked at, drawn upon and exported."""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from pathlib import Path
+
+from processing.bench.case import BenchWish, Measurement
+from processing.bench.large_import import import_watched, measure_large_import
+from processing.bench.large_street import write_long_delivery
+from processing.bench.large_window import window_rows
+from processing.bench.project_copy import link_project
+from processing.bench.start_case import no_window
+from processing.bench.watched_run import run_watched
+
+_POINTS = 300_000_000
+_POINTS_PER_FILE = 30_000_000
+_REHEARSED = 100_000
+
+
+def measure_large(wish: BenchWish) -> tuple[Measurement, ...]:
+    """A project of 300 M points from the delivered files to the drawing that is handed in.
+
+    Raises
+    ------
+    MissingInput
+        The window can't be shown, mostly for want of a display.
+    """
+    with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
+        folder = Path(name)
+        project, out = folder / "street.zuka", folder / "out"
+        out.mkdir()
+        rows: tuple[Measurement, ...] = ()
+        if wish.project is not None:
+            link_project(wish.project, project)
+        else:
+            points = wish.points or wish.limited(_POINTS)
+            files = max(2, points // _POINTS_PER_FILE)
+            delivery = write_long_delivery(folder, points, scanners=("left",), files=files)
+            rehearsal = write_long_delivery(folder, _REHEARSED, scanners=("left",))
+            import_watched(rehearsal, folder / "rehearsal.zuka")
+            rows = measure_large_import(delivery, project, points)
+        run = run_watched("app.large_bench", [str(project), str(out)])
+        if run.status != 0:
+            raise no_window(run.complaints)
+        steps = [json.loads(line) for line in run.lines if line.startswith("{")]
+        return rows + window_rows(run, steps)
