@@ -248,7 +248,7 @@ class Document(QObject):
 
     def _import(self, request: ImportRequest, otherwise: Callable[[], None]) -> str:
         project = self._needed()
-        title, work = import_work(request, project.temporary_folder())
+        title, work = import_work(request, project)
         return self._adoption.start(project, title, work, self._adopt_drives, otherwise=otherwise)
 
     def start_run(
@@ -319,7 +319,7 @@ class Document(QObject):
 
     def _drop_if_empty(self, project: Project) -> None:
         """Leave no empty project behind an import that failed."""
-        if project is self._project and not project.drives and len(project.features) == 0:
+        if project is self._project and project.is_empty:
             self.close()
             Project.remove_new(project.folder)
 

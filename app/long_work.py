@@ -15,17 +15,20 @@ from processing.points.drive import Drive
 from processing.project.export import ExportRequest, export
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.project import Project
+from processing.project.unfinished_imports import import_folder
 from processing.runner import RunRequest, tool_of
 from processing.text import Text
 
 
 def import_work(
-    request: ImportRequest, into: Path
+    request: ImportRequest, project: Project
 ) -> tuple[Text, Callable[[Monitor], tuple[Path, ...]]]:
-    """Delivered files become temporary drive folders below ``into``."""
+    """Delivered files become drive folders for a project; one that was killed goes on."""
+    home, taken = project.folder, tuple(drive.id for drive in project.drives)
 
     def work(monitor: Monitor) -> tuple[Path, ...]:
-        folders = import_drives(request, into, monitor)
+        into = import_folder(home, request)
+        folders = import_drives(request, into, monitor, taken=taken)
         for folder in folders:
             _prepare_tiles(folder)
         return folders

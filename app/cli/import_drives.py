@@ -11,6 +11,7 @@ from app.language import system_language
 from processing.points.drive import Drive
 from processing.project.importing import import_drives
 from processing.project.project import Project, is_project
+from processing.project.unfinished_imports import import_folder, unfinished_imports
 from processing.text import Text
 
 _ROWS = Text(
@@ -20,7 +21,7 @@ _ROWS = Text(
 
 
 def command(arguments: argparse.Namespace) -> int:
-    """Import files into a project, which is made if there is none."""
+    """Import files into a project, made if there is none; an import that was killed goes on."""
     is_new = not is_project(arguments.project)
     if is_new:
         project = Project.create(arguments.project, arguments.crs)
@@ -29,12 +30,14 @@ def command(arguments: argparse.Namespace) -> int:
     finished = False
     try:
         request = replace(request_of(arguments), labels=arguments.labels)
-        folders = import_drives(request, project.temporary_folder(), terminal_monitor())
+        into = import_folder(project.folder, request)
+        taken = tuple(drive.id for drive in project.drives)
+        folders = import_drives(request, into, terminal_monitor(), taken=taken)
         drives = project.adopt_drives(folders)
         finished = True
     finally:
         project.close()
-        if is_new and not finished:
+        if is_new and not finished and not unfinished_imports(project.folder):
             Project.remove_new(arguments.project)
     for drive in drives:
         print_lines(describe_drive(drive))

@@ -105,17 +105,9 @@ def read_chunks(
         limits of its integers, or 10 km and ten extents outside the header's box, is damage.
     """
     header = read_header(path)
-    label, grid, first = _label_of(header), _grid_of(header), after
-    has_extra = label is not None or grid is not None
-    layers = _NEEDED_LAYERS | (lazrs.SELECTIVE_DECOMPRESS_ALL_EXTRA_BYTES if has_extra else 0)
-    for records in read_records(header, chunk_points, layers, after=after):
-        chunk = PointChunk(_columns(records, header.point_format))
-        if label is not None:
-            chunk.columns[_LABEL] = _extra(records, header, label)
-        if grid is not None:
-            indices = [whole_numbers(_extra(records, header, one)) for one in grid]
-            chunk.columns["grid"] = np.column_stack(indices).astype(np.int32)
-        _check_places(chunk.columns["xyz"], header, first)
+    first = after
+    for records in read_records(header, chunk_points, _layers(header), after=after):
+        chunk = _chunk(records, header, first)
         yield chunk
         first += chunk.count
 
@@ -141,11 +133,29 @@ def read_ends(path: Path, points: int) -> list[PointChunk]:
             if chunks is None:
                 records = _plain_records(header, file, start, end)
             else:
-                records = chunks.decoded_span(file, start, end, _NEEDED_LAYERS)
-            chunk = PointChunk(_columns(records, header.point_format))
-            _check_places(chunk.columns["xyz"], header, start)
-            ends.append(chunk)
+                records = chunks.decoded_span(file, start, end, _layers(header))
+            ends.append(_chunk(records, header, start))
     return ends
+
+
+def _layers(header: LasHeader) -> int:
+    """What must be decoded of formats 6 to 10."""
+    has_extra = _label_of(header) is not None or _grid_of(header) is not None
+    extra = lazrs.SELECTIVE_DECOMPRESS_ALL_EXTRA_BYTES if has_extra else 0
+    return int(_NEEDED_LAYERS | extra)
+
+
+def _chunk(records: NDArray[np.uint8], header: LasHeader, first: int) -> PointChunk:
+    """The columns of records, of which the first one is point ``first`` of the file."""
+    chunk = PointChunk(_columns(records, header.point_format))
+    label, grid = _label_of(header), _grid_of(header)
+    if label is not None:
+        chunk.columns[_LABEL] = _extra(records, header, label)
+    if grid is not None:
+        indices = [whole_numbers(_extra(records, header, one)) for one in grid]
+        chunk.columns["grid"] = np.column_stack(indices).astype(np.int32)
+    _check_places(chunk.columns["xyz"], header, first)
+    return chunk
 
 
 def _end_spans(count: int, points: int) -> list[tuple[int, int]]:

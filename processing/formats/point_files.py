@@ -47,13 +47,17 @@ def read_info(path: Path) -> PointFileInfo:
     return las.read_info(path) if opener is None else info_of(opener(path))
 
 
-def read_chunks(path: Path, chunk_points: int = 1_000_000) -> Iterator[PointChunk]:
+def read_chunks(
+    path: Path, chunk_points: int = 1_000_000, *, after: int = 0
+) -> Iterator[PointChunk]:
     """The points of a file in its order, a chunk at a time; memory does not grow with the file.
 
     Parameters
     ----------
     chunk_points : int
         Points in a chunk, about.
+    after : int
+        Points to leave out: the first chunks of an earlier reading. Of LAS they are not decoded.
 
     Raises
     ------
@@ -62,9 +66,12 @@ def read_chunks(path: Path, chunk_points: int = 1_000_000) -> Iterator[PointChun
     """
     opener = _opener(path)
     if opener is None:
-        yield from las.read_chunks(path, chunk_points)
-    else:
-        yield from chunks_of(opener(path), chunk_points)
+        yield from las.read_chunks(path, chunk_points, after=after)
+        return
+    for chunk in chunks_of(opener(path), chunk_points):
+        if after <= 0:
+            yield chunk
+        after -= chunk.count
 
 
 def read_sample(path: Path, points: int) -> dict[str, NDArray[Any]]:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from processing.errors import told_as_user_error
 from processing.monitor import Monitor
 from processing.points.columns import COLUMN_TYPES, ColumnWriter, column_path
+from processing.points.replacing import new_columns, replace_columns
 
 POINTS_AT_ONCE = 8_000_000
 """Points sorted in memory at a time: some 0.5 GiB with all columns."""
@@ -39,22 +40,22 @@ def sort_points(
     NoSpace
         The disk can't hold a second copy of the points.
     Cancelled
-        The folder is then in disorder and to be thrown away.
+        The columns are as they were.
 
     Notes
     -----
     1. The first key is sampled; its quantiles part the points into buckets that fit in memory.
     2. One pass deals the points to bucket folders in their order.
     3. Each bucket is sorted in memory and appended to the result.
+    4. The result takes the columns' places; a kill leaves the old order or the new one, see
+       :mod:`processing.points.replacing`. Sorted again, the points stay as they are.
     """
     limits = _bucket_limits(folder, names, count, keys)
-    bucket_folders = [folder / f"bucket{number}" for number in range(limits.size + 1)]
+    sorted_folder = new_columns(folder)
+    bucket_folders = [sorted_folder / f"bucket{number}" for number in range(limits.size + 1)]
     counts = _deal(
         folder, names, count, keys=keys, limits=limits, buckets=bucket_folders, monitor=monitor
     )
-    sorted_folder = folder / "sorted"
-    with told_as_user_error(folder):
-        sorted_folder.mkdir()
     with ColumnWriter(sorted_folder) as writer:
         for bucket, size in zip(bucket_folders, counts, strict=True):
             monitor.check()
@@ -64,10 +65,7 @@ def sort_points(
                 order = np.lexsort((second, first))
                 writer.append({name: values[order] for name, values in columns.items()})
             _remove_columns(bucket)
-    with told_as_user_error(folder):
-        for name in names:
-            column_path(sorted_folder, name).replace(column_path(folder, name))
-        sorted_folder.rmdir()
+    replace_columns(folder)
 
 
 def read_stretch(folder: Path, name: str, start: int, stop: int) -> NDArray[Any]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from processing.errors import UNCHANGED, MissingInput, OutOfRange
 from processing.formats.point_files import PointFileInfo, read_info, read_sample
 from processing.monitor import Monitor
+from processing.project.file_recorder import empty_points
 from processing.project.reference_system import reference_system
 from processing.text import Text
 
@@ -29,8 +30,8 @@ class DeliveredFile:
         The column that tells scanners apart: ``scanner`` or ``user_data``.
     scanners : frozenset of int
         Scanner numbers in the samples.
-    has_origins : bool
-        Whether every point says where the scanner was.
+    columns : tuple of str
+        What each point comes with.
     """
 
     info: PointFileInfo
@@ -38,7 +39,17 @@ class DeliveredFile:
     last_time: float
     scanner_column: str
     scanners: frozenset[int]
-    has_origins: bool
+    columns: tuple[str, ...]
+
+    @property
+    def has_origins(self) -> bool:
+        """Whether every point says where the scanner was."""
+        return "origin" in self.columns
+
+    @property
+    def has_times(self) -> bool:
+        """Whether the samples have times."""
+        return bool(np.isfinite(self.first_time))
 
 
 @dataclass(frozen=True)
@@ -89,6 +100,7 @@ def read_delivery(inputs: tuple[Path, ...], crs: str, monitor: Monitor) -> Deliv
 def _looked_at(path: Path) -> DeliveredFile:
     info = read_info(path)
     sample = read_sample(path, _SAMPLE_POINTS)
+    _refuse_empty_end(info, sample)
     times = sample.get("time", np.empty(0))
     times = times[np.isfinite(times)]
     column = _scanner_column(sample)
@@ -98,7 +110,7 @@ def _looked_at(path: Path) -> DeliveredFile:
         last_time=float(times.max()) if times.size else float("nan"),
         scanner_column=column,
         scanners=frozenset(int(number) for number in np.unique(sample.get(column, np.zeros(1)))),
-        has_origins="origin" in sample,
+        columns=tuple(sample),
     )
 
 
@@ -143,32 +155,60 @@ def _plane_system(crs: str, files: list[DeliveredFile]) -> str:
         raise OutOfRange(error.what, where, error.remedy) from error
 
 
+def _refuse_empty_end(info: PointFileInfo, sample: dict[str, NDArray[np.generic]]) -> None:
+    """Refuse a file whose last points are zeros: room was taken for it, but never filled."""
+    if info.count <= 2 * _SAMPLE_POINTS:
+        return
+    ends = [
+        sample[name][-_SAMPLE_POINTS:] for name in ("xyz", "intensity", "time") if name in sample
+    ]
+    if not any(values.any() for values in ends):
+        raise empty_points(info.path, info.count - _SAMPLE_POINTS + 1, info.count)
+
+
+@dataclass
+class _Group:
+    """Files of scanners that follow one another, and those that still reach into what comes."""
+
+    files: list[DeliveredFile]
+    reaching: list[DeliveredFile]
+
+    def takes(self, file: DeliveredFile) -> bool:
+        """Whether a file, which does not begin before any of these, goes on where they end."""
+        first = self.files[0]
+        if (file.scanner_column, file.has_origins) != (first.scanner_column, first.has_origins):
+            return False
+        self.reaching = [one for one in self.reaching if one.last_time > file.first_time]
+        return not any(
+            one.scanners & file.scanners and _overlap(one, file) for one in self.reaching
+        )
+
+    def add(self, file: DeliveredFile) -> None:
+        """Take a file."""
+        self.files.append(file)
+        self.reaching.append(file)
+
+
 def _grouped(files: list[DeliveredFile]) -> tuple[tuple[DeliveredFile, ...], ...]:
     """Files of the same scanners that overlap in time are different scanners' files."""
-    groups: list[list[DeliveredFile]] = []
-    for file in sorted(files, key=_by_time):
-        group = next((group for group in groups if _continues(group, file)), None)
+    timeless = [_Group([file], []) for file in files if not file.has_times]
+    groups: list[_Group] = []
+    for file in sorted((file for file in files if file.has_times), key=_by_time):
+        group = next((group for group in groups if group.takes(file)), None)
         if group is None:
-            groups.append([file])
-        else:
-            group.append(file)
-    return tuple(tuple(group) for group in groups)
+            group = _Group([], [])
+            groups.append(group)
+        group.add(file)
+    timeless.sort(key=lambda group: str(group.files[0].info.path))
+    return tuple(tuple(group.files) for group in (*groups, *timeless))
 
 
 def _by_time(file: DeliveredFile) -> tuple[float, str]:
-    return (file.first_time if np.isfinite(file.first_time) else 0.0, str(file.info.path))
+    return file.first_time, str(file.info.path)
 
 
-def _continues(group: list[DeliveredFile], file: DeliveredFile) -> bool:
-    if not np.isfinite(file.first_time) or file.scanner_column != group[0].scanner_column:
-        return False
-    if file.has_origins != group[0].has_origins:
-        return False
-    for other in group:
-        if not (other.scanners & file.scanners):
-            continue
-        together = min(other.last_time, file.last_time) - max(other.first_time, file.first_time)
-        shorter = min(other.last_time - other.first_time, file.last_time - file.first_time)
-        if not np.isfinite(together) or together > 0.5 * max(shorter, 1e-9):
-            return False
-    return True
+def _overlap(one: DeliveredFile, other: DeliveredFile) -> bool:
+    """Whether two files have more than half of the shorter one's time in common."""
+    together = min(one.last_time, other.last_time) - max(one.first_time, other.first_time)
+    shorter = min(one.last_time - one.first_time, other.last_time - other.first_time)
+    return together > 0.5 * max(shorter, 1e-9)

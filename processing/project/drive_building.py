@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Collection, Mapping
+from dataclasses import asdict, dataclass, field, replace
+from itertools import chain
+from itertools import count as count_from
 from pathlib import Path
 from typing import Any
-from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,21 +17,34 @@ from processing.cameras.image_list import ImageList
 from processing.cameras.image_store import write_images
 from processing.errors import told_as_user_error
 from processing.monitor import Monitor, PartMonitor
-from processing.points.columns import Columns, ColumnWriter, column_path
+from processing.points.columns import Columns, ColumnWriter
 from processing.points.drive import SCAN, write_trajectory
 from processing.points.drive_info import DriveInfo, SourceFile, write_drive_info
-from processing.points.ordering import POINTS_AT_ONCE, read_stretch, sort_points, stretches
+from processing.points.ordering import (
+    POINTS_AT_ONCE,
+    Keys,
+    read_stretch,
+    sort_points,
+    stretches,
+)
+from processing.points.replacing import new_columns, replace_columns
 from processing.points.scan_grid import COLUMN, ScanGrid, order_by_grid, remove_grid_column
 from processing.points.scan_place import Place, checked_place
 from processing.points.top_view import TopView, top_view_of
 from processing.points.trajectory import Trajectory
 from processing.points.turns import NoTurns, RecordedPoints, find_turns, trajectory_from_origins
 from processing.points.turns_file import write_turns
-from processing.project.recording_writer import RecordingWriter
+from processing.project.build_steps import CLOCK, NAMED, SHIFTED, BuildSteps
+from processing.project.disk_room import refuse_small_disk
+from processing.project.import_journal import Facts
+from processing.project.import_layout import bytes_of
+from processing.project.import_request import digest_of
+from processing.project.recording import Recording
 from processing.project.trajectory_choice import NamedTrajectory, match_trajectory
 from processing.text import Text
 
 _SAMPLE_POINTS = 200_000
+_SOURCES, _SORTED, _ROWS, _SORTED_BY_CELL = "sources", "sorted", "rows", "sorted by cell"
 _FINDING = Text("Finding turns and pulses of {name}", "{name} の回転とパルスを推定中")
 _SORTING = Text("Restoring the time order of {name}", "{name} の時刻順を復元中")
 _GRID = Text("Reading the grid of the scan {name}", "{name} のスキャン格子を確認中")
@@ -51,6 +65,8 @@ class BuildPlan:
         Files that hold the points of several recordings.
     scanner_places : mapping
         By file and scanner: where a standing scanner was, m, as the file says.
+    identity : tuple of str
+        What else of the request makes its drives what they are.
     """
 
     sources: tuple[SourceFile, ...]
@@ -60,10 +76,18 @@ class BuildPlan:
     is_adjusted_standard: bool | None = None
     shared_sources: frozenset[int] = frozenset()
     scanner_places: Mapping[tuple[int, int], Place] = field(default_factory=dict)
+    identity: tuple[str, ...] = ()
 
 
-def build_drive(writer: RecordingWriter, plan: BuildPlan, monitor: Monitor) -> Path:
-    """Complete the folder of a recording that was read.
+def build_drive(
+    recording: Recording,
+    plan: BuildPlan,
+    steps: BuildSteps,
+    monitor: Monitor,
+    *,
+    taken: Collection[str] = (),
+) -> Path:
+    """Complete the folder of a recording that was read; goes on where a killed import stopped.
 
     Steps
     -----
@@ -72,6 +96,13 @@ def build_drive(writer: RecordingWriter, plan: BuildPlan, monitor: Monitor) -> P
     3. A standing scanner's grid is taken as it is, else turns and pulses are found; where there
        are neither, points are ordered for the top view.
     4. The facts are written.
+
+    Each step may be begun again; what can't be done to its own result is noted.
+
+    Parameters
+    ----------
+    taken : collection of str
+        Ids that other drives have.
 
     Returns
     -------
@@ -82,57 +113,94 @@ def build_drive(writer: RecordingWriter, plan: BuildPlan, monitor: Monitor) -> P
     ------
     UserError, Cancelled
     """
-    name = _name_of(writer, plan)
-    folder = writer.folder
-    if writer.has_times and not writer.is_in_time_order:
-        monitor.report(0.0, _SORTING.filled(name=name))
-        writer.write_source_columns()
-        sort_points(folder, writer.names, writer.count, _by_time, PartMonitor(monitor, 0.0, 0.4))
-    trajectory, offset = _trajectory_of(writer, plan, name)
-    monitor.report(0.4, _FINDING.filled(name=name))
-    finding = PartMonitor(monitor, 0.4, 1.0)
-    found = _rows_of(writer, trajectory, name, finding)
-    if trajectory is not None:
-        write_trajectory(folder, trajectory)
+    if steps.final is not None:
+        return steps.final
+    steps.go_on()
+    name = _name_of(recording, plan)
+    recording.has_source_columns = steps.known(_SOURCES) is not None
+    if recording.needs_source_columns:
+        _names_to_sort(recording, steps)
+    rows_known = steps.known(_ROWS)
+    if rows_known is None:
+        if recording.has_times and not recording.is_in_time_order:
+            _restore_time_order(recording, steps, name, PartMonitor(monitor, 0.0, 0.4))
+        trajectory, offset = _trajectory_of(recording, plan, steps, name)
+        if trajectory is not None:
+            write_trajectory(recording.folder, trajectory)
+        monitor.report(0.4, _FINDING.filled(name=name))
+        finding = PartMonitor(monitor, 0.4, 1.0)
+        found = _rows_of(recording, trajectory, steps, name, finding)
+        found = replace(found, offset_s=offset, place=_scanner_place(recording, plan, found))
+        steps.note(_ROWS, asdict(found))
+    else:
+        found = _found_from(rows_known)
+    if found.view is not None:
+        monitor.report(0.7, _CELLS.filled(name=name))
+        _order_for_top_view(recording, found.view, steps, PartMonitor(monitor, 0.7, 1.0))
+    remove_grid_column(recording.folder)
+    return _finished(recording, plan, found, steps, taken)
+
+
+def _finished(
+    recording: Recording,
+    plan: BuildPlan,
+    found: _FoundRows,
+    steps: BuildSteps,
+    taken: Collection[str],
+) -> Path:
+    """Write the facts down and give the folder its name."""
+    folder = recording.folder
     if plan.images is not None:
         write_images(folder, plan.images)
-    scale, shift = np.array(writer.lattice.scale), np.array(writer.lattice.offset)
+    scale, shift = np.array(recording.lattice.scale), np.array(recording.lattice.offset)
+    points = recording.points_of_source
+    name = _name_of(recording, plan)
     info = DriveInfo(
-        id=f"{_plain(name)}-{uuid4().hex[:8]}",
+        id=_free_id(f"{_plain(name)}-{_identity(recording, plan)}", taken),
         name=name,
-        scanner=writer.scanner,
-        count=writer.count,
-        scale=writer.lattice.scale,
-        offset=writer.lattice.offset,
-        lowest=_triple(writer.lowest * scale + shift),
-        highest=_triple(writer.highest * scale + shift),
+        scanner=recording.scanner,
+        count=recording.count,
+        scale=recording.lattice.scale,
+        offset=recording.lattice.offset,
+        lowest=_triple(recording.lowest * scale + shift),
+        highest=_triple(recording.highest * scale + shift),
         crs=plan.crs,
-        sources=tuple(
-            SourceFile(s.path, s.size, s.modified_ns, s.sha256, writer.points_of_source.get(i, 0))
-            for i, s in enumerate(plan.sources)
-        ),
-        clock_offset_s=offset,
+        sources=tuple(replace(plan.sources[one], points=points[one]) for one in recording.sources),
+        clock_offset_s=found.offset_s,
         rows_by=found.rows_by,
         rows_reason=found.reason,
-        cell_m=found.cell_m,
+        cell_m=found.view.cell_m if found.view is not None else 0.0,
         cells_per_row=found.cells_per_row,
-        source_runs=writer.sources.runs,
-        scanner_place=_scanner_place(writer, plan, found),
+        source_runs=recording.source_runs,
+        scanner_place=found.place,
     )
-    remove_grid_column(folder)
     write_drive_info(folder, info)
-    final = folder.with_name(info.id)
+    steps.note(NAMED, {"id": info.id})
+    final = steps.home / info.id
     with told_as_user_error(final):
         folder.rename(final)
     return final
 
 
-def _name_of(writer: RecordingWriter, plan: BuildPlan) -> str:
+def _identity(recording: Recording, plan: BuildPlan) -> str:
+    """Eight letters by which a drive is known: the same whenever the same is imported."""
+    parts = [(plan.sources[part.source].sha256, part.at) for part in recording.parts]
+    facts = [parts, recording.scanner, recording.count, asdict(recording.lattice), *plan.identity]
+    return digest_of(facts)[:8]
+
+
+def _free_id(wanted: str, taken: Collection[str]) -> str:
+    """The id, with a number where there is a drive of that id."""
+    numbered = (f"{wanted}-{number}" for number in count_from(2))
+    return next(one for one in chain((wanted,), numbered) if one not in taken)
+
+
+def _name_of(recording: Recording, plan: BuildPlan) -> str:
     """The file's name; with the scanner's number where the files tell several scanners apart."""
-    sources = sorted(writer.points_of_source)
+    sources = recording.sources
     stem = Path(plan.sources[sources[0]].path).stem
     is_shared = any(source in plan.shared_sources for source in sources)
-    return f"{stem} ({writer.scanner})" if is_shared else stem
+    return f"{stem} ({recording.scanner})" if is_shared else stem
 
 
 def _plain(name: str) -> str:
@@ -147,24 +215,55 @@ def _by_time(columns: Mapping[str, NDArray[Any]]) -> tuple[NDArray[Any], NDArray
     return columns["time"], np.zeros(columns["time"].size, dtype=np.int8)
 
 
+def _restore_time_order(
+    recording: Recording, steps: BuildSteps, name: str, monitor: Monitor
+) -> None:
+    if steps.known(_SORTED) is not None:
+        return
+    monitor.report(0.0, _SORTING.filled(name=name))
+    _sort(recording, steps, _by_time, monitor)
+    steps.note(_SORTED, {})
+
+
+def _sort(recording: Recording, steps: BuildSteps, keys: Keys, monitor: Monitor) -> None:
+    names = _names_to_sort(recording, steps)
+    refuse_small_disk(recording.folder, 2 * recording.count * bytes_of(names))
+    sort_points(recording.folder, names, recording.count, keys, monitor)
+
+
+def _names_to_sort(recording: Recording, steps: BuildSteps) -> tuple[str, ...]:
+    """All columns; those that say where points were delivered are among them."""
+    if not recording.has_source_columns:
+        recording.write_source_columns()
+        steps.note(_SOURCES, {})
+    return recording.names
+
+
 def _trajectory_of(
-    writer: RecordingWriter, plan: BuildPlan, name: str
+    recording: Recording, plan: BuildPlan, steps: BuildSteps, name: str
 ) -> tuple[Trajectory | None, float]:
-    if not writer.has_times:
+    if not recording.has_times:
         return None, 0.0
-    if "origin" in writer.names:
-        return trajectory_from_origins(Columns(writer.folder, writer.count)), 0.0
-    matched = match_trajectory(
-        _sampled_times(writer.folder, writer.count),
-        plan.trajectories,
-        name,
-        is_adjusted_standard=plan.is_adjusted_standard,
-    )
-    if matched is None:
-        return None, 0.0
-    if matched.clock_offset_s != 0.0:
-        _shift_times(writer.folder, writer.count, matched.clock_offset_s)
-    return matched.trajectory, matched.clock_offset_s
+    if "origin" in recording.names:
+        return trajectory_from_origins(Columns(recording.folder, recording.count)), 0.0
+    clock = steps.known(CLOCK)
+    if clock is None:
+        matched = match_trajectory(
+            _sampled_times(recording.folder, recording.count),
+            plan.trajectories,
+            name,
+            is_adjusted_standard=plan.is_adjusted_standard,
+        )
+        if matched is None:
+            return None, 0.0
+        ways = [named.trajectory for named in plan.trajectories]
+        at = next(at for at, way in enumerate(ways) if way is matched.trajectory)
+        clock = {"trajectory": at, "offset_s": matched.clock_offset_s}
+        steps.note(CLOCK, clock)
+    offset = float(clock["offset_s"])
+    if offset != 0.0 and steps.known(SHIFTED) is None:
+        _shift_times(recording, steps, offset)
+    return plan.trajectories[int(clock["trajectory"])].trajectory, offset
 
 
 def _sampled_times(folder: Path, count: int) -> NDArray[np.float64]:
@@ -173,41 +272,55 @@ def _sampled_times(folder: Path, count: int) -> NDArray[np.float64]:
     return np.append(times[::step], times[-1])
 
 
-def _shift_times(folder: Path, count: int, offset_s: float) -> None:
-    shifted = folder / "shifted"
-    with told_as_user_error(folder):
-        shifted.mkdir()
-    with ColumnWriter(shifted) as writer:
-        for start, stop in stretches(count):
+def _shift_times(recording: Recording, steps: BuildSteps, offset_s: float) -> None:
+    folder = recording.folder
+    with ColumnWriter(new_columns(folder)) as writer:
+        for start, stop in stretches(recording.count):
             writer.append({"time": read_stretch(folder, "time", start, stop) + offset_s})
-    with told_as_user_error(folder):
-        column_path(shifted, "time").replace(column_path(folder, "time"))
-        shifted.rmdir()
+    replace_columns(folder, steps.note_shifted, is_flushed=steps.is_on_disk)
 
 
 @dataclass(frozen=True)
 class _FoundRows:
-    """What `DriveInfo` says of rows."""
+    """What `DriveInfo` says of rows and clock."""
 
     reason: Text
     rows_by: str
-    cell_m: float = 0.0
     cells_per_row: int = 0
+    view: TopView | None = None
+    offset_s: float = 0.0
+    place: Place | None = None
+
+
+def _found_from(values: Facts) -> _FoundRows:
+    """What was found, as it was noted."""
+    view, place = values["view"], values["place"]
+    read = {
+        "reason": Text(**values["reason"]),
+        "view": None if view is None else TopView(**view),
+        "place": None if place is None else tuple(place),
+    }
+    return _FoundRows(**{**values, **read})
 
 
 def _rows_of(
-    writer: RecordingWriter, trajectory: Trajectory | None, name: str, monitor: Monitor
+    recording: Recording,
+    trajectory: Trajectory | None,
+    steps: BuildSteps,
+    name: str,
+    monitor: Monitor,
 ) -> _FoundRows:
-    folder = writer.folder
+    folder, count = recording.folder, recording.count
     contradiction: Text | None = None
-    if COLUMN in writer.names and trajectory is None:
+    if COLUMN in recording.names and trajectory is None:
         monitor.report(0.0, _GRID.filled(name=name))
-        grid = order_by_grid(folder, writer.count, lambda: _names_to_sort(writer), monitor)
+        grid = order_by_grid(folder, count, lambda: _names_to_sort(recording, steps), monitor)
         if isinstance(grid, ScanGrid):
             return _FoundRows(grid.told, SCAN, cells_per_row=grid.sweep_length)
         contradiction = grid.reason
-    if writer.has_times:
-        points = RecordedPoints(folder, writer.count, writer.lattice.scale, writer.lattice.offset)
+    if recording.has_times:
+        lattice = recording.lattice
+        points = RecordedPoints(folder, count, lattice.scale, lattice.offset)
         found = find_turns(points, trajectory, monitor)
         if not isinstance(found, NoTurns):
             write_turns(folder, found)
@@ -218,46 +331,45 @@ def _rows_of(
             "The points have no times, so there are no rows; the top view is shown.",
             "点に時刻がないため行を決められません。上面画像で表示します。",
         )
-    monitor.report(0.5, _CELLS.filled(name=name))
-    view = _order_for_top_view(writer, monitor)
-    return _FoundRows(contradiction or reason, "top-view", view.cell_m, view.cells_per_row)
+    view = _top_view_of(recording)
+    return _FoundRows(contradiction or reason, "top-view", view.cells_per_row, view)
 
 
-def _names_to_sort(writer: RecordingWriter) -> tuple[str, ...]:
-    """All columns; those that say where points were delivered are among them."""
-    writer.write_source_columns()
-    return writer.names
-
-
-def _scanner_place(writer: RecordingWriter, plan: BuildPlan, found: _FoundRows) -> Place | None:
-    if found.rows_by != SCAN or len(writer.points_of_source) != 1:
+def _scanner_place(recording: Recording, plan: BuildPlan, found: _FoundRows) -> Place | None:
+    if found.rows_by != SCAN or len(recording.sources) != 1:
         return None
-    source = next(iter(writer.points_of_source))
+    source = recording.sources[0]
     return checked_place(
-        Columns(writer.folder, writer.count),
-        writer.lattice.scale,
-        writer.lattice.offset,
+        Columns(recording.folder, recording.count),
+        recording.lattice.scale,
+        recording.lattice.offset,
         found.cells_per_row,
-        plan.scanner_places.get((source, writer.scanner)),
+        plan.scanner_places.get((source, recording.scanner)),
     )
 
 
-def _order_for_top_view(writer: RecordingWriter, monitor: Monitor) -> TopView:
-    folder, count = writer.folder, writer.count
-    scale, offset = np.array(writer.lattice.scale), np.array(writer.lattice.offset)
-    sample = Columns(folder, count)["xyz"][:: max(1, count // _SAMPLE_POINTS)] * scale + offset
-    view = top_view_of(
-        sample, count, writer.lowest * scale + offset, writer.highest * scale + offset
-    )
+def _top_view_of(recording: Recording) -> TopView:
+    count = recording.count
+    scale, offset = np.array(recording.lattice.scale), np.array(recording.lattice.offset)
+    integers = Columns(recording.folder, count)["xyz"][:: max(1, count // _SAMPLE_POINTS)]
+    lowest, highest = recording.lowest * scale + offset, recording.highest * scale + offset
+    return top_view_of(integers * scale + offset, count, lowest, highest)
+
+
+def _order_for_top_view(
+    recording: Recording, view: TopView, steps: BuildSteps, monitor: Monitor
+) -> None:
+    scale, offset = np.array(recording.lattice.scale), np.array(recording.lattice.offset)
 
     def by_cell(columns: Mapping[str, NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
         integers = columns["xyz"]
         return view.cells_of(integers * scale + offset), -integers[:, 2].astype(np.int64)
 
-    sort_points(folder, _names_to_sort(writer), count, by_cell, PartMonitor(monitor, 0.5, 0.9))
-    with ColumnWriter(folder) as cells:
-        for start, stop in stretches(count, POINTS_AT_ONCE // 4):
+    if steps.known(_SORTED_BY_CELL) is None:
+        _sort(recording, steps, by_cell, PartMonitor(monitor, 0.0, 0.8))
+        steps.note(_SORTED_BY_CELL, {})
+    with ColumnWriter(recording.folder) as cells:
+        for start, stop in stretches(recording.count, POINTS_AT_ONCE // 4):
             monitor.check()
-            integers = read_stretch(folder, "xyz", start, stop)
+            integers = read_stretch(recording.folder, "xyz", start, stop)
             cells.append({"pulse": view.cells_of(integers * scale + offset)})
-    return view

@@ -11,17 +11,19 @@ from uuid import uuid4
 
 from processing.errors import UserError, told_as_user_error
 from processing.project.database import Database
-from processing.project.project_settings import ProjectSettings, write_setting
+from processing.project.import_journal import PLAN
+from processing.project.project_settings import JsonValue, ProjectSettings, write_setting
+from processing.project.unfinished_imports import TEMPORARY, remove_litter
 
-DRIVES, TEMPORARY = "drives", "tmp"
+DRIVES = "drives"
 _ARRIVING = "arriving_drives"
 
 
 class DriveFolders:
     """Which drives a project has is said by its database alone.
 
-    Before folders are moved in, the database notes which: what a killed program moved in without
-    recording it is known by that note, and no other folder is ever removed.
+    Before folders are moved in, the database notes which, and where from: what a killed program
+    moved in without recording it goes back by that note, and no other folder is ever touched.
     """
 
     def __init__(self, folder: Path, database: Database, settings: ProjectSettings) -> None:
@@ -37,7 +39,7 @@ class DriveFolders:
         return self._folder / DRIVES / id
 
     def temporary(self) -> Path:
-        """A new name for a folder of an import; what is left there goes at the next opening."""
+        """A new name for a folder of drives; what is left there goes at the next opening."""
         return self._folder / TEMPORARY / uuid4().hex
 
     @contextmanager
@@ -60,7 +62,7 @@ class DriveFolders:
         if known:
             message = f"the project has these drives: {known}"
             raise ValueError(message)
-        self._settings.put(_ARRIVING, list(folders))
+        self._settings.put(_ARRIVING, {id_: one.parent.name for id_, one in folders.items()})
         moved: list[tuple[Path, Path]] = []
         try:
             for id_, folder in folders.items():
@@ -81,20 +83,31 @@ class DriveFolders:
             raise
         self._settings.took(_ARRIVING, [])
         self.ids = (*self.ids, *folders)
-        for folder in folders.values():
+        for parent in {folder.parent for folder in folders.values()}:
             # The import's own folder, once the last drive is gone from it.
+            if (parent / PLAN).exists():
+                shutil.rmtree(parent, ignore_errors=True)
             with suppress(OSError):
-                folder.parent.rmdir()
+                parent.rmdir()
 
     def remove_leftovers(self) -> None:
-        """Remove what an import that was killed left behind: it was never part of the project."""
-        shutil.rmtree(self._folder / TEMPORARY, ignore_errors=True)
-        arriving = self._settings.get(_ARRIVING)
-        if not arriving or not isinstance(arriving, list):
+        """Remove what was never part of the project, but for imports that can go on."""
+        self._send_back(self._settings.get(_ARRIVING))
+        remove_litter(self._folder, self.ids)
+
+    def _send_back(self, arriving: JsonValue) -> None:
+        """Undo an adoption that was killed: drives go back to their import, or away."""
+        if not arriving or not isinstance(arriving, (dict, list)):
             return
-        for id_ in arriving:
-            if isinstance(id_, str) and _is_name(id_) and id_ not in self.ids:
-                shutil.rmtree(self.path_of(id_), ignore_errors=True)
+        imports = arriving if isinstance(arriving, dict) else dict.fromkeys(map(str, arriving), "")
+        for id_, name in imports.items():
+            if not _is_name(id_) or id_ in self.ids:
+                continue
+            home = self._folder / TEMPORARY / str(name)
+            if isinstance(name, str) and _is_name(name) and (home / PLAN).is_file():
+                with suppress(OSError):
+                    self.path_of(id_).rename(home / id_)
+            shutil.rmtree(self.path_of(id_), ignore_errors=True)
         # On a full disk the note stays until the next time.
         with suppress(UserError):
             self._settings.put(_ARRIVING, [])

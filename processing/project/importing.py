@@ -1,82 +1,72 @@
 """Importing: delivered files become drive folders; nothing in a delivered file is changed.
 
-Files are streamed once: a chunk is decoded while the one before it is written. What is found in
-the points afterwards (order, clock, rows, pulses) is :mod:`processing.project.drive_building`.
+Where the points go is planned from headers and ends (:mod:`processing.project.import_layout`), the
+files are read to their places (:mod:`processing.project.import_processes`), and what is found in
+the points afterwards is :mod:`processing.project.drive_building`. What is done is noted, so an
+import that was killed goes on where it was.
 """
 
 from __future__ import annotations
 
-import hashlib
 import shutil
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
-
-import numpy as np
-from numpy.typing import NDArray
 
 from processing.cameras.image_list import ImageList
-from processing.errors import UNCHANGED, BadFile, told_as_user_error
+from processing.errors import UNCHANGED, BadFile, Cancelled, UserError, told_as_user_error
 from processing.formats.image_list import read_image_list
 from processing.formats.point_chunk import Vector3
-from processing.formats.point_files import PointChunk, PointFileInfo, read_chunks
+from processing.formats.point_files import PointFileInfo
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive_info import SourceFile
-from processing.project.delivery import DeliveredFile, Delivery, read_delivery
+from processing.project.build_steps import BuildSteps
+from processing.project.delivery import Delivery, read_delivery
+from processing.project.disk_room import full_disk_told, refuse_small_disk
 from processing.project.drive_building import BuildPlan, build_drive
-from processing.project.lattice import Lattice
-from processing.project.recording_writer import RecordingWriter
+from processing.project.file_record import FileRecord, record_from
+from processing.project.file_recorder import checksum_of
+from processing.project.import_journal import ImportJournal
+from processing.project.import_layout import Layout, ReadWay, layout_of, recordings_of
+from processing.project.import_processes import MixedFile, record_files
+from processing.project.import_request import (
+    FileMark,
+    ImportRequest,
+    Labels,
+    described,
+    marks_of,
+)
+from processing.project.part_joining import join_parts
+from processing.project.recording import Recording
 from processing.project.trajectory_choice import NamedTrajectory, read_trajectories
+from processing.project.unfinished_imports import is_import_folder
 from processing.text import Text
 
-_CHUNK_POINTS = 500_000
+__all__ = ["ImportRequest", "Labels", "import_drives"]
+
 _READING = 0.7
-_HASHED_BYTES = 1 << 20
 
 
-Labels = Literal["label", "classification"]
-
-
-@dataclass(frozen=True)
-class ImportRequest:
-    """What to import.
-
-    Attributes
-    ----------
-    inputs : tuple of Path
-        Point files.
-    trajectories, images : tuple of Path
-        Trajectory files; camera image lists.
-    crs : str
-        ``EPSG:n``; empty to take the files' own.
-    labels : "label" or "classification"
-        What becomes of the points' labels: the extra dimension of this name, where there is one;
-        or the delivered classes.
-    """
-
-    inputs: tuple[Path, ...]
-    trajectories: tuple[Path, ...] = ()
-    images: tuple[Path, ...] = ()
-    crs: str = ""
-    labels: Labels = "label"
-
-
-def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple[Path, ...]:
+def import_drives(
+    request: ImportRequest, into: Path, monitor: Monitor, *, taken: Collection[str] = ()
+) -> tuple[Path, ...]:
     """Turn delivered files into drive folders.
 
     Parameters
     ----------
     into : Path
         A folder for temporary drive folders, of this import alone;
-        :meth:`processing.project.project.Project.adopt_drive` takes them from there.
+        :meth:`processing.project.project.Project.adopt_drive` takes them from there. One by
+        :func:`processing.project.unfinished_imports.import_folder` keeps what is done when the
+        program is killed or the disk is full; the same call goes on there.
+    taken : collection of str
+        Ids of drives that there are; a drive that would be called so gets a number.
 
     Returns
     -------
     tuple of Path
-        One folder per scanner; whole, or none at all.
+        One folder per scanner, whole; what is in them depends on the request alone.
 
     Raises
     ------
@@ -85,181 +75,216 @@ def import_drives(request: ImportRequest, into: Path, monitor: Monitor) -> tuple
     Cancelled
         Nothing is left behind.
     """
+    marks = marks_of(request)
     delivery = read_delivery(request.inputs, request.crs, monitor)
-    files = tuple(file.info for group in delivery.recordings for file in group)
-    images = _images_of(request.images)
     with told_as_user_error(into):
         into.mkdir(parents=True, exist_ok=True)
+    journal = ImportJournal(into, is_kept=is_import_folder(into))
+    running = _Import(request, marks, delivery, journal, monitor)
     try:
+        if is_import_folder(into) and not journal.is_begun:
+            _empty(into)
+        journal.begin(described(request, marks))
+        with full_disk_told(running.wanted_bytes, running.keep):
+            folders = running.run(tuple(taken))
+        journal.finish(folder.name for folder in folders)
+    except (UserError, Cancelled, KeyboardInterrupt):
+        journal.close()
+        if not running.is_kept:
+            shutil.rmtree(into, ignore_errors=True)
+        raise
+    except BaseException:
+        journal.close()
+        if not is_import_folder(into):
+            shutil.rmtree(into, ignore_errors=True)
+        raise
+    journal.close()
+    return folders
+
+
+class _Import:
+    """One import under way."""
+
+    def __init__(
+        self,
+        request: ImportRequest,
+        marks: tuple[FileMark, ...],
+        delivery: Delivery,
+        journal: ImportJournal,
+        monitor: Monitor,
+    ) -> None:
+        self.is_kept = False
+        self._request = request
+        self._delivery = delivery
+        self._journal = journal
+        self._monitor = monitor
+        self._into = journal.folder
+        self._files = tuple(file.info for group in delivery.recordings for file in group)
+        self._marks = {mark.path: mark for mark in marks}
+        self._way = ReadWay(
+            keeps_angles=not request.trajectories,
+            has_labels=any("label" in info.attributes for info in self._files),
+            labels=request.labels,
+        )
+        self._layout = self._planned()
+        self._records: dict[int, FileRecord] = {}
+
+    def run(self, taken: tuple[str, ...]) -> tuple[Path, ...]:
+        """Do what is still to be done; gives the drives' folders."""
+        if not any(info.count for info in self._files):
+            raise _no_points(self._files)
+        images = _images_of(self._request.images)
         with ThreadPoolExecutor(max_workers=1) as pool:
-            ways = pool.submit(read_trajectories, request.trajectories, delivery.crs)
-            checksums = [pool.submit(_checksum, info.path) for info in files]
-            reading = _AlsoWatching(PartMonitor(monitor, 0.0, _READING), ways)
-            way = _ReadWay(
-                keeps_angles=not request.trajectories,
-                has_labels=any("label" in info.attributes for info in files),
-                labels=request.labels,
-            )
-            writers = _read_all(delivery, files, into, reading, way=way)
-            trajectories = ways.result()
-            sources = tuple(
-                _source_file(info, checksum)
-                for info, checksum in zip(files, checksums, strict=True)
-            )
-        writers.sort(key=lambda writer: writer.scanner)
+            ways = pool.submit(read_trajectories, self._request.trajectories, self._delivery.crs)
+            beside = pool.submit(_checksums, (*self._request.trajectories, *self._request.images))
+            self._read_all(ways)
+            trajectories, checksums = ways.result(), beside.result()
+        recordings = [
+            recording
+            for group in range(len(self._layout.groups))
+            for recording in recordings_of(self._layout, group, self._records)
+        ]
+        recordings.sort(key=lambda recording: recording.scanner)
         plan = BuildPlan(
-            sources,
-            delivery.crs,
+            self._sources(),
+            self._delivery.crs,
             trajectories,
             images,
-            _is_adjusted_standard(files),
-            _shared_sources(writers),
-            _scanner_places(files),
+            _is_adjusted_standard(self._files),
+            _shared_sources(recordings),
+            _scanner_places(self._files),
+            identity=(*checksums, self._request.labels, self._request.crs),
         )
-        folders = []
-        for number, writer in enumerate(writers):
-            share = (1 - _READING) / len(writers)
+        return self._build_all(recordings, plan, taken)
+
+    def wanted_bytes(self) -> int:
+        """What the columns still need on the disk, about."""
+        whole = sum(info.count for info in self._files)
+        done = sum(record.done for record in self._records.values())
+        return self._layout.column_bytes * (whole - done) // max(whole, 1)
+
+    def keep(self) -> bool:
+        """Keep what is done, after the disk was full; says whether it can go on."""
+        self.is_kept = is_import_folder(self._into) and any(
+            record.done for record in self._records.values()
+        )
+        if self.is_kept:
+            self._journal.save()
+        return self.is_kept
+
+    def _planned(self) -> Layout:
+        groups = range(len(self._delivery.recordings))
+        mixed = [group for group in groups if self._journal.known(f"mixed {group}") is not None]
+        return layout_of(self._delivery, self._marks, self._way, self._into, mixed)
+
+    def _read_all(self, ways: Future[tuple[NamedTrajectory, ...]]) -> None:
+        total = sum(info.count for info in self._files)
+        monitor = PartMonitor(self._monitor, 0.0, _READING)
+
+        def check() -> None:
+            self._monitor.check()
+            # A trajectory that can't be read stops the reading of points.
+            if ways.done():
+                ways.result()
+
+        def told(number: int, record: FileRecord) -> None:
+            before = self._records[number].done
+            self._records[number] = record
+            done[0] += record.done - before
+            self._journal.note(f"file {number}", record.to_json(), self._folders_of(number))
+            name = Text("Reading {name}", "{name} を読み込み中")
+            monitor.report(done[0] / total, name.filled(name=self._files[number].path.name))
+
+        while True:
+            self._recall()
+            done = [sum(record.done for record in self._records.values())]
+            refuse_small_disk(self._into, self.wanted_bytes())
+            work = [
+                (self._layout.jobs[number], record)
+                for number, record in self._records.items()
+                if not record.is_whole
+            ]
+            try:
+                record_files(work, told, check)
+            except MixedFile as surprise:
+                group = self._layout.group_of(surprise.number)
+                self._journal.note(f"mixed {group}", {})
+                self._journal.settle()
+                for recording in self._layout.planned[group]:
+                    shutil.rmtree(recording.folder, ignore_errors=True)
+                self._layout = self._planned()
+            else:
+                return
+
+    def _recall(self) -> None:
+        """The records as they were noted, new ones for what goes elsewhere now."""
+        for group in range(len(self._layout.groups)):
+            for recording in self._layout.planned.get(group, ()):
+                with told_as_user_error(recording.folder):
+                    recording.folder.mkdir(parents=True, exist_ok=True)
+        for job in self._layout.jobs:
+            noted = self._journal.known(f"file {job.number}")
+            record = None if noted is None else record_from(noted)
+            in_parts = job.place is None
+            if record is None or record.in_parts != in_parts:
+                record = FileRecord(in_parts)
+            self._records[job.number] = record
+
+    def _folders_of(self, number: int) -> tuple[Path, ...]:
+        job = self._layout.jobs[number]
+        if job.place is not None:
+            return (Path(job.place.folder),)
+        streams = range(len(self._records[number].streams))
+        return tuple(Path(job.parts) / f"{number}-{at}" for at in streams)
+
+    def _sources(self) -> tuple[SourceFile, ...]:
+        return tuple(
+            SourceFile(job.path, job.size, job.modified_ns, self._records[job.number].sha256, 0)
+            for job in self._layout.jobs
+        )
+
+    def _build_all(
+        self, recordings: Sequence[Recording], plan: BuildPlan, taken: tuple[str, ...]
+    ) -> tuple[Path, ...]:
+        folders: list[Path] = []
+        for number, recording in enumerate(recordings):
+            share = (1 - _READING) / len(recordings)
             start = _READING + number * share
-            folders.append(build_drive(writer, plan, PartMonitor(monitor, start, start + share)))
-    except BaseException:
-        shutil.rmtree(into, ignore_errors=True)
-        raise
-    return tuple(folders)
+            part = PartMonitor(self._monitor, start, start + share)
+            steps = BuildSteps(self._journal, number, recording.folder)
+            names = (*taken, *(folder.name for folder in folders))
+            if steps.final is None and len(recording.parts) > 1 and not self._is_planned(recording):
+                join_parts(recording, self._layout, self._journal, PartMonitor(part, 0.0, 0.1))
+            folders.append(build_drive(recording, plan, steps, part, taken=names))
+        return tuple(folders)
+
+    def _is_planned(self, recording: Recording) -> bool:
+        return any(recording in planned for planned in self._layout.planned.values())
 
 
-@dataclass(frozen=True)
-class _ReadWay:
-    """What is wanted of all files: scan angles, labels; whether a file has labels."""
-
-    keeps_angles: bool
-    has_labels: bool
-    labels: Labels
-
-    def wanted(self, chunk: PointChunk) -> dict[str, NDArray[Any]]:
-        """The columns of a chunk; points of files without labels have none of them."""
-        columns = chunk.columns
-        if self.labels == "classification":
-            columns["label"] = columns["classification"]
-        elif self.has_labels and "label" not in columns:
-            columns["label"] = np.zeros(chunk.count, np.uint8)
-        return columns
+def _empty(folder: Path) -> None:
+    """Remove what a killed import left that had noted nothing."""
+    with told_as_user_error(folder):
+        for path in folder.iterdir():
+            if path.is_dir():
+                shutil.rmtree(path)
+            else:
+                path.unlink()
 
 
-@dataclass(frozen=True)
-class _ReadPlan:
-    """How one file is read: its number, where its drives go, what is wanted."""
-
-    file: DeliveredFile
-    source: int
-    folder_stem: Path
-    way: _ReadWay
-
-
-class _AlsoWatching:
-    """A monitor that stops the reading of points when what is read beside them can't be read."""
-
-    def __init__(self, monitor: Monitor, beside: Future[tuple[NamedTrajectory, ...]]) -> None:
-        self._monitor = monitor
-        self._beside = beside
-
-    def report(self, fraction: float, text: Text | None = None) -> None:
-        self._monitor.report(fraction, text)
-
-    def check(self) -> None:
-        self._monitor.check()
-        if self._beside.done():
-            self._beside.result()
+def _no_points(files: tuple[PointFileInfo, ...]) -> UserError:
+    return BadFile(
+        Text("There are no points in it.", "点が含まれていません。"),
+        Text.same(", ".join(str(info.path) for info in files)),
+        Text(
+            "Choose a file with points. {unchanged}",
+            "点のあるファイルを選んでください。{unchanged}",
+        ).filled(unchanged=UNCHANGED),
+    )
 
 
-def _read_all(
-    delivery: Delivery,
-    files: tuple[PointFileInfo, ...],
-    into: Path,
-    monitor: Monitor,
-    *,
-    way: _ReadWay,
-) -> list[RecordingWriter]:
-    total = sum(info.count for info in files)
-    if total == 0:
-        raise BadFile(
-            Text("There are no points in it.", "点が含まれていません。"),
-            Text.same(", ".join(str(info.path) for info in files)),
-            Text(
-                "Choose a file with points. {unchanged}",
-                "点のあるファイルを選んでください。{unchanged}",
-            ).filled(unchanged=UNCHANGED),
-        )
-    writers: list[RecordingWriter] = []
-    done = 0
-    try:
-        for group in delivery.recordings:
-            own: list[RecordingWriter] = []
-            for file in group:
-                part = PartMonitor(monitor, done / total, (done + file.info.count) / total)
-                plan = _ReadPlan(file, files.index(file.info), into / f"{len(writers)}", way)
-                _read_file(plan, own, part)
-                done += file.info.count
-            writers += own
-    finally:
-        for writer in writers:
-            writer.close()
-    return writers
-
-
-def _read_file(plan: _ReadPlan, writers: list[RecordingWriter], monitor: Monitor) -> None:
-    """Deal the points of one file to the writers of its group; new ones are made as needed."""
-    info = plan.file.info
-    lattice = Lattice(info.scale, info.offset)
-    text = Text("Reading {name}", "{name} を読み込み中").filled(name=info.path.name)
-    start = 0
-    for chunk in _read_ahead(read_chunks(info.path, _CHUNK_POINTS)):
-        monitor.check()
-        indices = np.arange(start, start + chunk.count, dtype=np.int64)
-        wanted = plan.way.wanted(chunk)
-        for scanner, chosen in _by_scanner(wanted, plan.file.scanner_column):
-            columns, own = wanted, indices
-            if chosen is not None:
-                columns = {name: values[chosen] for name, values in columns.items()}
-                own = indices[chosen]
-            taking = (w for w in writers if w.scanner == scanner and w.takes(lattice, columns))
-            writer = next(taking, None)
-            if writer is None:
-                folder = plan.folder_stem.with_name(f"{plan.folder_stem.name}-{len(writers)}")
-                angles = plan.way.keeps_angles
-                writer = RecordingWriter(folder, lattice, scanner, keeps_angles=angles)
-                writers.append(writer)
-            writer.add(columns, lattice, plan.source, own)
-            if len(info.scanner_places) > 1:
-                # Scans follow one another, and a file may have more than may be open at a time.
-                for other in writers:
-                    if other is not writer:
-                        other.close()
-        start += chunk.count
-        monitor.report(start / max(info.count, 1), text)
-
-
-def _by_scanner(
-    columns: dict[str, NDArray[Any]], name: str
-) -> Iterator[tuple[int, NDArray[np.bool_] | None]]:
-    """Each scanner number of a chunk and its points; None for all of them."""
-    if name not in columns or columns["xyz"].shape[0] == 0:
-        yield 0, None
-        return
-    numbers = columns[name]
-    if numbers.min() == numbers.max():
-        yield int(numbers[0]), None
-        return
-    for number in np.unique(numbers):
-        yield int(number), numbers == number
-
-
-def _read_ahead(chunks: Iterator[PointChunk]) -> Iterator[PointChunk]:
-    """The same chunks, the next one being decoded while one is worked on."""
-    with ThreadPoolExecutor(max_workers=1) as pool:
-        coming: Future[PointChunk | None] = pool.submit(next, chunks, None)
-        while (chunk := coming.result()) is not None:
-            coming = pool.submit(next, chunks, None)
-            yield chunk
+def _checksums(paths: tuple[Path, ...]) -> tuple[str, ...]:
+    return tuple(checksum_of(path) for path in paths)
 
 
 def _images_of(lists: tuple[Path, ...]) -> ImageList | None:
@@ -273,8 +298,8 @@ def _is_adjusted_standard(files: tuple[PointFileInfo, ...]) -> bool | None:
     return said.pop() if len(said) == 1 else None
 
 
-def _shared_sources(writers: list[RecordingWriter]) -> frozenset[int]:
-    uses = Counter(source for writer in writers for source in writer.points_of_source)
+def _shared_sources(recordings: Sequence[Recording]) -> frozenset[int]:
+    uses = Counter(source for recording in recordings for source in recording.sources)
     return frozenset(source for source, count in uses.items() if count > 1)
 
 
@@ -285,27 +310,3 @@ def _scanner_places(files: tuple[PointFileInfo, ...]) -> dict[tuple[int, int], V
         for source, info in enumerate(files)
         for scan, place in info.scanner_places
     }
-
-
-def _checksum(path: Path) -> str:
-    """Of a file, or of all files of a folder in the order of their names."""
-    files = sorted(file for file in path.rglob("*") if file.is_file()) if path.is_dir() else [path]
-    digest = hashlib.sha256()
-    with told_as_user_error(path):
-        for name in files:
-            with name.open("rb") as file:
-                while block := file.read(_HASHED_BYTES):
-                    digest.update(block)
-    return digest.hexdigest()
-
-
-def _source_file(info: PointFileInfo, checksum: Future[str]) -> SourceFile:
-    with told_as_user_error(info.path):
-        status = info.path.stat()
-    return SourceFile(
-        path=str(info.path.resolve()),
-        size=status.st_size,
-        modified_ns=status.st_mtime_ns,
-        sha256=checksum.result(),
-        points=info.count,
-    )

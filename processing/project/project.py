@@ -19,7 +19,7 @@ from processing.project.catalogue_change import CatalogueComparison, compare
 from processing.project.catalogue_writing import write_catalogue
 from processing.project.database import Database
 from processing.project.database_errors import damaged
-from processing.project.drive_folders import DRIVES, TEMPORARY, DriveFolders
+from processing.project.drive_folders import DRIVES, DriveFolders
 from processing.project.feature_store import FeatureStore
 from processing.project.history import History
 from processing.project.label_layer import LabelLayer
@@ -33,6 +33,7 @@ from processing.project.reference_system import (
 )
 from processing.project.runs import Runs
 from processing.project.source_files import HOMES, SourceFiles
+from processing.project.unfinished_imports import TEMPORARY, unfinished_imports
 from processing.text import Text
 from resources import path_of
 
@@ -184,6 +185,11 @@ class Project:
     def origin(self) -> NDArray[np.float64]:
         """The (3,) local origin of drawing: near the first drive, to whole 100 m; a copy."""
         return self._origin.copy()
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing is in it: no drive, no feature, no import that can go on."""
+        return not (self._drives or len(self.features) or unfinished_imports(self.folder))
 
     def drive(self, id: str) -> Drive:  # noqa: A002 - the word of the trade
         """One drive; KeyError when there is none of that id."""

@@ -1,0 +1,81 @@
+"""Joining the parts of a recording whose place was not known before they were decoded."""
+
+from __future__ import annotations
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from processing.monitor import Monitor
+from processing.points.ordering import read_stretch, stretches
+from processing.points.placed_columns import PlacedColumns
+from processing.points.source_order import INDEX
+from processing.project.file_record import Stream
+from processing.project.file_recorder import part_folder
+from processing.project.import_journal import ImportJournal
+from processing.project.import_layout import Layout
+from processing.project.lattice import Lattice, Move, move_between
+from processing.project.recording import Recording
+
+_POINTS = 1_000_000
+
+
+def join_parts(
+    recording: Recording, layout: Layout, journal: ImportJournal, monitor: Monitor
+) -> None:
+    """Bring all parts of a recording into its folder, which is the first part's.
+
+    Points on another lattice are moved to the recording's; the extents of the parts follow. Goes
+    on where a killed import stopped.
+
+    Raises
+    ------
+    NoSpace, Cancelled
+    """
+    name = f"joined {recording.folder.name}"
+    known = journal.known(name)
+    joined = 1 if known is None else int(known["parts"])
+    first = 0
+    for number, part in enumerate(recording.parts):
+        job = layout.jobs[part.source]
+        move = _move_to(recording.lattice, job.lattice)
+        if number >= joined:
+            folder = part_folder(job, part.at)
+            _copy(folder, part.stream, PlacedColumns(recording.folder, first), move, monitor)
+            journal.note(name, {"parts": number + 1}, (recording.folder,))
+            journal.settle()
+            shutil.rmtree(folder, ignore_errors=True)
+        elif number:
+            shutil.rmtree(part_folder(job, part.at), ignore_errors=True)
+        if move is not None:
+            recording.parts[number] = replace(part, stream=_moved(part.stream, move))
+        first += part.stream.count
+        monitor.report(first / recording.count)
+
+
+def _move_to(target: Lattice, lattice: Lattice) -> Move | None:
+    """None where nothing is to be moved."""
+    return None if lattice == target else move_between(lattice, target)
+
+
+def _copy(
+    folder: Path, stream: Stream, to: PlacedColumns, move: Move | None, monitor: Monitor
+) -> None:
+    names = (*stream.names, *((INDEX,) if stream.is_indexed else ()))
+    try:
+        for start, stop in stretches(stream.count, _POINTS):
+            monitor.check()
+            columns = {name: read_stretch(folder, name, start, stop) for name in names}
+            moved = None if move is None else move.applied(columns["xyz"])
+            to.write(start, columns if moved is None else {**columns, "xyz": moved})
+    finally:
+        to.close()
+
+
+def _moved(stream: Stream, move: Move) -> Stream:
+    corners = np.array([stream.lowest, stream.highest], dtype=np.int32)
+    with_move = move.applied(corners)
+    low, high = (corners if with_move is None else with_move).tolist()
+    return replace(stream, lowest=tuple(low), highest=tuple(high))

@@ -1,0 +1,115 @@
+"""Imports that a kill or a full disk stopped: found again by what they import, or dropped."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from collections.abc import Collection
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from processing.errors import UserError
+from processing.project.import_journal import FINISHED, PLAN
+from processing.project.import_request import (
+    ImportRequest,
+    described,
+    digest_of,
+    marks_of,
+    request_from,
+)
+
+TEMPORARY = "tmp"
+_STEM = "import-"
+
+
+@dataclass(frozen=True)
+class UnfinishedImport:
+    """An import that can go on.
+
+    Attributes
+    ----------
+    folder : Path
+        What is done of it.
+    """
+
+    folder: Path
+    request: ImportRequest
+
+
+def import_folder(project: Path, request: ImportRequest) -> Path:
+    """The folder of an import into a project: the same for the same files and options.
+
+    Raises
+    ------
+    UserError
+        A file can't be looked at.
+    """
+    return project / TEMPORARY / f"{_STEM}{digest_of(described(request, marks_of(request)))}"
+
+
+def is_import_folder(folder: Path) -> bool:
+    """Whether :func:`import_folder` names a folder like this."""
+    return folder.name.startswith(_STEM) and folder.parent.name == TEMPORARY
+
+
+def unfinished_imports(project: Path) -> tuple[UnfinishedImport, ...]:
+    """The imports into a project that can go on."""
+    found = []
+    for folder in _folders(project):
+        request = _request_of(folder)
+        if request is not None:
+            found.append(UnfinishedImport(folder, request))
+    return tuple(found)
+
+
+def discard(unfinished: UnfinishedImport) -> None:
+    """Give an import up: what is done of it is removed."""
+    # The plan goes first, so that a kill leaves nothing that could go on.
+    (unfinished.folder / PLAN).unlink(missing_ok=True)
+    shutil.rmtree(unfinished.folder, ignore_errors=True)
+
+
+def remove_litter(project: Path, drives: Collection[str]) -> None:
+    """Remove what imports left that can't go on, and that of imports whose drives are there.
+
+    Parameters
+    ----------
+    drives : collection of str
+        Ids of the project's drives.
+    """
+    for folder in _folders(project):
+        finished = _finished(folder)
+        is_there = bool(finished) and all(id_ in drives for id_ in finished)
+        if is_there or _request_of(folder) is None:
+            shutil.rmtree(folder, ignore_errors=True)
+    for path in (project / TEMPORARY).glob("*"):
+        if path.is_dir() and not is_import_folder(path):
+            shutil.rmtree(path, ignore_errors=True)
+        elif not path.is_dir():
+            with suppress(OSError):
+                path.unlink()
+
+
+def _folders(project: Path) -> list[Path]:
+    folders = (project / TEMPORARY).glob(f"{_STEM}*")
+    return sorted(folder for folder in folders if folder.is_dir())
+
+
+def _request_of(folder: Path) -> ImportRequest | None:
+    """What is imported there, if the delivered files are still as they were."""
+    try:
+        text = (folder / PLAN).read_text(encoding="utf-8")
+        request, marks = request_from(json.loads(text))
+        is_same = marks_of(request) == marks
+    except (OSError, ValueError, TypeError, KeyError, UserError):
+        return None
+    return request if is_same else None
+
+
+def _finished(folder: Path) -> tuple[str, ...]:
+    try:
+        ids = json.loads((folder / FINISHED).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return ()
+    return tuple(map(str, ids)) if isinstance(ids, list) else ()
