@@ -26,9 +26,13 @@ class Lane(Enum):
     ASKED = "asked"
     """What the user asked for, one after the other."""
     PREPARED = "prepared"
-    """What nobody waits for; it doesn't hold up what was asked for."""
+    """What nobody waits for: it pauses while there is something to do in the other lanes."""
     AT_HAND = "at hand"
     """What the mouse waits for: a moment's work, told to nobody unless it fails."""
+
+
+_GO_FIRST = Lane.ASKED, Lane.AT_HAND
+_PAUSE_S = 0.05
 
 
 class JobState(Enum):
@@ -98,9 +102,10 @@ class JobQueue(QObject):
         self._progressed.connect(self._on_worker_progressed, queued)
         self._started.connect(self._on_worker_started, queued)
         self._ended.connect(self._on_worker_ended, queued)
+        self._at_work = {lane: threading.Event() for lane in Lane}
         self._threads = [
-            threading.Thread(target=self._run_tasks, args=(tasks,), name="jobs", daemon=True)
-            for tasks in self._lanes.values()
+            threading.Thread(target=self._run_tasks, args=(lane,), name="jobs", daemon=True)
+            for lane in Lane
         ]
         for thread in self._threads:
             thread.start()
@@ -146,10 +151,13 @@ class JobQueue(QObject):
         for thread in self._threads:
             thread.join()
 
-    def _run_tasks(self, tasks: SimpleQueue[_Task | None]) -> None:
-        while (task := tasks.get()) is not None:
+    def _run_tasks(self, lane: Lane) -> None:
+        goes_first = () if lane is not Lane.PREPARED else _GO_FIRST
+        before = tuple(self._at_work[other] for other in goes_first)
+        while (task := self._lanes[lane].get()) is not None:
             self._started.emit(task.id)
-            monitor = _JobMonitor(self._progressed, task)
+            self._at_work[lane].set()
+            monitor = _JobMonitor(self._progressed, task, before)
             result: object = None
             error: BaseException | None = None
             try:
@@ -159,6 +167,7 @@ class JobQueue(QObject):
                 error = refusal
             except Exception as defect:  # noqa: BLE001 - a job's last stop: told and logged
                 error = defect_of(defect)
+            self._at_work[lane].clear()
             self._ended.emit(task.id, result, error)
 
     def _on_worker_started(self, job: str) -> None:
@@ -198,11 +207,20 @@ class JobQueue(QObject):
 
 
 class _JobMonitor:
-    """What a job's work talks to: progress is passed on when it moved by a tenth of a percent."""
+    """What a job's work talks to: progress is passed on when it moved by a tenth of a percent.
 
-    def __init__(self, progressed: SignalInstance, task: _Task) -> None:
+    Parameters
+    ----------
+    before : tuple of Event
+        While one of them is set, the work pauses where it checks.
+    """
+
+    def __init__(
+        self, progressed: SignalInstance, task: _Task, before: tuple[threading.Event, ...]
+    ) -> None:
         self._progressed = progressed
         self._task = task
+        self._before = before
         self._told = -1.0
 
     def report(self, fraction: float, text: Text | None = None) -> None:
@@ -211,5 +229,8 @@ class _JobMonitor:
             self._progressed.emit(self._task.id, fraction, text)
 
     def check(self) -> None:
+        while any(event.is_set() for event in self._before):
+            if self._task.stop.wait(_PAUSE_S):
+                break
         if self._task.stop.is_set():
             raise Cancelled

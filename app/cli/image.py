@@ -3,19 +3,25 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
 
 from app.cli.opened import opened_input, terminal_monitor
 from app.cli.output import print_lines
 from processing.errors import OutOfRange
-from processing.formats.png import write_png
+from processing.formats.png import MOST_PIXELS, MOST_ROWS, write_png
 from processing.image.attributes import ATTRIBUTES, colours
 from processing.image.kinds import ImageKind
+from processing.image.point_image import PointCloudImage
+from processing.monitor import Monitor, SilentMonitor
 from processing.points.drive import Drive
 from processing.text import Text
 
-_MOST_PIXELS = 400_000_000
+_STRIP_PIXELS = 2_000_000
 WordT = TypeVar("WordT")
 
 
@@ -27,29 +33,58 @@ def command(arguments: argparse.Namespace) -> int:
     with opened_input(arguments, monitor) as opened:
         for number, drive in enumerate(opened.drives):
             path = _path_of(arguments.output, number, drive)
-            rows, columns = write_image(drive, kind, attribute, path)
+            rows, columns = write_image(drive, kind, attribute, path, monitor)
             print_lines(f"{path}: {rows} x {columns}")
     return 0
 
 
-def write_image(drive: Drive, kind: ImageKind, attribute: str, path: Path) -> tuple[int, int]:
+def write_image(
+    drive: Drive, kind: ImageKind, attribute: str, path: Path, monitor: Monitor | None = None
+) -> tuple[int, int]:
     """Write a drive's image; gives its rows and columns.
 
-    An image of more than 400 million pixels is written with every second, third … row and column.
+    An image that other programs couldn't open any more is written with every second, third … row
+    and column, which is told.
 
     Raises
     ------
     Unsuitable
         The drive can't be shown so.
-    NoSpace
+    NoSpace, Cancelled
     """
+    monitor = monitor or SilentMonitor()
     image = drive.image(kind)
     step = 1
-    while (image.rows // step) * (image.width // step) > _MOST_PIXELS:
+    while not _can_be_opened(-(-image.rows // step), -(-image.width // step)):
         step += 1
-    points = image.raster(range(image.rows), range(image.width), step)
-    write_png(path, colours(drive, points, attribute, 2.0, 98.0))
-    return points.shape[0], points.shape[1]
+    size = -(-image.rows // step), -(-image.width // step)
+    if step > 1:
+        monitor.report(0.0, _THINNED.filled(step=step))
+    write_png(path, size, _strips(drive, image, attribute, step, monitor))
+    return size
+
+
+_THINNED = Text(
+    "The image is too large for one picture: only one of {step} rows and columns is written",
+    "画像が大きすぎるため、{step}行・{step}列ごとに1つだけを出力します",
+)
+
+
+def _can_be_opened(rows: int, columns: int) -> bool:
+    return rows <= MOST_ROWS and rows * columns <= MOST_PIXELS
+
+
+def _strips(
+    drive: Drive, image: PointCloudImage, attribute: str, step: int, monitor: Monitor
+) -> Iterator[NDArray[np.uint8]]:
+    """The picture from the top, a strip of rows at a time."""
+    rows = step * max(1, _STRIP_PIXELS // max(1, image.width))
+    for start in range(0, image.rows, rows):
+        monitor.check()
+        monitor.report(start / image.rows)
+        strip = range(start, min(start + rows, image.rows))
+        points = image.raster(strip, range(image.width), step)
+        yield colours(drive, points, attribute, 2.0, 98.0)
 
 
 def _path_of(output: Path, number: int, drive: Drive) -> Path:

@@ -102,3 +102,50 @@ def test_a_defect_is_told_in_one_sentence_and_logged(qtbot, jobs):
         jobs.start(TITLE, lambda monitor: 1 / 0)
     assert "ZeroDivisionError" in told.args[1].line("en")
     assert "\n" not in told.args[1].line("ja")
+
+
+@pytest.mark.parametrize("lane", [Lane.ASKED, Lane.AT_HAND])
+def test_what_nobody_waits_for_pauses_while_something_was_asked_for(qtbot, jobs, lane):
+    order = []
+    started, asked, may_end = threading.Event(), threading.Event(), threading.Event()
+
+    def prepare(monitor):
+        started.set()
+        asked.wait(30)
+        monitor.check()
+        order.append("prepared")
+
+    def do(monitor):
+        asked.set()
+        may_end.wait(30)
+        order.append("asked")
+
+    jobs.start(TITLE, prepare, lane=Lane.PREPARED)
+    assert started.wait(30)
+    jobs.start(TITLE, do, lane=lane)
+    assert asked.wait(30)
+    with qtbot.waitSignals([jobs.finished, jobs.finished], timeout=30_000):
+        may_end.set()
+    assert order == ["asked", "prepared"]
+
+
+def test_a_job_that_pauses_can_be_cancelled(qtbot, jobs):
+    started, asked, may_end = threading.Event(), threading.Event(), threading.Event()
+
+    def prepare(monitor):
+        started.set()
+        asked.wait(30)
+        monitor.check()
+
+    def do(monitor):
+        asked.set()
+        may_end.wait(30)
+
+    prepared = jobs.start(TITLE, prepare, lane=Lane.PREPARED)
+    assert started.wait(30)
+    jobs.start(TITLE, do)
+    assert asked.wait(30)
+    with qtbot.waitSignal(jobs.cancelled, timeout=30_000) as told:
+        jobs.cancel(prepared)
+    assert told.args == [prepared]
+    may_end.set()
