@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +17,8 @@ from processing.project.reference_system import reference_system
 from processing.text import Text
 
 _SAMPLE_POINTS = 2_000
+_FIRST_FLIGHT_LINE = 16
+_BETWEEN_FLIGHT_LINES_S = 20.0
 
 
 @dataclass(frozen=True)
@@ -27,7 +30,7 @@ class DeliveredFile:
     first_time, last_time : float
         Of the sampled points, delivered clock; NaN without times.
     scanner_column : str
-        The column that tells scanners apart: ``scanner`` or ``user_data``.
+        The column that tells scanners apart: ``scanner`` or ``user_data``; empty for none.
     scanners : frozenset of int
         Scanner numbers in the samples.
     columns : tuple of str
@@ -115,14 +118,32 @@ def _looked_at(path: Path) -> DeliveredFile:
 
 
 def _scanner_column(sample: dict[str, NDArray[np.generic]]) -> str:
-    """``user_data`` only where the source id says nothing and it holds a few small numbers."""
+    """``user_data`` only where the source id says nothing and it holds a few small numbers.
+
+    No column where the source ids are those of flight lines, which are one cloud.
+    """
     scanners = sample.get("scanner")
     marks = sample.get("user_data")
+    if scanners is not None and _are_flight_lines(scanners, sample.get("time")):
+        return ""
     if scanners is None or marks is None or np.unique(scanners).size > 1:
         return "scanner"
     found = np.unique(marks)
     is_scanner_number = 2 <= found.size <= 4 and found.min() >= 1 and found.max() <= 8
     return "user_data" if is_scanner_number else "scanner"
+
+
+def _are_flight_lines(scanners: NDArray[np.generic], times: NDArray[np.generic] | None) -> bool:
+    """Whether large source ids follow one another: heads of a vehicle count from 1 and go along."""
+    numbers = np.unique(scanners)
+    if times is None or numbers.size < 2 or numbers[0] < _FIRST_FLIGHT_LINE:
+        return False
+    passes = [times[scanners == number] for number in numbers]
+    if not all(np.isfinite(one).all() for one in passes):
+        return False
+    spans = sorted((float(one.min()), float(one.max())) for one in passes)
+    gaps = [later[0] - earlier[1] for earlier, later in itertools.pairwise(spans)]
+    return min(gaps) > _BETWEEN_FLIGHT_LINES_S
 
 
 def _common_crs(files: list[DeliveredFile]) -> str:
