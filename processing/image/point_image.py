@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from processing.image.coordinates import Coordinates
 from processing.image.fixed_raster import FixedRaster, fixed_raster_of
-from processing.image.gaps import STOP_S, closed_up, row_starts_of
 from processing.image.grid import PixelGrid
+from processing.image.image_rows import image_rows
 from processing.image.kinds import ImageKind
 from processing.image.point_image_kernels import (
     PixelLayout,
@@ -24,7 +24,7 @@ from processing.image.point_image_kernels import (
     raster_kernel,
     shown_point,
 )
-from processing.image.rows_of_kind import Revolutions, plan_of_cells, plan_of_turns
+from processing.image.rows_of_kind import Revolutions
 from processing.image.tiles import TilePyramid
 
 if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a circle
@@ -77,25 +77,24 @@ class PointCloudImage:
     ) -> None:
         self.kind = kind
         self._pulses = _read_only(pulses)
+        folder = None if coordinates is None else coordinates.folder
+        found = image_rows(kind, self._pulses, folding, folder)
         if isinstance(folding, int):
-            plan = plan_of_cells(folding, self._pulses)
-            self.row_times = np.full(plan.first_pulses.size, np.nan)
+            self.row_times = np.full(found.origins.size, np.nan)
         else:
-            plan = plan_of_turns(kind, folding, self._pulses)
-            plan = closed_up(plan, self._pulses, STOP_S * folding.pulse_rate_hz)
-            self.row_times = _times_of(plan.doubled_origins / 2, folding)
+            self.row_times = _times_of(found.origins / 2, folding)
         self.layout = PixelLayout(
             pulses=self._pulses,
-            row_starts=_read_only(row_starts_of(plan, self._pulses)),
-            origins=_read_only(plan.doubled_origins),
-            spans=_read_only(plan.doubled_spans),
-            per_span=plan.columns_per_span,
+            row_starts=_read_only(found.row_starts),
+            origins=_read_only(found.origins),
+            spans=_read_only(found.spans),
+            per_span=found.per_span,
         )
         self.row_starts = self.layout.row_starts
-        self.segments = plan.segments
-        self.row_widths = plan.widths
-        self.rows = int(plan.first_pulses.size)
-        self.width = int(plan.widths.max(initial=0))
+        self.segments = found.segments
+        self.row_widths = found.widths
+        self.rows = int(found.origins.size)
+        self.width = int(found.widths.max(initial=0))
         self.drive_count = int(self._pulses.size)
         self._coordinates = coordinates
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import UserError
+from processing.image import point_image
 from processing.image.attributes import colours
 from processing.image.kinds import ImageKind
 from processing.image.tiles import TileKey
@@ -83,6 +84,7 @@ class TileCache:
         self._refusals: dict[tuple[str, str], UserError] = {}
         self._ages: dict[str, int] = {}
         self._busy = 0
+        self._is_warm = True
         self._is_closed = False
         self._loaders = [
             threading.Thread(target=self._load_all, name=f"tiles-{number}", daemon=True)
@@ -101,6 +103,12 @@ class TileCache:
             open drive of that id.
         """
         self._drive_of = drive_of
+
+    def get_ready(self) -> None:
+        """Let a loader fetch its machine code now, and not when the first tile is waited for."""
+        with self._changed:
+            self._is_warm = False
+            self._changed.notify()
 
     @property
     def held_bytes(self) -> int:
@@ -219,16 +227,21 @@ class TileCache:
     def _load_all(self) -> None:
         while True:
             with self._changed:
-                while not self._waiting and not self._is_closed:
+                while not self._waiting and not self._is_closed and self._is_warm:
                     self._changed.wait()
                 drive_of = self._drive_of
-                if self._is_closed or drive_of is None:
+                if self._is_closed:
                     return
-                request, self._loading[request] = self._waiting.popitem()
-                age = self._ages.get(request.drive_id, 0)
+                was_warm, self._is_warm = self._is_warm, True
+                if was_warm:
+                    request, self._loading[request] = self._waiting.popitem()
+                    age = self._ages.get(request.drive_id, 0)
                 self._busy += 1
             try:
-                self._load(request, age, drive_of)
+                if not was_warm:
+                    point_image.warm_up()
+                elif drive_of is not None:
+                    self._load(request, age, drive_of)
             finally:
                 with self._changed:
                     self._busy -= 1

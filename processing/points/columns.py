@@ -5,6 +5,7 @@ A column is a raw little-endian file, one value or vector per point; LAS integer
 
 from __future__ import annotations
 
+import mmap
 from collections.abc import Mapping
 from pathlib import Path
 from types import TracebackType
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import UNCHANGED, BadFile, told_as_user_error
+from processing.points.mapped_pages import MappedPages
 from processing.text import Text
 
 COLUMN_TYPES: Mapping[str, tuple[str, int]] = {
@@ -112,9 +114,12 @@ class Columns:
     folder : Path
     count : int
         Number of points.
+    pages : MappedPages, optional
+        Bounds what maps hold of the memory, those of several drives together.
     """
 
-    def __init__(self, folder: Path, count: int) -> None:
+    def __init__(self, folder: Path, count: int, pages: MappedPages | None = None) -> None:
+        self._pages = pages or MappedPages()
         self._folder = folder
         self._count = count
         self._maps: dict[str, NDArray[Any]] = {}
@@ -144,6 +149,7 @@ class Columns:
         MissingInput
             There is no such column.
         """
+        self._pages.look()
         if name not in self._maps:
             self._maps[name] = self._mapped(name)
         return self._maps[name]
@@ -225,4 +231,7 @@ class Columns:
                 )
             if self._count == 0:
                 return np.empty(shape, dtype=dtype)
-            return np.memmap(path, dtype=dtype, mode="r", shape=shape)
+            with path.open("rb") as file:
+                mapped = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+            self._pages.add(mapped)
+            return np.frombuffer(mapped, dtype=dtype).reshape(shape)

@@ -20,6 +20,7 @@ from processing.image.point_image import PointCloudImage
 from processing.points.columns import Columns
 from processing.points.drive_info import DriveInfo, SourceFile, read_drive_info
 from processing.points.file_places import FolderMove, folder_of, path_now
+from processing.points.mapped_pages import MappedPages
 from processing.points.source_order import sources_of
 from processing.points.trajectory import Trajectory
 from processing.points.turns import Turns
@@ -46,6 +47,8 @@ class Drive:
     ----------
     folder : Path
         As written by :mod:`processing.project.importing`.
+    pages : MappedPages, optional
+        Shared by drives whose columns are to be bounded together.
 
     Attributes
     ----------
@@ -58,10 +61,10 @@ class Drive:
         The folder is missing, incomplete or damaged.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, pages: MappedPages | None = None) -> None:
         self._folder = folder
         self.info: DriveInfo = read_drive_info(folder)
-        self.columns = Columns(folder, self.info.count)
+        self.columns = Columns(folder, self.info.count, pages)
         self.noted_images: ImageList | None = read_images(folder)
         self._offsets = read_offsets(folder)
         self._moves: tuple[FolderMove, ...] = ()

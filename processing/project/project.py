@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from processing.errors import UNCHANGED, MissingInput, OutOfRange, told_as_user_error
 from processing.points.drive import Drive
+from processing.points.mapped_pages import MappedPages
 from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.catalogue_adoption import CatalogueFile
 from processing.project.catalogue_change import CatalogueComparison, compare
@@ -78,7 +79,10 @@ class Project:
                 self.runs = Runs(self._database)
                 self._folders = DriveFolders(folder, self._database, self.settings)
                 self._origin = self._stored_origin()
-            self._drives = {id_: Drive(self._folders.path_of(id_)) for id_ in self._folders.ids}
+            self._pages = MappedPages()
+            self._drives = {
+                id_: Drive(self._folders.path_of(id_), self._pages) for id_ in self._folders.ids
+            }
             self.sources = SourceFiles(folder, self.settings, writing=writing)
             self.sources.use_known(self.drives)
             labels.correct(self.history.pending_labels(), writing=writing)
@@ -250,7 +254,7 @@ class Project:
         if crs != self.crs:
             self._took_crs(crs)
         for drive in new:
-            self._drives[drive.id] = Drive(self._folders.path_of(drive.id))
+            self._drives[drive.id] = Drive(self._folders.path_of(drive.id), self._pages)
         return tuple(self._drives[drive.id] for drive in new)
 
     def set_crs(self, crs: str) -> None:

@@ -192,7 +192,8 @@ class _Profile:
 
 def _profile(drive: Drive, image: PointCloudImage, row: int) -> _Profile:
     start, end = int(image.row_starts[row]), int(image.row_starts[row + 1])
-    return _Profile(image.columns_of(start, end), drive.xyz(slice(start, end)))
+    _, columns = image.pixel_of(np.arange(start, end))
+    return _Profile(columns, drive.xyz(slice(start, end)))
 
 
 def _column_step_m(profiles: list[_Profile]) -> float:

@@ -318,12 +318,15 @@ class MapView(PlaneView):
 
     def _read_drives(self) -> None:
         wanted = self._shared.view_settings.image_kind
+        before = [drive for drive, _ in self._drives]
         self._drives = tuple(
             (drive, wanted if wanted in drive.image_kinds else drive.image_kinds[0])
             for drive in self._source.drives()
             if drive.count
         )
-        self._ways = ways_of(drive for drive, _ in self._drives)
+        drives = [drive for drive, _ in self._drives]
+        if drives != before:
+            self._ways = ways_of(drives)
         self._points = PlanPoints(self._drives)
         self._empty.setVisible(not self._drives)
         self._wish()

@@ -1,0 +1,71 @@
+"""MappedPages: what maps of columns hold of a machine's memory, kept within bounds.
+
+The pages of a map that were read stay in the process until the system needs memory. They cost
+nothing, but they hide what a program needs, and a machine that is short of memory becomes slow
+before it takes them back.
+"""
+
+from __future__ import annotations
+
+import mmap
+import threading
+import time
+import weakref
+from pathlib import Path
+
+LIMIT_BYTES = 256 * 2**20
+"""Maps hold no more than about this: less than views read in a second."""
+
+_LOOKED_AT_EVERY_S = 0.02
+_STATM = Path("/proc/self/statm")
+_FILE_PAGES = 2
+
+
+class MappedPages:
+    """Gives back the pages of maps once they have grown by so much; thread-safe.
+
+    A page that is read again comes back from the system's own cache; arrays over the maps stay as
+    they are. Where the system doesn't tell what a process holds, or takes pages back by itself,
+    this does nothing.
+
+    Parameters
+    ----------
+    limit_bytes : int
+        What maps may hold together.
+    """
+
+    def __init__(self, *, limit_bytes: int = LIMIT_BYTES) -> None:
+        self._limit_bytes = limit_bytes
+        self._lock = threading.Lock()
+        self._maps: weakref.WeakSet[mmap.mmap] = weakref.WeakSet()
+        self._held_before = 0
+        self._look_at = 0.0
+        self._can_give_back = _STATM.is_file() and hasattr(mmap, "MADV_DONTNEED")
+
+    def add(self, mapped: mmap.mmap) -> None:
+        """Watch a map that is only read."""
+        with self._lock:
+            if not self._maps:
+                self._held_before = self._held_bytes()
+            self._maps.add(mapped)
+
+    def look(self) -> None:
+        """Give pages back if there are too many; to be called whenever maps are used."""
+        now = time.monotonic()
+        if now < self._look_at or not self._can_give_back:
+            return
+        with self._lock:
+            self._look_at = now + _LOOKED_AT_EVERY_S
+            held = self._held_bytes()
+            # What libraries map meanwhile counts too: then pages go a little early.
+            self._held_before = min(self._held_before, held)
+            if held - self._held_before > self._limit_bytes:
+                for mapped in self._maps:
+                    mapped.madvise(mmap.MADV_DONTNEED)
+                self._held_before = self._held_bytes()
+
+    def _held_bytes(self) -> int:
+        """Pages of files that the process holds."""
+        if not self._can_give_back:
+            return 0
+        return int(_STATM.read_text().split()[_FILE_PAGES]) * mmap.PAGESIZE
