@@ -194,6 +194,7 @@ def _columns(
         for block in blocks_of(image.row_starts, tool.overlap_rows, points_per_block):
             monitor.check()
             monitor.report(float(image.row_starts[block.rows.start]) / total)
+            request.drive.columns.give_back()
             points = _block_of(request.drive, image, block.rows_with_overlap)
             results.add(block, compute(points, request.parameters, monitor))
         finished = results.finished(monitor)

@@ -207,6 +207,10 @@ class Columns:
         """The values that :meth:`hold` keeps in place of the file's, or None."""
         return self._held.get(name)
 
+    def give_back(self) -> None:
+        """Let maps hold no more memory than they should; for long work, between its stretches."""
+        self._pages.look()
+
     def release(self, name: str) -> None:
         """Forget the map of a column; arrays already handed out stay valid."""
         self._maps.pop(name, None)

@@ -181,6 +181,16 @@ def _template(given: str) -> ProfileTemplate:
     return read_template(Path(given))
 
 
+def _remark(drive: Drive) -> Text | None:
+    """Say which parameter nothing else can stand for on this drive."""
+    if drive.trajectory is not None:
+        return None
+    return Text(
+        "This drive has no trajectory: give the direction of the line.",
+        "この走行データには走行軌跡がないため、線の方位角を指定してください。",
+    )
+
+
 def _start(drive: Drive, parameters: TemplateParameters) -> Frame:
     place = np.array([parameters.easting_m, parameters.northing_m, parameters.height_m])
     if parameters.heading_deg != _ALONG_ROAD_DEG:
@@ -223,4 +233,5 @@ TEMPLATE = Tool(
     needs=Needs.POINTS,
     parameters=TemplateParameters,
     find=find_template,
+    remark=_remark,
 )

@@ -160,6 +160,15 @@ Find = Callable[[Drive, Any, Monitor], CandidateResult]
 ComputeOf = Callable[[Drive, tuple[Drive, ...], Any, Monitor], Compute]
 
 
+# What a person should know before the tool is run on a drive.
+Remark = Callable[[Drive], Text | None]
+
+
+def nothing_to_remark(_drive: Drive) -> Text | None:
+    """The ``remark`` of a tool that runs on any drive as its parameters stand."""
+    return None
+
+
 def nothing_per_point(_block: PointBlock, _parameters: object, _monitor: Monitor) -> PointResult:
     """The ``compute`` of a tool that finds candidates."""
     return PointResult()
@@ -198,6 +207,8 @@ class Tool:
     find : callable or None
         Candidates on a whole drive, of which it reads a stretch at a time; None for a tool that
         says something about points. It reports its own progress.
+    remark : callable
+        What must be given so that it can run on a drive; None where nothing must.
     """
 
     id: str
@@ -212,3 +223,4 @@ class Tool:
     version: int = 1
     compute_of: ComputeOf | None = None
     find: Find | None = None
+    remark: Remark = nothing_to_remark

@@ -58,6 +58,7 @@ class ProcessingPanel(QWidget):
         self._language = language
         self._tools = tools
         self._reason: Reason | None = None
+        self._remark: Reason | None = None
         self._forms: dict[str, ParameterForm] = {}
         self._search = QLineEdit(self)
         self._search.setPlaceholderText(self.tr("Search for a tool"))
@@ -100,14 +101,22 @@ class ProcessingPanel(QWidget):
         self._reason = reason
         self.refresh()
 
+    def ask_remarks_from(self, remark: Reason) -> None:
+        """Ask this what must be given for a tool that can run."""
+        self._remark = remark
+        self.refresh()
+
     def refresh(self) -> None:
         """Ask again whether the chosen tool can run: another drive is shown."""
-        why_not = None
+        why_not = remark = None
         if self.tool and self._reason is not None:
             why_not = self._reason(self.tool)
+        if self.tool and self._remark is not None:
+            remark = self._remark(self.tool)
         self._run.setEnabled(bool(self.tool) and why_not is None)
-        self._why_not.setText("" if why_not is None else why_not.spoken(self._language))
-        self._why_not.setVisible(why_not is not None)
+        said = why_not or remark
+        self._why_not.setText("" if said is None else said.spoken(self._language))
+        self._why_not.setVisible(said is not None)
 
     def show_tool(self, tool: str) -> None:
         """Choose a tool, as if it had been clicked."""

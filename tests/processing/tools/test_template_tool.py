@@ -79,9 +79,16 @@ def test_a_start_away_from_the_recording_is_refused(street: Drive) -> None:
         run_with(street, template=template_text(CURB), easting_m=EAST + 500.0, northing_m=NORTH)
 
 
+def test_with_a_trajectory_nothing_is_remarked(street: Drive) -> None:
+    assert TEMPLATE.remark(street) is None
+
+
 def test_without_a_trajectory_the_direction_must_be_given(tmp_path: Path) -> None:
     straight = simulated_drive(3, pulses_per_turn=1200.0, length_m=8.0, range_noise_m=0.0)
     drive = imported(tmp_path, straight, is_bare=True)
+    remark = TEMPLATE.remark(drive)
+    assert remark is not None
+    assert "direction" in remark.en
     given = {"template": template_text(CURB), "easting_m": -11_034.0, "northing_m": -35_016.0}
     with pytest.raises(Unsuitable, match="direction"):
         run_with(drive, **given)

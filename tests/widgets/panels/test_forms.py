@@ -175,6 +175,17 @@ def test_a_tool_that_cannot_run_says_why(panel: ProcessingPanel) -> None:
     assert run_button(panel).isEnabled()
 
 
+def test_what_a_tool_must_be_given_is_said_and_it_can_run(panel: ProcessingPanel) -> None:
+    remark = Text("Give the direction.", "方位角を指定してください。")
+    first, last = next(iter(TOOLS)), list(TOOLS)[-1]
+    panel.ask_remarks_from(lambda tool: remark if tool == first else None)
+    for tool in (first, last):
+        panel.show_tool(tool)
+        assert run_button(panel).isEnabled()
+        shown = [label.text() for label in panel.findChildren(QLabel) if label.isVisible()]
+        assert (remark.en in shown) == (tool == first)
+
+
 def test_the_search_finds_tools_in_both_languages(qtbot: QtBot, panel: ProcessingPanel) -> None:
     wanted = list(TOOLS.values())[-1]
     search = panel.findChild(QLineEdit)
