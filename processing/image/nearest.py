@@ -1,75 +1,141 @@
-"""The measured point nearest to a place in space, found by the tiles' bounds."""
+"""The measured points nearest to places in space, found stretch by stretch by their bounds."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.coordinates import Coordinates
 from processing.image.point_image import PointCloudImage
-from processing.image.tiles import TileKey
+from processing.image.tile_kernels import HIGHEST, LOWEST
+from processing.image.tiles import TILE
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
 
 NONE = -1
-XyzOf = Callable[[NDArray[np.int64]], NDArray[np.float64]]
-"""Gives (k, 3) coordinates of points, m, project CRS."""
+_FEW_PLACES = 8
+_PLACES_TOGETHER = 128
+"""So few that the points about them are looked through while a window waits."""
+_SLACK_M = 2.0
+"""How far points may lie outside of bounds that were only sketched."""
 
 
-def nearest_point(
-    image: PointCloudImage, xyz_of: XyzOf, xyz: NDArray[np.float64], within_m: float
-) -> int:
-    """The point of an image's recording nearest to a place.
+class NearestSearch:
+    """Looks for the nearest points of many places at once, a stretch of the recording at a time.
 
-    Tiles whose bounds come within the distance are followed down to single rows; only the points
-    of those are measured.
+    Places that lie together cost little more than one of them, however long the recording.
 
     Parameters
     ----------
-    xyz : (3,) float64
+    image : PointCloudImage
+    coordinates : Coordinates
+        Of the image's recording.
+    xyz : (n, 3) float64
         m, project CRS.
     within_m : float
         Points further away don't count.
 
-    Returns
-    -------
-    int
-        −1 where no point is that near.
+    Attributes
+    ----------
+    points : (n,) int64
+        The nearest point of each place so far, −1 without; final once :meth:`step` says so.
     """
+
+    def __init__(
+        self, image: PointCloudImage, coordinates: Coordinates, xyz: Floats, within_m: float
+    ) -> None:
+        self._image = image
+        self._coordinates = coordinates
+        self._xyz = xyz
+        self._best = np.full(len(xyz), within_m)
+        self.points: Integers = np.full(len(xyz), NONE, dtype=np.int64)
+        self._lowest, self._highest = _bounds_of_stretches(image)
+        self._waiting = self._in_reach(within_m) if len(xyz) else []
+        self._parts: list[Integers] = []
+        self._stretch = self._start = 0
+        self._integers: NDArray[np.int32] = np.empty((0, 3), np.int32)
+
+    def step(self) -> bool:
+        """Search a moment longer; says whether more is to follow."""
+        while not self._parts and self._waiting:
+            self._begin(self._waiting.pop())
+        if self._parts:
+            mine = self._parts.pop()
+            self._look(mine[self._reaches(self._stretch, mine)])
+        return bool(self._parts or self._waiting)
+
+    def _begin(self, stretch: int) -> None:
+        """Take up the places that come near a stretch, some at a time."""
+        mine = np.flatnonzero(self._reaches(stretch, np.arange(len(self._xyz))))
+        if not mine.size:
+            return
+        self._stretch = stretch
+        first, starts = stretch * TILE, self._image.row_starts
+        self._start = int(starts[first])
+        stop = int(starts[min(first + TILE, self._image.rows)])
+        self._integers = self._coordinates.stretch(self._start, stop)
+        self._parts = np.array_split(mine, -(-mine.size // _PLACES_TOGETHER))
+
+    def _reaches(self, stretch: int, places: Integers) -> NDArray[np.bool_]:
+        """Whether points of a stretch may be nearer to places than what was found."""
+        xyz = self._xyz[places]
+        outside = np.maximum(
+            np.maximum(self._lowest[stretch] - xyz, xyz - self._highest[stretch]), 0
+        )
+        is_near: NDArray[np.bool_] = (outside**2).sum(axis=1) <= self._best[places] ** 2
+        return is_near
+
+    def _in_reach(self, within_m: float) -> list[int]:
+        """Stretches that come near any of the places, the nearest one last."""
+        low, high = self._xyz.min(axis=0), self._xyz.max(axis=0)
+        apart = np.maximum(np.maximum(self._lowest - high, low - self._highest), 0.0)
+        away = np.sqrt((apart**2).sum(axis=1))
+        near = np.flatnonzero(away <= within_m)
+        stretches: list[int] = near[np.argsort(-away[near], kind="stable")].tolist()
+        return stretches
+
+    def _look(self, mine: Integers) -> None:
+        if not mine.size:
+            return
+        places, limit = self._xyz[mine], float(self._best[mine].max())
+        found, xyz = self._points_about(places, limit)
+        if not found.size:
+            return
+        if mine.size <= _FEW_PLACES:
+            squares = ((places[:, None, :] - xyz) ** 2).sum(axis=2)
+            nearest = squares.argmin(axis=1)
+            away = np.sqrt(squares[np.arange(mine.size), nearest])
+        else:
+            from scipy.spatial import cKDTree
+
+            away, nearest = cKDTree(xyz).query(places, distance_upper_bound=limit * (1 + 1e-9))
+        has_none = self.points[mine] == NONE
+        is_nearer = (away < self._best[mine]) | (has_none & (away <= self._best[mine]))
+        chosen = mine[is_nearer]
+        self.points[chosen] = found[nearest[is_nearer]]
+        self._best[chosen] = away[is_nearer]
+
+    def _points_about(self, places: Floats, limit: float) -> tuple[Integers, Floats]:
+        """Points of the stretch in the box about places, and where they are."""
+        scale, offset = np.array(self._coordinates.scale), np.array(self._coordinates.offset)
+        low = np.floor((places.min(axis=0) - limit - offset) / scale)
+        high = np.ceil((places.max(axis=0) + limit - offset) / scale)
+        easting = self._integers[:, 0]
+        chosen = np.flatnonzero((easting >= low[0]) & (easting <= high[0]))
+        for axis in (1, 2):
+            values = self._integers[chosen, axis]
+            chosen = chosen[(values >= low[axis]) & (values <= high[axis])]
+        return chosen + self._start, self._integers[chosen] * scale + offset
+
+
+def _bounds_of_stretches(image: PointCloudImage) -> tuple[Floats, Floats]:
+    """Lowest and highest coordinates of all rows of tiles: (stretches, 3) each, m."""
     pyramid = image.pyramid
-    nearest, limit = NONE, within_m
-    waiting = [pyramid.top]
-    while waiting:
-        # The nearest tile first, so that most others are already too far.
-        waiting.sort(key=lambda key: _distance(image, key, xyz), reverse=True)
-        key = waiting.pop()
-        if _distance(image, key, xyz) > limit:
-            break
-        if key.level > 0:
-            waiting.extend(pyramid.children(key))
-            continue
-        found, distance = _nearest_in_tile(image, xyz_of, key, xyz)
-        if distance <= limit and (nearest == NONE or distance < limit):
-            nearest, limit = found, distance
-    return nearest
-
-
-def _distance(image: PointCloudImage, key: TileKey, xyz: NDArray[np.float64]) -> float:
-    bounds = image.pyramid.bounds(key)
-    if bounds is None:
-        return np.inf
-    outside = np.maximum(np.maximum(bounds[0] - xyz, xyz - bounds[1]), 0.0)
-    return float(np.sqrt((outside**2).sum()))
-
-
-def _nearest_in_tile(
-    image: PointCloudImage, xyz_of: XyzOf, key: TileKey, xyz: NDArray[np.float64]
-) -> tuple[int, float]:
-    rows, columns = image.pyramid.rows_columns(key)
-    start, stop = int(image.row_starts[rows.start]), int(image.row_starts[rows.stop])
-    of_points = image.columns_of(start, stop)
-    inside = np.flatnonzero((of_points >= columns.start) & (of_points < columns.stop)) + start
-    if not inside.size:
-        return NONE, np.inf
-    squares = ((xyz_of(inside) - xyz) ** 2).sum(axis=1)
-    best = int(squares.argmin())
-    return int(inside[best]), float(np.sqrt(squares[best]))
+    pyramid.sketch()
+    rows, columns = pyramid.shape(0)
+    facts = pyramid.facts[: rows * columns].reshape(rows, columns, -1)
+    slack = 0.0 if pyramid.is_ready else _SLACK_M
+    lowest: Floats = facts[:, :, LOWEST].min(axis=1) - slack
+    highest: Floats = facts[:, :, HIGHEST].max(axis=1) + slack
+    return lowest, highest

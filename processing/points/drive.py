@@ -14,8 +14,9 @@ from processing.cameras.image_list import ImageList
 from processing.cameras.image_store import read_images
 from processing.cameras.offset_store import read_offsets, write_offsets
 from processing.errors import BadFile, Unsuitable, told_as_user_error
+from processing.image.coordinates import Coordinates
 from processing.image.kinds import ImageKind
-from processing.image.nearest import nearest_point
+from processing.image.nearest import NearestSearch
 from processing.image.point_image import PointCloudImage
 from processing.points.columns import Columns
 from processing.points.drive_info import DriveInfo, SourceFile, read_drive_info
@@ -203,6 +204,11 @@ class Drive:
         )
         return local
 
+    @property
+    def coordinates(self) -> Coordinates:
+        """Where its points are, as integers."""
+        return Coordinates(self.columns["xyz"], self.info.scale, self.info.offset, self._folder)
+
     def sources(self, start: int, stop: int) -> tuple[NDArray[np.uint16], NDArray[np.int64]]:
         """Where the points ``start … stop − 1`` were delivered.
 
@@ -253,8 +259,24 @@ class Drive:
         """
         if self.count == 0:
             return -1
-        image = self.image(self.image_kinds[-1])
-        return nearest_point(image, self.xyz, np.asarray(xyz, dtype=np.float64), within_m)
+        search = self.nearest_points(np.reshape(xyz, (1, 3)), within_m)
+        while search.step():
+            pass
+        return int(search.points[0])
+
+    def nearest_points(self, xyz: NDArray[np.float64], within_m: float) -> NearestSearch:
+        """Begin to look for the measured points nearest to many places.
+
+        Parameters
+        ----------
+        xyz : (n, 3) float64
+            m, project CRS.
+        """
+        # Any kind will do: to make another one takes seconds where there are many points.
+        made = sorted(self._point_images.values(), key=lambda one: not one.pyramid.is_ready)
+        image = made[0] if made else self.image(self.image_kinds[0])
+        places = np.asarray(xyz, dtype=np.float64)
+        return NearestSearch(image, self.coordinates, places, within_m)
 
     def _check_columns(self) -> None:
         for name in ("xyz", "time", "intensity", "pulse"):

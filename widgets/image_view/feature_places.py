@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.nearest import NearestSearch
 from processing.project.feature import Feature, Vertex
 from widgets.image_view.picture import Picture, Span
 from widgets.image_view.placed_feature import PlacedFeature, placed
@@ -19,8 +21,18 @@ Floats = NDArray[np.float64]
 NEAR_M = 0.3
 """How far a vertex may be from the measured point that stands for it in another drive."""
 
-_UNKNOWN, _NONE = -2, -1
+_UNKNOWN = -2
+_SEARCHED_AT_ONCE = 4_096
 _MOST_SEARCHED = 100_000
+
+
+@dataclass(frozen=True)
+class _Batch:
+    """Features whose unknown vertices are searched together, and those vertices."""
+
+    features: list[Feature]
+    vertices: list[Vertex]
+    search: NearestSearch
 
 
 class FeaturePlaces:
@@ -44,19 +56,21 @@ class FeaturePlaces:
         self._bounds: Floats | None = None
         self._ids: list[str] = []
         self._searched: dict[tuple[str, Vertex], int] = {}
+        self._batch: _Batch | None = None
 
     @property
     def is_searching(self) -> bool:
         """Whether vertices wait for their nearest point."""
-        return bool(self._waiting)
+        return bool(self._waiting) or self._batch is not None
 
     def show(self, picture: Picture | None) -> None:
         """Place everything in another picture."""
-        self._picture = picture
+        self._picture, self._batch = picture, None
         self._place(self._features.values())
 
     def read_all(self) -> None:
         """Read all features anew, when another project is open."""
+        self._batch = None
         self._points.clear()
         self._features = {feature.id: feature for feature in self._source.features()}
         self._placed.clear()
@@ -128,22 +142,51 @@ class FeaturePlaces:
         picture, until = self._picture, time.perf_counter() + for_s
         if picture is None:
             return False
-        found = []
+        has_found = False
         while time.perf_counter() < until:
+            if self._batch is None:
+                self._batch = self._next_batch(picture, near)
+            if self._batch is None:
+                break
+            if not self._batch.search.step():
+                self._take(picture, self._batch)
+                self._batch, has_found = None, True
+        return has_found
+
+    def _next_batch(self, picture: Picture, near: tuple[float, float]) -> _Batch | None:
+        """The features that wait next to a place, as many as are searched together."""
+        features: list[Feature] = []
+        vertices: dict[Vertex, None] = {}
+        while len(vertices) < _SEARCHED_AT_ONCE:
             feature = self._features.get(self._waiting.next_to(near))
-            points = None if feature is None else self._points.get((picture.drive.id, feature.id))
-            unknown = (
-                np.empty(0, np.int64) if points is None else np.flatnonzero(points == _UNKNOWN)
-            )
-            if feature is not None and points is not None and unknown.size:
-                points[unknown[0]] = self._point_for(picture, feature.vertices[unknown[0]])
-                continue
             if not self._waiting.done():
                 break
-            if feature is not None:
-                found.append(feature)
-        self._place_known(picture, found)
-        return bool(found)
+            points = None if feature is None else self._points.get((picture.drive.id, feature.id))
+            if feature is not None and points is not None:
+                features.append(feature)
+                unknown = np.flatnonzero(points == _UNKNOWN)
+                vertices.update(dict.fromkeys(feature.vertices[index] for index in unknown))
+        if not features:
+            return None
+        new = [one for one in vertices if (picture.drive.id, one) not in self._searched]
+        xyz = np.array([one.xyz for one in new]).reshape(-1, 3)
+        return _Batch(features, new, picture.drive.nearest_points(xyz, NEAR_M))
+
+    def _take(self, picture: Picture, batch: _Batch) -> None:
+        """Place the features of a batch; those that have changed meanwhile wait again anyway."""
+        self._remember(picture, batch.vertices, batch.search)
+        known = [one for one in batch.features if self._features.get(one.id) is one]
+        for feature in known:
+            points = self._points[picture.drive.id, feature.id]
+            for index in np.flatnonzero(points == _UNKNOWN):
+                points[index] = self._point_for(picture, feature.vertices[index])
+        self._place_known(picture, known)
+
+    def _remember(self, picture: Picture, vertices: list[Vertex], search: NearestSearch) -> None:
+        if len(self._searched) > _MOST_SEARCHED:
+            self._searched.clear()
+        for vertex, point in zip(vertices, search.points.tolist(), strict=True):
+            self._searched[picture.drive.id, vertex] = point
 
     def _point_for(self, picture: Picture, vertex: Vertex) -> int:
         """The nearest point, remembered: what was searched to be shown is dragged at once."""
@@ -151,7 +194,7 @@ class FeaturePlaces:
         if key not in self._searched:
             if len(self._searched) > _MOST_SEARCHED:
                 self._searched.clear()
-            self._searched[key] = _nearest(picture, vertex)
+            self._searched[key] = picture.drive.nearest_point(np.array(vertex.xyz), NEAR_M)
         return self._searched[key]
 
     def _place(self, features: Iterable[Feature]) -> None:
@@ -196,10 +239,6 @@ def _own_points(picture: Picture, vertices: tuple[Vertex, ...]) -> NDArray[np.in
         ],
         dtype=np.int64,
     )
-
-
-def _nearest(picture: Picture, vertex: Vertex) -> int:
-    return max(picture.drive.nearest_point(np.array(vertex.xyz), NEAR_M), _NONE)
 
 
 def _places(picture: Picture, points: NDArray[np.int64]) -> Floats:
