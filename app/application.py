@@ -31,6 +31,7 @@ from app.panel_places import panels_of
 from app.review import Review
 from app.settings import Settings
 from app.shortcut_editing import give_keys
+from app.source_watch import SourceWatch
 from app.theme import Theme
 from app.translation import Translation
 from app.view_area import ViewArea
@@ -151,6 +152,7 @@ def _make_lasting(settings: Settings) -> LastingParts:
         jobs=jobs,
         document=document,
         review=review,
+        source_watch=SourceWatch(document, document),
         toolbox=make_toolbox(document),
         window=MainWindow(),
     )
@@ -178,6 +180,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         jobs=lasting.jobs,
         document=document,
         review=lasting.review,
+        source_watch=lasting.source_watch,
         toolbox=lasting.toolbox,
         image_views=image_views,
         scene_view=scene_view,

@@ -17,7 +17,7 @@ from app.translation import Translation
 from app.window_parts import WindowParts
 from processing.errors import UserError
 from processing.text import Language
-from widgets.image_view.side_by_side import ShownImage
+from widgets.image_view.panes import ShownImage
 from widgets.image_view.viewport import Viewport
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.scene_view.camera import Camera

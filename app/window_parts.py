@@ -9,6 +9,7 @@ from app.jobs import JobQueue
 from app.main_window import MainWindow
 from app.review import Review
 from app.settings import Settings
+from app.source_watch import SourceWatch
 from app.theme import Theme
 from app.view_docks import ViewDocks
 from processing.text import Language
@@ -46,6 +47,7 @@ class LastingParts:
     jobs: JobQueue
     document: Document
     review: Review
+    source_watch: SourceWatch
     toolbox: MouseToolbox
     window: MainWindow
 
@@ -63,6 +65,7 @@ class WindowParts:
     jobs: JobQueue
     document: Document
     review: Review
+    source_watch: SourceWatch
     toolbox: MouseToolbox
     image_views: ImageViews
     scene_view: SceneView

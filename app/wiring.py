@@ -7,6 +7,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject
 
 from app.drawing_wiring import connect_drawing
+from app.drive_wiring import connect_drives
 from app.jobs import JobState, JobStatus
 from app.review_wiring import connect_review
 from app.template_wiring import connect_templates
@@ -38,6 +39,7 @@ def connect_parts(parts: WindowParts) -> None:
     _connect_intentions(parts, wiring)
     connect_drawing(parts)
     connect_views(parts)
+    connect_drives(parts)
     connect_review(parts)
     connect_templates(parts)
     parts.window.closed.connect(wiring.on_window_closed)
@@ -64,6 +66,7 @@ def _connect_document(parts: WindowParts, wiring: _Wiring) -> None:
     document.shared.view_settings.image_changed.connect(parts.processing_panel.refresh)
     document.shared.map_changes.drives_changed.connect(parts.processing_panel.refresh)
     parts.processing_panel.ask_reasons_from(wiring.reason_against_tool)
+    parts.processing_panel.ask_remarks_from(wiring.remark_on_tool)
 
 
 def _connect_intentions(parts: WindowParts, wiring: _Wiring) -> None:
@@ -102,6 +105,11 @@ class _Wiring(QObject):
         except Unsuitable as reason:
             return reason.what
         return None
+
+    def remark_on_tool(self, tool: str) -> Text | None:
+        """What must be given for a tool on the drive shown; None where nothing must."""
+        drive_id = self._parts.document.shared.view_settings.drive_id
+        return tool_of(tool).remark(self._parts.document.drive(drive_id)) if drive_id else None
 
     def on_document_opened(self) -> None:
         project = self._parts.document.project

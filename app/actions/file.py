@@ -92,6 +92,17 @@ class FileActions:
                 needs_project=True,
             ),
             Action(
+                "find-files",
+                Text("Find delivered files…", "納品ファイルの場所を指定…"),
+                self.choose_delivery,
+                "file",
+                hint=Text(
+                    "Says in which folder missing point files and camera images are now.",
+                    "見つからない点群ファイルとカメラ画像がある現在のフォルダを指定します。",
+                ),
+                needs_project=True,
+            ),
+            Action(
                 "adopt-catalogue",
                 Text("Use an office's catalogue…", "事務所のカタログを使う…"),
                 self.choose_catalogue,
@@ -173,6 +184,18 @@ class FileActions:
         form = ReferenceSystemForm(self._parts.document.crs(), self._parts.window)
         form.system_chosen.connect(self._parts.document.set_reference_system)
         form.show()
+
+    def choose_delivery(self) -> None:
+        """Ask in which folder delivered files are now."""
+        project = self._parts.document.project
+        if project is None:
+            return
+        title = QCoreApplication.translate("FileActions", "Find delivered files")
+        name = QFileDialog.getExistingDirectory(
+            self._parts.window, title, str(project.folder.parent)
+        )
+        if name:
+            self._parts.source_watch.look_in(Path(name))
 
     def choose_catalogue(self) -> None:
         """Ask for a catalogue file and use it in the project."""

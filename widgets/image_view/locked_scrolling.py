@@ -7,6 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.kinds import ImageKind
+from processing.points.drive import Drive
 from widgets.image_view.picture import Picture
 from widgets.image_view.viewport import Viewport
 
@@ -14,6 +16,13 @@ Floats = NDArray[np.float64]
 
 FARTHEST_M = 50.0
 """Ways of two drives that are farther apart don't show the same street."""
+
+_ONE_VEHICLE_M = 10.0
+"""Scanners that measure at the same time are no farther apart."""
+_BESIDE_M = 6.0
+"""Two passages of one place may be lanes apart."""
+_ABOUT_M = 2.0
+_MOST_UNEVEN = 8.0
 
 
 def following(
@@ -36,22 +45,29 @@ def following(
     Viewport or None
         None where the picture shows nothing of that place.
     """
-    found = place_along(leader, looking.centre, picture)
+    found = place_along(leader, looking.centre, picture, viewport.centre[0])
     if found is None:
         return None
-    metres_per_px = _row_step_m(leader) / looking.zoom_u
-    zoom_u = _row_step_m(picture) / metres_per_px
+    shown_m = _shown_m(leader, looking)
+    metres_per_px = _row_step_m(leader, looking.centre[0], shown_m) / looking.zoom_u
+    zoom_u = _row_step_m(picture, found[0], shown_m) / metres_per_px
     scaled = replace(viewport, zoom=zoom_u / viewport.stretch) if zoom_u > 0 else viewport
     return scaled.centred_on(found[0], viewport.centre[1] if found[1] is None else found[1])
 
 
 def place_along(
-    leader: Picture, centre: tuple[float, float], picture: Picture
+    leader: Picture, centre: tuple[float, float], picture: Picture, before: float = 0.0
 ) -> tuple[float, float | None] | None:
     """Where in a picture, in u and in v, the place of another one's middle is.
 
-    By the time of measuring where both were measured then, or else by the nearest place of the
-    way in plan; a view from above by the measured point next to its middle.
+    By the time of measuring where both were there then, or else by the nearest place of the way
+    in plan; a view from above by the measured point next to its middle.
+
+    Parameters
+    ----------
+    before : float
+        The u that the picture shows now: of several passages of the same place, the one about
+        which it is looked at is followed.
 
     Returns
     -------
@@ -60,17 +76,41 @@ def place_along(
     """
     if not (picture.image.rows and leader.image.rows):
         return None
-    if not (leader.image.kind.follows_way and picture.image.kind.follows_way):
+    if not (leader.follows_way and picture.follows_way):
         return _by_point(leader, centre, picture)
-    moment = _moment(leader, centre[0])
-    times = picture.image.row_times
+    plan = leader.lay.plan_at(centre[0])
+    moment, times = _moment(leader, centre[0]), picture.image.row_times
     if times[0] <= moment <= times[-1]:
-        return float(np.interp(moment, times, np.arange(times.size, dtype=np.float64))), None
-    row = _nearest_row(picture, leader.lay.plan_at(centre[0]))
-    return None if row is None else (row, None)
+        row = float(np.interp(moment, times, np.arange(times.size, dtype=np.float64)))
+        # Clocks that start anew each week show the same time on two days.
+        if np.hypot(*(picture.lay.plan_at(row) - plan)) <= _ONE_VEHICLE_M:
+            return row, None
+    found = _nearest_row(picture, plan, before)
+    return None if found is None else (found, None)
 
 
-def _nearest_row(picture: Picture, plan: Floats) -> float | None:
+def is_opposite(
+    leader: Picture, centre: tuple[float, float], drive: Drive, kind: ImageKind
+) -> bool:
+    """Whether a drive went the other way where it passed the middle of a picture."""
+    if not (kind.follows_way and leader.follows_way):
+        return False
+    picture = Picture.of(drive, kind)
+    found = place_along(leader, centre, picture)
+    if found is None:
+        return False
+    ways = (_direction(leader, centre[0]), _direction(picture, found[0]))
+    return bool(np.dot(*ways) < 0.0)
+
+
+def _direction(picture: Picture, row: float) -> Floats:
+    """(2,): where the way leads about a row, m; zeros where it stays."""
+    metres = float(picture.lay.distance_m(np.array([row]))[0])
+    ends = picture.lay.rows_at(np.array([metres - _ABOUT_M, metres + _ABOUT_M]))
+    return picture.lay.plan_at(float(ends[1])) - picture.lay.plan_at(float(ends[0]))
+
+
+def _nearest_row(picture: Picture, plan: Floats, before: float) -> float | None:
     """The row, with fractions, whose place on the way is nearest; None when that is far."""
     way, rows = picture.lay.plan, picture.lay.sampled_rows
     if rows.size < 2:
@@ -79,10 +119,14 @@ def _nearest_row(picture: Picture, plan: Floats) -> float | None:
     squared = np.maximum((steps**2).sum(axis=1), 1e-12)
     share = np.clip(((plan - way[:-1]) * steps).sum(axis=1) / squared, 0.0, 1.0)
     away = np.hypot(*(way[:-1] + share[:, None] * steps - plan).T)
-    nearest = int(away.argmin())
-    if away[nearest] > FARTHEST_M:
+    if away.min() > FARTHEST_M:
         return None
-    return float(rows[nearest] + share[nearest] * (rows[nearest + 1] - rows[nearest]))
+    # Each passage of the place is a stretch of the way that is hardly farther than the nearest.
+    near = np.flatnonzero(away <= away.min() + _BESIDE_M)
+    passages = np.split(near, np.flatnonzero(np.diff(near) > 1) + 1)
+    found = [passage[away[passage].argmin()] for passage in passages]
+    at = [float(rows[one] + share[one] * (rows[one + 1] - rows[one])) for one in found]
+    return min(at, key=lambda row: abs(row - before))
 
 
 def _moment(picture: Picture, u: float) -> float:
@@ -107,8 +151,25 @@ def _by_point(
         return None
     rows, columns = picture.image.pixel_of(np.array([found]))
     u, v = picture.places(rows, columns.astype(np.int64))[0].tolist()
-    return u, None if picture.image.kind.follows_way else v
+    return u, None if picture.follows_way else v
 
 
-def _row_step_m(picture: Picture) -> float:
-    return max(picture.lay.length_m, 1e-3) / max(picture.size[0], 1)
+def _shown_m(picture: Picture, viewport: Viewport) -> float:
+    """How long a stretch of the way is seen."""
+    seen = viewport.span
+    ends = np.clip([seen.left, seen.right], 0.0, max(picture.size[0] - 1, 0))
+    return float(np.diff(picture.lay.distance_m(ends))[0])
+
+
+def _row_step_m(picture: Picture, row: float, stretch_m: float) -> float:
+    """Metres from row to row in a stretch about a row; within limits: vehicles stop and hurry."""
+    lay, rows = picture.lay, picture.size[0]
+    mean = max(lay.length_m, 1e-3) / max(rows, 1)
+    if not picture.follows_way:
+        return mean
+    metres = lay.distance_m(np.array([row])) + np.array([-0.5, 0.5]) * stretch_m
+    ends = lay.rows_at(np.clip(metres, 0.0, lay.length_m))
+    if ends[1] <= ends[0]:
+        return mean
+    step = float(np.diff(lay.distance_m(ends))[0] / (ends[1] - ends[0]))
+    return float(np.clip(step, mean / _MOST_UNEVEN, mean * _MOST_UNEVEN))

@@ -3,27 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QSplitter, QToolButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QSplitter, QVBoxLayout, QWidget
 from typing_extensions import override
 
-from processing.image.kinds import ImageKind
+from processing.image.attributes import available
 from processing.image.tile_cache import TileCache
+from processing.points.drive import Drive
 from processing.text import Language
-from widgets.image_view.locked_scrolling import following
+from widgets.image_view.locked_scrolling import following, is_opposite
+from widgets.image_view.panes import Beside, Header, Pane, ShownImage
 from widgets.image_view.picture import Picture
 from widgets.image_view.view import ImageView
 from widgets.image_view.viewport import Viewport
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.shared.cursor import Place
 from widgets.shared.image_choice import ImageChoice
-from widgets.shared.image_lay import ImageLay
 from widgets.shared.map_source import MapSource
 from widgets.shared.own_settings import OwnSettings
 from widgets.shared.shared_state import SharedState
-from widgets.shared.view_settings import ViewSettings
 
 MOST = 3
 
@@ -33,16 +33,6 @@ _TAKES = (
     QEvent.Type.KeyPress,
     QEvent.Type.FocusIn,
 )
-
-
-@dataclass(frozen=True)
-class ShownImage:
-    """What an image beside the main one shows."""
-
-    drive_id: str
-    kind: ImageKind
-    attribute: str
-    lay: ImageLay
 
 
 class ImageViews(QWidget):
@@ -94,13 +84,13 @@ class ImageViews(QWidget):
         self._is_locked = True
         self._splitter = QSplitter(self)
         self._splitter.setChildrenCollapsible(False)
-        self._beside: list[_Beside] = []
+        self._beside: list[Beside] = []
         self._main = ImageView(source, shared, tiles, language=language)
         self._active = self._main
         self._adopt(self._main)
         choice = ImageChoice(source, shared.map_changes, shared.view_settings, language=language)
-        self._main_header = _Header(choice)
-        self._splitter.addWidget(_Pane(self._main, self._main_header))
+        self._main_header = Header(choice)
+        self._splitter.addWidget(Pane(self._main, self._main_header))
         self._main.open_requested.connect(self.open_requested)
         self._main.import_requested.connect(self.import_requested)
         self._main.sharpened.connect(self.sharpened)
@@ -175,6 +165,18 @@ class ImageViews(QWidget):
         self._splitter.addWidget(one.pane)
         self._share()
         return one.view
+
+    def show_beside(self, drive_id: str) -> ImageView | None:
+        """Show another drive's image beside; where there is no room, in place of the last one.
+
+        A drive that went the other way is turned about, so that the street runs as in the first.
+        """
+        shown = next((one for one in self._beside if one.shown.drive_id == drive_id), None)
+        if shown is not None or drive_id not in {drive.id for drive in self._source.drives()}:
+            return None if shown is None else shown.view
+        if not self.can_add and self._beside:
+            self.close_image(self._beside[-1].view)
+        return self.add(self._image_of(self._source.drive(drive_id)))
 
     def close_image(self, view: ImageView) -> None:
         """Take an image away; the main one stays."""
@@ -299,90 +301,41 @@ class ImageViews(QWidget):
             kind, look = settings.image_kind, settings.look
             attribute = "height" if look.attribute != "height" else "intensity"
             return ShownImage(settings.drive_id, kind, attribute, settings.image_lay)
-        kinds = drive.image_kinds
+        return self._image_of(drive)
+
+    def _image_of(self, drive: Drive) -> ShownImage:
+        """As the main one is shown; turned about where the drive went the other way."""
+        settings, kinds = self._shared.view_settings, drive.image_kinds
+        attribute = settings.look.attribute
+        if attribute not in available(drive):
+            attribute = "intensity"
         kind = settings.image_kind if settings.image_kind in kinds else kinds[0]
-        return ShownImage(drive.id, kind, settings.look.attribute, settings.image_lay)
+        lay, main = settings.image_lay, self._main.picture
+        if main is not None and is_opposite(main, self._main.viewport.centre, drive, kind):
+            lay = replace(
+                lay,
+                is_reversed_along=not lay.is_reversed_along,
+                is_mirrored_across=not lay.is_mirrored_across,
+            )
+        return ShownImage(drive.id, kind, attribute, lay)
 
     def _stand(self) -> None:
         is_vertical = self._shared.view_settings.image_lay.is_vertical
         along = Qt.Orientation.Horizontal if is_vertical else Qt.Orientation.Vertical
         self._splitter.setOrientation(along)
 
-    def _made(self) -> _Beside:
+    def _made(self) -> Beside:
         source, changes = self._source, self._shared.map_changes
         own = OwnSettings(self._shared.view_settings)
         shared = replace(self._shared, view_settings=own.settings)
         view = ImageView(source, shared, self._tiles, language=self._language)
         choice = ImageChoice(source, changes, own.settings, language=self._language)
-        pane = _Pane(view, _Header(choice))
+        pane = Pane(view, Header(choice))
         own.setParent(pane)
-        return _Beside(pane, own.settings)
+        return Beside(pane, own.settings)
 
     def _share(self) -> None:
         """Give all images the same room, and lines that say what they show if there are several."""
         self._main_header.setVisible(bool(self._beside))
         self._splitter.setSizes([1000] * self._splitter.count())
         self.images_changed.emit()
-
-
-class _Header(QWidget):
-    """The line above an image that says what it shows.
-
-    Signals
-    -------
-    closed()
-        The image isn't wanted any longer.
-    """
-
-    closed = Signal()
-
-    def __init__(self, choice: ImageChoice) -> None:
-        super().__init__()
-        choice.let_shrink()
-        self.close_button = QToolButton(self)
-        self.close_button.setText("✕")
-        self.close_button.setAutoRaise(True)
-        self.close_button.setToolTip(self.tr("Close this image"))
-        self.close_button.clicked.connect(self.closed)
-        layout = QHBoxLayout(self)
-        layout.setContentsMargins(8, 2, 4, 2)
-        layout.addWidget(choice, 1, Qt.AlignmentFlag.AlignLeft)
-        layout.addWidget(self.close_button)
-
-
-class _Pane(QWidget):
-    """An image under its header."""
-
-    def __init__(self, view: ImageView, header: _Header) -> None:
-        super().__init__()
-        self.view = view
-        self.header = header
-        layout = QVBoxLayout(self)
-        layout.setContentsMargins(0, 0, 0, 0)
-        layout.setSpacing(0)
-        layout.addWidget(header)
-        layout.addWidget(view, 1)
-
-
-@dataclass(frozen=True, eq=False)
-class _Beside:
-    """An image beside the main one, and the settings of its own."""
-
-    pane: _Pane
-    settings: ViewSettings
-
-    @property
-    def view(self) -> ImageView:
-        return self.pane.view
-
-    @property
-    def shown(self) -> ShownImage:
-        settings = self.settings
-        return ShownImage(
-            settings.drive_id, settings.image_kind, settings.look.attribute, settings.image_lay
-        )
-
-    def show_image(self, shown: ShownImage) -> None:
-        self.settings.change_look(attribute=shown.attribute)
-        self.settings.lay_image(shown.lay)
-        self.settings.show_image(shown.drive_id, shown.kind)

@@ -108,6 +108,7 @@ class MapView(PlaneView):
         shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
         shared.view_settings.look_changed.connect(self._wish)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
+        shared.view_settings.hidden_drives_changed.connect(self._on_settings_image_changed)
         self._read_drives()
 
     # What others ask.
@@ -306,8 +307,11 @@ class MapView(PlaneView):
     def _on_settings_image_changed(self) -> None:
         before = self._drives
         self._read_drives()
-        if [kind for _, kind in before] != [kind for _, kind in self._drives]:
+        if before != self._drives:
             self._age += 1
+            if not self._drives:  # all are hidden
+                self._pictures.clear()
+                self.update()
             self._wish()
 
     def _on_limit_triggered(self, action: QAction) -> None:
@@ -322,13 +326,13 @@ class MapView(PlaneView):
         self._drives = tuple(
             (drive, wanted if wanted in drive.image_kinds else drive.image_kinds[0])
             for drive in self._source.drives()
-            if drive.count
+            if drive.count and drive.id not in self._shared.view_settings.hidden_drives
         )
         drives = [drive for drive, _ in self._drives]
         if drives != before:
             self._ways = ways_of(drives)
         self._points = PlanPoints(self._drives)
-        self._empty.setVisible(not self._drives)
+        self._empty.setVisible(not any(drive.count for drive in self._source.drives()))
         self._wish()
 
     def _wish(self) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from processing.errors import UserError
@@ -28,6 +29,7 @@ class MessageBar(QFrame):
         font = self._what.font()
         font.setBold(True)
         self._what.setFont(font)
+        self._remedy = QToolButton(self)
         words = QVBoxLayout()
         words.setSpacing(2)
         words.addWidget(self._what)
@@ -40,6 +42,7 @@ class MessageBar(QFrame):
         layout = QHBoxLayout(self)
         layout.setContentsMargins(12, 8, 8, 8)
         layout.addLayout(words, 1)
+        layout.addWidget(self._remedy, 0, Qt.AlignmentFlag.AlignVCenter)
         layout.addWidget(self._close, 0, Qt.AlignmentFlag.AlignTop)
         self.hide()
 
@@ -53,10 +56,21 @@ class MessageBar(QFrame):
         """What is wrong; None while hidden."""
         return None if self.isHidden() else self._error
 
-    def show_error(self, error: UserError) -> None:
-        """Say what is wrong until it is closed or something else is wrong."""
+    def show_error(self, error: UserError, remedy: QAction | None = None) -> None:
+        """Say what is wrong until it is closed or something else is wrong.
+
+        Parameters
+        ----------
+        remedy : QAction, optional
+            What can be done about it at once; a button for it is shown.
+        """
+        for old in self._remedy.actions():
+            self._remedy.removeAction(old)
+        self._remedy.setVisible(remedy is not None)
+        if remedy is not None:
+            self._remedy.setDefaultAction(remedy)
         self._error = error
         self._what.setText(error.what.spoken(self._language))
-        where, remedy = (part.spoken(self._language) for part in (error.where, error.remedy))
-        self._rest.setText(f"{where}\n{remedy}")
+        where, advice = (part.spoken(self._language) for part in (error.where, error.remedy))
+        self._rest.setText(f"{where}\n{advice}")
         self.show()

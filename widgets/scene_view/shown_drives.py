@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 
 
 class ShownDrives:
-    """The document's drives as they were when it was asked last.
+    """The document's drives, but for hidden ones, as they were when it was asked last.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class ShownDrives:
         self.with_kinds = tuple(
             (drive, wanted if wanted in drive.image_kinds else drive.image_kinds[0])
             for drive in self._source.drives()
-            if drive.count
+            if drive.count and drive.id not in self._settings.hidden_drives
         )
         return before != (self.with_kinds, self.origin.tolist())
 

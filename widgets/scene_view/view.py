@@ -114,10 +114,10 @@ class SceneView(QWidget):
         shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
         shared.view_settings.look_changed.connect(self._on_settings_look_changed)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
-        shared.sketch.changed.connect(self._paint_overlay)
-        shared.snap.mark_changed.connect(self._paint_overlay)
+        shared.view_settings.hidden_drives_changed.connect(self._on_settings_image_changed)
+        for changed in (shared.sketch.changed, shared.snap.mark_changed, hand.acted):
+            changed.connect(self._paint_overlay)
         hand.camera_moved.connect(self.look_from)
-        hand.acted.connect(self._paint_overlay)
         hand.menu_requested.connect(self._on_hand_menu_requested)
         hand.everything_requested.connect(self.show_everything)
         hand.selection_requested.connect(self.center_on_selection)
@@ -367,7 +367,7 @@ class SceneView(QWidget):
 
     def _words(self) -> str:
         if not self._drives.with_kinds:
-            return self.tr("The recording appears here in three dimensions once one is open.")
+            return self.tr("Drives appear here in three dimensions once they are shown.")
         if self._stage is None:
             return self.tr("The 3D view is starting.")
         return "" if self._hits.drawn else self.tr("Points are being loaded.")

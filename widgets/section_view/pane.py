@@ -94,6 +94,7 @@ class SectionPane(PlaneView):
         self._feed = SectionFeed()
         self._feed.arrived.connect(self._on_feed_arrived)
         shared.view_settings.look_changed.connect(self._ask)
+        shared.view_settings.hidden_drives_changed.connect(self._ask)
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
         shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
 
@@ -342,7 +343,9 @@ class SectionPane(PlaneView):
         self._feed.wish(wish)
 
     def _drives(self) -> tuple[Drive, ...]:
-        return tuple(drive for drive in self._source.drives() if drive.count)
+        hidden = self._shared.view_settings.hidden_drives
+        drives = self._source.drives()
+        return tuple(drive for drive in drives if drive.count and drive.id not in hidden)
 
     def _look_at_place(self, picture: SectionPicture) -> None:
         """Begin on the ground at each new line; afterwards move only as far as needed."""

@@ -255,7 +255,9 @@ class SectionView(QWidget):
         standing = self.standing
         if standing is None:
             return None
-        cut, drives = standing.cut, self._source.drives()
+        hidden = self._shared.view_settings.hidden_drives
+        cut = standing.cut
+        drives = tuple(drive for drive in self._source.drives() if drive.id not in hidden)
         near = self._lines.near(cut.middle, cut.half_length_m)
         lines = drawn_lines(near, self._source.catalogue())
         title, station_m = line_title(self._source, standing), standing.station_m

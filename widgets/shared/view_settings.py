@@ -39,6 +39,7 @@ class ViewSettings(QObject):
     image_lay_changed = Signal()
     hidden_kinds_changed = Signal()
     hidden_runs_changed = Signal()
+    hidden_drives_changed = Signal()
     shows_rejected_changed = Signal()
     shown_features_changed = Signal()  # what `shows` says, for whichever reason
 
@@ -49,6 +50,7 @@ class ViewSettings(QObject):
         self._image_kind = ImageKind.TRAJECTORY_CENTER
         self._hidden_kinds: frozenset[str] = frozenset()
         self._hidden_runs: frozenset[str] = frozenset()
+        self._hidden_drives: frozenset[str] = frozenset()
         self._shows_rejected = False
         self._image_lay = ImageLay()
 
@@ -81,6 +83,11 @@ class ViewSettings(QObject):
     def hidden_runs(self) -> frozenset[str]:
         """Ids of runs whose features are not drawn."""
         return self._hidden_runs
+
+    @property
+    def hidden_drives(self) -> frozenset[str]:
+        """Ids of drives that views of all drives leave out; an image shows its own in any case."""
+        return self._hidden_drives
 
     @property
     def shows_rejected(self) -> bool:
@@ -131,6 +138,12 @@ class ViewSettings(QObject):
             self._hidden_kinds = kinds
             self.hidden_kinds_changed.emit()
             self.shown_features_changed.emit()
+
+    def hide_drives(self, drives: frozenset[str]) -> None:
+        """Leave exactly these drives out of the views that show all of them."""
+        if drives != self._hidden_drives:
+            self._hidden_drives = drives
+            self.hidden_drives_changed.emit()
 
     def set_shows_rejected(self, wanted: bool) -> None:  # noqa: FBT001 - a slot of a checked action
         """Draw rejected features, or don't."""

@@ -23,8 +23,9 @@ from processing.project.importing import ImportRequest, import_drives
 from tests.mouse_events import move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap, path_tool, place_on
 from widgets.image_view.locked_scrolling import following, place_along
+from widgets.image_view.panes import ShownImage
 from widgets.image_view.picture import Picture
-from widgets.image_view.side_by_side import MOST, ImageViews, ShownImage
+from widgets.image_view.side_by_side import MOST, ImageViews
 from widgets.image_view.view import ImageView
 from widgets.image_view.viewport import Viewport
 from widgets.shared.image_lay import ImageLay
@@ -105,7 +106,7 @@ def test_all_show_the_same_moment_at_the_same_scale(views: ImageViews) -> None:
     far_in(views.main)
     row_s = 0.01
     assert moment_of(other) == pytest.approx(moment_of(views.main), abs=row_s)
-    assert metres_per_px(other) == pytest.approx(metres_per_px(views.main), rel=1e-6)
+    assert metres_per_px(other) == pytest.approx(metres_per_px(views.main), rel=1e-4)
 
 
 def test_the_image_that_is_turned_leads(qtbot: QtBot, views: ImageViews) -> None:
