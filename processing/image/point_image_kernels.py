@@ -99,6 +99,20 @@ def columns_kernel(layout: PixelLayout, first: _Integers, columns: NDArray[np.in
 
 
 @kernel
+def stretches_kernel(layout: PixelLayout, windows: _Integers, stretches: _Integers) -> None:
+    """The points of windows, row by row: (rows of all windows, 2) first and end.
+
+    ``windows``: first and end row, first and end column.
+    """
+    line = 0
+    for k in range(windows.shape[0]):
+        for row in range(windows[k, 0], windows[k, 1]):
+            stretches[line, 0] = first_at_column(layout, row, windows[k, 2])
+            stretches[line, 1] = first_at_column(layout, row, windows[k, 3])
+            line += 1
+
+
+@kernel
 def _column(layout: PixelLayout, row: int, point: int) -> int:
     doubled = 2 * layout.pulses[point] - layout.origins[row]
     if layout.per_span == 1:

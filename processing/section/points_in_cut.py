@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.point_image_kernels import PixelLayout
+from processing.image.point_image_kernels import PixelLayout, stretches_kernel
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.image.tiles import TileKey
 from processing.kernels import kernel
@@ -120,7 +120,7 @@ def _tiles_touched(drive: Drive, cut: Cut) -> _Integers:
 def _stretches(layout: PixelLayout, windows: _Integers) -> _Integers:
     """(m, 2): first and end of the consecutive points of each row of the tiles."""
     stretches = np.empty((int((windows[:, 1] - windows[:, 0]).sum()), 2), np.int64)
-    _stretches_kernel(layout, windows, stretches)
+    stretches_kernel(layout, windows, stretches)
     return stretches
 
 
@@ -129,26 +129,6 @@ def _plan_of(drive: Drive, cut: Cut) -> _Floats:
     offset = drive.info.offset
     east, north = cut.middle[0] - offset[0], cut.middle[1] - offset[1]
     return np.array([east, north, *cut.direction, cut.half_length_m, cut.width_m / 2])
-
-
-@kernel
-def _stretches_kernel(layout: PixelLayout, windows: _Integers, stretches: _Integers) -> None:
-    line = 0
-    for k in range(windows.shape[0]):
-        for row in range(windows[k, 0], windows[k, 1]):
-            for side in range(2):
-                column = windows[k, 2 + side]
-                least = column * layout.spans[row] + layout.origins[row] * layout.per_span
-                pulse = -(-least // (2 * layout.per_span))
-                low, high = layout.row_starts[row], layout.row_starts[row + 1]
-                while low < high:
-                    middle = (low + high) // 2
-                    if layout.pulses[middle] < pulse:
-                        low = middle + 1
-                    else:
-                        high = middle
-                stretches[line, side] = low
-            line += 1
 
 
 @kernel
@@ -180,6 +160,6 @@ def warm_up() -> None:
         array.flags.writeable = False
     layout = PixelLayout(numbers, numbers, numbers, numbers, 1)
     stretches = np.array([[0, 1]])
-    _stretches_kernel(layout, np.array([[0, 1, 0, 1]]), stretches)
+    stretches_kernel(layout, np.array([[0, 1, 0, 1]]), stretches)
     plan = np.array([0.0, 0.0, 1.0, 0.0, 1.0, 1.0])
     _inside_kernel(xyz, np.ones(2), np.array([[0, 1]]), plan, np.empty(1, np.int64))

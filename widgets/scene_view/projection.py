@@ -150,6 +150,12 @@ class Projection:
         )
         return np.column_stack([rows, -rows @ position])
 
+    @cached_property
+    def matrix_with_depth(self) -> Floats:
+        """(4, 4) float64: the rows of :attr:`matrix`, and one that gives the depth, m."""
+        forward = self._axes[2]
+        return np.vstack([self.matrix, [*forward, -float(forward @ self.camera.position)]])
+
     def metres_per_px(self, depth_m: float) -> float:
         """Size of a pixel at a depth."""
         return 1 / self.point_px if self.camera.is_parallel else depth_m / self.focal_px
