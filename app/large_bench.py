@@ -1,7 +1,8 @@
 """A window on a large project, used by mouse and keys; how long its frames take.
 
-Run by ``zuka bench large`` in a process of its own: ``python -m app.large_bench PROJECT OUT``. It
-prints a line of JSON for each step: what was done, from when to when, and the times of its frames.
+Run by ``zuka bench large`` in a process of its own: ``python -m app.large_bench PROJECT OUT
+SHARE``. It prints a line of JSON for each step: what was done, from when to when, and the times of
+its frames.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ STEPS: dict[str, Callable[[BenchWindow], Found]] = {
 """What is done, in this order."""
 
 
-def main(folder: Path, out: Path) -> None:
+def main(folder: Path, out: Path, share: float) -> None:
     """Do every step on a project and tell of each.
 
     Parameters
@@ -49,6 +50,8 @@ def main(folder: Path, out: Path) -> None:
         The project; features are drawn in it.
     out : Path
         For what is exported.
+    share : float
+        Of the frames and repetitions.
     """
     make_application()
     with TemporaryDirectory(prefix="zuka-") as scratch:
@@ -58,7 +61,7 @@ def main(folder: Path, out: Path) -> None:
             parts.window.show()
             # The 3D view begins with the first project.
             parts.document.create(Path(scratch) / "empty.zuka", "")
-            window = BenchWindow(parts, folder, out)
+            window = BenchWindow(parts, folder, out, share)
             for name, step in STEPS.items():
                 _tell(name, step, window)
         finally:
@@ -81,4 +84,4 @@ def _tell(name: str, step: Callable[[BenchWindow], Found], window: BenchWindow) 
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]))
+    main(Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3]))

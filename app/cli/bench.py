@@ -4,31 +4,38 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
-from dataclasses import asdict
 
 from app.cli.output import print_json, print_lines
 from app.language import system_language
 from processing.bench.case import BenchWish, Case, Measurement
+from processing.bench.growth import measure_growth
 from processing.bench.image_cases import measure_image, measure_switch
 from processing.bench.import_cases import measure_import, measure_import_memory
 from processing.bench.label_case import measure_labels
 from processing.bench.large_case import measure_large
+from processing.bench.peer_cases import measure_normals, measure_searchable
 from processing.bench.review_case import measure_review
 from processing.bench.start_case import measure_start
+from processing.bench.table import Circumstances, described, load_now, number, write_table
 from processing.errors import OutOfRange
 from processing.text import Text
 
 CASES: Mapping[str, Case] = {
     "import": measure_import,
+    "searchable": measure_searchable,
     "image": measure_image,
     "switch": measure_switch,
     "start": measure_start,
     "review": measure_review,
     "labels": measure_labels,
+    "normals": measure_normals,
     "memory": measure_import_memory,
+    "growth": measure_growth,
     "large": measure_large,
 }
 """Benchmarks by name, quick ones first."""
+
+_LEAST_POINTS = 10_000
 
 
 def command(arguments: argparse.Namespace) -> int:
@@ -42,7 +49,17 @@ def command(arguments: argparse.Namespace) -> int:
                     names=", ".join(CASES)
                 ),
             )
+    for points in (arguments.points, arguments.most_points):
+        if points is not None and points < _LEAST_POINTS:
+            raise OutOfRange(
+                Text("That is too few points to measure.", "計測には点数が少なすぎます。"),
+                Text.same(f"{points}"),
+                Text("Ask for {least} or more.", "{least}以上を指定してください。").filled(
+                    least=_LEAST_POINTS
+                ),
+            )
     wish = BenchWish(arguments.points, arguments.most_points, arguments.project)
+    load = load_now()
     found: list[Measurement] = []
     for name in arguments.names or CASES:
         rows = CASES[name](wish)
@@ -50,22 +67,32 @@ def command(arguments: argparse.Namespace) -> int:
         if not arguments.json:
             print_lines(*map(_line, rows))
     if arguments.json:
-        print_json([_described(measurement) for measurement in found])
+        print_json([described(measurement) for measurement in found])
+    if arguments.markdown is not None:
+        write_table(arguments.markdown, Circumstances.of(_typed(arguments), load), found)
     return 0
+
+
+def _typed(arguments: argparse.Namespace) -> str:
+    """The command, without where its results go and without folders of this machine."""
+    words = ["zuka bench", *arguments.names]
+    if arguments.points is not None:
+        words.append(f"--points {arguments.points}")
+    if arguments.most_points is not None:
+        words.append(f"--most-points {arguments.most_points}")
+    if arguments.project is not None:
+        words.append(f"--project {arguments.project.name}")
+    return " ".join(words)
 
 
 def _line(measurement: Measurement) -> str:
     what = measurement.what.spoken(system_language())
     told = [f"{measurement.name}: {what}:"]
     if measurement.value is not None:
-        told.append(f"{measurement.value:.3g} {measurement.unit}")
+        told.append(f"{number(measurement.value)} {measurement.unit}")
     if measurement.target is not None:
         sign = "<=" if measurement.is_at_most else ">="
         told.append(f"({sign} {measurement.target:g})")
     if measurement.is_met is not None:
         told.append("ok;" if measurement.is_met else "NOT REACHED;")
     return " ".join([*told, measurement.detail])
-
-
-def _described(measurement: Measurement) -> dict[str, object]:
-    return {**asdict(measurement), "is_met": measurement.is_met}

@@ -28,6 +28,8 @@ class BenchWindow:
         Of a window that is shown, with a project open.
     project, out : Path
         The project's folder, and one for exports.
+    share : float
+        Of the frames and repetitions that steps mean to do.
 
     Attributes
     ----------
@@ -43,10 +45,11 @@ class BenchWindow:
         The strip with the whole drive.
     """
 
-    def __init__(self, parts: WindowParts, project: Path, out: Path) -> None:
+    def __init__(self, parts: WindowParts, project: Path, out: Path, share: float) -> None:
         self.parts = parts
         self.project = project
         self.out = out
+        self._share = share
         self.hand = Hand()
         self.pulse = Pulse(parts.window)
         self.image: QWidget = parts.image_view
@@ -61,6 +64,10 @@ class BenchWindow:
     def middle(self) -> QPoint:
         """Of the main image."""
         return self.image.rect().center()
+
+    def some(self, count: int) -> int:
+        """The wanted share of a number of repetitions, at least one."""
+        return max(1, round(self._share * count))
 
     def act(self, id_: str) -> None:
         """Choose a command."""

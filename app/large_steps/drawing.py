@@ -17,6 +17,7 @@ from processing.project.catalogue import Geometry
 _HOVERS = 200
 _VERTICES = 50
 _LINES = 5
+_LEAST_VERTICES = 8
 _MARGIN_PX = 40
 
 
@@ -31,7 +32,7 @@ def hover(window: BenchWindow) -> Found:
     frames = window.image_frames
     frames.seconds_to_paint(lambda: _click(window, _spot(window, 0.0)))
     answers = _Answers(window)
-    for number in range(_HOVERS):
+    for number in range(window.some(_HOVERS)):
         spot = _spot(window, number / _HOVERS) + QPoint(number % 5, number % 3)
         answers.take(partial(drag_to, window.image, spot, NO_BUTTON))
     window.hand.key(window.image, Qt.Key.Key_Escape)
@@ -42,14 +43,15 @@ def draw(window: BenchWindow) -> Found:
     """Lines of fifty vertices, each a click."""
     frames, answers, done = window.image_frames, _Answers(window), []
     before = _drawn(window)
-    for number in range(_LINES):
-        for vertex in range(_VERTICES):
-            spot = _spot(window, (vertex + 0.5) / _VERTICES) + QPoint(0, 9 * number)
+    lines, vertices = window.some(_LINES), max(_LEAST_VERTICES, window.some(_VERTICES))
+    for number in range(lines):
+        for vertex in range(vertices):
+            spot = _spot(window, (vertex + 0.5) / vertices) + QPoint(0, 9 * number)
             answers.take(partial(_click, window, spot))
         done.append(
             frames.seconds_to_paint(lambda: window.hand.key(window.image, Qt.Key.Key_Return))
         )
-    if len(_drawn(window) - before) != _LINES:
+    if len(_drawn(window) - before) != lines:
         message = "the lines that were clicked are not on the map"
         raise RuntimeError(message)
     return {"vertex": answers.end(), "line done": done}
@@ -57,9 +59,9 @@ def draw(window: BenchWindow) -> Found:
 
 def undo(window: BenchWindow) -> Found:
     """Each line taken back, and drawn again by redo."""
-    frames = window.image_frames
-    undone = [frames.seconds_to_paint(lambda: window.act("undo")) for _ in range(_LINES)]
-    redone = [frames.seconds_to_paint(lambda: window.act("redo")) for _ in range(_LINES)]
+    frames, lines = window.image_frames, window.some(_LINES)
+    undone = [frames.seconds_to_paint(lambda: window.act("undo")) for _ in range(lines)]
+    redone = [frames.seconds_to_paint(lambda: window.act("redo")) for _ in range(lines)]
     return {"undo": undone, "redo": redone}
 
 

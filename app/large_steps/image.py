@@ -28,7 +28,7 @@ def jump(window: BenchWindow) -> Found:
     nearer(window)
     found: Found = {"first tile": [], "window sharp": []}
     random = np.random.default_rng(_SEED)
-    for share in random.uniform(0.02, 0.98, _JUMPS).tolist():
+    for share in random.uniform(0.02, 0.98, window.some(_JUMPS)).tolist():
         first, sharp = _time_sharp(window, partial(go_to, window, share))
         found["first tile"].append(first)
         found["window sharp"].append(sharp)
@@ -54,7 +54,7 @@ def pan_far(window: BenchWindow) -> Found:
 def zoom(window: BenchWindow) -> Found:
     """The wheel, from the whole drive to where a pulse is a pixel, and back; at several places."""
     view, found = window.parts.image_view, Found(frame=[])
-    shares = np.linspace(0.2, 0.8, _ROUNDS)
+    shares = np.linspace(0.2, 0.8, window.some(_ROUNDS))
     for share in shares.tolist():
         window.hand.key(window.image, Qt.Key.Key_Home)
         window.rest()
@@ -126,8 +126,8 @@ def _drag_along(window: BenchWindow) -> list[float]:
     times: list[float] = []
     image = window.image
     y = window.middle.y()
-    moves = min(_MOVES, (image.width() - 40) // _STEP_PX)
-    for _ in range(_DRAGS):
+    moves = min(window.some(_MOVES), (image.width() - 40) // _STEP_PX)
+    for _ in range(window.some(_DRAGS)):
         begin = QPoint(image.width() - 20, y)
         QTest.mousePress(image, MIDDLE, PLAIN, begin)
         for number in range(1, moves + 1):

@@ -33,7 +33,7 @@ def fly(window: BenchWindow) -> Found:
     window.act("show-intensity")
     window.hand.key(window.picture, Qt.Key.Key_Home)
     window.rest()
-    times = [_frame(window, lambda: _wheel(window, 1, SHIFT)) for _ in range(_FLIGHT)]
+    times = [_frame(window, lambda: _wheel(window, 1, SHIFT)) for _ in range(window.some(_FLIGHT))]
     return {"frame": times + [_frame(window, lambda: _wheel(window, -1, SHIFT)) for _ in times]}
 
 
@@ -44,7 +44,7 @@ def _turn(window: BenchWindow) -> list[float]:
     # The first move only shows that it is a drag.
     drag_to(picture, begin + QPoint(_STEP_PX, 0), RIGHT)
     times = []
-    for number in range(2, _MOVES + 2):
+    for number in range(2, window.some(_MOVES) + 2):
         spot = begin + QPoint(number * _STEP_PX, number % 7)
         times.append(_frame(window, partial(drag_to, picture, spot, RIGHT)))
     QTest.mouseRelease(picture, RIGHT, PLAIN, spot)

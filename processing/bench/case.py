@@ -22,11 +22,14 @@ class BenchWish:
         No benchmark takes more points than that.
     project : Path or None
         A project to use in place of one that is made; it is only read.
+    share : float
+        Of the frames that a window is watched for; less only shows that all goes well.
     """
 
     points: int | None = None
     most_points: int | None = None
     project: Path | None = None
+    share: float = 1.0
 
     def limited(self, points: int) -> int:
         """So many points, or the most that are wanted."""

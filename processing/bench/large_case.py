@@ -17,6 +17,7 @@ from processing.bench.watched_run import run_watched
 _POINTS = 300_000_000
 _POINTS_PER_FILE = 30_000_000
 _REHEARSED = 100_000
+_DISPLAY = "display"
 
 
 def measure_large(wish: BenchWish) -> tuple[Measurement, ...]:
@@ -38,11 +39,14 @@ def measure_large(wish: BenchWish) -> tuple[Measurement, ...]:
             points = wish.points or wish.limited(_POINTS)
             files = max(2, points // _POINTS_PER_FILE)
             delivery = write_long_delivery(folder, points, scanners=("left",), files=files)
-            rehearsal = write_long_delivery(folder, _REHEARSED, scanners=("left",))
-            import_watched(rehearsal, folder / "rehearsal.zuka")
+            if wish.share == 1.0:  # what isn't judged needs no rehearsal
+                rehearsal = write_long_delivery(folder, _REHEARSED, scanners=("left",))
+                import_watched(rehearsal, folder / "rehearsal.zuka")
             rows = measure_large_import(delivery, project, points)
-        run = run_watched("app.large_bench", [str(project), str(out)])
+        run = run_watched("app.large_bench", [str(project), str(out), str(wish.share)])
         if run.status != 0:
-            raise no_window(run.complaints)
+            if _DISPLAY in run.complaints:
+                raise no_window(run.complaints)
+            raise RuntimeError(run.complaints)
         steps = [json.loads(line) for line in run.lines if line.startswith("{")]
         return rows + window_rows(run, steps)

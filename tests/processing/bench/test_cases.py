@@ -1,0 +1,60 @@
+"""Each benchmark runs on little data and gives figures that can be."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from processing.bench.case import BenchWish, Measurement
+from processing.bench.growth import exponent_of, measure_growth
+from processing.bench.image_cases import measure_image, measure_switch
+from processing.bench.import_cases import measure_import, measure_import_memory
+from processing.bench.label_case import measure_labels
+from processing.bench.peer_cases import measure_normals, measure_searchable
+
+LITTLE = BenchWish(most_points=20_000)
+
+
+@pytest.mark.parametrize(
+    "measure",
+    [measure_import, measure_searchable, measure_image, measure_switch, measure_labels],
+)
+def test_a_benchmark_gives_one_positive_figure(measure: object) -> None:
+    assert callable(measure)
+    (row,) = measure(LITTLE)
+    assert isinstance(row, Measurement)
+    assert row.value is not None
+    assert 0 < row.value < math.inf
+    assert row.detail
+
+
+def test_normals_are_compared_with_each_peer_or_it_says_that_one_is_missing() -> None:
+    rows = measure_normals(LITTLE)
+    assert [row.name for row in rows] == ["normals-open3d", "normals-pcl", "normals-cloudcompare"]
+    assert rows[0].value is not None
+    for row in rows:
+        assert row.is_met is None
+        assert (row.value is None) == ("is not installed" in row.detail)
+
+
+def test_memory_of_an_import_is_some_of_it_in_no_file() -> None:
+    (row,) = measure_import_memory(LITTLE)
+    if row.value is not None:
+        assert 0 < row.figures["anonymous_gib"] <= row.figures["resident_gib"] == row.value < 1.5
+
+
+def test_growth_gives_an_exponent_and_the_time_of_each_size() -> None:
+    rows = measure_growth(BenchWish(most_points=45_000))
+    assert len(rows) == 9
+    for row in rows:
+        assert row.value is not None
+        assert set(row.figures) == {"15000_s", "45000_s"}
+        assert min(row.figures.values()) > 0
+
+
+def test_the_exponent_of_a_power_law_is_found() -> None:
+    sizes = [1, 10, 100]
+    assert exponent_of(sizes, [2.0, 20.0, 200.0]) == pytest.approx(1.0)
+    assert exponent_of(sizes, [3.0, 3.0, 3.0]) == pytest.approx(0.0)
+    assert exponent_of(sizes, [1.0, 100.0, 10_000.0]) == pytest.approx(2.0)
