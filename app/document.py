@@ -10,14 +10,13 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from app.adoption import Adoption
+from app.first_look import FirstLook
 from app.jobs import JobQueue, Lane
 from app.label_news import tell_labels
 from app.long_work import export_work, import_work, imported_words, run_work
 from app.run_storing import FinishedRun
 from app.undo import UndoStack
 from processing.errors import OutOfRange, UserError
-from processing.image.attributes import telling_attribute
-from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache
 from processing.monitor import Monitor
 from processing.points.drive import Drive
@@ -87,6 +86,7 @@ class Document(QObject):
         self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
         self._adoption = Adoption(jobs, self)
         self._adoption.refused.connect(self.refused)
+        self._first_look = FirstLook(self.shared.view_settings)
 
     # Reading: what views ask (MapSource).
 
@@ -326,7 +326,7 @@ class Document(QObject):
     def _adopt_drives(self, folders: tuple[Path, ...]) -> None:
         project = self._needed()
         drives = project.adopt_drives(folders)
-        self._show_first_image()
+        self._first_look.show(self.drives())
         self.shared.map_changes.drives_changed.emit()
         self._prepare_drives()
         self.told.emit(imported_words(drives, project.crs))
@@ -371,20 +371,12 @@ class Document(QObject):
         self.close()
         self._project = project
         self.undo_stack.use(project)
-        self._show_first_image()
+        self._first_look.show(self.drives())
         self.opened.emit()
         self.shared.map_changes.drives_changed.emit()
         self.shared.map_changes.features_changed.emit(tuple(f.id for f in self.features()))
         self._prepare_drives()
         return True
-
-    def _show_first_image(self) -> None:
-        settings = self.shared.view_settings
-        drives = self.drives()
-        if not drives or settings.drive_id in {drive.id for drive in drives}:
-            return
-        settings.show_image(drives[0].id, _best_kind(drives[0], settings.image_kind))
-        settings.change_look(attribute=telling_attribute(drives[0], settings.look.attribute))
 
 
 def _changed_meanwhile() -> UserError:
@@ -396,7 +388,3 @@ def _changed_meanwhile() -> UserError:
         Text("the map", "地図"),
         Text("Do your edit again.", "もう一度編集してください。"),
     )
-
-
-def _best_kind(drive: Drive, wanted: ImageKind) -> ImageKind:
-    return wanted if wanted in drive.image_kinds else drive.image_kinds[0]

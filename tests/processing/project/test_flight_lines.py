@@ -1,4 +1,4 @@
-"""Flight lines of an airborne tile are one cloud; the heads of a vehicle are drives of their own."""
+"""Flight lines of a tile are one cloud; the heads of a vehicle are drives of their own."""
 
 import laspy
 import numpy as np
