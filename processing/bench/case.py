@@ -23,7 +23,7 @@ class BenchWish:
     project : Path or None
         A project to use in place of one that is made; it is only read.
     share : float
-        Of the frames that a window is watched for; less only shows that all goes well.
+        Of the repetitions and frames that are measured; less only shows that all goes well.
     """
 
     points: int | None = None
@@ -34,6 +34,10 @@ class BenchWish:
     def limited(self, points: int) -> int:
         """So many points, or the most that are wanted."""
         return points if self.most_points is None else min(points, self.most_points)
+
+    def repeats(self, count: int) -> int:
+        """The wanted share of a number of repetitions, at least one."""
+        return max(1, round(self.share * count))
 
 
 @dataclass(frozen=True)

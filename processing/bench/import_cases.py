@@ -39,7 +39,7 @@ def measure_import(wish: BenchWish) -> tuple[Measurement, ...]:
             shutil.rmtree(into, ignore_errors=True)
             import_drives(request, into, SilentMonitor())
 
-        ours, theirs = alternating([import_once, lambda: decode([cloud])], _REPEATS)
+        ours, theirs = alternating([import_once, lambda: decode([cloud])], wish.repeats(_REPEATS))
     row = Measurement(
         "import",
         Text(

@@ -62,7 +62,8 @@ def measure_normals(wish: BenchWish) -> tuple[Measurement, ...]:
                 "open3d": lambda: open3d_normals_s(local_xyz),
                 "pcl": lambda: pcl_normals_s(local_xyz, folder),
                 "cloudcompare": lambda: cloudcompare_normals_s(local_xyz, folder),
-            }
+            },
+            wish.repeats(_REPEATS),
         )
     ours = times["zuka"] or 0.0
     return tuple(_normals_row(peer, points, ours, times[peer]) for peer in _PEERS)
@@ -86,7 +87,7 @@ def measure_searchable(wish: BenchWish) -> tuple[Measurement, ...]:
             import_drives(request, into, SilentMonitor())
 
         ours, theirs = alternating(
-            [import_once, lambda: open3d_searchable(_decoded(cloud))], _REPEATS
+            [import_once, lambda: open3d_searchable(_decoded(cloud))], wish.repeats(_REPEATS)
         )
     row = Measurement(
         "searchable",
@@ -105,9 +106,13 @@ def measure_searchable(wish: BenchWish) -> tuple[Measurement, ...]:
     return (row,)
 
 
-def _in_turns(acts: dict[str, Callable[[], float | None]]) -> dict[str, float | None]:
-    """Medians of the seconds that acts tell, after a first round; None for one that tells none."""
-    rounds = [{name: act() for name, act in acts.items()} for _ in range(_REPEATS + 1)][1:]
+def _in_turns(acts: dict[str, Callable[[], float | None]], repeats: int) -> dict[str, float | None]:
+    """Medians of the seconds that acts tell in turns; None for one that tells none.
+
+    A round before is not counted, unless one round is all that is wanted.
+    """
+    rounds = [{name: act() for name, act in acts.items()} for _ in range(repeats + (repeats > 1))]
+    rounds = rounds[-repeats:]
     return {name: _median([one[name] for one in rounds]) for name in acts}
 
 

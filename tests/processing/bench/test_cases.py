@@ -13,7 +13,7 @@ from processing.bench.import_cases import measure_import, measure_import_memory
 from processing.bench.label_case import measure_labels
 from processing.bench.peer_cases import measure_normals, measure_searchable
 
-LITTLE = BenchWish(most_points=20_000)
+LITTLE = BenchWish(most_points=20_000, share=0.2)
 
 
 @pytest.mark.parametrize(
@@ -45,7 +45,7 @@ def test_memory_of_an_import_is_some_of_it_in_no_file() -> None:
 
 
 def test_growth_gives_an_exponent_and_the_time_of_each_size() -> None:
-    rows = measure_growth(BenchWish(most_points=45_000))
+    rows = measure_growth(BenchWish(most_points=45_000, share=0.2))
     assert len(rows) == 9
     for row in rows:
         assert row.value is not None
