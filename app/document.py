@@ -14,6 +14,7 @@ from app.first_look import FirstLook
 from app.jobs import JobQueue, Lane
 from app.label_news import tell_labels
 from app.long_work import export_work, import_work, imported_words, run_work
+from app.preparation import Preparation
 from app.run_storing import FinishedRun
 from app.undo import UndoStack
 from processing.errors import OutOfRange, UserError
@@ -31,9 +32,7 @@ from processing.project.runs import Run
 from processing.project.template_store import TemplateStore
 from processing.runner import RunRequest
 from processing.text import Text
-from processing.tools.normals import NORMALS
-from processing.tools.segments import SEGMENTS
-from processing.tools.tool import FinishedColumns
+from processing.tools.tool import FinishedColumns, Tool
 from resources import path_of
 from widgets.shared.cursor import Cursor
 from widgets.shared.map_changes import MapChanges
@@ -42,9 +41,6 @@ from widgets.shared.shared_state import SharedState
 from widgets.shared.sketch import Sketch
 from widgets.shared.snap_state import SnapState
 from widgets.shared.view_settings import ViewSettings
-
-_MOST_PREPARED = 50_000_000
-"""Points of a drive whose surfaces are found unasked: half a gigabyte of results at most."""
 
 
 class Document(QObject):
@@ -86,6 +82,7 @@ class Document(QObject):
         self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
         self._adoption = Adoption(jobs, self)
         self._adoption.refused.connect(self.refused)
+        self._preparation = Preparation(self._prepare, jobs, self)
         self._first_look = FirstLook(self.shared.view_settings)
 
     # Reading: what views ask (MapSource).
@@ -152,6 +149,7 @@ class Document(QObject):
         if self._project is None:
             return
         self.about_to_close.emit()
+        self._preparation.give_up()
         self._adoption.give_up()
         self.shared.sketch.show(None)
         self.shared.snap.work_on(None)
@@ -263,7 +261,7 @@ class Document(QObject):
 
         def take(done: FinishedRun) -> None:
             if done.columns is not None:
-                self._store_columns(drive, done.columns)
+                self._store_columns(drive, done.columns, replaces=lane is not Lane.PREPARED)
             if done.found is not None:
                 self.store_run(done.found)
 
@@ -333,14 +331,16 @@ class Document(QObject):
 
     def _prepare_drives(self) -> None:
         """Find in the background what attributes show, so that switching to them is quick."""
-        for drive in self.drives():
-            if drive.count > _MOST_PREPARED:
-                continue
-            for tool in (NORMALS, SEGMENTS):
-                if not all(drive.columns.has(column.name) for column in tool.outputs):
-                    self.start_run(tool.id, drive.id, tool.parameters(), lane=Lane.PREPARED)
+        self._preparation.begin(self.drives())
 
-    def _store_columns(self, drive: Drive, found: FinishedColumns) -> None:
+    def _prepare(self, tool: Tool, drive: Drive) -> str:
+        return self.start_run(tool.id, drive.id, tool.parameters(), lane=Lane.PREPARED)
+
+    def _store_columns(self, drive: Drive, found: FinishedColumns, *, replaces: bool) -> None:
+        if not replaces and all(map(drive.columns.has, found.names)):
+            # The user ran the tool meanwhile, with parameters of their own.
+            found.remove()
+            return
         found.hand_over(drive.columns)
         self.tiles.drop(drive.id)
         self.shared.map_changes.drive_columns_changed.emit(drive.id)
