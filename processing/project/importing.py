@@ -46,6 +46,7 @@ from processing.text import Text
 __all__ = ["ImportRequest", "Labels", "import_drives"]
 
 _READING = 0.7
+_READING_FILE = Text("Reading {name}", "{name} を読み込み中")
 
 
 def import_drives(
@@ -187,17 +188,22 @@ class _Import:
             if ways.done():
                 ways.result()
 
+        done: dict[int, int] = {}
+        read = 0
+
         def told(number: int, record: FileRecord) -> None:
-            before = self._records[number].done
+            nonlocal read
+            read += record.done - done[number]
+            done[number] = record.done
             self._records[number] = record
-            done[0] += record.done - before
             self._journal.note(f"file {number}", record.to_json(), self._folders_of(number))
-            name = Text("Reading {name}", "{name} を読み込み中")
-            monitor.report(done[0] / total, name.filled(name=self._files[number].path.name))
+            name = self._files[number].path.name
+            monitor.report(read / total, _READING_FILE.filled(name=name))
 
         while True:
             self._recall()
-            done = [sum(record.done for record in self._records.values())]
+            done |= {number: record.done for number, record in self._records.items()}
+            read = sum(done.values())
             refuse_small_disk(self._into, self.wanted_bytes())
             work = [
                 (self._layout.jobs[number], record)
