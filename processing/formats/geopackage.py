@@ -117,7 +117,8 @@ def _write_layer(path: Path, layer: _Layer, features: Sequence[Feature], crs: st
 
 
 def _refused(path: Path, error: RuntimeError) -> NoSpace:
-    reason = " ".join(str(error).split())
+    # Before its reason the library quotes pages of what it wanted to do.
+    reason = " ".join(str(error).rsplit("failed: ", 1)[-1].split()).rstrip(".")
     return NoSpace(
         Text(
             f"The GeoPackage can't be written: {reason}.",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import platform
@@ -11,7 +12,7 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from processing.errors import InUse, told_as_user_error
+from processing.errors import InUse, NoSpace, told_as_user_error
 from processing.text import Text
 
 LOCK_FILES = ("lock", "lock-owner.json")
@@ -38,6 +39,10 @@ class ProjectLock:
                 self._lock.acquire()
             except Timeout as error:
                 raise _in_use(folder, self._owner()) from error
+            except OSError as error:
+                if error.errno in (errno.EROFS, errno.EACCES, errno.EPERM):
+                    raise _read_only(folder) from error
+                raise
         owner = {
             "host": platform.node(),
             "process": os.getpid(),
@@ -64,6 +69,21 @@ class ProjectLock:
         except (OSError, ValueError, KeyError, TypeError):
             # That it is locked is the fact; who it is may not be written down.
             return Text("by another program", "別のプログラム")
+
+
+def _read_only(folder: Path) -> NoSpace:
+    return NoSpace(
+        Text(
+            "The project is where nothing may be written, so it can't be opened.",
+            "プロジェクトが書き込みできない場所にあるため、開けません。",
+        ),
+        Text.same(str(folder)),
+        Text(
+            "Copy its folder to a disk of your own and open it there; its files are found from it.",
+            "フォルダごと書き込みできるディスクにコピーして開いてください。"
+            "納品ファイルの場所はそのまま参照されます。",
+        ),
+    )
 
 
 def _in_use(folder: Path, owner: Text) -> InUse:

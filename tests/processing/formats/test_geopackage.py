@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -9,10 +10,10 @@ import numpy as np
 import pyogrio
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from processing.errors import UserError
+from processing.errors import NoSpace, UserError
 from processing.formats.geopackage import write_geopackage
 from processing.project.catalogue import Catalogue, Geometry, read_catalogue
 from processing.project.feature import Feature, Position, Vertex
@@ -32,7 +33,12 @@ def _feature(id_: str, kind: str, geometry: Geometry, **attributes: object) -> F
 
 
 def _placed(
-    id_: str, kind: str, geometry: Geometry, positions: tuple[Position, ...], **attributes: object
+    id_: str,
+    kind: str,
+    geometry: Geometry,
+    positions: tuple[Position, ...],
+    /,
+    **attributes: object,
 ) -> Feature:
     vertices = tuple(Vertex(position) for position in positions)
     return Feature(id_, kind, geometry, vertices, attributes)  # type: ignore[arg-type]
@@ -133,6 +139,7 @@ _TEXTS = st.characters(exclude_categories=["Cs"])
 
 
 @settings(max_examples=25)
+@example(place=(0.0, 0.0, 0.0), name="kind", value="")
 @given(
     place=st.tuples(_METRES, _METRES, _METRES),
     name=st.text(_TEXTS, max_size=8),
@@ -151,3 +158,20 @@ def test_any_place_and_any_value_is_kept(
     (point,), columns = _layer(path, "post")
     assert [tuple(one) for one in shapely.get_coordinates(point, include_z=True)] == [place]
     assert list(columns.values())[5] == [value]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="limits of a process's files are POSIX's")
+def test_a_full_disk_is_told_in_one_sentence_and_leaves_nothing_half_written(tmp_path, catalogue):
+    import resource
+
+    features = [_feature("a", "road_edge", Geometry.LINE)]
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (8_192, hard))
+    try:
+        with pytest.raises(NoSpace) as refused:
+            write_geopackage(tmp_path / "map.gpkg", features, catalogue, crs="EPSG:6677")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert "CREATE TABLE" not in refused.value.line("en")
+    assert len(refused.value.what.en) < 200
+    assert list(tmp_path.iterdir()) == []

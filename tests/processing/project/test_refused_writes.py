@@ -54,13 +54,16 @@ folder = Path(sys.argv[1])
 reading = Project.open(folder, writing=False)
 assert [feature.id for feature in reading.features.all()] == ["a"]
 reading.close()
+told = []
 for refused in (lambda: Project.open(folder), lambda: Project.create(folder / "b.zuka", "")):
     try:
         refused()
     except NoSpace as error:
         assert str(folder) in error.where.en
+        told.append(error.remedy.en)
     else:
         raise SystemExit("it was not refused")
+assert "Copy its folder" in told[0]
 print("refused")
 """
 
