@@ -14,6 +14,7 @@ from processing.errors import UserError
 from processing.image import point_image
 from processing.image.attributes import colours
 from processing.image.kinds import ImageKind
+from processing.image.tile_reading import expect_tile
 from processing.image.tiles import TileKey
 from processing.image.touched_tiles import TouchedTiles
 from processing.points.drive import Drive
@@ -283,7 +284,9 @@ class TileCache:
 
     def _pixels_of(self, request: TileRequest, drive_of: Callable[[str], Drive]) -> TilePixels:
         drive = drive_of(request.drive_id)
-        points = drive.image(request.kind).pyramid.points(request.key)
+        image = drive.image(request.kind)
+        expect_tile(drive.columns, image, request.key, request.attribute)
+        points = image.pyramid.points(request.key)
         shown = colours(drive, points, request.attribute, request.low_percent, request.high_percent)
         return TilePixels(points, shown)
 

@@ -123,6 +123,7 @@ class Columns:
         self._folder = folder
         self._count = count
         self._maps: dict[str, NDArray[Any]] = {}
+        self._files: dict[str, mmap.mmap] = {}
         self._held: dict[str, NDArray[Any]] = {}
 
     @property
@@ -153,6 +154,25 @@ class Columns:
         if name not in self._maps:
             self._maps[name] = self._mapped(name)
         return self._maps[name]
+
+    def expect(self, name: str, starts: NDArray[np.int64], stops: NDArray[np.int64]) -> None:
+        """Tell the system which points of a column are read next, so that the disk begins now.
+
+        Parameters
+        ----------
+        starts, stops : (k,) int64
+            The points ``starts[i] … stops[i] − 1``.
+        """
+        values = self[name]
+        mapped = self._files.get(name)
+        if mapped is None or not hasattr(mmap, "MADV_WILLNEED"):
+            return
+        item = values.itemsize * (values.size // self._count)
+        begins = starts * item // mmap.PAGESIZE * mmap.PAGESIZE
+        lengths = stops * item - begins
+        for begin, length in zip(begins.tolist(), lengths.tolist(), strict=True):
+            if length > 0:
+                mapped.madvise(mmap.MADV_WILLNEED, begin, length)
 
     def add(self, name: str, values: NDArray[Any]) -> None:
         """Store a column that a tool or a hand made; replaces an older one, whole or not at all.
@@ -214,6 +234,7 @@ class Columns:
     def release(self, name: str) -> None:
         """Forget the map of a column; arrays already handed out stay valid."""
         self._maps.pop(name, None)
+        self._files.pop(name, None)
 
     def _mapped(self, name: str) -> NDArray[Any]:
         dtype, width = COLUMN_TYPES[name]
@@ -238,4 +259,5 @@ class Columns:
             with path.open("rb") as file:
                 mapped = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
             self._pages.add(mapped)
+            self._files[name] = mapped
             return np.frombuffer(mapped, dtype=dtype).reshape(shape)

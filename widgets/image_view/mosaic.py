@@ -46,6 +46,16 @@ class _Grid:
         """Columns of the image per pixel of the mosaic."""
         return self.step * self.thinning
 
+    def beside(self) -> list[TileKey]:
+        """The tiles before and behind along the rows, where a drag leads next."""
+        shape = self.picture.image.pyramid.shape(self.level)
+        return [
+            TileKey(self.level, row, column)
+            for row in (self.rows[0] - 1, self.rows[-1] + 1)
+            if 0 <= row < shape[0]
+            for column in self.columns
+        ]
+
     def area_of(self, key: TileKey) -> tuple[int, int, int, int]:
         """First row, first column, rows and columns of the image, rounded up to whole pixels."""
         rows, columns = self.picture.image.pyramid.rows_columns(key)
@@ -110,12 +120,13 @@ class Mosaic:
             range(min(key.column for key in keys), max(key.column for key in keys) + 1),
             _thinning(across * (1 << keys[0].level)),
         )
-        found = self._images.images(keys, grid.thinning)
+        found = self._images.images(keys, grid.thinning, grid.beside())
         made_for = grid, self._images.version
         if made_for != self._made_for:
             self._turned = QImage()  # else painting would copy what it shares
             self._compose(grid, keys, found)
-            self._made_for = made_for
+            # Coarser tiles that stood in may have been made just now.
+            made_for = self._made_for = grid, self._images.version
         if (made_for, viewport.lay) != self._turned_for:
             self._turned = _turned(self._whole, viewport.lay)
             self._turned_for = made_for, viewport.lay

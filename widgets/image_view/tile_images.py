@@ -138,13 +138,17 @@ class TileImages(QObject):
         self._made.clear()
         self._bytes = 0
 
-    def images(self, keys: Sequence[TileKey], thinning: int = 1) -> dict[TileKey, QImage]:
+    def images(
+        self, keys: Sequence[TileKey], thinning: int = 1, ahead: Sequence[TileKey] = ()
+    ) -> dict[TileKey, QImage]:
         """Pictures of tiles as far as there are any; the rest is asked for, the first ones first.
 
         Parameters
         ----------
         thinning : int
             So many columns of a tile become one, by their mean.
+        ahead : sequence of TileKey
+            What may be looked at next: loaded once the others are there.
         """
         picture = self._picture
         if picture is None:
@@ -169,18 +173,34 @@ class TileImages(QObject):
         self._tiles.keep_only(self._tell, frozenset(missing))
         for request in reversed(missing):  # the loader serves the newest first
             self._tiles.request(request, self._tell, self._tell_refusal)
+        if not missing:
+            self._load_ahead([self._request_for(picture, key) for key in ahead])
         return found
 
+    def _load_ahead(self, requests: list[TileRequest]) -> None:
+        lacking = [request for request in requests if self._tiles.get(request) is None]
+        self._tiles.keep_only(self._have_ahead, frozenset(lacking))
+        for request in lacking:
+            self._tiles.request(request, self._have_ahead)
+
     def available(self, key: TileKey) -> QImage | None:
-        """The picture of a tile if there is one; asks for nothing."""
+        """The picture of a tile if there is one or its points are there; asks for nothing."""
         picture = self._picture
         if picture is None:
             return None
         for thinning in THINNINGS:
-            made = self._made.get((picture.drive.id, picture.image.kind, key, thinning))
-            if made is not None:
-                return made.image
-        return None
+            slot = (picture.drive.id, picture.image.kind, key, thinning)
+            if slot in self._made:
+                self._made.move_to_end(slot)
+                return self._made[slot].image
+        request = self._request_for(picture, key)
+        pixels = self._tiles.get(request)
+        if pixels is None:
+            return None
+        return self._keep((*slot[:3], 1), request, self._drawn(picture, pixels)).image
+
+    def _have_ahead(self, request: TileRequest, pixels: TilePixels) -> None:
+        """Tiles loaded ahead are found when they are looked at."""
 
     def _tell(self, request: TileRequest, pixels: TilePixels) -> None:
         self._arrived.emit(request, pixels)
