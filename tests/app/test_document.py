@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from app.document import Document
-from app.jobs import JobQueue
+from app.jobs import JobQueue, Lane
 from processing.project.catalogue import Geometry
 from processing.project.change import Change
 from processing.project.feature import Feature, Vertex
 from processing.project.importing import ImportRequest
 from processing.text import Text
 from processing.tools.normals import NORMALS
-from processing.tools.segments import SEGMENTS
+from processing.tools.segments import SEGMENTS, SegmentsParameters
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 
 SIGN = Feature("f1", "sign", Geometry.POINT, (Vertex((1.0, 2.0, 3.0)),))
@@ -23,8 +24,12 @@ WAIT_MS = 30_000
 
 
 @pytest.fixture
-def document(qapp):
-    jobs = JobQueue()
+def jobs(qapp):
+    return JobQueue()
+
+
+@pytest.fixture
+def document(jobs):
     document = Document(jobs)
     yield document
     jobs.close()
@@ -67,6 +72,25 @@ def test_an_imported_drive_is_shown_and_its_surfaces_are_prepared(
     wanted = {column.name for tool in (NORMALS, SEGMENTS) for column in tool.outputs}
     qtbot.waitUntil(lambda: all(drive.columns.has(name) for name in wanted), timeout=WAIT_MS)
     assert columns == {drive.id}
+
+
+def test_what_was_prepared_does_not_replace_what_was_asked_for(
+    document, jobs, delivery, tmp_path, qtbot
+):
+    document.import_into_new(tmp_path / "p.zuka", delivery)
+    qtbot.waitUntil(lambda: bool(document.drives()), timeout=WAIT_MS)
+    (drive,) = document.drives()
+    qtbot.waitUntil(lambda: drive.columns.has("segment"), timeout=WAIT_MS)
+    one_for_each = SegmentsParameters(distance_m=0.01, spacing_ratio=1.0, farthest_m=0.01)
+    with qtbot.waitSignal(document.shared.map_changes.drive_columns_changed, timeout=WAIT_MS):
+        document.start_run(SEGMENTS.id, drive.id, one_for_each)
+    asked = np.array(drive.columns["segment"])
+    ended = []
+    jobs.finished.connect(lambda job, _: ended.append(job))
+    prepared = document.start_run(SEGMENTS.id, drive.id, SegmentsParameters(), lane=Lane.PREPARED)
+    qtbot.waitUntil(lambda: prepared in ended, timeout=WAIT_MS)
+    assert list((tmp_path / "p.zuka" / "tmp").iterdir()) == []
+    np.testing.assert_array_equal(drive.columns["segment"], asked)
 
 
 def test_an_import_that_is_refused_leaves_no_project(document, tmp_path, qtbot):
