@@ -75,6 +75,7 @@ def run_window(wish: WindowWish) -> int:
     parts.window.show()
     _close_on_signals(parts.window)
     QTimer.singleShot(0, lambda: _fulfil(wish, parts))
+    QTimer.singleShot(0, parts.document.tiles.get_ready)
     return int(application.exec())
 
 
