@@ -90,7 +90,8 @@ def top_view_of(
     # What tiles need grows with the cells, filled or not; long strips may have fine ones.
     cell_m = max(cell_m, math.sqrt(width * height / _MOST_CELLS), _LEAST_CELL_M)
     cell_m = max(cell_m, max(width, height) / 1e7)
-    columns, rows = int(width / cell_m) + 1, int(height / cell_m) + 1
+    # Points on the outer edges are in the last cells.
+    columns, rows = (math.ceil(side / cell_m - 1e-9) for side in (width, height))
     return TopView(float(low[0]), float(high[1]), cell_m, columns, rows)
 
 

@@ -47,6 +47,12 @@ _SAMPLE_POINTS = 200_000
 _SOURCES, _SORTED, _ROWS, _SORTED_BY_CELL = "sources", "sorted", "rows", "sorted by cell"
 _FINDING = Text("Finding turns and pulses of {name}", "{name} の回転とパルスを推定中")
 _SORTING = Text("Restoring the time order of {name}", "{name} の時刻順を復元中")
+_LEAST_FILLED = 0.02
+_NEARLY_EMPTY = Text(
+    "The points would fill less than one pixel in fifty of rows, as a piece that was cut out or a "
+    "narrow strip from the air does; the top view is shown.",
+    "切り出した点群や航空計測などで、行の画像では画素の50分の1も埋まらないため、上面画像で表示します。",
+)
 _GRID = Text("Reading the grid of the scan {name}", "{name} のスキャン格子を確認中")
 _CELLS = Text("Ordering {name} for the top view", "{name} を上面画像用に並べ替え中")
 
@@ -322,10 +328,13 @@ def _rows_of(
         lattice = recording.lattice
         points = RecordedPoints(folder, count, lattice.scale, lattice.offset)
         found = find_turns(points, trajectory, monitor)
-        if not isinstance(found, NoTurns):
+        if isinstance(found, NoTurns):
+            reason = found.reason
+        elif trajectory is None and count < _LEAST_FILLED * int(np.ptp(found.fold_pulses)):
+            reason = _NEARLY_EMPTY
+        else:
             write_turns(folder, found)
             return _FoundRows(Text("", ""), found.method)
-        reason = found.reason
     else:
         reason = Text(
             "The points have no times, so there are no rows; the top view is shown.",

@@ -45,7 +45,8 @@ def state_of(source: SourceFile, path: Path, check: Check) -> FileState:
         status = path.stat()
     except OSError:
         return FileState.MISSING
-    if not path.is_file():
+    # A recording of raw pulses is a folder.
+    if not (path.is_file() or path.is_dir()):
         return FileState.MISSING
     if status.st_size != source.size:
         return FileState.CHANGED
@@ -93,8 +94,11 @@ def require_delivered(source: SourceFile, path: Path, check: Check) -> None:
 
 def _checksum(path: Path, check: Check) -> str:
     digest = hashlib.sha256()
-    with told_as_user_error(path), path.open("rb") as file:
-        while block := file.read(_HASHED_BYTES):
-            check()
-            digest.update(block)
+    with told_as_user_error(path):
+        files = sorted(one for one in path.rglob("*") if one.is_file()) if path.is_dir() else [path]
+        for name in files:
+            with name.open("rb") as file:
+                while block := file.read(_HASHED_BYTES):
+                    check()
+                    digest.update(block)
     return digest.hexdigest()

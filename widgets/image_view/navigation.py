@@ -22,11 +22,15 @@ def viewport_on(picture: Picture, before: Picture | None, viewport: Viewport) ->
     width, height = picture.size
     shown = viewport.showing((width, height), picture.stretch)
     if before is None:
-        return shown.with_start()
+        return beginning(picture, shown)
     if before.drive.id != picture.drive.id:
         row = _row_at_the_same_time(picture, before, viewport)
         share = viewport.centre[1] / max(before.size[1], 1)
-        return shown.with_start() if row < 0 else shown.centred_on(row + 0.5, share * height)
+        if row < 0:
+            return beginning(picture, shown)
+        return shown.centred_on(row + 0.5, share * height)
+    if before.image.kind is picture.image.kind:
+        return shown
     row, _ = before.pixel_at(*viewport.centre)
     row = min(max(row, 0), max(before.image.rows - 1, 0))
     first = min(int(before.image.row_starts[row]), max(picture.image.drive_count - 1, 0))
@@ -37,9 +41,16 @@ def viewport_on(picture: Picture, before: Picture | None, viewport: Viewport) ->
     return shown.centred_on(width / 2, float(place[1]))
 
 
+def beginning(picture: Picture | None, viewport: Viewport) -> Viewport:
+    """What is shown at first: where a street begins, all of a view from above or of a scan."""
+    if picture is None or picture.follows_way:
+        return viewport.with_start()
+    return viewport.with_everything(picture.stretch)
+
+
 def _row_at_the_same_time(picture: Picture, before: Picture, viewport: Viewport) -> int:
     """The row measured when that in the middle of the picture before was; −1 where none was."""
-    if not (picture.rows_go_right and before.rows_go_right and picture.image.rows):
+    if not (picture.follows_way and before.follows_way and picture.image.rows):
         return -1
     row = min(max(before.pixel_at(*viewport.centre)[0], 0), max(before.image.rows - 1, 0))
     moment, times = before.image.row_times[row], picture.image.row_times

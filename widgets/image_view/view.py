@@ -22,7 +22,7 @@ from widgets.image_view.edges import Edges
 from widgets.image_view.feature_overlay import FeatureOverlay
 from widgets.image_view.feature_places import FeaturePlaces
 from widgets.image_view.hit_finder import HitFinder
-from widgets.image_view.navigation import viewport_on, wheeled
+from widgets.image_view.navigation import beginning, viewport_on, wheeled
 from widgets.image_view.picture import Picture
 from widgets.image_view.place_search import PlaceSearch
 from widgets.image_view.scene_painter import Overlays, ScenePainter
@@ -210,7 +210,7 @@ class ImageView(QWidget):
     def resizeEvent(self, event: QResizeEvent) -> None:
         was_sized = self._viewport.width > 1
         viewport = self._edges.lay_out(self._viewport)
-        self._look_through(viewport if was_sized else viewport.with_start())
+        self._look_through(viewport if was_sized else beginning(self._picture, viewport))
 
     @override
     def wheelEvent(self, event: QWheelEvent) -> None:

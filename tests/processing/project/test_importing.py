@@ -177,6 +177,19 @@ def test_where_there_are_no_rows_the_top_view_is_made_and_says_why(tmp_path, lef
     assert (image.raster(range(image.rows), range(image.width)) >= 0).sum() > drive.count / 3
 
 
+def test_rows_that_would_be_nearly_empty_are_not_made_of_a_cut_out(tmp_path):
+    street = simulated_drive(length_m=20.0)
+    kept = (street.pulse // 1000) % 60 == 0  # one turn in sixty
+
+    def cut(cloud):
+        cloud.points = cloud.points[kept]
+
+    cloud = _shifted(write_laz(street, tmp_path / "a.laz"), tmp_path / "b.laz", cut)
+    (drive,) = _imported(tmp_path, [cloud])
+    assert drive.info.rows_by == "top-view"
+    assert "one pixel in fifty" in drive.info.rows_reason.en
+
+
 def test_files_of_different_reference_systems_are_refused(tmp_path, left):
     files = [
         write_laz(left, tmp_path / "a.laz", crs="EPSG:6677"),
