@@ -36,12 +36,12 @@ def told_troubles(troubles: Sequence[Trouble]) -> UserError | None:
     where = Text.same(str((missing or list(troubles))[0].path))
     if missing:
         what = Text(
-            "{count} delivered files or camera images are not where they were.",
+            "Delivered files or camera images are not where they were: {count}.",
             "納品ファイルまたはカメラ画像{count}個が元の場所にありません。",
         ).filled(count=f"{len(missing):,}")
         return MissingInput(what, where, _GOES_ON)
     what = Text(
-        "{count} delivered files have changed since they were imported.",
+        "Delivered files have changed since they were imported: {count}.",
         "納品ファイル{count}個がインポート後に変更されています。",
     ).filled(count=f"{len(troubles):,}")
     return BadFile(what, where, _GOES_ON)
@@ -53,7 +53,7 @@ def told_found(before: int, troubles: Sequence[Trouble]) -> Text | None:
         return _ALL_FOUND
     if len(troubles) < before:
         return Text(
-            "Found {found} files; {count} are still missing.",
+            "Files found: {found}; still missing: {count}.",
             "{found}個が見つかりました。残り{count}個が見つかりません。",
         ).filled(found=f"{before - len(troubles):,}", count=f"{len(troubles):,}")
     return None

@@ -130,13 +130,13 @@ def test_files_that_are_missing_are_told_marked_and_found_by_one_choice(surveyor
         with surveyor.bot.waitSignal(watch.looked, timeout=WAIT_MS):
             assert surveyor.document.open(tmp_path / "desk" / "street.zuka")
         assert len(watch.troubles) == 2
-        assert "2 delivered files" in bar.text
+        assert "not where they were: 2" in bar.text
         items = children_of(children_of(tree_of(surveyor))[0])
         assert all(not item.icon(0).isNull() for item in items)
         assert all("is missing" in item.toolTip(0) for item in items)
         with surveyor.bot.waitSignal(watch.looked, timeout=WAIT_MS):
             watch.look_in(tmp_path)
-        assert "2 delivered files" in bar.text
+        assert "not where they were: 2" in bar.text
         with surveyor.bot.waitSignal(watch.looked, timeout=WAIT_MS):
             watch.look_in(hidden / "delivery")
         assert watch.troubles == ()
