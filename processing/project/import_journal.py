@@ -59,8 +59,6 @@ class ImportJournal:
 
     def begin(self, plan: object) -> None:
         """Write down what is imported, and take room for a last note on a full disk."""
-        if not self._is_kept:
-            return
         path = self.folder / PLAN
         with told_as_user_error(path):
             (self.folder / _ROOM).write_bytes(bytes(_ROOM_BYTES))

@@ -83,10 +83,10 @@ def import_drives(
     journal = ImportJournal(into, is_kept=is_import_folder(into))
     running = _Import(request, marks, delivery, journal, monitor)
     try:
-        if is_import_folder(into) and not journal.is_begun:
-            _empty(into)
-        journal.begin(described(request, marks))
         with full_disk_told(running.wanted_bytes, running.keep):
+            if is_import_folder(into) and not journal.is_begun:
+                _empty(into)
+                journal.begin(described(request, marks))
             folders = running.run(tuple(taken))
         journal.finish(folder.name for folder in folders)
     except (UserError, Cancelled, KeyboardInterrupt):
@@ -166,9 +166,8 @@ class _Import:
 
     def keep(self) -> bool:
         """Keep what is done, after the disk was full; says whether it can go on."""
-        self.is_kept = is_import_folder(self._into) and any(
-            record.done for record in self._records.values()
-        )
+        is_worth_it = self._journal.is_begun or any(one.done for one in self._records.values())
+        self.is_kept = is_import_folder(self._into) and is_worth_it
         if self.is_kept:
             self._journal.save()
         return self.is_kept
