@@ -8,6 +8,7 @@ from PySide6.QtCore import QObject
 
 from app.drawing_wiring import connect_drawing
 from app.drive_wiring import connect_drives
+from app.import_wiring import connect_imports
 from app.jobs import JobState, JobStatus
 from app.review_wiring import connect_review
 from app.template_wiring import connect_templates
@@ -40,6 +41,7 @@ def connect_parts(parts: WindowParts) -> None:
     connect_drawing(parts)
     connect_views(parts)
     connect_drives(parts)
+    connect_imports(parts)
     connect_review(parts)
     connect_templates(parts)
     parts.window.closed.connect(wiring.on_window_closed)

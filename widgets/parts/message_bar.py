@@ -29,7 +29,7 @@ class MessageBar(QFrame):
         font = self._what.font()
         font.setBold(True)
         self._what.setFont(font)
-        self._remedy = QToolButton(self)
+        self._remedy, self._other = QToolButton(self), QToolButton(self)
         words = QVBoxLayout()
         words.setSpacing(2)
         words.addWidget(self._what)
@@ -42,7 +42,8 @@ class MessageBar(QFrame):
         layout = QHBoxLayout(self)
         layout.setContentsMargins(12, 8, 8, 8)
         layout.addLayout(words, 1)
-        layout.addWidget(self._remedy, 0, Qt.AlignmentFlag.AlignVCenter)
+        for button in (self._remedy, self._other):
+            layout.addWidget(button, 0, Qt.AlignmentFlag.AlignVCenter)
         layout.addWidget(self._close, 0, Qt.AlignmentFlag.AlignTop)
         self.hide()
 
@@ -56,19 +57,22 @@ class MessageBar(QFrame):
         """What is wrong; None while hidden."""
         return None if self.isHidden() else self._error
 
-    def show_error(self, error: UserError, remedy: QAction | None = None) -> None:
+    def show_error(
+        self, error: UserError, remedy: QAction | None = None, other: QAction | None = None
+    ) -> None:
         """Say what is wrong until it is closed or something else is wrong.
 
         Parameters
         ----------
-        remedy : QAction, optional
-            What can be done about it at once; a button for it is shown.
+        remedy, other : QAction, optional
+            What can be done about it at once; buttons for it are shown.
         """
-        for old in self._remedy.actions():
-            self._remedy.removeAction(old)
-        self._remedy.setVisible(remedy is not None)
-        if remedy is not None:
-            self._remedy.setDefaultAction(remedy)
+        for button, action in ((self._remedy, remedy), (self._other, other)):
+            for old in button.actions():
+                button.removeAction(old)
+            button.setVisible(action is not None)
+            if action is not None:
+                button.setDefaultAction(action)
         self._error = error
         self._what.setText(error.what.spoken(self._language))
         where, advice = (part.spoken(self._language) for part in (error.where, error.remedy))

@@ -1,0 +1,67 @@
+"""Imports that a kill or a full disk stopped: offered when their project is opened."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QAction
+
+from app.window_parts import WindowParts
+from processing.errors import UserError
+from processing.project.unfinished_imports import UnfinishedImport, discard, unfinished_imports
+from processing.text import Text
+
+_MOST_NAMES = 3
+
+
+def connect_imports(parts: WindowParts) -> None:
+    """Connect the message bar with imports that can go on; again for new widgets."""
+    ImportOffer(parts)
+
+
+class ImportOffer(QObject):
+    """Offers to go on with an import or to give it up."""
+
+    def __init__(self, parts: WindowParts) -> None:
+        super().__init__(parts.window.centralWidget())  # goes with the widgets
+        self._parts = parts
+        self._waiting: list[UnfinishedImport] = []
+        self._go_on = QAction(self.tr("Go on"), self)
+        self._go_on.triggered.connect(self._on_go_on_triggered)
+        self._discard = QAction(self.tr("Discard"), self)
+        self._discard.triggered.connect(self._on_discard_triggered)
+        parts.document.opened.connect(self._on_document_opened)
+
+    def _on_document_opened(self) -> None:
+        project = self._parts.document.project
+        self._waiting = [] if project is None else list(unfinished_imports(project.folder))
+        if self._waiting:
+            self._show_next()
+
+    def _show_next(self) -> None:
+        if self._waiting:
+            told = told_offer(self._waiting[0])
+            self._parts.message_bar.show_error(told, self._go_on, self._discard)
+        else:
+            self._parts.message_bar.hide()
+
+    def _on_go_on_triggered(self) -> None:
+        self._parts.document.import_files(self._waiting.pop(0).request)
+        self._show_next()
+
+    def _on_discard_triggered(self) -> None:
+        discard(self._waiting.pop(0))
+        self._show_next()
+
+
+def told_offer(unfinished: UnfinishedImport) -> UserError:
+    """What is said of an import that can go on."""
+    inputs = unfinished.request.inputs
+    names = ", ".join(path.name for path in inputs[:_MOST_NAMES])
+    return UserError(
+        Text("An import was interrupted.", "インポートが中断されています。"),
+        Text.same(names if len(inputs) <= _MOST_NAMES else f"{names} …"),
+        Text(
+            "Go on where it stopped, or discard what is done of it.",
+            "中断したところから再開するか、途中の結果を破棄してください。",
+        ),
+    )
