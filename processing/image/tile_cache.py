@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UserError
+from processing.errors import UNCHANGED, NoSpace, UserError
 from processing.image import point_image
 from processing.image.attributes import colours
 from processing.image.kinds import ImageKind
@@ -18,6 +18,7 @@ from processing.image.tile_reading import expect_tile
 from processing.image.tiles import TileKey
 from processing.image.touched_tiles import TouchedTiles
 from processing.points.drive import Drive
+from processing.text import Text
 
 LIMIT_BYTES = 256 * 2**20
 _LOADERS = 2
@@ -254,6 +255,8 @@ class TileCache:
             made = self._pixels_of(request, drive_of)
         except UserError as error:
             made = error
+        except MemoryError:
+            made = self._short_of_memory(request)
         except KeyError:
             made = None  # the drive was closed meanwhile; no one waits for its tiles
         finally:
@@ -263,6 +266,24 @@ class TileCache:
                 done(request, made)
             elif made is not None and refused is not None:
                 refused(request, made)
+
+    def _short_of_memory(self, request: TileRequest) -> UserError:
+        """Give back what tiles hold, and say what is to be done."""
+        with self._changed:
+            self._tiles.clear()
+            self._held_bytes = 0
+        return NoSpace(
+            Text(
+                "There is not enough memory to show the points.",
+                "メモリが不足しているため、点を表示できません。",
+            ),
+            Text.same(request.drive_id),
+            Text(
+                "Close other programs or views, then open the project again. {unchanged}",
+                "ほかのプログラムやビューを閉じてから、プロジェクトを開き直してください。"
+                "{unchanged}",
+            ).filled(unchanged=UNCHANGED),
+        )
 
     def _kept(
         self, request: TileRequest, made: TilePixels | UserError | None, age: int

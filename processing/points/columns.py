@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import mmap
 from collections.abc import Mapping
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, BinaryIO, Self
@@ -170,9 +171,11 @@ class Columns:
         item = values.itemsize * (values.size // self._count)
         begins = starts * item // mmap.PAGESIZE * mmap.PAGESIZE
         lengths = stops * item - begins
-        for begin, length in zip(begins.tolist(), lengths.tolist(), strict=True):
-            if length > 0:
-                mapped.madvise(mmap.MADV_WILLNEED, begin, length)
+        # Advice that isn't taken does no harm: the points are read when they are asked for.
+        with suppress(OSError):
+            for begin, length in zip(begins.tolist(), lengths.tolist(), strict=True):
+                if length > 0:
+                    mapped.madvise(mmap.MADV_WILLNEED, begin, length)
 
     def add(self, name: str, values: NDArray[Any]) -> None:
         """Store a column that a tool or a hand made; replaces an older one, whole or not at all.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import weakref
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -256,4 +257,32 @@ def test_a_cache_that_knows_no_drives_says_so() -> None:
     cache = TileCache()
     with pytest.raises(ValueError, match="drives"):
         cache.request(request_of(), Listener().done)
+    cache.close()
+
+
+def test_a_machine_without_memory_gives_tiles_back_and_says_so(drives: dict[str, Drive]) -> None:
+    cache, listener = TileCache(), Listener()
+    is_short = threading.Event()
+
+    def drive_of(name: str) -> Drive:
+        if is_short.is_set():
+            raise MemoryError
+        return drives[name]
+
+    cache.use(drive_of)
+    top = drives["a"].image(KINDS[0]).pyramid.top
+    first = TileRequest("a", KINDS[0], top, "intensity", 1.0, 99.0)
+    cache.request(first, listener.done, listener.refused)
+    listener.wait_for(1)
+    is_short.set()
+    cache.request(replace(first, attribute="height"), listener.done, listener.refused)
+    listener.wait_for(2)
+    assert cache.held_bytes == 0
+    (reason,) = listener.reasons
+    assert "memory" in reason.what.en
+    assert cache.refusal("a", "height") is reason
+    is_short.clear()  # the loaders live on
+    cache.request(first, listener.done, listener.refused)
+    listener.wait_for(3)
+    assert len(listener.told) == 2
     cache.close()
