@@ -164,6 +164,19 @@ class PlanFeed(QObject):
             added.update(chosen)
             self._tell(ShownPlan(wish, raster.picture(), self._ground[1], is_sharp=not is_first))
         self._make_overview(wish, pyramids)
+        self._make_exact(wish, [pyramid for _, pyramid in pyramids if not pyramid.is_ready])
+
+    def _make_exact(self, wish: PlanWish, sketched: list[TilePyramid]) -> None:
+        """Work out where tiles are that was only sketched, and show what is changed by that."""
+        frame = wish.frame
+        middle = (frame.west + frame.east) / 2, (frame.south + frame.north) / 2
+        for pyramid in sketched:
+            while not pyramid.extend(np.array([*middle, wish.origin[2]])):
+                if self._is_outdated():
+                    return
+        if sketched:
+            self._overview = ()
+            self._fulfil(wish)
 
     def _make_overview(self, wish: PlanWish, pyramids: list[tuple[int, TilePyramid]]) -> None:
         """What is shown where a push or a zoom is ahead of the pictures."""
@@ -184,7 +197,7 @@ class PlanFeed(QObject):
         for number, (drive, kind) in enumerate(wish.drives):
             try:
                 pyramid = drive.image(kind).pyramid
-                pyramid.prepare()
+                pyramid.sketch()
             except UserError:
                 continue  # the image view says why; here the drive's points are just not there
             pyramids.append((number, pyramid))

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from PySide6.QtCore import Qt
 from pytestqt.qtbot import QtBot
 
@@ -52,6 +56,58 @@ def test_tiles_of_another_drive_never_stand_in() -> None:
 
 def test_nothing_is_shown_of_what_is_no_longer_wanted() -> None:
     assert shown_tiles([tile(0, 5, 5)], [tile(0, 5, 5), PARENT]) == {tile(0, 5, 5)}
+
+
+@given(st.lists(st.tuples(st.integers(0, 2**31), st.integers(0, 3)), min_size=2, max_size=6))
+def test_a_slow_loader_never_leaves_a_hole_where_something_was(
+    looks: list[tuple[int, int]],
+) -> None:
+    there: set[TileId] = set()
+    shown: frozenset[TileId] = frozenset()
+    for seed, at_once in looks:
+        random = np.random.default_rng(seed)
+        wanted = random_choice(random)
+        coming = sorted(wanted - there, key=lambda one: random.random())
+        while True:
+            covered = cells_of(shown) & cells_of(wanted)
+            shown = shown_tiles(wanted, there)
+            assert cells_of(shown) >= covered
+            assert len(cells_of(shown)) == sum(len(cells_of([one])) for one in shown)
+            # As the cloud does: what is neither shown nor wanted goes.
+            there &= wanted | shown
+            # The camera may move on before all has come.
+            if not coming or random.random() < 0.1:
+                break
+            for _ in range(at_once + 1):
+                there |= {coming.pop()} if coming else set()
+        if not coming:
+            assert shown_tiles(wanted, there) == wanted
+
+
+_LEVELS = 4
+
+
+def random_choice(random: np.random.Generator) -> set[TileId]:
+    """Tiles that cover the whole image once, some finer than others."""
+    waiting, chosen = [tile(_LEVELS - 1, 0, 0)], set()
+    while waiting:
+        one = waiting.pop()
+        if one.key.level == 0 or random.random() < 0.3:
+            chosen.add(one)
+            continue
+        level, row, column = one.key.level - 1, 2 * one.key.row, 2 * one.key.column
+        waiting += [tile(level, row + i, column + j) for i in (0, 1) for j in (0, 1)]
+    return chosen
+
+
+def cells_of(tiles: Iterable[TileId]) -> set[tuple[int, int]]:
+    """The tiles of the finest level that lie below some tiles."""
+    return {
+        ((one.key.row << one.key.level) + i, (one.key.column << one.key.level) + j)
+        for one in tiles
+        for i in range(1 << one.key.level)
+        for j in range(1 << one.key.level)
+    }
 
 
 def test_slow_frames_make_the_budget_smaller_and_fast_ones_larger() -> None:
