@@ -232,4 +232,5 @@ def _block_of(drive: Drive, image: PointCloudImage, rows: range) -> PointBlock:
             else np.zeros(points.stop - points.start, np.uint8)
         ),
         grid=grid,
+        seen_from=None if drive.info.scanner_place is None else np.array(drive.info.scanner_place),
     )

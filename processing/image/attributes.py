@@ -22,6 +22,7 @@ from processing.image.colour_maps import (
     stretched,
 )
 from processing.image.drive_sample import value_at_percent
+from processing.image.kinds import ImageKind
 from processing.image.normals import RowLayout, SurfaceShapes, surface_shapes
 from processing.points.ordering import read_stretch
 from processing.text import Text
@@ -221,7 +222,13 @@ def _shape(drive: Drive, points: _Points) -> _Colours:
 def _surfaces(drive: Drive, points: _Points) -> SurfaceShapes:
     image = drive.image(drive.pixel_kind)
     pulses, row_starts, doubled_origins = image.layout[:3]
-    layout = RowLayout(pulses, row_starts, doubled_origins // 2, image.segments)
+    layout = RowLayout(
+        pulses,
+        row_starts,
+        doubled_origins // 2,
+        image.segments,
+        is_regular=image.kind is not ImageKind.TOP_VIEW,
+    )
     return surface_shapes(drive.columns["xyz"], drive.info.scale, layout, points, SHOWN_RADIUS_M)
 
 

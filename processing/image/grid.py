@@ -26,9 +26,12 @@ class PixelGrid:
         Stretches between stops; rows of different segments are not neighbours.
     width : int
         Number of columns.
+    is_regular : bool
+        Whether points follow each other as a scanner measured them; False seen from above.
     """
 
     row_starts: NDArray[np.int64]
     columns: NDArray[np.int32]
     segments: NDArray[np.int32]
     width: int
+    is_regular: bool = True

@@ -32,7 +32,8 @@ class RowPoints(NamedTuple):
     """Points in their rows; a point's column is ``clocks[point] − origins[row]``.
 
     ``xyz`` times ``scale`` is metres: int32 as delivered, or float64 with a scale of 1; ``clocks``
-    are int64 pulses, or int32 columns with origins of 0.
+    are int64 pulses, or int32 columns with origins of 0. Points seen from above are not
+    ``is_regular``: how far the next one is says nothing of those after it.
     """
 
     xyz: NDArray[Any]
@@ -41,6 +42,7 @@ class RowPoints(NamedTuple):
     row_starts: _Integers
     origins: _Integers
     segments: NDArray[np.int32]
+    is_regular: bool
 
 
 class Surfaces(NamedTuple):
@@ -96,8 +98,12 @@ def _gather(
     across: _Floats,
 ) -> int:
     """Sums over the neighbours of a point; gives their number."""
-    step = _step_along(rows, point, row)
-    gap, shift = _step_across(rows, point, row)
+    if rows.is_regular:
+        step = _step_along(rows, point, row)
+        gap, shift = _step_across(rows, point, row)
+    else:
+        step = _usual_step(rows, point, row)
+        gap, shift = step, 0
     reach = max(radius, 1.5 * step if step < _FAR else 0.0, 1.5 * gap if gap < _FAR else 0.0)
     reach = min(reach, 4 * radius)
     rows_aside, stride, count = _sampling(step, gap, reach)
@@ -198,6 +204,24 @@ def _step_along(rows: RowPoints, point: int, row: int) -> float:
         other -= 1
     if other >= start:
         step = min(step, _distance(rows, point, other))
+    return step
+
+
+@kernel
+def _usual_step(rows: RowPoints, point: int, row: int) -> float:
+    """Distance of pixels about a point, from the next few on the side where they are nearer."""
+    step = _FAR
+    for side in (-1, 1):
+        clock, other, last, pixels = rows.clocks[point], point, point, 0
+        while pixels < STEPS_ASIDE:
+            other += side
+            if not rows.row_starts[row] <= other < rows.row_starts[row + 1]:
+                break
+            if rows.clocks[other] != clock:
+                clock, last = rows.clocks[other], other
+                pixels += 1
+        if pixels:
+            step = min(step, _distance(rows, point, last) / pixels)
     return step
 
 

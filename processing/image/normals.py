@@ -53,12 +53,15 @@ class RowLayout:
     row_starts : (rows + 1,) int64
     origins : (rows,) int64
     segments : (rows,) int32
+    is_regular : bool
+        Whether points follow each other as a scanner measured them; False seen from above.
     """
 
     clocks: NDArray[Any]
     row_starts: NDArray[np.int64]
     origins: NDArray[np.int64]
     segments: NDArray[np.int32]
+    is_regular: bool = True
 
 
 def surface_shapes(
@@ -98,26 +101,39 @@ def surface_shapes(
 
 
 def oriented_surface_shapes(
-    xyz: NDArray[np.float64], grid: PixelGrid, radius_m: float, monitor: Monitor | None = None
+    xyz: NDArray[np.float64],
+    grid: PixelGrid,
+    radius_m: float,
+    monitor: Monitor | None = None,
+    *,
+    seen_from: NDArray[np.float64] | None = None,
 ) -> SurfaceShapes:
     """Normals towards the scanner, and shapes, of all points of a grid.
 
     A scanner that turns one way while it moves one way sees every surface with the same sense of
     (along the row) × (across rows). Which sense that is, is decided by the lower points of the
     rows around: they are road and ground, seen from above. Where the sense can't be told,
-    normals point upwards.
+    normals point upwards. Where a standing scanner was is known, nothing need be decided.
 
     Parameters
     ----------
     xyz : (n, 3) float64
         m.
+    seen_from : (3,) float64 or None
+        Where the scanner was, m.
     """
     rows = grid.row_starts.size - 1
-    layout = RowLayout(grid.columns, grid.row_starts, np.zeros(rows, dtype=np.int64), grid.segments)
+    origins = np.zeros(rows, dtype=np.int64)
+    layout = RowLayout(
+        grid.columns, grid.row_starts, origins, grid.segments, is_regular=grid.is_regular
+    )
     everything = np.arange(xyz.shape[0], dtype=np.int64)
     normals, shapes, meshes = _surfaces(
         xyz, np.ones(3), layout, everything, radius_m, monitor=monitor or SilentMonitor()
     )
+    if seen_from is not None:
+        normals[np.einsum("ij,ij->i", normals, seen_from - xyz) < 0] *= -1
+        return SurfaceShapes(normals, shapes)
     row_of_point = np.repeat(np.arange(rows), np.diff(grid.row_starts))
     senses = _senses(xyz[:, 2], meshes[:, 2].astype(np.float64), row_of_point, rows)
     towards = senses[row_of_point] * np.einsum("ij,ij->i", normals, meshes)
@@ -153,6 +169,7 @@ def _surfaces(
         row_starts=_read_only(layout.row_starts),
         origins=_read_only(layout.origins),
         segments=_read_only(layout.segments),
+        is_regular=layout.is_regular,
     )
     for start in range(0, points.size, _POINTS_AT_ONCE):
         monitor.check()

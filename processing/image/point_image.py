@@ -226,6 +226,7 @@ class PointCloudImage:
             columns=self.columns_of(start, stop),
             segments=self.segments[rows.start : rows.stop],
             width=self.width,
+            is_regular=self.kind is not ImageKind.TOP_VIEW,
         )
         return grid, slice(start, stop)
 

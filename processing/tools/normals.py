@@ -42,7 +42,9 @@ def compute_normals(
         ``normal``: (n, 3) int8, unit vector × 127, zero where there is none; ``shape``: (n, 3)
         uint8, linearity, planarity and scattering × 255.
     """
-    found = oriented_surface_shapes(block.xyz, block.grid, parameters.radius_m, monitor)
+    found = oriented_surface_shapes(
+        block.xyz, block.grid, parameters.radius_m, monitor, seen_from=block.seen_from
+    )
     return PointResult(
         {
             "normal": np.rint(found.normals * 127).astype(np.int8),

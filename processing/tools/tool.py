@@ -52,6 +52,8 @@ class PointBlock:
     classification : (n,) uint8
     grid : PixelGrid
         The block's pixels: which point is whose neighbour in the acquisition image.
+    seen_from : (3,) float64 or None
+        Where a standing scanner was, m, project CRS; None for one that moved, and where unknown.
     """
 
     xyz: NDArray[np.float64]
@@ -59,6 +61,7 @@ class PointBlock:
     time: NDArray[np.float64]
     classification: NDArray[np.uint8]
     grid: PixelGrid
+    seen_from: NDArray[np.float64] | None = None
 
 
 @dataclass(frozen=True)

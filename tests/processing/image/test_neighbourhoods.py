@@ -239,15 +239,23 @@ def test_cancelling_stops_normals_and_segments() -> None:
         connected_segments(xyz, grid_of(5, 5), DISTANCES, Stopping())
 
 
-def test_kernels_do_the_same_without_the_compiler() -> None:
+@pytest.mark.parametrize("is_regular", [True, False])
+def test_kernels_do_the_same_without_the_compiler(*, is_regular: bool) -> None:
     random = np.random.default_rng(1)
     xyz = plane(6, 12, [0.03, 0, 0], [0, 0.1, 0]) + random.normal(0, 0.01, (72, 3))
     grid = grid_of(6, 12)
-    layout = RowLayout(grid.columns, grid.row_starts, np.zeros(6, np.int64), grid.segments)
+    origins = np.zeros(6, np.int64)
+    layout = RowLayout(grid.columns, grid.row_starts, origins, grid.segments, is_regular=is_regular)
     compiled = surface_shapes(xyz, (1.0, 1.0, 1.0), layout, np.arange(72), RADIUS_M)
     plain = Surfaces(*(np.empty((72, 3), np.float32) for _ in range(3)))
     rows = RowPoints(
-        xyz, np.ones(3), grid.columns, grid.row_starts, np.zeros(6, np.int64), grid.segments
+        xyz,
+        np.ones(3),
+        grid.columns,
+        grid.row_starts,
+        origins,
+        grid.segments,
+        is_regular=is_regular,
     )
     neighbourhood_kernel.py_func(rows, np.arange(72), RADIUS_M, plain)  # type: ignore[attr-defined]
     np.testing.assert_allclose(plain.shapes, compiled.shapes, atol=1e-5)
