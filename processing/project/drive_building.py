@@ -24,6 +24,7 @@ from processing.points.ordering import (
     POINTS_AT_ONCE,
     Keys,
     read_stretch,
+    sampled,
     sort_points,
     stretches,
 )
@@ -273,9 +274,8 @@ def _trajectory_of(
 
 
 def _sampled_times(folder: Path, count: int) -> NDArray[np.float64]:
-    times: NDArray[np.float64] = Columns(folder, count)["time"]
-    step = max(1, count // _SAMPLE_POINTS)
-    return np.append(times[::step], times[-1])
+    times = sampled(folder, "time", count, max(1, count // _SAMPLE_POINTS))
+    return np.append(times, read_stretch(folder, "time", count - 1, count))
 
 
 def _shift_times(recording: Recording, steps: BuildSteps, offset_s: float) -> None:
@@ -360,7 +360,7 @@ def _scanner_place(recording: Recording, plan: BuildPlan, found: _FoundRows) -> 
 def _top_view_of(recording: Recording) -> TopView:
     count = recording.count
     scale, offset = np.array(recording.lattice.scale), np.array(recording.lattice.offset)
-    integers = Columns(recording.folder, count)["xyz"][:: max(1, count // _SAMPLE_POINTS)]
+    integers = sampled(recording.folder, "xyz", count, max(1, count // _SAMPLE_POINTS))
     lowest, highest = recording.lowest * scale + offset, recording.highest * scale + offset
     return top_view_of(integers * scale + offset, count, lowest, highest)
 
