@@ -488,6 +488,10 @@
             <translation>プロジェクトを開く</translation>
         </message>
         <message>
+            <source>Find delivered files</source>
+            <translation>納品ファイルの場所を指定</translation>
+        </message>
+        <message>
             <source>Use an office's catalogue</source>
             <translation>事務所のカタログを使う</translation>
         </message>
@@ -498,6 +502,13 @@
         <message>
             <source>Write the catalogue</source>
             <translation>カタログの書き出し</translation>
+        </message>
+    </context>
+    <context>
+        <name>Header</name>
+        <message>
+            <source>Close this image</source>
+            <translation>この画像を閉じる</translation>
         </message>
     </context>
     <context>
@@ -652,6 +663,17 @@
         <message>
             <source>The reference system must be a code such as EPSG:6677, or be left empty.</source>
             <translation>座標参照系は EPSG:6677 のようなコードで指定するか、空欄にしてください。</translation>
+        </message>
+    </context>
+    <context>
+        <name>ImportOffer</name>
+        <message>
+            <source>Go on</source>
+            <translation>再開</translation>
+        </message>
+        <message>
+            <source>Discard</source>
+            <translation>破棄</translation>
         </message>
     </context>
     <context>
@@ -916,6 +938,57 @@
         </message>
     </context>
     <context>
+        <name>ProjectDrives</name>
+        <message>
+            <source>Show in the image</source>
+            <translation>画像に表示</translation>
+        </message>
+        <message>
+            <source>Show beside the image</source>
+            <translation>画像の横に並べて表示</translation>
+        </message>
+        <message>
+            <source>Show in 3D, map and section</source>
+            <translation>3D・地図・断面に表示</translation>
+        </message>
+        <message>
+            <source>Hide in 3D, map and section</source>
+            <translation>3D・地図・断面で非表示</translation>
+        </message>
+        <message>
+            <source>Show only this drive there</source>
+            <translation>3D・地図・断面にこの走行データだけを表示</translation>
+        </message>
+        <message>
+            <source>Show all drives there</source>
+            <translation>3D・地図・断面にすべての走行データを表示</translation>
+        </message>
+        <message>
+            <source>Find delivered files…</source>
+            <translation>納品ファイルの場所を指定…</translation>
+        </message>
+        <message>
+            <source>{count} points</source>
+            <translation>{count} 点</translation>
+        </message>
+        <message>
+            <source>{size} m</source>
+            <translation>{size} m</translation>
+        </message>
+        <message>
+            <source>reference system unknown</source>
+            <translation>座標参照系は不明</translation>
+        </message>
+        <message>
+            <source>No turns of a scanner: {reason}</source>
+            <translation>スキャナの回転なし: {reason}</translation>
+        </message>
+        <message>
+            <source>{rate} turns per second, {pulses} pulses per turn</source>
+            <translation>毎秒{rate}回転、1回転あたり{pulses}パルス</translation>
+        </message>
+    </context>
+    <context>
         <name>ProjectRuns</name>
         <message>
             <source>Review this run</source>
@@ -957,26 +1030,6 @@
         <message>
             <source>Runs</source>
             <translation>処理履歴</translation>
-        </message>
-        <message>
-            <source>{count} points</source>
-            <translation>{count} 点</translation>
-        </message>
-        <message>
-            <source>{size} m</source>
-            <translation>{size} m</translation>
-        </message>
-        <message>
-            <source>reference system unknown</source>
-            <translation>座標参照系は不明</translation>
-        </message>
-        <message>
-            <source>No turns of a scanner: {reason}</source>
-            <translation>スキャナの回転なし: {reason}</translation>
-        </message>
-        <message>
-            <source>{rate} turns per second, {pulses} pulses per turn</source>
-            <translation>毎秒{rate}回転、1回転あたり{pulses}パルス</translation>
         </message>
     </context>
     <context>
@@ -1131,8 +1184,8 @@
     <context>
         <name>SceneView</name>
         <message>
-            <source>The recording appears here in three dimensions once one is open.</source>
-            <translation>計測データを開くと、ここに3次元で表示します。</translation>
+            <source>Drives appear here in three dimensions once they are shown.</source>
+            <translation>走行データを開いて表示すると、ここに3Dで表示されます。</translation>
         </message>
         <message>
             <source>The 3D view is starting.</source>
@@ -1572,13 +1625,6 @@
         <message>
             <source>Write the evaluation</source>
             <translation>評価の書き出し</translation>
-        </message>
-    </context>
-    <context>
-        <name>_Header</name>
-        <message>
-            <source>Close this image</source>
-            <translation>この画像を閉じる</translation>
         </message>
     </context>
     <context>
