@@ -31,7 +31,7 @@ class FileActions:
 
     def actions(self) -> tuple[Action, ...]:
         """The file menu, from top to bottom."""
-        return (*self._of_files(), *self._of_the_project())
+        return (*self._of_files(), *self._of_the_project(), *self._of_the_program())
 
     def _of_files(self) -> tuple[Action, ...]:
         return (
@@ -124,6 +124,10 @@ class FileActions:
                 ),
                 needs_project=True,
             ),
+        )
+
+    def _of_the_program(self) -> tuple[Action, ...]:
+        return (
             Action(
                 "demo",
                 Text("Open the sample street", "サンプル街路を開く"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+import resource
 from pathlib import Path
 from typing import Any
 
@@ -160,10 +160,7 @@ def test_any_place_and_any_value_is_kept(
     assert list(columns.values())[5] == [value]
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="limits of a process's files are POSIX's")
 def test_a_full_disk_is_told_in_one_sentence_and_leaves_nothing_half_written(tmp_path, catalogue):
-    import resource
-
     features = [_feature("a", "road_edge", Geometry.LINE)]
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (8_192, hard))

@@ -16,10 +16,6 @@ MEGABYTE = 2**20
 LIMIT = 4 * MEGABYTE
 COUNT = 3 * MEGABYTE  # of eight bytes each
 
-needs_statm = pytest.mark.skipif(
-    not Path("/proc/self/statm").is_file(), reason="the system doesn't say what a process holds"
-)
-
 
 @pytest.fixture
 def columns(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Columns:
@@ -42,7 +38,6 @@ def held_bytes(folder: Path) -> int:
     return held
 
 
-@needs_statm
 def test_a_column_that_is_read_from_end_to_end_holds_little_memory(
     columns: Columns, tmp_path: Path
 ) -> None:

@@ -73,14 +73,15 @@ PIXELS = st.tuples(st.floats(0, 800), st.floats(0, 600))
 
 @settings(suppress_health_check=[HealthCheck.function_scoped_fixture], max_examples=60)
 @given(
-    st.integers(0, 10**6),
-    st.floats(0.5, 3000.0),
-    st.booleans(),
-    PIXELS,
-    st.sampled_from(["all", "box", "one drive"]),
+    seed=st.integers(0, 10**6),
+    away_m=st.floats(0.5, 3000.0),
+    is_parallel=st.booleans(),
+    pixel=PIXELS,
+    what=st.sampled_from(["all", "box", "one drive"]),
 )
 def test_a_pick_is_what_looking_at_every_point_gives(
     drives: tuple[DriveImage, ...],
+    *,
     seed: int,
     away_m: float,
     is_parallel: bool,
