@@ -23,6 +23,7 @@ from processing.image.point_image_kernels import (
     first_at_column,
     raster_kernel,
     shown_point,
+    stretches_kernel,
 )
 from processing.image.rows_of_kind import Revolutions
 from processing.image.tiles import TilePyramid
@@ -214,6 +215,19 @@ class PointCloudImage:
             window = np.array([rows.start, step, columns.start, columns.stop])
             raster_kernel(self.layout, window, raster)
         return raster
+
+    def points_in(self, rows: range, columns: range) -> _Integers:
+        """(n,) int64: all points of the pixels of a window, rising; shown or not."""
+        self._check_window(rows, columns)
+        stretches = np.empty((len(rows), 2), np.int64)
+        window = np.array([[rows.start, rows.stop, columns.start, columns.stop]])
+        stretches_kernel(self.layout, window, stretches)
+        counts = stretches[:, 1] - stretches[:, 0]
+        before = np.cumsum(counts) - counts
+        points: _Integers = np.arange(int(counts.sum())) + np.repeat(
+            stretches[:, 0] - before, counts
+        )
+        return points
 
     def grid(self, rows: range) -> tuple[PixelGrid, slice]:
         """The pixels of a stretch of rows for tools, and the points they hold.

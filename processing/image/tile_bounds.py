@@ -20,6 +20,7 @@ from processing.image.tile_kernels import (
     COUNT,
     HIGHEST,
     LOWEST,
+    POINTS,
     STEPS,
     TILE,
     VALUES,
@@ -53,11 +54,11 @@ class TileBounds:
 
     Attributes
     ----------
-    facts : (tiles, 9) float64
+    facts : (tiles, 10) float64
         What is known now of each tile, level after level: lowest and highest coordinates (m,
         project CRS; infinite and the wrong way round where a tile is empty), filled pixels,
-        distances of neighbours along and across rows at level 0 (m; 0 where unknown). Changes in
-        place until all is exact.
+        distances of neighbours along and across rows at level 0 (m; 0 where unknown), points.
+        Changes in place until all is exact.
     is_begun, is_whole : bool
         Whether anything of it is known, and whether all of it is exact.
     """
@@ -193,6 +194,7 @@ class TileBounds:
         known, unknown = rows[self._done[rows]], rows[~self._done[rows]]
         facts[known] = self._in_metres(sums[known])
         facts[unknown, :, COUNT] = self._expected(0, unknown)
+        facts[unknown, :, POINTS] = facts[unknown, :, COUNT]
         for level in range(1, len(self._shapes)):
             first, end = first // 2, (end + 1) // 2
             self._unite(level, np.arange(first, end))
@@ -217,6 +219,7 @@ class TileBounds:
             is_exact[:, None], sums[rows, :, COUNT], self._expected(level, rows)
         )
         united[:, :, STEPS] = _mean_steps(sums[rows])
+        united[:, :, POINTS] = _fourfold(np.add, facts[:, :, POINTS])
         self.facts[own].reshape(*shape, VALUES)[rows] = united
 
     def _in_metres(self, sums: Floats) -> Floats:

@@ -101,6 +101,7 @@ def tiles_in_view(
     budget_points: int,
     *,
     clip: Clip | None = None,
+    has_all: bool = False,
 ) -> list[tuple[int, TileKey]]:
     """The tiles that a 3D view draws, coarse ones first; each point of a street in one tile.
 
@@ -112,12 +113,14 @@ def tiles_in_view(
     ----------
     clip : Clip, optional
         Tiles that lie wholly outside are left out.
+    has_all : bool
+        Whether tiles may be wanted with all their points: a wall seen from above is one pixel.
 
     Returns
     -------
     list of (index of the pyramid, tile)
     """
-    planes, eye = _frustum(camera), _eye(camera)
+    planes, eye = _frustum(camera), np.append(_eye(camera), float(has_all))
     if clip is not None:
         # What a clip shows has a·x + b·y + c·z ≥ d.
         planes = np.concatenate([planes, -np.array(clip.planes).reshape(-1, 4)])
@@ -141,15 +144,16 @@ def tiles_in_view(
     chosen = chosen[np.argsort(-tiles[chosen, LEVEL], kind="stable")]
     keys = tiles[chosen][:, [LEVEL, ROW, COLUMN]].astype(np.int64).tolist()
     return [
-        (number, TileKey(*key))
-        for number, key in zip(of_pyramid[chosen].tolist(), keys, strict=True)
+        (number, TileKey(max(level, 0), row, column, level < 0))
+        for number, (level, row, column) in zip(of_pyramid[chosen].tolist(), keys, strict=True)
     ]
 
 
 def _met(pyramid: TilePyramid, eye: Floats, planes: Floats) -> Floats:
     """The tiles of a pyramid that a view may want; see :mod:`processing.image.tile_descent`."""
     facts = pyramid.facts
-    met = np.empty((len(facts), MET_VALUES))
+    rows, columns = pyramid.shape(0)
+    met = np.empty((len(facts) + rows * columns, MET_VALUES))
     return met[: descent_kernel(facts, pyramid.shapes, eye, planes, met)].copy()
 
 

@@ -20,6 +20,7 @@ points are apart on the screen, how many it has, and the stretch of its children
 """
 
 MET_VALUES = 8
+_MORE = 1.02
 
 
 @kernel
@@ -33,9 +34,10 @@ def descent_kernel(
     """List the tiles that are seen, each before its children; says how many they are.
 
     ``shapes``: rows and columns of tiles and the first line in ``facts`` of each level. ``eye``:
-    place, pixels per metre one metre in front of it, whether it sees in parallel, and the gap
-    that is fine enough. A tile is seen that isn't wholly beyond one of ``planes`` (a, b, c, d):
-    where a·x + b·y + c·z ≤ d.
+    place, pixels per metre one metre in front of it, whether it sees in parallel, the gap that is
+    fine enough, and whether it wants points that no pixel shows: below the finest tiles, as level
+    −1, are then those with all their points. A tile is seen that isn't wholly beyond one of
+    ``planes`` (a, b, c, d): where a·x + b·y + c·z ≤ d. ``met`` has room for all of them.
     """
     top = shapes.shape[0] - 1
     if not _is_seen(facts[shapes[top, 2]], planes):
@@ -52,6 +54,8 @@ def descent_kernel(
                     if _is_seen(facts[line], planes):
                         _put(facts, shapes, eye, (level - 1, i, j), met[count])
                         count += 1
+        if level == 0 and eye[6] and met[at, GAP_PX] > eye[5]:
+            count = _put_all(facts[int(met[at, LINE])], met, at, count)
         met[at, END] = count
         at += 1
     return count
@@ -185,14 +189,27 @@ def _put(
     met[PIXELS] = box[6]
     # A tile without points of its own may stand above some that have points.
     met[GAP_PX] = spacing * eye[3] / divisor if box[6] > 0 else np.inf
+    if level == 0 and eye[6] and box[6] > 0:
+        # Points stacked in a pixel are a surface on edge, whose gaps its neighbours don't tell.
+        met[GAP_PX] *= box[9] / box[6]
+
+
+@kernel
+def _put_all(box: NDArray[np.float64], met: NDArray[np.float64], tile: int, count: int) -> int:
+    """Below a tile itself with all its points, if those are more; says how many are met now."""
+    if box[9] <= _MORE * box[6]:
+        return count
+    met[count] = met[tile]
+    met[count, LEVEL], met[count, GAP_PX], met[count, PIXELS] = -1.0, 0.0, box[9]
+    return count + 1
 
 
 def warm_up() -> None:
     """Compile the kernels."""
-    facts = np.zeros((1, 9))
+    facts = np.zeros((1, 10))
     shapes = np.array([[1, 1, 0]])
-    met = np.zeros((1, MET_VALUES))
-    count = descent_kernel(facts, shapes, np.ones(6), np.zeros((1, 4)), met)
+    met = np.zeros((2, MET_VALUES))
+    count = descent_kernel(facts, shapes, np.ones(7), np.zeros((1, 4)), met)
     flags = np.ones(count, np.bool_)
     choice_kernel(met, np.zeros(1, np.int64), flags, np.ones(2), flags)
     ray_kernel(facts, shapes, np.ones(9), met)

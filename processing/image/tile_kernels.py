@@ -11,7 +11,8 @@ LOWEST = slice(0, 3)
 HIGHEST = slice(3, 6)
 COUNT = 6
 STEPS = slice(7, 9)
-VALUES = 9
+POINTS = 9
+VALUES = 10
 """Columns of the table of tiles; behind them lie the weights of the two distances."""
 
 _TILE_BITS = 8
@@ -32,7 +33,7 @@ def tile_kernel(
     tile_columns: NDArray[np.int64],
     table: NDArray[np.float64],
 ) -> None:
-    """Extend the bounds of level 0, count pixels of all levels, sum distances of level 0.
+    """Extend bounds and count points of level 0, count pixels of all levels, sum distances.
 
     ``row_starts`` is counted from the first point given, ``first_row`` is the image's. Bounds are
     in integers; sums hold the roots of distances in metres.
@@ -47,6 +48,7 @@ def tile_kernel(
                 value = xyz[point, axis]
                 values[axis] = min(values[axis], value)
                 values[3 + axis] = max(values[3 + axis], value)
+            values[9] += 1
         for level in range(tile_columns.size):
             if row & ((1 << level) - 1):
                 break
@@ -94,12 +96,12 @@ def _sum_steps(
         right = point + 1
         if right < stop and columns[right] == columns[point] + 1:
             values[7] += _root_distance(xyz, scale, point, right)
-            values[9] += 1
+            values[10] += 1
         while below < after and columns[below] < columns[point]:
             below += 1
         if below < after and columns[below] == columns[point]:
             values[8] += _root_distance(xyz, scale, point, below)
-            values[10] += 1
+            values[11] += 1
 
 
 @kernel

@@ -29,11 +29,30 @@ _FEW_PIXELS = 4096
 
 @dataclass(frozen=True, order=True)
 class TileKey:
-    """A tile's place: it covers TILE · 2^level rows and columns of the image."""
+    """A tile's place: it covers TILE · 2^level rows and columns of the image.
+
+    Attributes
+    ----------
+    has_all : bool
+        Of level 0, and with every point of its pixels, not only the one that each shows.
+    """
 
     level: int
     row: int
     column: int
+    has_all: bool = False
+
+    @property
+    def above(self) -> TileKey:
+        """The next coarser tile that covers it, whether the image has that level or not."""
+        if self.has_all:
+            return TileKey(0, self.row, self.column)
+        return TileKey(self.level + 1, self.row // 2, self.column // 2)
+
+    @property
+    def rank(self) -> int:
+        """How many steps it is from the finest that there is."""
+        return 0 if self.has_all else self.level + 1
 
 
 class TilePyramid:
@@ -72,9 +91,7 @@ class TilePyramid:
 
     def parent(self, key: TileKey) -> TileKey:
         """The tile of the next coarser level; the coarsest is its own parent."""
-        if key.level == self.levels - 1:
-            return key
-        return TileKey(key.level + 1, key.row // 2, key.column // 2)
+        return key if key.level == self.levels - 1 and not key.has_all else key.above
 
     def children(self, key: TileKey) -> tuple[TileKey, ...]:
         """Up to four tiles of the next finer level; none of level 0."""
@@ -97,8 +114,13 @@ class TilePyramid:
         )
 
     def points(self, key: TileKey) -> NDArray[np.int64]:
-        """The points that a tile shows: at most (256, 256) int64, −1 where empty."""
+        """The points that a tile shows: at most (256, 256) int64, −1 where empty.
+
+        Of a tile that has all points these, one behind the other: (1, n).
+        """
         rows, columns = self.rows_columns(key)
+        if key.has_all:
+            return self._image.points_in(rows, columns)[None]
         return self._image.raster(rows, columns, 1 << key.level)
 
     def bounds(self, key: TileKey) -> NDArray[np.float64] | None:
@@ -197,9 +219,9 @@ class TilePyramid:
 
         Returns
         -------
-        (tiles, 9) float64
+        (tiles, 10) float64
             Lowest and highest coordinates (m, project CRS), number of filled pixels, distance of
-            neighbours along and across rows at level 0 (m).
+            neighbours along and across rows at level 0 (m), points.
         """
         if not self._bounds.is_whole:
             self.prepare()

@@ -153,6 +153,47 @@ def test_a_hundred_drives_together_all_get_something_within_the_budget() -> None
     assert sum(pyramids[number].count(key) for number, key in chosen) <= budget
 
 
+def wall(levels: int = 40) -> PointCloudImage:
+    """A top view of a wall that runs east, so many points above each other in each of its cells."""
+    column, height = np.divmod(np.arange(300 * levels), levels)
+    xyz = np.column_stack([column * STEP, column * 0, -height * STEP]).astype(np.int32)
+    coordinates = Coordinates(xyz, SCALE, OFFSET)
+    return PointCloudImage(ImageKind.TOP_VIEW, column, 300, coordinates=coordinates)
+
+
+def test_a_wall_that_the_image_shows_as_a_line_is_drawn_with_all_its_points_from_near() -> None:
+    image = wall()
+    pyramid = image.pyramid
+    view = above(pyramid, height_m=30.0)
+    flat = tiles_in_view([pyramid], view, 10**6)
+    shown = np.concatenate([pyramid.points(key).ravel() for _, key in flat])
+    assert np.count_nonzero(shown >= 0) == 300
+    whole = tiles_in_view([pyramid], view, 10**6, has_all=True)
+    assert all(key.has_all for _, key in whole)
+    shown = np.concatenate([pyramid.points(key).ravel() for _, key in whole])
+    assert sorted(shown.tolist()) == list(range(image.drive_count))
+
+
+def test_all_points_are_drawn_only_within_the_budget_and_where_they_make_a_difference() -> None:
+    pyramid = wall().pyramid
+    view = above(pyramid, height_m=30.0)
+    poor = tiles_in_view([pyramid], view, 1000, has_all=True)
+    assert not any(key.has_all for _, key in poor)
+    far = tiles_in_view([pyramid], above(pyramid, height_m=20_000.0), 10**6, has_all=True)
+    assert not any(key.has_all for _, key in far)
+    single = hills_at(0).pyramid
+    near = tiles_in_view([single], above(single, height_m=1.0), 10**6, has_all=True)
+    assert not any(key.has_all for _, key in near)
+
+
+def test_the_tile_with_all_points_stands_below_the_finest_one() -> None:
+    pyramid = wall().pyramid
+    key = TileKey(0, 0, 1, has_all=True)
+    assert pyramid.parent(key) == TileKey(0, 0, 1)
+    assert key.rank == 0 < TileKey(0, 0, 1).rank
+    assert pyramid.rows_columns(key) == pyramid.rows_columns(TileKey(0, 0, 1))
+
+
 def hills_at(number: int) -> PointCloudImage:
     """A small level patch, so many metres further."""
     cells = np.arange(300 * 300)

@@ -50,6 +50,15 @@ def test_the_nearest_coarser_tile_stands_in() -> None:
     assert shown_tiles([CHILDREN[0]], [grand]) == {grand}
 
 
+def test_a_tile_with_all_points_takes_the_place_of_the_finest_one_of_its_pixels() -> None:
+    fine = CHILDREN[3]
+    whole = TileId("a", KIND, TileKey(0, 1, 1, has_all=True))
+    assert shown_tiles([whole], [fine]) == {fine}
+    assert shown_tiles([whole], [fine, whole]) == {whole}
+    assert shown_tiles([fine], [whole]) == {whole}
+    assert shown_tiles([whole, *CHILDREN[:3]], [PARENT, whole]) == {PARENT}
+
+
 def test_tiles_of_another_drive_never_stand_in() -> None:
     assert shown_tiles([PARENT], [tile(0, 0, 0, "b")]) == frozenset()
 

@@ -26,8 +26,7 @@ class TileId:
     @property
     def parent(self) -> TileId:
         """The tile of the next coarser level that covers it, whether the image has it or not."""
-        key = TileKey(self.key.level + 1, self.key.row // 2, self.key.column // 2)
-        return TileId(self.drive_id, self.kind, key)
+        return TileId(self.drive_id, self.kind, self.key.above)
 
 
 @dataclass(frozen=True)
@@ -128,14 +127,14 @@ def shown_tiles(wanted: Collection[TileId], loaded: Collection[TileId]) -> froze
     finer ones that are there. So nothing disappears before its successor has come.
     """
     there = set(loaded)
-    highest = max((tile.key.level for tile in there), default=0)
+    highest = max((tile.key.rank for tile in there), default=0)
     shown: set[TileId] = set()
     for tile in wanted:
         if tile in there:
             shown.add(tile)
             continue
         above = tile.parent
-        while above not in there and above.key.level < highest:
+        while above not in there and above.key.rank < highest:
             above = above.parent
         if above in there:
             shown.add(above)
@@ -147,7 +146,7 @@ def shown_tiles(wanted: Collection[TileId], loaded: Collection[TileId]) -> froze
 def _covers(coarse: TileId, fine: TileId) -> bool:
     steps = coarse.key.level - fine.key.level
     return (
-        steps > 0
+        coarse.key.rank > fine.key.rank
         and (coarse.drive_id, coarse.kind) == (fine.drive_id, fine.kind)
         and (coarse.key.row, coarse.key.column) == (fine.key.row >> steps, fine.key.column >> steps)
     )
@@ -155,7 +154,7 @@ def _covers(coarse: TileId, fine: TileId) -> bool:
 
 def _is_covered(tile: TileId, shown: set[TileId], highest: int) -> bool:
     # A coarser tile that stands in for a missing one shows all that lies below it.
-    while tile.key.level < highest:
+    while tile.key.rank < highest:
         tile = tile.parent
         if tile in shown:
             return True

@@ -146,13 +146,15 @@ class TileFeed(QObject):
     def _fulfil(self, wish: Wish) -> None:
         surveyed = self._survey.opened
         pyramids = [pyramid for _, pyramid in surveyed]
-        found = tiles_in_view(pyramids, wish.camera, wish.budget_points, clip=wish.showing.clip)
+        found = tiles_in_view(
+            pyramids, wish.camera, wish.budget_points, clip=wish.showing.clip, has_all=True
+        )
         chosen = tuple(TileId(*surveyed[number][0], key) for number, key in found)
         is_final = self._survey.has_opened_all and all(
             pyramids[number].is_exact(key) for number, key in found
         )
         self._emit_chosen(Choice(wish, chosen, is_final))
-        wanted = [*chosen, *sorted(wish.kept - set(chosen), key=lambda tile: tile.key.level)]
+        wanted = [*chosen, *sorted(wish.kept - set(chosen), key=lambda tile: tile.key.rank)]
         lacking = [tile for tile in wanted if (tile, wish.showing) not in wish.known]
         self._show_anew([wish.there[tile] for tile in lacking if tile in wish.there], wish)
         look = wish.showing.look
