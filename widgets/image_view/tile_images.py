@@ -24,7 +24,7 @@ from widgets.image_view.picture import Picture
 from widgets.shared.feature_style import ACCENT
 from widgets.shared.view_settings import PointLook
 
-MOST_BYTES = 192 * 2**20
+MOST_BYTES = 96 * 2**20
 THINNINGS = (1, 2, 4, 8)
 """How many columns of a tile may become one; a street is some six times denser across."""
 
