@@ -30,7 +30,7 @@ def import_work(
         into = import_folder(home, request)
         folders = import_drives(request, into, monitor, taken=taken)
         for folder in folders:
-            _prepare_tiles(folder)
+            _prepare_tiles(folder, monitor)
         return folders
 
     names = ", ".join(path.name for path in request.inputs[:3])
@@ -71,8 +71,8 @@ def imported_words(drives: Sequence[Drive], crs: str) -> Text:
     return told.filled(points=sum(drive.count for drive in drives))
 
 
-def _prepare_tiles(folder: Path) -> None:
+def _prepare_tiles(folder: Path, monitor: Monitor) -> None:
     """Note where the tiles of the first image are, so that the window need not look for them."""
     drive = Drive(folder)
     if drive.count:
-        drive.image(drive.image_kinds[0]).pyramid.prepare()
+        drive.image(drive.image_kinds[0]).pyramid.prepare(monitor)
