@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -81,6 +82,8 @@ def read_sample(path: Path, points: int) -> dict[str, NDArray[Any]]:
     ----------
     points : int
         About how many of either end; all points of a file that has fewer than twice as many.
+        Of floating point files without times and with one scan, the first ones alone: their last
+        points say no more.
 
     Returns
     -------
@@ -96,7 +99,10 @@ def read_sample(path: Path, points: int) -> dict[str, NDArray[Any]]:
     if opener is None:
         ends = las.read_ends(path, points)
     else:
-        ends = _ends_of(chunks_of(opener(path), points), points)
+        file = opener(path)
+        info, chunks = info_of(file), chunks_of(file, points)
+        is_told_by_first = not info.has_time and len(info.scanner_places) < 2
+        ends = list(islice(chunks, 2)) if is_told_by_first else _ends_of(chunks, points)
     names = ends[0].columns if ends else ()
     return {name: np.concatenate([end.columns[name] for end in ends]) for name in names}
 

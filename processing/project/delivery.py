@@ -17,6 +17,13 @@ from processing.project.reference_system import reference_system
 from processing.text import Text
 
 _SAMPLE_POINTS = 2_000
+_TRANSFORM = Text(
+    "Transform the points to a plane system in metres first; if only the file's note of it is "
+    "wrong, name the right one with --crs. {unchanged}",
+    "点群をメートル単位の平面直角座標系に変換してから読み込んでください。"
+    "ファイルの座標系の記録だけが誤っている場合は、"
+    "正しい座標系を --crs で指定してください。{unchanged}",
+).filled(unchanged=UNCHANGED)
 _FIRST_FLIGHT_LINE = 16
 _BETWEEN_FLIGHT_LINES_S = 20.0
 
@@ -166,14 +173,14 @@ def _common_crs(files: list[DeliveredFile]) -> str:
 
 def _plane_system(crs: str, files: list[DeliveredFile]) -> str:
     """The system if a drawing can be made in it; said before anything is read."""
-    if not crs:
+    if not (crs and any(file.info.count for file in files)):
         return ""
     try:
         return reference_system(crs)
     except OutOfRange as error:
         names = ", ".join(file.info.path.name for file in files if file.info.crs == crs)
         where = Text.same(f"{names}: {crs}" if names else crs)
-        raise OutOfRange(error.what, where, error.remedy) from error
+        raise OutOfRange(error.what, where, _TRANSFORM if names else error.remedy) from error
 
 
 def _refuse_empty_end(info: PointFileInfo, sample: dict[str, NDArray[np.generic]]) -> None:

@@ -175,12 +175,16 @@ def test_the_reader_is_chosen_by_content_not_by_name(tmp_path: Path) -> None:
     assert read_info(path).format == "PLY"
 
 
-def test_a_sample_of_a_text_file_holds_its_first_and_last_points(tmp_path: Path) -> None:
+def test_a_sample_of_a_text_file_holds_its_first_and_with_times_its_last_points(
+    tmp_path: Path,
+) -> None:
     path = tmp_path / "a.xyz"
+    path.write_text("x y z time\n" + "".join(f"{i} 0 0 {i}\n" for i in range(1000)))
+    sample = read_sample(path, 50)["xyz"][:, 0]
+    assert sample[-1] - sample[0] == round(999 / 0.0001)
     path.write_text("".join(f"{i} 0 0\n" for i in range(1000)))
     sample = read_sample(path, 50)["xyz"][:, 0]
-    assert sample[0] != sample[-1]
-    assert sample[-1] - sample[0] == round(999 / 0.0001)
+    assert sample[-1] - sample[0] == round(99 / 0.0001)
 
 
 def test_points_farther_apart_than_integers_reach_are_refused(tmp_path: Path) -> None:

@@ -15,6 +15,7 @@ from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
+from tests.delivered_files import make_las
 
 
 @pytest.fixture(scope="module")
@@ -188,6 +189,21 @@ def test_rows_that_would_be_nearly_empty_are_not_made_of_a_cut_out(tmp_path):
     (drive,) = _imported(tmp_path, [cloud])
     assert drive.info.rows_by == "top-view"
     assert "one pixel in fifty" in drive.info.rows_reason.en
+
+
+@pytest.mark.parametrize("epsg", [4269, 2903])  # degrees; feet
+def test_points_in_degrees_or_feet_are_to_be_transformed_first(tmp_path, epsg):
+    make_las(tmp_path / "a.las", epsg=epsg)
+    with pytest.raises(OutOfRange) as refusal:
+        _imported(tmp_path, [tmp_path / "a.las"])
+    assert "a.las" in refusal.value.where.en
+    assert "Transform the points" in refusal.value.remedy.en
+
+
+def test_of_a_file_without_points_that_is_told_whatever_its_reference_system(tmp_path):
+    make_las(tmp_path / "a.las", epsg=4269, count=0)
+    with pytest.raises(BadFile, match="There are no points in it"):
+        _imported(tmp_path, [tmp_path / "a.las"])
 
 
 def test_files_of_different_reference_systems_are_refused(tmp_path, left):
