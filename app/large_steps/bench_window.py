@@ -80,9 +80,19 @@ class BenchWindow:
         self.image.setFocus()
 
     def rest(self) -> None:
-        """Wait until nothing is loaded, computed or drawn any more."""
+        """Wait until nothing is loaded, computed or drawn any more.
+
+        What the window prepares unasked (surfaces, segments) is given up: on a long drive it
+        takes longer than all that is measured.
+        """
         parts, felt = self.parts, self.pulse.felt
-        wait_until(lambda: not parts.jobs.is_busy, felt)
+
+        def is_idle() -> bool:
+            for status in parts.jobs.statuses:
+                parts.jobs.cancel(status.id)
+            return not parts.jobs.is_busy
+
+        wait_until(is_idle, felt)
         wait_until(lambda: self.tiles.is_complete, felt)
         wait_until(lambda: parts.scene_view.is_settled, felt)
 
