@@ -33,6 +33,8 @@ if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a cir
 
 _Integers = NDArray[np.int64]
 
+_MOST_ROWS_ASIDE = 8
+
 
 class PointCloudImage:
     """One kind of image over one recording; pixel to points and point to pixel, both exact.
@@ -180,18 +182,24 @@ class PointCloudImage:
         return rows, (doubled * layout.per_span // layout.spans[rows]).astype(np.int32)
 
     def nearest_filled(self, row: int, column: int, within_px: int = 3) -> int:
-        """The point shown at a pixel, or nearest to it in the row; −1 where all is empty."""
+        """The point shown at a pixel, or nearest to it in the row; −1 where all is empty.
+
+        Cells of a top view are as near in the rows above and below, of which a few are looked at.
+        """
         if not 0 <= row < self.rows:
             return -1
-        first = max(0, column - within_px)
-        columns = range(first, min(self.width, column + within_px + 1))
+        aside = min(within_px, _MOST_ROWS_ASIDE) if self.kind is ImageKind.TOP_VIEW else 0
+        rows = range(max(0, row - aside), min(self.rows, row + aside + 1))
+        columns = range(max(0, column - within_px), min(self.width, column + within_px + 1))
         if not len(columns):
             return -1
-        shown = self.raster(range(row, row + 1), columns)[0]
-        filled = np.flatnonzero(shown >= 0)
+        shown = self.raster(rows, columns)
+        filled_rows, filled = np.nonzero(shown >= 0)
         if not filled.size:
             return -1
-        return int(shown[filled[np.abs(filled + first - column).argmin()]])
+        away = (filled_rows + rows.start - row) ** 2 + (filled + columns.start - column) ** 2
+        nearest = away.argmin()
+        return int(shown[filled_rows[nearest], filled[nearest]])
 
     def raster(self, rows: range, columns: range, step: int = 1) -> _Integers:
         """The points shown in a window.
