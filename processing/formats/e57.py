@@ -31,6 +31,7 @@ _COLUMN, _ROW = "columnIndex", "rowIndex"
 _RETURN, _RETURNS = "returnIndex", "returnCount"
 _SWEEP_NAMED = "pointGroupingSchemes/groupingByLine/idElementName"
 _LARGEST_INDEX = 2**31 - 1
+_BAD_CHECKSUM = Text("a checksum is wrong", "チェックサムが一致しません")
 _EIGHT_BITS = 255.0
 _FULL = 65535.0
 
@@ -183,9 +184,12 @@ def _damage_told(path: Path) -> Iterator[None]:
     except libe57.E57Exception as error:
         # "checksum mismatch, file is corrupted (ErrorBadChecksum)", then pages of debugging.
         reason = str(error).split("\n", 1)[0].strip()
+        known = _BAD_CHECKSUM if "ErrorBadChecksum" in reason else Text.same(reason)
         raise damaged(
             path,
-            Text(f"The E57 file is damaged: {reason}.", f"E57ファイルが壊れています（{reason}）。"),
+            Text("The E57 file is damaged: {why}.", "E57ファイルが壊れています（{why}）。").filled(
+                why=known
+            ),
         ) from error
 
 
