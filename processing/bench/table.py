@@ -24,6 +24,8 @@ _LATER = (
     ("All extraction on 3 M points", "≤ 5 s"),
 )
 _HEAD = "| name | what | measured | target | met | behind it |\n|---|---|---|---|---|---|\n"
+_QUIET = 1.0
+"""More processes than that before the first benchmark are others."""
 _MET = {True: "yes", False: "**no**", None: "–"}
 
 
@@ -136,6 +138,8 @@ def _section(run: _Json) -> str:
     told = f"{run['date']}; {run['machine']}."
     if load:
         told += f" Processes that wanted a core, before and after: {load}."
+        if run["load"][0] > _QUIET:
+            told += " **The machine was busy with other work.**"
     lines = "".join(map(_line, run["rows"]))
     return f"## `{run['command']}`\n\n{told}\n\n{_HEAD}{lines}"
 

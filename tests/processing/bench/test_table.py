@@ -9,7 +9,7 @@ from processing.bench.case import Measurement
 from processing.bench.table import KEPT, Circumstances, write_table
 from processing.text import Text
 
-FIRST = Circumstances("zuka bench import", "2026-01-01", "2 cores", (0.1, 1.0))
+FIRST = Circumstances("zuka bench import", "2026-01-01", "2 cores", (0.1, 2.0))
 SECOND = Circumstances("zuka bench start", "2026-02-02", "4 cores", ())
 
 
@@ -28,6 +28,14 @@ def test_a_page_says_command_machine_load_and_whether_targets_are_met(tmp_path: 
     assert "| `c` | What c is | – | ≤ 2 x | – | behind |" in text
     assert "| `d` | What d is | 1.00 x | – | – | behind |" in text
     assert "comes with the tool" in text
+
+
+def test_a_busy_machine_is_told(tmp_path: Path) -> None:
+    page = tmp_path / "benchmarks.md"
+    write_table(page, FIRST, [row("a", 1.0)])
+    assert "busy" not in page.read_text("utf-8")
+    write_table(page, Circumstances("zuka bench b", "", "", (3.5, 1.0)), [row("b", 1.0)])
+    assert "before and after: 3.5 to 1. **The machine was busy" in page.read_text("utf-8")
 
 
 def test_rows_measured_again_are_replaced_and_others_stay(tmp_path: Path) -> None:
