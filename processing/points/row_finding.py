@@ -14,7 +14,7 @@ from processing.points.pulse_clock import LONGEST_MISSING_S, PulseClock, PulseNu
 from processing.points.pulse_store import PulseStore
 from processing.points.reference_times import SEARCHED_SHARE, find_crossings, repaired
 from processing.points.scan_angle import SeenAngle, Spin
-from processing.points.turn_tracking import TurnPhase, track_turns
+from processing.points.turn_tracking import TurnPhase, TurnTracker
 
 Floats = NDArray[np.float64]
 
@@ -84,7 +84,7 @@ def _first_pass(
     per_turn = 1.0 / (clock.interval_s * abs(spin.rate_hz))
     numbering = PulseNumbering(clock, first_time, int(2.0 * per_turn) + 1)
     every = max(1, int(_points_per_turn(points, spin) / _TRACKED_PER_TURN))
-    times, angles, starts, ends = [], [], [first_time], []
+    segments = _Segments(spin, first_time)
     start, last_time = 0, first_time
     while start < points.count:
         monitor.check()
@@ -94,19 +94,17 @@ def _first_pass(
         pulses.append(numbers)
         part = part.stretch(0, numbers.size)
         time, angle = spin.mirror.angles(part, every)
-        times.append(time)
-        angles.append(angle)
         steps = np.diff(part.time, prepend=last_time)
-        for at in np.flatnonzero(steps > LONGEST_MISSING_S):
-            ends.append(float(part.time[at - 1]) if at else last_time)
-            starts.append(float(part.time[at]))
+        stops = [
+            (float(part.time[at - 1]) if at else last_time, float(part.time[at]))
+            for at in np.flatnonzero(steps > LONGEST_MISSING_S)
+        ]
+        segments.add(time, angle, stops)
         last_time = float(part.time[-1])
         start += numbers.size
         monitor.report(0.2 + 0.4 * start / points.count)
     pulses.finish()
-    ends.append(last_time)
-    sampled, angle = np.concatenate(times), np.concatenate(angles)
-    return _tracked(starts, ends, sampled, angle, spin), numbering.interval_s
+    return segments.finished(last_time), numbering.interval_s
 
 
 def _points_per_turn(points: PointSource, spin: Spin) -> float:
@@ -116,19 +114,37 @@ def _points_per_turn(points: PointSource, spin: Spin) -> float:
     return size / (max(float(time[-1] - time[0]), 1e-9) * abs(spin.rate_hz))
 
 
-def _tracked(
-    starts: list[float], ends: list[float], time: Floats, angle: Floats, spin: Spin
-) -> list[_Segment]:
-    segments = []
-    for start, end in zip(starts, ends, strict=True):
-        first, last = np.searchsorted(time, [start, end + 1e-9])
-        if last == first:
-            middle = np.array([0.5 * (start + end)])
-            phase = TurnPhase(middle, np.zeros(1), abs(spin.rate_hz), 0.0)
+class _Segments:
+    """The segments of a drive, followed as its points come."""
+
+    def __init__(self, spin: Spin, first_time: float) -> None:
+        self._spin = spin
+        self._start = first_time
+        self._tracker = TurnTracker(spin.rate_hz)
+        self._ended: list[_Segment] = []
+
+    def add(self, time: Floats, angle: Floats, stops: list[tuple[float, float]]) -> None:
+        """Take sampled points and the stops among them: when points end and go on again."""
+        for end, start in stops:
+            last, first = np.searchsorted(time, [end + 1e-9, start])
+            self._tracker.add(time[:last], angle[:last])
+            self._end(end)
+            self._start, self._tracker = start, TurnTracker(self._spin.rate_hz)
+            time, angle = time[first:], angle[first:]
+        self._tracker.add(time, angle)
+
+    def finished(self, last_time: float) -> list[_Segment]:
+        """All segments, when all points came."""
+        self._end(last_time)
+        return self._ended
+
+    def _end(self, end: float) -> None:
+        if self._tracker.has_points:
+            phase = self._tracker.phase()
         else:
-            phase = track_turns(time[first:last], angle[first:last], spin.rate_hz)
-        segments.append(_Segment(start, end, phase))
-    return segments
+            middle = np.array([0.5 * (self._start + end)])
+            phase = TurnPhase(middle, np.zeros(1), abs(self._spin.rate_hz), 0.0)
+        self._ended.append(_Segment(self._start, end, phase))
 
 
 def _expected(segment: _Segment, spin: Spin) -> _Turns:

@@ -69,65 +69,117 @@ class TurnPhase:
         return float((turns[-1] - turns[0]) / (time[-1] - time[0]))
 
 
-def track_turns(time: Floats, angle: Floats, rate_hz: float) -> TurnPhase:
-    """Follow the mirror through a stretch without a stop.
+class TurnTracker:
+    """Follows the mirror through a stretch without a stop, as its points come.
 
     Parameters
     ----------
-    time : (n,) float64
-        s, not decreasing; some dozens a turn.
-    angle : (n,) float64
-        rad.
     rate_hz : float
         Signed, as found on samples of the drive.
 
     Notes
     -----
     In windows of some turns, the angles that miss the prediction turn its phase and rate. Windows
-    of few or incoherent points leave the prediction as it is.
+    of few or incoherent points leave the prediction as it is. Only the points of the last window
+    are kept.
     """
-    turning = float(np.sign(rate_hz))
-    angle = angle * turning
-    rate = 2 * np.pi * abs(rate_hz)
-    length = _TURNS_PER_WINDOW / abs(rate_hz)
-    edges = np.arange(time[0], time[-1] + length, length)
-    bounds = np.searchsorted(time, edges)
-    knots, phases, coherences = [], [], []
-    at, phase = float(time[0]), 0.0
-    is_locked = False
-    for start, stop in pairwise(bounds):
-        if stop - start < _LEAST_POINTS:
-            continue
-        mine = time[start:stop]
-        waves = np.exp(1j * (angle[start:stop] - phase - rate * (mine - at)))
+
+    def __init__(self, rate_hz: float) -> None:
+        self._rate_hz = abs(rate_hz)
+        self._turning = float(np.sign(rate_hz))
+        self._rate = 2 * np.pi * abs(rate_hz)
+        self._length = _TURNS_PER_WINDOW / abs(rate_hz)
+        self._time, self._angle = np.empty(0), np.empty(0)
+        self._first, self._last = np.nan, np.nan
+        self._window = 0
+        self._at, self._phase = 0.0, 0.0
+        self._is_locked = False
+        self._knots: list[float] = []
+        self._phases: list[float] = []
+        self._coherences: list[float] = []
+
+    @property
+    def has_points(self) -> bool:
+        """Whether any point came."""
+        return bool(np.isfinite(self._first))
+
+    def add(self, time: Floats, angle: Floats) -> None:
+        """Take the next points.
+
+        Parameters
+        ----------
+        time : (n,) float64
+            s, not decreasing; some dozens a turn.
+        angle : (n,) float64
+            rad.
+        """
+        if time.size == 0:
+            return
+        if not self.has_points:
+            self._first = self._at = float(time[0])
+        self._last = float(time[-1])
+        self._time = np.concatenate([self._time, time])
+        self._angle = np.concatenate([self._angle, angle * self._turning])
+        # The last window may still get points.
+        last = int((self._last - self._first) / self._length) - 1
+        self._follow(last + 1)
+
+    def phase(self) -> TurnPhase:
+        """The turns, when all points came."""
+        self._follow(np.arange(self._first, self._last + self._length, self._length).size)
+        ends = self._first, self._last
+        knots, phases = np.array(self._knots), np.array(self._phases)
+        return _phase_of(knots, phases, np.array(self._coherences), ends, self._rate_hz)
+
+    def _follow(self, edge: int) -> None:
+        """Go through the windows before an edge; the points in them are dropped."""
+        # The step that the first edge and the next one really make, as `arange` has it.
+        step = (self._first + self._length) - self._first
+        edges = np.asarray(self._first + np.arange(self._window, edge) * step, dtype=np.float64)
+        if edges.size < 2:
+            return
+        bounds = np.searchsorted(self._time, edges)
+        for start, stop in pairwise(bounds):
+            if stop - start >= _LEAST_POINTS:
+                self._turn(self._time[start:stop], self._angle[start:stop])
+        self._window += edges.size - 1
+        self._time, self._angle = self._time[bounds[-1] :], self._angle[bounds[-1] :]
+
+    def _turn(self, time: Floats, angle: Floats) -> None:
+        """Let a window turn phase and rate."""
+        waves = np.exp(1j * (angle - self._phase - self._rate * (time - self._at)))
         mean = waves.mean()
-        if abs(mean) < _LEAST_COHERENCE and is_locked:
-            continue
+        if abs(mean) < _LEAST_COHERENCE and self._is_locked:
+            return
         turned = float(np.angle(mean))
         miss = np.angle(waves * np.exp(-1j * turned))
         near = np.abs(miss) < _CLEAR_ANGLE_RAD
         if np.count_nonzero(near) < _LEAST_POINTS:
-            continue
-        middle = float(mine[near].mean())
-        centred = mine[near] - middle
+            return
+        middle = float(time[near].mean())
+        centred = time[near] - middle
         spread = float(centred @ centred)
-        phase += rate * (middle - at) + turned + float(miss[near].mean())
-        at = middle
-        knots.append(middle)
-        phases.append(phase)
-        coherences.append(float(np.mean(np.cos(miss))))
+        self._phase += self._rate * (middle - self._at) + turned + float(miss[near].mean())
+        self._at = middle
+        self._knots.append(middle)
+        self._phases.append(self._phase)
+        self._coherences.append(float(np.mean(np.cos(miss))))
         if spread > 0:
             change = float(centred @ miss[near]) / spread
-            rate += (0.5 if is_locked else 1.0) * float(np.clip(change, -0.01 * rate, 0.01 * rate))
-        is_locked = True
-    return _phase_of(np.array(knots), np.array(phases), np.array(coherences), time, abs(rate_hz))
+            most = 0.01 * self._rate
+            self._rate += (0.5 if self._is_locked else 1.0) * float(np.clip(change, -most, most))
+        self._is_locked = True
 
 
 def _phase_of(
-    knots: Floats, phases: Floats, coherences: Floats, time: Floats, rate_hz: float
+    knots: Floats,
+    phases: Floats,
+    coherences: Floats,
+    ends: tuple[float, float],
+    rate_hz: float,
 ) -> TurnPhase:
     if knots.size == 0:
-        middle = 0.5 * float(time[0] + time[-1])
+        middle = 0.5 * (ends[0] + ends[1])
         return TurnPhase(np.array([middle]), np.zeros(1), rate_hz, 0.0)
     turns = phases / (2 * np.pi)
     # Window means whose phase would run backwards are noise of a stretch hardly seen.
