@@ -134,6 +134,8 @@ class FileJob:
     ----------
     number : int
         Of the file in the import.
+    format : str
+        As :class:`processing.formats.point_chunk.PointFileInfo` names it.
     count : int
         Points it is said to have.
     size, modified_ns : int
@@ -150,6 +152,7 @@ class FileJob:
 
     number: int
     path: str
+    format: str
     count: int
     size: int
     modified_ns: int

@@ -119,6 +119,7 @@ def _job(
     return FileJob(
         number=number,
         path=str(path),
+        format=file.info.format,
         count=file.info.count,
         size=mark.size,
         modified_ns=mark.modified_ns,

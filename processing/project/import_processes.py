@@ -34,8 +34,11 @@ from processing.text import Text
 MOST_PROCESSES = 4
 FEWEST_POINTS = 10_000_000
 """Points for which a second process is worth its start."""
+LAZ_CORES = 2
+"""Cores that one process keeps busy with compressed files, whose decoder uses several by itself."""
 
 _WAIT_S = 0.05
+_LAZ = ("LAZ", "COPC")
 _ERRORS = {
     kind.__name__: kind for kind in (BadFile, InUse, MissingInput, NoSpace, OutOfRange, Unsuitable)
 }
@@ -92,7 +95,9 @@ def processes_for(work: Work) -> int:
     left = sum(job.count - record.done for job, record in work)
     if left < FEWEST_POINTS:
         return 1
-    return min(MOST_PROCESSES, os.cpu_count() or 1, len(work))
+    is_laz = any(job.format in _LAZ for job, _ in work)
+    cores = (os.cpu_count() or 1) // (LAZ_CORES if is_laz else 1)
+    return max(1, min(MOST_PROCESSES, cores, len(work)))
 
 
 def _record_beside(
