@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ _BEHIND_M, _ABOVE_M, _AHEAD_M = 14.0, 9.0, 22.0
 _LOOK_AHEAD_M = 8.0
 _OBLIQUE_DEG = -35.0
 _ROOM = 1.15
+_LEAST_M = 2.0
 
 
 def along_drive(drive: Drive, origin: Floats, near: Floats | None = None) -> Camera | None:
@@ -66,16 +68,19 @@ def holding(places: Floats, camera: Camera) -> Camera:
         Metres from the origin; n >= 1.
     """
     middle = (places.min(axis=0) + places.max(axis=0)) / 2
-    radius = float(np.linalg.norm(places - middle, axis=1).max())
-    away = _ROOM * max(radius, 2.0) / math.sin(math.radians(camera.angle_deg) / 2)
-    return camera.centred_on(middle, away)
+    right, up, forward = ((places - middle) @ camera.axes.T).T
+    slope = math.tan(math.radians(camera.angle_deg) / 2)
+    # Views are at least as wide as they are high, as a rule.
+    needed = np.maximum(np.maximum(np.abs(right), np.abs(up)), _LEAST_M) / slope - forward
+    return camera.centred_on(middle, _ROOM * float(needed.max()))
 
 
 def oblique(drives: Iterable[Drive], origin: Floats) -> Camera | None:
     """Everything from the south, halfway from above; None when there are no drives."""
-    corners = [corner for drive in drives for corner in (drive.info.lowest, drive.info.highest)]
-    if not corners:
+    boxes = [(drive.info.lowest, drive.info.highest) for drive in drives]
+    if not boxes:
         return None
+    corners = [corner for low, high in boxes for corner in product(*zip(low, high, strict=True))]
     view = Camera((0.0, 0.0, 0.0), heading_deg=0.0, pitch_deg=_OBLIQUE_DEG)
     return holding(np.array(corners) - origin, view)
 
