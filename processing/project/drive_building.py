@@ -18,7 +18,7 @@ from processing.cameras.image_store import write_images
 from processing.errors import told_as_user_error
 from processing.monitor import Monitor, PartMonitor
 from processing.points.columns import Columns, ColumnWriter
-from processing.points.drive import SCAN, write_trajectory
+from processing.points.drive import SCAN, Drive, write_trajectory
 from processing.points.drive_info import DriveInfo, SourceFile, write_drive_info
 from processing.points.ordering import (
     POINTS_AT_ONCE,
@@ -182,11 +182,21 @@ def _finished(
         scanner_place=found.place,
     )
     write_drive_info(folder, info)
+    _find_rows_of_first_image(folder)
     steps.note(NAMED, {"id": info.id})
     final = steps.home / info.id
     with told_as_user_error(final):
         folder.rename(final)
     return final
+
+
+def _find_rows_of_first_image(folder: Path) -> None:
+    """Keep where the rows of the image begin that is shown first, so that it opens at once."""
+    with told_as_user_error(folder):
+        for unfinished in folder.glob("image_rows_*.part"):
+            unfinished.unlink()
+    drive = Drive(folder)
+    drive.image(drive.image_kinds[0])
 
 
 def _identity(recording: Recording, plan: BuildPlan) -> str:
