@@ -17,6 +17,7 @@ LIMIT_BYTES = 256 * 2**20
 """Maps hold no more than about this: less than views read in a second."""
 
 _LOOKED_AT_EVERY_S = 0.02
+_LOOKED_AGAIN_AFTER_S = 0.1
 _STATM = Path("/proc/self/statm")
 _FILE_PAGES = 2
 
@@ -45,9 +46,21 @@ class MappedPages:
     def add(self, mapped: mmap.mmap) -> None:
         """Watch a map that is only read."""
         with self._lock:
-            if not self._maps:
+            is_first = not self._maps
+            if is_first:
                 self._held_before = self._held_bytes()
             self._maps.add(mapped)
+        if is_first and self._can_give_back:
+            # A kernel may go through gigabytes of a map between two times that it is asked for.
+            threading.Thread(
+                target=_look_again, args=(weakref.ref(self),), name="mapped pages", daemon=True
+            ).start()
+
+    @property
+    def has_maps(self) -> bool:
+        """Whether any map is left."""
+        with self._lock:
+            return bool(self._maps)
 
     def look(self) -> None:
         """Give pages back if there are too many; to be called whenever maps are used."""
@@ -69,3 +82,15 @@ class MappedPages:
         if not self._can_give_back:
             return 0
         return int(_STATM.read_text().split()[_FILE_PAGES]) * mmap.PAGESIZE
+
+
+def _look_again(of: weakref.ref[MappedPages]) -> None:
+    """Look every now and then for as long as there are maps."""
+    pause = threading.Event()
+    while True:
+        pause.wait(_LOOKED_AGAIN_AFTER_S)
+        pages = of()
+        if pages is None or not pages.has_maps:
+            return
+        pages.look()
+        del pages
