@@ -19,19 +19,19 @@ _LOOK_AHEAD_M = 8.0
 _OBLIQUE_DEG = -35.0
 _ROOM = 1.15
 _LEAST_M = 2.0
+_MOST_POSES = 20_000
 
 
-def along_drive(drive: Drive, origin: Floats, near: Floats | None = None) -> Camera | None:
-    """From behind and above the vehicle, forwards; None for a drive without a trajectory.
+def along_way(way: Floats, near: Floats | None = None) -> Camera:
+    """From behind and above the vehicle, forwards.
 
     Parameters
     ----------
+    way : (m, 3) float64
+        As :func:`way_of` gives it.
     near : (3,) float64, optional
         The place to be seen, metres from the origin; otherwise the drive's beginning.
     """
-    way = _way_of(drive, origin)
-    if way is None:
-        return None
     at = 0 if near is None else int(np.hypot(*(way[:, :2] - near[:2]).T).argmin())
     heading_deg = _heading_deg(way, at)
     heading = math.radians(heading_deg)
@@ -51,11 +51,8 @@ def along_drive(drive: Drive, origin: Floats, near: Floats | None = None) -> Cam
     )
 
 
-def course_deg(drive: Drive, origin: Floats, near: Floats) -> float | None:
-    """Direction of the drive at a place, clockwise from grid north; None without trajectory."""
-    way = _way_of(drive, origin)
-    if way is None:
-        return None
+def course_deg(way: Floats, near: Floats) -> float:
+    """Direction of a way at a place, clockwise from grid north."""
     return _heading_deg(way, int(np.hypot(*(way[:, :2] - near[:2]).T).argmin()))
 
 
@@ -85,15 +82,22 @@ def oblique(drives: Iterable[Drive], origin: Floats) -> Camera | None:
     return holding(np.array(corners) - origin, view)
 
 
-def _way_of(drive: Drive, origin: Floats) -> Floats | None:
-    """(m, 3): where the vehicle was while this drive's points were measured."""
+def way_of(drive: Drive, origin: Floats) -> Floats | None:
+    """Where the vehicle was while this drive's points were measured; None without a trajectory.
+
+    Returns
+    -------
+    (m, 3) float64
+        Metres from the origin. Of a long drive some poses are left out: the camera asks for every
+        turn of the wheel.
+    """
     trajectory = drive.trajectory
     if trajectory is None:
         return None
     low, high = np.array(drive.info.lowest), np.array(drive.info.highest)
     inside = ((trajectory.xyz >= low) & (trajectory.xyz <= high))[:, :2].all(axis=1)
     way: Floats = (trajectory.xyz[inside] if inside.any() else trajectory.xyz) - origin
-    return way
+    return np.ascontiguousarray(way[:: max(1, len(way) // _MOST_POSES)])
 
 
 def _heading_deg(way: Floats, at: int) -> float:

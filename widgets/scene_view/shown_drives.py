@@ -36,6 +36,7 @@ class ShownDrives:
         self._settings = settings
         self.origin: Floats = np.zeros(3)
         self.with_kinds: tuple[tuple[Drive, ImageKind], ...] = ()
+        self._ways: dict[str, Floats | None] = {}
 
     def read(self) -> bool:
         """Ask the document again; says whether other tiles are to be drawn."""
@@ -47,26 +48,36 @@ class ShownDrives:
             for drive in self._source.drives()
             if drive.count and drive.id not in self._settings.hidden_drives
         )
-        return before != (self.with_kinds, self.origin.tolist())
+        is_other = before != (self.with_kinds, self.origin.tolist())
+        if is_other:
+            self._ways.clear()
+        return is_other
 
     def overview(self) -> Camera | None:
         """Along the drive from its beginning; where no trajectory is, obliquely at everything."""
-        drive = self._main()
-        along = None if drive is None else overviews.along_drive(drive, self.origin)
-        if along is not None:
-            return along
+        way = self._way()
+        if way is not None:
+            return overviews.along_way(way)
         return overviews.oblique((drive for drive, _ in self.with_kinds), self.origin)
 
     def along(self, near: Floats) -> Camera | None:
         """Along the drive to a place, metres from the origin; None without trajectory."""
-        drive = self._main()
-        return None if drive is None else overviews.along_drive(drive, self.origin, near)
+        way = self._way()
+        return None if way is None else overviews.along_way(way, near)
 
     def course_deg(self, near: Floats) -> float:
         """Direction of the drive at a place, clockwise from grid north; north if unknown."""
+        way = self._way()
+        return 0.0 if way is None else overviews.course_deg(way, near)
+
+    def _way(self) -> Floats | None:
+        """Where the vehicle of the main drive was."""
         drive = self._main()
-        course = None if drive is None else overviews.course_deg(drive, self.origin, near)
-        return 0.0 if course is None else course
+        if drive is None:
+            return None
+        if drive.id not in self._ways:
+            self._ways[drive.id] = overviews.way_of(drive, self.origin)
+        return self._ways[drive.id]
 
     def _main(self) -> Drive | None:
         """The drive that the image view shows, or else the first one."""
