@@ -59,6 +59,8 @@ def main(folder: Path, out: Path, share: float) -> None:
         try:
             parts.window.resize(*_SIZE)
             parts.window.show()
+            # As the program does while nobody waits.
+            parts.document.tiles.get_ready()
             # The 3D view begins with the first project.
             parts.document.create(Path(scratch) / "empty.zuka", "")
             window = BenchWindow(parts, folder, out, share)
