@@ -69,9 +69,9 @@ class Adoption(QObject):
         return job
 
     def give_up(self) -> None:
-        """The project is closed: jobs are asked to stop, what they give is dropped."""
+        """The project is closed: jobs are interrupted, what they give is dropped."""
         for job in self._waiting:
-            self._jobs.cancel(job)
+            self._jobs.interrupt(job)
         self._waiting.clear()
 
     def _on_jobs_finished(self, job: str, result: object) -> None:

@@ -13,7 +13,7 @@ from uuid import uuid4
 from PySide6.QtCore import QObject, Qt, Signal, SignalInstance
 
 from app.error_log import defect_of, log_user_error
-from processing.errors import Cancelled, UserError
+from processing.errors import Cancelled, Interrupted, UserError
 from processing.monitor import Monitor
 from processing.text import Text
 
@@ -68,11 +68,34 @@ class JobStatus:
     error: UserError | None = None
 
 
+class _Stop:
+    """How a job learns that it should stop, and whether it is given up or may go on one day."""
+
+    def __init__(self) -> None:
+        self._event = threading.Event()
+        self._reason: type[Cancelled] = Cancelled
+
+    def ask(self, reason: type[Cancelled]) -> None:
+        """Ask the job to stop; what was asked first holds."""
+        if not self._event.is_set():
+            self._reason = reason
+            self._event.set()
+
+    def wait(self, seconds: float) -> bool:
+        """Wait, until it is asked to stop at the latest; says whether it is."""
+        return self._event.wait(seconds)
+
+    def check(self) -> None:
+        """Raise what the job was asked to stop by."""
+        if self._event.is_set():
+            raise self._reason
+
+
 @dataclass(frozen=True)
 class _Task:
     id: str
     work: Work
-    stop: threading.Event
+    stop: _Stop
 
 
 class JobQueue(QObject):
@@ -94,7 +117,7 @@ class JobQueue(QObject):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._statuses: dict[str, JobStatus] = {}
-        self._stops: dict[str, threading.Event] = {}
+        self._stops: dict[str, _Stop] = {}
         self._started_at: dict[str, float] = {}
         self._lanes: dict[Lane, SimpleQueue[_Task | None]] = {lane: SimpleQueue() for lane in Lane}
         self._quiet: set[str] = set()
@@ -129,7 +152,7 @@ class JobQueue(QObject):
             Called in a worker thread with a monitor; touches no widget and no project.
         lane : Lane
         """
-        task = _Task(uuid4().hex, work, threading.Event())
+        task = _Task(uuid4().hex, work, _Stop())
         self._stops[task.id] = task.stop
         if lane is Lane.AT_HAND:
             self._quiet.add(task.id)
@@ -140,12 +163,17 @@ class JobQueue(QObject):
     def cancel(self, job: str) -> None:
         """Ask a job to stop; a job that has ended is left alone."""
         if job in self._stops:
-            self._stops[job].set()
+            self._stops[job].ask(Cancelled)
+
+    def interrupt(self, job: str) -> None:
+        """As :meth:`cancel`, but work that can go on another day keeps what is done."""
+        if job in self._stops:
+            self._stops[job].ask(Interrupted)
 
     def close(self) -> None:
-        """Stop everything and wait for the workers."""
+        """Interrupt everything and wait for the workers."""
         for stop in self._stops.values():
-            stop.set()
+            stop.ask(Interrupted)
         for tasks in self._lanes.values():
             tasks.put(None)
         for thread in self._threads:
@@ -232,5 +260,4 @@ class _JobMonitor:
         while any(event.is_set() for event in self._before):
             if self._task.stop.wait(_PAUSE_S):
                 break
-        if self._task.stop.is_set():
-            raise Cancelled
+        self._task.stop.check()

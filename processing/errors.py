@@ -63,6 +63,10 @@ class Cancelled(Exception):
     """The user stopped the work; nothing of it is kept."""
 
 
+class Interrupted(Cancelled):
+    """The program ends or the project is closed; work that can go on one day keeps what is done."""
+
+
 UNCHANGED = Text("The project is unchanged.", "プロジェクトは変更されていません。")
 
 

@@ -7,13 +7,12 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
-from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
-from PySide6.QtGui import QMouseEvent
+from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QWidget
 
 from app.large_steps.bench_window import BenchWindow, Found
-from app.screenshots.hand import MIDDLE, NO_BUTTON, PLAIN
+from app.screenshots.hand import MIDDLE, PLAIN, move
 
 _JUMPS = 40
 _DRAGS, _MOVES, _STEP_PX = 8, 40, 24
@@ -139,12 +138,4 @@ def _drag_along(window: BenchWindow) -> list[float]:
 
 def drag_to(widget: QWidget, spot: QPoint, held: Qt.MouseButton = MIDDLE) -> None:
     """Move the mouse with a button held."""
-    event = QMouseEvent(
-        QEvent.Type.MouseMove,
-        QPointF(spot),
-        QPointF(widget.mapToGlobal(spot)),
-        NO_BUTTON,
-        held,
-        PLAIN,
-    )
-    QApplication.sendEvent(widget, event)
+    move(widget, spot, PLAIN, held)

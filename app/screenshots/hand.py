@@ -27,7 +27,7 @@ class Hand:
 
     def move(self, widget: QWidget, spot: QPoint, modifiers: Qt.KeyboardModifier = PLAIN) -> None:
         """Bring the mouse over a place of a widget; with the button held, drag."""
-        _move(widget, spot, modifiers, NO_BUTTON if self._held is None else LEFT)
+        move(widget, spot, modifiers, NO_BUTTON if self._held is None else LEFT)
 
     def click(self, widget: QWidget, spot: QPoint, modifiers: Qt.KeyboardModifier = PLAIN) -> None:
         """Bring the mouse there and click."""
@@ -59,7 +59,7 @@ class Hand:
     def push(self, widget: QWidget, begin: QPoint, end: QPoint) -> None:
         """Drag with the middle button from one place to another."""
         QTest.mousePress(widget, MIDDLE, PLAIN, begin)
-        _move(widget, end, PLAIN, MIDDLE)
+        move(widget, end, PLAIN, MIDDLE)
         QTest.mouseRelease(widget, MIDDLE, PLAIN, end)
 
     def wheel(
@@ -106,9 +106,10 @@ class Hand:
         QApplication.sendEvent(widget, QDropEvent(QPointF(middle), copy, files, LEFT, PLAIN))
 
 
-def _move(
+def move(
     widget: QWidget, spot: QPoint, modifiers: Qt.KeyboardModifier, held: Qt.MouseButton
 ) -> None:
+    """Move the mouse to a spot, with a button held or none."""
     event = QMouseEvent(
         QEvent.Type.MouseMove,
         QPointF(spot),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
 
 from processing.bench.case import BenchWish, Measurement
@@ -31,15 +32,10 @@ def measure_import(wish: BenchWish) -> tuple[Measurement, ...]:
         folder = Path(name)
         cloud, trajectory = write_large_street(folder, points)
         request = ImportRequest((cloud,), (trajectory,))
-        into = folder / "import"
-
-        def import_once() -> None:
-            # Files of the import before give their memory back: on a virtual machine memory that
-            # is touched for the first time costs more than all the rest.
-            shutil.rmtree(into, ignore_errors=True)
-            import_drives(request, into, SilentMonitor())
-
-        ours, theirs = alternating([import_once, lambda: decode([cloud])], wish.repeats(_REPEATS))
+        ours, theirs = alternating(
+            [importing(request, folder / "import"), lambda: decode([cloud])],
+            wish.repeats(_REPEATS),
+        )
     row = Measurement(
         "import",
         Text(
@@ -74,3 +70,15 @@ def measure_import_memory(wish: BenchWish) -> tuple[Measurement, ...]:
     return (
         memory_row("memory", what, run.resident_gib, run.anonymous_gib, f"{run.seconds:.0f} s"),
     )
+
+
+def importing(request: ImportRequest, into: Path) -> Callable[[], object]:
+    """An import that can be timed again and again: what the one before left is removed first."""
+
+    def import_once() -> None:
+        # Files of the import before give their memory back: on a virtual machine memory that
+        # is touched for the first time costs more than all the rest.
+        shutil.rmtree(into, ignore_errors=True)
+        import_drives(request, into, SilentMonitor())
+
+    return import_once

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.bench.case import BenchWish, Measurement
+from processing.bench.import_cases import importing
 from processing.bench.large_street import write_large_street
 from processing.bench.peers import (
     cloudcompare_normals_s,
@@ -80,14 +81,12 @@ def measure_searchable(wish: BenchWish) -> tuple[Measurement, ...]:
         folder = Path(name)
         cloud, trajectory = write_large_street(folder, points)
         request = ImportRequest((cloud,), (trajectory,))
-        into = folder / "import"
-
-        def import_once() -> None:
-            shutil.rmtree(into, ignore_errors=True)
-            import_drives(request, into, SilentMonitor())
-
         ours, theirs = alternating(
-            [import_once, lambda: open3d_searchable(_decoded(cloud))], wish.repeats(_REPEATS)
+            [
+                importing(request, folder / "import"),
+                lambda: open3d_searchable(_decoded(cloud)),
+            ],
+            wish.repeats(_REPEATS),
         )
     row = Measurement(
         "searchable",

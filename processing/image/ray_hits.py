@@ -107,7 +107,7 @@ class RayHits:
         matrix = self._matrix_of_integers(drive.info.scale, drive.info.offset)
         found = np.empty((room, 4))
         limits = self._limits(is_clipped=clip is not None)
-        count = recorded_kernel(xyz, stretches, matrix, limits, found)
+        count = hits_kernel(xyz, stretches, matrix, limits, found)
         found = found[:count]
         if clip is not None:
             points = found[:, _POINT].astype(np.int64)
@@ -125,7 +125,9 @@ class RayHits:
             Metres from the sight's origin.
         """
         found = np.empty((points.size, 4))
-        count = places_kernel(local_xyz, self._sight.matrix, self._limits(is_clipped=False), found)
+        whole = np.array([[0, points.size]])
+        limits = self._limits(is_clipped=False)
+        count = hits_kernel(local_xyz, whole, self._sight.matrix, limits, found)
         found = found[:count]
         found[:, _POINT] = points[found[:, _POINT].astype(np.int64)]
         self._keep(drive_id, found)
@@ -170,14 +172,14 @@ def _behind(depth_m: float) -> float:
 
 
 @kernel
-def recorded_kernel(
-    xyz: NDArray[np.int32],
+def hits_kernel(
+    xyz: NDArray[np.int32] | NDArray[np.float32],
     stretches: NDArray[np.int64],
     matrix: NDArray[np.float64],
     limits: NDArray[np.float64],
     found: NDArray[np.float64],
 ) -> int:
-    """Points of stretches of a recording near a pixel; says how many were found.
+    """Points of stretches of a recording, or of places in memory, near a pixel; says how many.
 
     ``limits``: pixel, least w, tolerance, what is close, deepest point that counts, and how thick
     a surface is. Each close point brings the deepest that counts nearer. ``found``: depth,
@@ -204,37 +206,6 @@ def recorded_kernel(
                 count += 1
                 if offset <= limits[4]:
                     front = min(front, depth + max(limits[6], limits[7] * depth))
-    return count
-
-
-@kernel
-def places_kernel(
-    xyz: NDArray[np.float32],
-    matrix: NDArray[np.float64],
-    limits: NDArray[np.float64],
-    found: NDArray[np.float64],
-) -> int:
-    """As :func:`recorded_kernel`, of places in memory; ``found`` has their numbers."""
-    x, y, nearest, tolerance = limits[0], limits[1], limits[2], limits[3]
-    front, count = limits[5], 0
-    for i in range(xyz.shape[0]):
-        a, b, c = float(xyz[i, 0]), float(xyz[i, 1]), float(xyz[i, 2])
-        w = matrix[2, 0] * a + matrix[2, 1] * b + matrix[2, 2] * c + matrix[2, 3]
-        if w <= nearest:
-            continue
-        across = matrix[0, 0] * a + matrix[0, 1] * b + matrix[0, 2] * c + matrix[0, 3] - x * w
-        if abs(across) > tolerance * w:
-            continue
-        down = matrix[1, 0] * a + matrix[1, 1] * b + matrix[1, 2] * c + matrix[1, 3] - y * w
-        if abs(down) > tolerance * w:
-            continue
-        offset = np.sqrt(across * across + down * down) / w
-        depth = matrix[3, 0] * a + matrix[3, 1] * b + matrix[3, 2] * c + matrix[3, 3]
-        if offset <= tolerance and depth <= front:
-            found[count, 0], found[count, 1], found[count, 2] = depth, offset, i
-            count += 1
-            if offset <= limits[4]:
-                front = min(front, depth + max(limits[6], limits[7] * depth))
     return count
 
 
@@ -280,6 +251,6 @@ def warm_up() -> None:
     xyz, found = np.zeros((1, 3), np.int32), np.zeros((1, 4))
     xyz.flags.writeable = False
     matrix, limits = np.eye(4), np.zeros(8)
-    recorded_kernel(xyz, np.array([[0, 1]]), matrix, limits, found)
-    places_kernel(np.zeros((1, 3), np.float32), matrix, limits, found)
+    hits_kernel(xyz, np.array([[0, 1]]), matrix, limits, found)
+    hits_kernel(np.zeros((1, 3), np.float32), np.array([[0, 1]]), matrix, limits, found)
     merge_kernel(found, np.zeros((2, 4)), 0)

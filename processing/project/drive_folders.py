@@ -13,7 +13,7 @@ from processing.errors import UserError, told_as_user_error
 from processing.project.database import Database
 from processing.project.import_journal import PLAN
 from processing.project.project_settings import JsonValue, ProjectSettings, write_setting
-from processing.project.unfinished_imports import TEMPORARY, remove_litter
+from processing.project.unfinished_imports import TEMPORARY, remove_import, remove_litter
 
 DRIVES = "drives"
 _ARRIVING = "arriving_drives"
@@ -86,7 +86,7 @@ class DriveFolders:
         for parent in {folder.parent for folder in folders.values()}:
             # The import's own folder, once the last drive is gone from it.
             if (parent / PLAN).exists():
-                shutil.rmtree(parent, ignore_errors=True)
+                remove_import(parent)
             with suppress(OSError):
                 parent.rmdir()
 

@@ -15,7 +15,14 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 from processing.cameras.image_list import ImageList
-from processing.errors import UNCHANGED, BadFile, Cancelled, UserError, told_as_user_error
+from processing.errors import (
+    UNCHANGED,
+    BadFile,
+    Cancelled,
+    Interrupted,
+    UserError,
+    told_as_user_error,
+)
 from processing.formats.image_list import read_image_list
 from processing.formats.point_chunk import Vector3
 from processing.formats.point_files import PointFileInfo
@@ -40,7 +47,7 @@ from processing.project.import_request import (
 from processing.project.part_joining import join_parts
 from processing.project.recording import Recording
 from processing.project.trajectory_choice import NamedTrajectory, read_trajectories
-from processing.project.unfinished_imports import is_import_folder
+from processing.project.unfinished_imports import is_import_folder, remove_import
 from processing.text import Text
 
 __all__ = ["ImportRequest", "Labels", "import_drives"]
@@ -74,7 +81,8 @@ def import_drives(
     UserError
         For a file that can't be read or doesn't fit; nothing is left behind.
     Cancelled
-        Nothing is left behind.
+        Nothing is left behind, but for :class:`processing.errors.Interrupted`, which keeps what
+        is done as a kill does.
     """
     marks = marks_of(request)
     delivery = read_delivery(request.inputs, request.crs, monitor)
@@ -89,15 +97,17 @@ def import_drives(
                 journal.begin(described(request, marks))
             folders = running.run(tuple(taken))
         journal.finish(folder.name for folder in folders)
-    except (UserError, Cancelled, KeyboardInterrupt):
+    except (UserError, Cancelled, KeyboardInterrupt) as end:
+        if isinstance(end, Interrupted):
+            running.keep()
         journal.close()
         if not running.is_kept:
-            shutil.rmtree(into, ignore_errors=True)
+            remove_import(into)
         raise
     except BaseException:
         journal.close()
         if not is_import_folder(into):
-            shutil.rmtree(into, ignore_errors=True)
+            remove_import(into)
         raise
     journal.close()
     return folders
@@ -165,7 +175,7 @@ class _Import:
         return self._layout.column_bytes * (whole - done) // max(whole, 1)
 
     def keep(self) -> bool:
-        """Keep what is done, after the disk was full; says whether it can go on."""
+        """Keep what is done: the disk is full or the program ends; says whether it can go on."""
         is_worth_it = self._journal.is_begun or any(one.done for one in self._records.values())
         self.is_kept = is_import_folder(self._into) and is_worth_it
         if self.is_kept:

@@ -65,9 +65,14 @@ def unfinished_imports(project: Path) -> tuple[UnfinishedImport, ...]:
 
 def discard(unfinished: UnfinishedImport) -> None:
     """Give an import up: what is done of it is removed."""
-    # The plan goes first, so that a kill leaves nothing that could go on.
-    (unfinished.folder / PLAN).unlink(missing_ok=True)
-    shutil.rmtree(unfinished.folder, ignore_errors=True)
+    remove_import(unfinished.folder)
+
+
+def remove_import(folder: Path) -> None:
+    """Remove an import's folder; a kill meanwhile leaves nothing that could go on."""
+    with suppress(OSError):
+        (folder / PLAN).unlink(missing_ok=True)
+    shutil.rmtree(folder, ignore_errors=True)
 
 
 def remove_litter(project: Path, drives: Collection[str]) -> None:
@@ -82,7 +87,7 @@ def remove_litter(project: Path, drives: Collection[str]) -> None:
         finished = _finished(folder)
         is_there = bool(finished) and all(id_ in drives for id_ in finished)
         if is_there or _request_of(folder) is None:
-            shutil.rmtree(folder, ignore_errors=True)
+            remove_import(folder)
     for path in (project / TEMPORARY).glob("*"):
         if path.is_dir() and not is_import_folder(path):
             shutil.rmtree(path, ignore_errors=True)

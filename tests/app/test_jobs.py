@@ -5,7 +5,7 @@ import threading
 import pytest
 
 from app.jobs import JobQueue, JobState, Lane
-from processing.errors import BadFile
+from processing.errors import BadFile, Cancelled, Interrupted
 from processing.text import Text
 
 TITLE = Text("Work", "作業")
@@ -63,6 +63,28 @@ def test_a_job_cancelled_in_the_middle_is_told_as_cancelled_and_gives_nothing(qt
         jobs.cancel(job)
     assert told.args == [job]
     assert not finished
+
+
+@pytest.mark.parametrize(
+    ("ask", "reason"), [("cancel", Cancelled), ("interrupt", Interrupted), ("close", Interrupted)]
+)
+def test_work_learns_whether_it_is_given_up_or_may_go_on_another_day(qapp, ask, reason):
+    queue, running, seen = JobQueue(), threading.Event(), []
+
+    def work(monitor):
+        running.set()
+        try:
+            while True:
+                monitor.check()
+        except Cancelled as asked:
+            seen.append(type(asked))
+            raise
+
+    job = queue.start(TITLE, work)
+    assert running.wait(30)
+    getattr(queue, ask)(*() if ask == "close" else (job,))
+    queue.close()
+    assert seen == [reason]
 
 
 def test_a_waiting_job_can_be_cancelled_before_it_starts(qtbot, jobs):

@@ -5,17 +5,19 @@ from __future__ import annotations
 import os
 import shutil
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import laspy
 import numpy as np
 import pytest
 
-from processing.errors import BadFile, Cancelled, NoSpace
+from processing.errors import BadFile, Cancelled, Interrupted, NoSpace
 from processing.formats.las_header import read_header
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project import import_journal, import_processes
+from processing.project import unfinished_imports as unfinished_imports_module
 from processing.project.disk_room import refuse_small_disk
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.project import Project
@@ -162,6 +164,53 @@ def test_a_cancelled_or_refused_import_is_not_offered_again(project, delivery, e
     with pytest.raises(type(end)):
         import_drives(delivery, into, _EndsAt(0.2, end))
     assert not into.exists()
+
+
+def test_an_import_that_the_end_of_the_program_interrupts_goes_on_another_day(
+    tmp_path, project, delivery
+):
+    into = import_folder(project.folder, delivery)
+    with pytest.raises(Interrupted):
+        import_drives(delivery, into, _EndsAt(0.2, Interrupted()))
+    (unfinished,) = unfinished_imports(project.folder)
+    (folder,) = import_drives(unfinished.request, into, SilentMonitor())
+    whole = import_drives(delivery, tmp_path / "elsewhere", SilentMonitor())
+    assert tree_of(folder) == tree_of(whole[0])
+
+
+@pytest.mark.usefixtures("noted_at_once")
+@pytest.mark.parametrize("removes", ["discard", "adopt", "cancel", "open"])
+def test_a_kill_while_an_import_is_removed_leaves_nothing_to_go_on_with(
+    monkeypatch, project, delivery, removes
+):
+    into = import_folder(project.folder, delivery)
+    at_kill = []
+    monkeypatch.setattr(
+        unfinished_imports_module.shutil,
+        "rmtree",
+        lambda *_a, **_k: at_kill.append(unfinished_imports(project.folder)),
+    )
+    match removes:
+        case "discard":
+            _stopped(project, delivery)
+            discard(*unfinished_imports(project.folder))
+        case "adopt":
+            project.adopt_drives(import_drives(delivery, into, SilentMonitor()))
+        case "cancel":
+            with pytest.raises(Cancelled):
+                import_drives(delivery, into, _EndsAt(0.2, Cancelled()))
+        case "open":
+            request = replace(delivery, inputs=delivery.inputs[:1])
+            done = import_drives(request, import_folder(project.folder, request), SilentMonitor())
+            plan = done[0].parent / import_journal.PLAN
+            kept = plan.read_bytes()
+            project.adopt_drives(done)
+            at_kill.clear()
+            plan.write_bytes(kept)
+            project.close()
+            Project.open(project.folder).close()
+    assert at_kill
+    assert not any(at_kill)
 
 
 @pytest.mark.usefixtures("noted_at_once")

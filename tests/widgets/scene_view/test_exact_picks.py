@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from processing.image.clip import Clip
 from processing.image.kinds import ImageKind
-from processing.image.ray_hits import merge_kernel, places_kernel, recorded_kernel
+from processing.image.ray_hits import hits_kernel, merge_kernel
 from processing.image.tile_cache import TileRequest
 from processing.image.tiles import TileKey
 from processing.points.drive import Drive
@@ -175,13 +175,13 @@ def test_the_plain_loops_give_the_same() -> None:
     projection = Projection(Camera((0.0, -80.0, 0.0), pitch_deg=0.0), 100, 100)
     limits = np.array([50.0, 50.0, NEAR_M, 6.0, 2.0, np.inf, 0.1, 0.02])
     matrix = projection.matrix_with_depth
-    stretches = np.array([[0, 120], [130, 300]])
+    stretches, whole = np.array([[0, 120], [130, 300]]), np.array([[0, 300]])
     fast, plain = np.zeros((300, 4)), np.zeros((300, 4))
-    count = recorded_kernel(integers, stretches, matrix, limits, fast)
-    recorded_kernel.py_func(integers, stretches, matrix, limits, plain)  # type: ignore[attr-defined]
+    count = hits_kernel(integers, stretches, matrix, limits, fast)
+    hits_kernel.py_func(integers, stretches, matrix, limits, plain)  # type: ignore[attr-defined]
     np.testing.assert_allclose(fast, plain, rtol=1e-12)
     places = integers.astype(np.float32)
     fast[:], plain[:] = 0.0, 0.0
-    assert 0 < count <= places_kernel(places, matrix, limits, fast)
-    places_kernel.py_func(places, matrix, limits, plain)  # type: ignore[attr-defined]
+    assert 0 < count <= hits_kernel(places, whole, matrix, limits, fast)
+    hits_kernel.py_func(places, whole, matrix, limits, plain)  # type: ignore[attr-defined]
     np.testing.assert_allclose(fast, plain, rtol=1e-12)
