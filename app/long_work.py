@@ -19,6 +19,8 @@ from processing.project.unfinished_imports import import_folder
 from processing.runner import RunRequest, tool_of
 from processing.text import Text
 
+_LONG_POINTS = 10_000_000
+
 
 def import_work(
     request: ImportRequest, project: Project
@@ -30,7 +32,9 @@ def import_work(
         into = import_folder(home, request)
         folders = import_drives(request, into, monitor, taken=taken)
         for folder in folders:
-            _prepare_tiles(folder, monitor)
+            drive = Drive(folder)
+            prepare_images(drive, monitor)
+            _prepare_tiles(drive, monitor)
         return folders
 
     names = ", ".join(path.name for path in request.inputs[:3])
@@ -71,8 +75,21 @@ def imported_words(drives: Sequence[Drive], crs: str) -> Text:
     return told.filled(points=sum(drive.count for drive in drives))
 
 
-def _prepare_tiles(folder: Path, monitor: Monitor) -> None:
+def prepare_images(drive: Drive, monitor: Monitor) -> None:
+    """Note the rows of all images of a long drive, which a window would have to look for.
+
+    They are found while the recording is still in the system's memory; those of a short drive are
+    found before anybody notices.
+    """
+    if drive.count < _LONG_POINTS:
+        return
+    for kind in drive.image_kinds:
+        monitor.check()
+        monitor.report(1.0, kind.title)
+        drive.image(kind)
+
+
+def _prepare_tiles(drive: Drive, monitor: Monitor) -> None:
     """Note where the tiles of the first image are, so that the window need not look for them."""
-    drive = Drive(folder)
     if drive.count:
         drive.image(drive.image_kinds[0]).pyramid.prepare(monitor)

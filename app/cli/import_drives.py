@@ -8,6 +8,7 @@ from dataclasses import replace
 from app.cli.opened import request_of, terminal_monitor
 from app.cli.output import print_lines
 from app.language import system_language
+from app.long_work import prepare_images
 from processing.points.drive import Drive
 from processing.project.importing import import_drives
 from processing.project.project import Project, is_project
@@ -35,6 +36,8 @@ def command(arguments: argparse.Namespace) -> int:
         folders = import_drives(request, into, terminal_monitor(), taken=taken)
         drives = project.adopt_drives(folders)
         finished = True
+        for drive in drives:
+            prepare_images(drive, terminal_monitor())
     finally:
         project.close()
         if is_new and not finished and not unfinished_imports(project.folder):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -16,6 +15,7 @@ from processing.points.drive import Drive
 from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.project import Project, is_project
+from processing.project.scratch_folder import scratch_folder
 from processing.text import Text
 from resources import path_of
 
@@ -44,7 +44,9 @@ class OpenedInput:
 
 @contextmanager
 def opened_input(arguments: argparse.Namespace, monitor: Monitor) -> Iterator[OpenedInput]:
-    """What ``arguments.inputs`` name; what was imported for it is removed afterwards.
+    """What ``arguments.inputs`` name; what is imported for it is removed afterwards.
+
+    It is imported to the disk of ``arguments.output``: a system's temporary folder is often small.
 
     Raises
     ------
@@ -71,8 +73,8 @@ def opened_input(arguments: argparse.Namespace, monitor: Monitor) -> Iterator[Op
         finally:
             project.close()
         return
-    with tempfile.TemporaryDirectory(prefix="zuka-") as folder:
-        folders = import_drives(request_of(arguments), Path(folder) / "drives", monitor)
+    with scratch_folder(arguments.output.parent) as folder:
+        folders = import_drives(request_of(arguments), folder / "drives", monitor)
         drives = tuple(Drive(path) for path in folders)
         crs = next((drive.info.crs for drive in drives if drive.info.crs), "")
         yield OpenedInput(drives, crs, read_catalogue(path_of("catalogue/level500.toml")))

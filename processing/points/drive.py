@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -75,6 +76,7 @@ class Drive:
         self.turns: Turns | None = read_turns(folder)
         self._trajectory: Trajectory | None = None
         self._point_images: dict[ImageKind, PointCloudImage] = {}
+        self._making = threading.Lock()
 
     @property
     def id(self) -> str:
@@ -241,7 +243,9 @@ class Drive:
                 else Text("Choose one of the other kinds.", "ほかの種類を選んでください。"),
             )
         if kind not in self._point_images:
-            self._point_images[kind] = PointCloudImage.of_drive(self, kind)
+            with self._making:
+                if kind not in self._point_images:
+                    self._point_images[kind] = PointCloudImage.of_drive(self, kind)
         return self._point_images[kind]
 
     def nearest_point(self, xyz: NDArray[np.float64], within_m: float) -> int:

@@ -17,7 +17,7 @@ LIMIT_BYTES = 256 * 2**20
 """Maps hold no more than about this: less than views read in a second."""
 
 _LOOKED_AT_EVERY_S = 0.02
-_LOOKED_AGAIN_AFTER_S = 0.1
+_LOOKED_AGAIN_AFTER_S = 0.03
 _STATM = Path("/proc/self/statm")
 _FILE_PAGES = 2
 

@@ -19,6 +19,9 @@ Floats = NDArray[np.float64]
 SLOWEST_HZ, FASTEST_HZ = 38.0, 310.0
 
 _ROUNDS = 12
+_ROUNDS_TO_CHOOSE = 6
+"""Enough to tell the right candidate from the others."""
+
 _CLEAR_ANGLE_RAD = 0.6
 _MOST_SEARCHED = 1_500
 _MOST_COMPARED = 4_000
@@ -102,9 +105,12 @@ def fit_rotation(
     for start in starts:
         angle = _angles(points.place - start)
         candidates = rates_hz or _candidate_rates(angle, points)
-        fits.extend(_refined(some, rate, start, moves=moves) for rate in candidates)
+        fits.extend(
+            _refined(some, (rate, start), moves=moves, rounds=_ROUNDS_TO_CHOOSE)
+            for rate in candidates
+        )
     best = max(fits, key=lambda fit: fit.coherence)
-    return _refined(points, best.rate_hz, best.centre, moves=moves)
+    return _refined(points, (best.rate_hz, best.centre), moves=moves, rounds=_ROUNDS)
 
 
 def _angles(place: Floats) -> Floats:
@@ -176,20 +182,23 @@ def warm_up() -> None:
     _strengths(50.0, 1.0, 2, (np.zeros(2), np.zeros(2), np.zeros(2, np.int64)))
 
 
-def _refined(points: PlanePoints, rate_hz: float, start: Floats, *, moves: bool) -> RotationFit:
+def _refined(
+    points: PlanePoints, begin: tuple[float, Floats], *, moves: bool, rounds: int
+) -> RotationFit:
     """Gauss-Newton on centre, velocity, rate and the windows' phases; far misses count less."""
     windows = points.windows
+    rate_hz, start = begin
     centre, velocity, rate = start.astype(np.float64), np.zeros(2), 2 * np.pi * rate_hz
     phases = np.zeros(windows)
     member = points.window[:, None] == np.arange(windows)
-    for turn in range(_ROUNDS + 1):
+    for turn in range(rounds + 1):
         rays = points.place - centre - points.time[:, None] * velocity
         distance = np.maximum(np.hypot(rays[:, 0], rays[:, 1]), 0.3)
         waves = np.exp(1j * (_angles(rays) - rate * points.time))
         phases = np.angle(member.T @ waves)
         clock = phases[points.window] + rate * points.time
         miss = np.angle(waves * np.exp(-1j * phases[points.window]))
-        if turn == _ROUNDS:
+        if turn == rounds:
             break
         across = np.column_stack([-np.sin(clock), np.cos(clock)]) / distance[:, None]
         parts = [member.astype(np.float64), points.time[:, None], across]

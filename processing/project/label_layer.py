@@ -31,11 +31,10 @@ class LabelLayer:
     def misfits(self, labels: Sequence[LabelChange]) -> list[str]:
         """Drives that are gone, or whose points have other labels than a change takes them for."""
         found = {one.drive for one in labels if not self._fits(one)}
-        for number, one in enumerate(labels):
-            for other in labels[:number]:
-                if one.drive == other.drive and one.drive not in found:
-                    shared = np.intersect1d(one.unpacked_points(), other.unpacked_points())
-                    found |= {one.drive} if shared.size else set()
+        for drive in {one.drive for one in labels} - found:
+            changes = [one for one in labels if one.drive == drive]
+            if len(changes) > 1 and _share_points(changes):
+                found.add(drive)
         return sorted(found)
 
     def prepare(self, labels: Sequence[LabelChange]) -> None:
@@ -110,3 +109,25 @@ class LabelLayer:
             return bool((labels_of(drive, points) == label.codes_before()).all())
         except BadFile:
             return True  # it says nothing against the change; preparing to write tells
+
+
+def _share_points(labels: Sequence[LabelChange]) -> bool:
+    """Whether two changes of one drive are about the same point.
+
+    A long recording is changed by many, stretch after stretch: only what overlaps is compared.
+    """
+    reached: list[tuple[int, LabelChange]] = []
+    for first, last, one in sorted(
+        ((*_extent(one), one) for one in labels if one.count), key=lambda extent: extent[:2]
+    ):
+        reached = [(end, other) for end, other in reached if end >= first]
+        for _, other in reached:
+            if np.intersect1d(one.unpacked_points(), other.unpacked_points()).size:
+                return True
+        reached.append((last, one))
+    return False
+
+
+def _extent(label: LabelChange) -> tuple[int, int]:
+    points = label.unpacked_points()
+    return int(points[0]), int(points[-1])
