@@ -25,12 +25,13 @@ from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.change import Change
 from processing.project.export import ExportRequest
 from processing.project.feature import Feature
+from processing.project.found_classes import classes_now
 from processing.project.found_features import FoundFeatures
 from processing.project.importing import ImportRequest
 from processing.project.project import Project
 from processing.project.runs import Run
 from processing.project.template_store import TemplateStore
-from processing.runner import RunRequest
+from processing.runner import RunRequest, tool_of
 from processing.text import Text
 from processing.tools.tool import FinishedColumns, Tool
 from resources import path_of
@@ -268,7 +269,10 @@ class Document(QObject):
         return self._adoption.start(project, title, work, take, lane=lane)
 
     def store_run(self, found: FoundFeatures) -> bool:
-        """Put a run and its candidates on the map as one undoable step; says whether it could."""
+        """Put a run with what it found on the map as one undoable step; says whether it could."""
+        if found.change.labels and not self._needed().features.fits(found.change):
+            # Points were painted while the tool ran.
+            found = classes_now(found, tool_of(found.run.tool), self.drive)
 
         def push() -> Change:
             if found.change.is_empty:

@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from processing.monitor import Monitor
+from processing.project.found_classes import found_classes
 from processing.project.found_features import FoundFeatures, found_features
 from processing.runner import RunRequest, run, tool_of
 from processing.tools.tool import CandidateResult, FinishedColumns
@@ -14,14 +15,14 @@ from processing.tools.tool import CandidateResult, FinishedColumns
 
 @dataclass(frozen=True)
 class FinishedRun:
-    """Columns for the drive, or candidates for the map.
+    """Columns for the drive, or candidates for the map and labels for points.
 
     Attributes
     ----------
     columns : FinishedColumns or None
-        In a folder on the drive's disk; None for a tool that finds candidates.
+        In a folder on the drive's disk; None for a tool that finds candidates or classes.
     found : FoundFeatures or None
-        The run with its candidates; None for a tool that says something about points.
+        The run with its candidates or labels; None for a tool that makes columns.
     """
 
     columns: FinishedColumns | None = None
@@ -43,14 +44,13 @@ def finished_run(request: RunRequest, into: Path, monitor: Monitor) -> FinishedR
     """
     started = datetime.now(UTC)
     result = run(request, monitor, into=into)
-    if not isinstance(result, CandidateResult):
+    tool, parameters, drive = tool_of(request.tool), request.parameters, request.drive
+    times = {"started": started, "finished": datetime.now(UTC)}
+    if isinstance(result, CandidateResult):
+        return FinishedRun(found=found_features(result, tool, parameters, drive.id, **times))
+    if not tool.gives_classes:
         return FinishedRun(columns=result)
-    found = found_features(
-        result,
-        tool_of(request.tool),
-        request.parameters,
-        request.drive.id,
-        started=started,
-        finished=datetime.now(UTC),
-    )
-    return FinishedRun(found=found)
+    try:
+        return FinishedRun(found=found_classes(result, tool, parameters, drive, **times))
+    finally:
+        result.remove()

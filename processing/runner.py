@@ -182,6 +182,11 @@ def _columns(
     tool: Tool, request: RunRequest, monitor: Monitor, into: Path, points_per_block: int
 ) -> FinishedColumns:
     """What a tool says about every point, block by block."""
+    if tool.mark is not None:
+        with _removed_on_failure(into):
+            marked = tool.mark(request.drive, request.parameters, into, points_per_block, monitor)
+            monitor.check()
+        return marked
     image = request.drive.image(request.drive.pixel_kind)
     total = max(request.drive.count, 1)
     compute = tool.compute

@@ -159,6 +159,8 @@ class CandidateResult:
 # A tool's parameters are its own frozen dataclass, so the runner can't know their type.
 Compute = Callable[[PointBlock, Any, Monitor], PointResult]
 Find = Callable[[Drive, Any, Monitor], CandidateResult]
+# A drive, the tool's parameters, an empty folder for the columns, points to hold at a time.
+Mark = Callable[[Drive, Any, Path, int, Monitor], FinishedColumns]
 # A drive, the other drives of its street, the tool's parameters, whom to tell what is lacking.
 ComputeOf = Callable[[Drive, tuple[Drive, ...], Any, Monitor], Compute]
 
@@ -207,6 +209,14 @@ class Tool:
     compute_of : callable or None
         Makes ``compute`` for one drive, where a block needs more than its own points: camera
         images, or what stands around them.
+    mark : callable or None
+        Says something about every point in place of ``compute``, for a tool that needs the
+        neighbours in space whenever they were measured, and so reads a drive in an order of its
+        own. Its ``outputs`` don't depend on how many points it holds at a time. It reports its own
+        progress.
+    gives_classes : tuple of int
+        The codes that a tool with the output ``classification`` may give; a new run in a project
+        takes back those of an earlier one.
     find : callable or None
         Candidates on a whole drive, of which it reads a stretch at a time; None for a tool that
         says something about points. It reports its own progress.
@@ -225,5 +235,7 @@ class Tool:
     overlap_rows: int = 0
     version: int = 1
     compute_of: ComputeOf | None = None
+    mark: Mark | None = None
+    gives_classes: tuple[int, ...] = ()
     find: Find | None = None
     remark: Remark = nothing_to_remark

@@ -23,6 +23,7 @@ from processing.templates.fit import FitSettings, fit_along
 from processing.templates.fitted_lines import FittedLine, fitted_lines
 from processing.tools.blocks import JoinedResults, blocks_of
 from processing.tools.colour import COLOUR, ColourParameters
+from processing.tools.noise import NOISE, NoiseParameters
 from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.registry import POINT_TOOLS, TOOLS
 from processing.tools.segments import SEGMENTS, SegmentsParameters
@@ -50,13 +51,19 @@ WITH_IMAGES = (
     (COLOUR.id, ColourParameters()),
     (COLOUR.id, ColourParameters(regards_hidden=False)),
 )
+IN_SPACE = (
+    (NOISE.id, NoiseParameters(method="radius", neighbours=40)),
+    (NOISE.id, NoiseParameters(method="statistical", neighbours=30)),
+    (NOISE.id, NoiseParameters()),
+)
+"""Tools that look around in space, whenever a neighbour was measured, by parts of their own."""
 STRETCHES = (TEMPLATE.id,)
 """Tools that find candidates, and read the street a stretch at a time."""
 
 
 def test_every_tool_is_shown_to_give_the_same_by_blocks() -> None:
-    shown = {tool for tool, _ in (*BLOCKS, *WITH_IMAGES)}
-    assert shown == set(POINT_TOOLS), "give a new tool a line in BLOCKS or WITH_IMAGES"
+    shown = {tool for tool, _ in (*BLOCKS, *WITH_IMAGES, *IN_SPACE)}
+    assert shown == set(POINT_TOOLS), "give a new tool a line in BLOCKS, WITH_IMAGES or IN_SPACE"
     assert shown | set(STRETCHES) == set(TOOLS), "a new tool that finds needs a test of its own"
 
 
@@ -93,6 +100,18 @@ def assert_same(one: Columns, other: Columns) -> None:
 @example(points=1)
 @settings(max_examples=8)
 def test_a_cloud_by_blocks_is_the_whole_cloud(
+    drives: Mapping[str, Drive], cloud: str, tool: str, parameters: object, points: int
+) -> None:
+    drive = drives[cloud]
+    whole = by_blocks(drive, tool, parameters, drive.count)
+    assert_same(by_blocks(drive, tool, parameters, points), whole)
+
+
+@pytest.mark.parametrize("cloud", ["street", "top view"])
+@pytest.mark.parametrize(("tool", "parameters"), IN_SPACE)
+@given(points=st.integers(1, 12_000))
+@settings(max_examples=3)
+def test_parts_of_space_are_the_whole_cloud(
     drives: Mapping[str, Drive], cloud: str, tool: str, parameters: object, points: int
 ) -> None:
     drive = drives[cloud]

@@ -1,0 +1,1 @@
+"""Which points of a cloud are noise: by radius, by statistics, by what a scanner can measure."""

@@ -1,0 +1,220 @@
+"""What the beams beside a beam met: loops over the pixels around a point.
+
+Every point has a row, a column and a range from where its beam began. Surfaces go on from pulse
+to pulse and from row to row; noise seldom does.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.kernels import kernel
+
+_Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
+
+BEAM_FEATURES = 22
+SURE, SQUARE = 1, 2
+
+
+class Beams(NamedTuple):
+    """Points with their beams, in rows.
+
+    ``xyz`` and ``origins`` (n, 3) local m, ``ranges`` (n,) m, ``columns`` (n,), ``row_starts``
+    (rows + 1,), ``segments`` (rows,), ``turn``: radians from pulse to pulse.
+    """
+
+    xyz: _Floats
+    origins: _Floats
+    ranges: _Floats
+    columns: NDArray[np.int32]
+    row_starts: _Integers
+    segments: NDArray[np.int32]
+    turn: float
+
+
+@kernel
+def spacing_kernel(beams: Beams, first: int, stop: int, spacings: _Floats) -> None:
+    """Distance from each point's beam to the nearest of the next row, at the point's range."""
+    for row in range(first, stop):
+        other = _row_beside(beams.segments, row, 1)
+        if other < 0 or beams.row_starts[other] == beams.row_starts[other + 1]:
+            other = _row_beside(beams.segments, row, -1)
+        place = beams.row_starts[other] if other >= 0 else 0
+        for point in range(beams.row_starts[row], beams.row_starts[row + 1]):
+            reach = beams.ranges[point]
+            best = reach * beams.turn
+            if other >= 0:
+                end = beams.row_starts[other + 1]
+                column = beams.columns[point]
+                while place + 1 < end and beams.columns[place + 1] <= column:
+                    place += 1
+                if place < end and abs(beams.columns[place] - column) <= 8:
+                    share = reach / max(beams.ranges[place], 1e-6)
+                    shift = (column - beams.columns[place]) * reach * beams.turn
+                    square = 0.0
+                    for axis in range(3):
+                        there = beams.origins[place, axis]
+                        there += share * (beams.xyz[place, axis] - there)
+                        square += (there - beams.xyz[point, axis]) ** 2
+                    best = max(best, math.sqrt(max(square - shift * shift, 0.0)))
+                else:
+                    best = 0.0
+            spacings[point] = best
+
+
+@kernel
+def surface_kernel(
+    beams: Beams, spacings: _Floats, first: int, stop: int, found: NDArray[np.uint8]
+) -> None:
+    """Mark the points from which a surface goes on to both sides and to the rows beside.
+
+    ``found`` (n,) uint8: `SURE`, `SQUARE` where the surface stands square to the beam, as arcs of
+    constant range do too, or 0.
+    """
+    for row in range(first, stop):
+        start, end = beams.row_starts[row], beams.row_starts[row + 1]
+        above, below = _row_beside(beams.segments, row, -1), _row_beside(beams.segments, row, 1)
+        i = beams.row_starts[above] if above >= 0 else 0
+        j = beams.row_starts[below] if below >= 0 else 0
+        for point in range(start, end):
+            found[point] = 0
+            if above < 0 or below < 0 or point - 2 < start or point + 2 >= end:
+                continue
+            kind = _goes_on_along(beams, point)
+            if kind == 0:
+                continue
+            i = _advance(beams, i, above, beams.columns[point])
+            j = _advance(beams, j, below, beams.columns[point])
+            limit = 2.5 * spacings[point] + 4 * beams.ranges[point] * beams.turn + 0.01
+            if _is_near(beams, point, i, limit) and _is_near(beams, point, j, limit):
+                found[point] = kind
+
+
+@kernel
+def _goes_on_along(beams: Beams, point: int) -> int:
+    """Whether the two pulses on either side met the same line: 0, `SURE` or `SQUARE`."""
+    step = beams.ranges[point] * beams.turn
+    left, right = point - 1, point + 1
+    if beams.columns[point + 2] - beams.columns[point - 2] > 6:
+        return 0
+    here = 1 / beams.ranges[point]
+    slope = (1 / beams.ranges[right] - 1 / beams.ranges[left]) / max(
+        1, beams.columns[right] - beams.columns[left]
+    )
+    tolerance = (0.02 + 0.15 * abs(slope) / here * beams.ranges[point]) * here * here
+    for other in range(point - 2, point + 3):
+        steps = beams.columns[other] - beams.columns[point]
+        if abs(1 / beams.ranges[other] - here - slope * steps) > tolerance * max(1, abs(steps)):
+            return 0
+    far = beams.ranges[point] * abs(slope) / here
+    if far >= 8 * step:
+        return 0
+    return SURE if far > 0.1 * step else SQUARE
+
+
+@kernel
+def _advance(beams: Beams, place: int, row: int, column: int) -> int:
+    """The point of a row whose column is nearest, from a place at or before it."""
+    end = beams.row_starts[row + 1]
+    while place + 1 < end and abs(beams.columns[place + 1] - column) <= abs(
+        beams.columns[place] - column
+    ):
+        place += 1
+    return place
+
+
+@kernel
+def _is_near(beams: Beams, point: int, other: int, limit: float) -> bool:
+    if other >= beams.xyz.shape[0] or abs(beams.columns[other] - beams.columns[point]) > 3:
+        return False
+    square = 0.0
+    for axis in range(3):
+        square += (beams.xyz[other, axis] - beams.xyz[point, axis]) ** 2
+    return square <= limit * limit
+
+
+@kernel
+def _row_beside(segments: NDArray[np.int32], row: int, side: int) -> int:
+    other = row + side
+    if other < 0 or other >= segments.size or segments[other] != segments[row]:
+        return -1
+    return other
+
+
+@kernel
+def beam_features_kernel(
+    beams: Beams, is_sure: NDArray[np.bool_], points: _Integers, rows: _Integers, found: _Floats
+) -> None:
+    """Features of chosen points; ``found`` (k, BEAM_FEATURES) float64.
+
+    For a near (2 rows, 3 pulses), a middle (4 in steps of 2, 12) and a wide window (10 in steps of
+    5, every second of 64 pulses):
+    share of pulses that came back, and of these the share within three distances, in front and
+    behind, and how many of those in front or behind are sure.
+    """
+    for i in range(points.size):
+        found[i, :] = 0
+        _window(beams, is_sure, points[i], rows[i], 2, 1, 3, 1, found[i, 0:7])
+        _window(beams, is_sure, points[i], rows[i], 4, 2, 12, 1, found[i, 7:14])
+        _window(beams, is_sure, points[i], rows[i], 10, 5, 64, 2, found[i, 14:21])
+        found[i, 21] = math.log2(max(beams.ranges[points[i]], 0.1))
+
+
+@kernel
+def _window(
+    beams: Beams,
+    is_sure: NDArray[np.bool_],
+    point: int,
+    row: int,
+    rows_aside: int,
+    row_step: int,
+    aside: int,
+    stride: int,
+    found: _Floats,
+) -> None:
+    reach = beams.ranges[point]
+    column = beams.columns[point]
+    near, fair, wide, front, behind, sure, used, rows = 0, 0, 0, 0, 0, 0, 0, 0
+    for other_row in range(row - rows_aside, row + rows_aside + 1, row_step):
+        if other_row < 0 or other_row >= beams.segments.size:
+            continue
+        if beams.segments[other_row] != beams.segments[row]:
+            continue
+        rows += 1
+        start, end = beams.row_starts[other_row], beams.row_starts[other_row + 1]
+        place = start + np.searchsorted(beams.columns[start:end], column - aside)
+        while place < end and beams.columns[place] <= column + aside:
+            if place != point:
+                gap = beams.ranges[place] - reach
+                used += 1
+                near += 1 if abs(gap) < 0.025 else 0
+                fair += 1 if abs(gap) < 0.1 else 0
+                wide += 1 if abs(gap) < 0.4 else 0
+                front += 1 if gap < -0.1 else 0
+                behind += 1 if gap > 0.1 else 0
+                sure += 1 if is_sure[place] and gap < -0.1 else 0
+            place += stride
+    total = max(used, 1)
+    found[0] = stride * used / (rows * (2 * aside + 1) - 1) if rows else 0.0
+    found[1] = near / total
+    found[2] = fair / total
+    found[3] = wide / total
+    found[4] = front / total
+    found[5] = behind / total
+    found[6] = sure / total
+
+
+def warm_up() -> None:
+    """Compile the kernels."""
+    zeros = np.zeros((4, 3))
+    starts, segments = np.arange(5), np.zeros(4, np.int32)
+    beams = Beams(zeros, zeros, np.ones(4), segments, starts, segments, 0.01)
+    spacing_kernel(beams, 0, 4, np.empty(4))
+    surface_kernel(beams, np.ones(4), 0, 4, np.empty(4, np.uint8))
+    found = np.empty((4, BEAM_FEATURES))
+    beam_features_kernel(beams, np.zeros(4, np.bool_), np.arange(4), np.arange(4), found)

@@ -1,0 +1,127 @@
+"""Noise by everything a recording tells: beams, neighbours in the image, density, connection.
+
+1. Points from which a surface goes on to all sides, and that hang together with most of the
+   recording, are kept at once.
+2. Every other point is described by numbers relative to the spacing that the scanner should have
+   there (:mod:`processing.noise.features`).
+3. Boosted trees weigh them. They learned from simulated scenes with other shapes and shares of
+   noise than any sample, and from real recordings as examples of what must be kept.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.monitor import Monitor, SilentMonitor
+from processing.noise.beam_kernels import Beams
+from processing.noise.far_points import heights_of_far, is_far
+from processing.noise.features import Candidates, candidates_in_space, candidates_with_beams
+from processing.noise.noise_codes import HIGH_NOISE, codes_by_height
+from processing.noise.sharing import shared_out
+from processing.noise.trees import Trees, log_odds_kernel, read_trees
+from resources import path_of
+
+_AT_ONCE = 16_384
+_FEWEST = 20
+
+
+def noise_codes_with_beams(
+    beams: Beams,
+    intensity: NDArray[np.uint16],
+    strictness: float = 0.5,
+    *,
+    monitor: Monitor | None = None,
+) -> NDArray[np.uint8]:
+    """Noise of a recording, or a stretch of its rows, whose beams are known.
+
+    Parameters
+    ----------
+    beams : Beams
+    intensity : (n,) uint16
+        Any scale; all the same where there is none.
+    strictness : float
+        0 to 1: the higher, the more is called noise. 0.5 calls noise what is likelier to be so.
+
+    Returns
+    -------
+    (n,) uint8
+        0 kept, 7 noise below the ground, 18 noise elsewhere.
+    """
+    monitor = monitor or SilentMonitor()
+    codes = np.zeros(beams.xyz.shape[0], np.uint8)
+    far = is_far(beams.xyz)
+    if far.any():
+        codes[far] = codes_by_height(heights_of_far(beams.xyz[far], beams.xyz[~far]))
+        beams, intensity = _without(beams, far), intensity[~far]
+    if beams.xyz.shape[0] >= _FEWEST:
+        candidates = candidates_with_beams(beams, intensity, monitor)
+        codes[~far] = _codes(candidates, _trees("noise_with_beams.npz"), strictness, monitor)
+    return codes
+
+
+def noise_codes_in_space(
+    xyz: NDArray[np.float64], strictness: float = 0.5, *, monitor: Monitor | None = None
+) -> NDArray[np.uint8]:
+    """Noise of a cloud of which only places are known.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        m. Points that aren't finite are noise.
+
+    Returns
+    -------
+    (n,) uint8
+        As :func:`noise_codes_with_beams`.
+    """
+    monitor = monitor or SilentMonitor()
+    codes = np.full(xyz.shape[0], HIGH_NOISE, np.uint8)
+    finite = np.flatnonzero(np.isfinite(xyz).all(axis=1))
+    codes[finite] = 0
+    far = is_far(xyz[finite])
+    if far.any():
+        spikes, others = finite[far], finite[~far]
+        codes[spikes] = codes_by_height(heights_of_far(xyz[spikes], xyz[others]))
+        finite = others
+    if finite.size < _FEWEST or not np.ptp(xyz[finite], axis=0).any():
+        return codes
+    candidates = candidates_in_space(xyz[finite], monitor)
+    codes[finite] = _codes(candidates, _trees("noise_in_space.npz"), strictness, monitor)
+    return codes
+
+
+def _codes(
+    candidates: Candidates, trees: Trees, strictness: float, monitor: Monitor
+) -> NDArray[np.uint8]:
+    """(n,) codes of all points that the candidates were taken from."""
+    odds = np.empty(candidates.points.size)
+
+    def weigh(start: int, stop: int) -> None:
+        log_odds_kernel(trees, candidates.features, start, stop, odds)
+
+    shared_out(weigh, odds.size, _AT_ONCE, monitor)
+    share = min(max(strictness, 1e-6), 1 - 1e-6)
+    noise = candidates.points[odds > np.log((1 - share) / share)]
+    codes = np.zeros(candidates.heights.size, np.uint8)
+    codes[noise] = codes_by_height(candidates.heights[noise])
+    return codes
+
+
+def _without(beams: Beams, left_out: NDArray[np.bool_]) -> Beams:
+    kept = ~left_out
+    before = np.concatenate([[0], np.cumsum(kept)])
+    return beams._replace(
+        xyz=beams.xyz[kept],
+        origins=beams.origins[kept],
+        ranges=beams.ranges[kept],
+        columns=beams.columns[kept],
+        row_starts=before[beams.row_starts],
+    )
+
+
+@cache
+def _trees(name: str) -> Trees:
+    return read_trees(path_of(f"models/noise/{name}"))

@@ -1,0 +1,159 @@
+"""The noise of a whole drive, by each of the methods, with bounded memory.
+
+Neighbours in space may have been measured minutes apart: the two methods of the study read the
+drive by tiles of space. The combined one follows the recording where its beams are known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.image.point_image import PointCloudImage
+from processing.monitor import Monitor, PartMonitor
+from processing.noise.beam_kernels import Beams
+from processing.noise.beam_origins import BeamOrigins, beam_origins
+from processing.noise.combined import noise_codes_in_space, noise_codes_with_beams
+from processing.noise.noise_codes import part_noise_by_ground
+from processing.noise.stretches import POINTS, Stretch, stretches_of
+from processing.noise.tiles_of_space import TiledCloud
+from processing.noise.whole_clouds import radius_outliers_by_parts, statistical_outliers_by_parts
+from processing.points.drive import Drive
+from processing.points.ordering import read_stretch
+
+_TILE_M = 1.0
+_SORTING, _FINDING = 0.1, 0.9
+_REACH_SPACINGS = 40.0
+_LEAST_REACH_M, _MOST_REACH_M = 1.0, 10.0
+_POINTS_IN_SPACE = 2_000_000
+_NEAREST_M = 1e-3
+
+
+@dataclass(frozen=True)
+class NoiseSearch:
+    """A drive whose noise is looked for.
+
+    Attributes
+    ----------
+    drive : Drive
+    codes : (n,) uint8
+        Zero; gets 7 for noise below the ground, 18 for noise elsewhere.
+    scratch : Path
+        A folder for files meanwhile; the caller deletes it.
+    points_at_once : int
+        What the methods of the study hold in memory at a time.
+    points_per_stretch : int
+        The combined method's own; its results near the cuts depend a little on it.
+    """
+
+    drive: Drive
+    codes: NDArray[np.uint8]
+    scratch: Path
+    points_at_once: int
+    points_per_stretch: int = POINTS
+
+    def by_radius(self, radius_m: float, neighbours: int, monitor: Monitor) -> None:
+        """Radius outlier removal."""
+        cloud = self._tiled(monitor)
+        radius_outliers_by_parts(
+            cloud,
+            self.codes,
+            radius_m,
+            neighbours,
+            monitor=PartMonitor(monitor, _SORTING, _FINDING),
+            points_per_part=self.points_at_once,
+        )
+        self._tell_low_from_high(cloud, monitor)
+
+    def by_statistics(self, neighbours: int, deviations: float, monitor: Monitor) -> None:
+        """Statistical outlier removal."""
+        cloud = self._tiled(monitor)
+        statistical_outliers_by_parts(
+            cloud,
+            self.codes,
+            neighbours,
+            deviations,
+            scratch=self.scratch,
+            monitor=PartMonitor(monitor, _SORTING, _FINDING),
+            points_per_part=self.points_at_once,
+        )
+        self._tell_low_from_high(cloud, monitor)
+
+    def combined(self, strictness: float, monitor: Monitor) -> None:
+        """By everything that is known; see :mod:`processing.noise.combined`."""
+        origins = beam_origins(self.drive)
+        if origins is None:
+            self._combined_in_space(strictness, monitor)
+            return
+        drive = self.drive
+        image = drive.image(drive.pixel_kind)
+        starts = image.row_starts
+        for stretch in stretches_of(starts, _along(origins, starts), self.points_per_stretch):
+            monitor.report(int(starts[stretch.rows.start]) / drive.count)
+            drive.columns.give_back()
+            beams, points = _beams_of(drive, image, stretch, origins)
+            intensity = read_stretch(drive.folder, "intensity", points.start, points.stop)
+            codes = noise_codes_with_beams(beams, intensity, strictness, monitor=monitor)
+            first, end = int(starts[stretch.rows.start]), int(starts[stretch.rows.stop])
+            skipped = first - int(starts[stretch.with_overlap.start])
+            self.codes[first:end] = codes[skipped : skipped + end - first]
+
+    def _combined_in_space(self, strictness: float, monitor: Monitor) -> None:
+        cloud = self._tiled(monitor)
+        reach = min(max(_REACH_SPACINGS * cloud.spacing_m, _LEAST_REACH_M), _MOST_REACH_M)
+        rest = PartMonitor(monitor, _SORTING, 1.0)
+        done = 0
+        for part in cloud.parts(reach, _POINTS_IN_SPACE):
+            rest.report(done / cloud.count)
+            xyz = np.concatenate([cloud.read(part.own), cloud.read(part.around)])
+            codes = noise_codes_in_space(xyz, strictness, monitor=rest)
+            self.codes[part.own] = codes[: part.own.size]
+            done += part.own.size
+
+    def _tiled(self, monitor: Monitor) -> TiledCloud:
+        drive = self.drive
+
+        def read(points: NDArray[np.int64] | slice) -> NDArray[np.float64]:
+            drive.columns.give_back()
+            return drive.xyz(points)
+
+        sorting = PartMonitor(monitor, 0.0, _SORTING)
+        return TiledCloud(read, drive.count, self.scratch / "order", _TILE_M, monitor=sorting)
+
+    def _tell_low_from_high(self, cloud: TiledCloud, monitor: Monitor) -> None:
+        monitor.report(_FINDING)
+        part_noise_by_ground(
+            cloud, self.codes, monitor=monitor, points_per_part=self.points_at_once
+        )
+
+
+def _along(origins: BeamOrigins, row_starts: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(rows,) m: how far the scanner had come at the first point of each row."""
+    firsts = np.minimum(row_starts[:-1], row_starts[-1] - 1)
+    places = origins.of(firsts)
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _beams_of(
+    drive: Drive, image: PointCloudImage, stretch: Stretch, origins: BeamOrigins
+) -> tuple[Beams, slice]:
+    """The beams of a stretch, and which points of the drive they are."""
+    grid, points = image.grid(stretch.with_overlap)
+    xyz, places = drive.xyz(points), origins.of(np.arange(points.start, points.stop))
+    middle = np.median(xyz, axis=0)
+    turns = drive.turns
+    per_turn = turns.pulses_per_turn if turns is not None else float(grid.width)
+    beams = Beams(
+        np.ascontiguousarray(xyz - middle),
+        np.ascontiguousarray(places - middle),
+        np.maximum(np.linalg.norm(xyz - places, axis=1), _NEAREST_M),
+        np.ascontiguousarray(grid.columns),
+        np.ascontiguousarray(grid.row_starts),
+        np.ascontiguousarray(grid.segments),
+        2 * np.pi / per_turn,
+    )
+    return beams, points

@@ -1,0 +1,37 @@
+"""Points so far from all others that no scanner measured them: spikes of kilometres."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+_SHARE = 1.0  # percent of the points at either end that may be far
+_TIMES = 50.0
+_LEAST_M = 1_000.0
+
+
+def is_far(xyz: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether points lie many times the extent of nearly all points away from them.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        m, finite.
+
+    Returns
+    -------
+    (n,) bool
+    """
+    if not xyz.shape[0]:
+        return np.zeros(0, np.bool_)
+    low, high = np.percentile(xyz, (_SHARE, 100.0 - _SHARE), axis=0)
+    reach = max(_LEAST_M, _TIMES * float((high - low).max()))
+    far: NDArray[np.bool_] = ((xyz < low - reach) | (xyz > high + reach)).any(axis=1)
+    return far
+
+
+def heights_of_far(xyz: NDArray[np.float64], others: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(k,) height of far points above the lowest of the other points, m."""
+    lowest = float(others[:, 2].min()) if others.shape[0] else 0.0
+    heights: NDArray[np.float64] = xyz[:, 2] - lowest
+    return heights

@@ -1,0 +1,109 @@
+"""How high points lie above the ground around them, for a cloud that still holds noise."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+_LOW_SHARE = 0.1
+_FEWEST = 3
+_PASSES = 3
+_ASIDE = 2
+_ROWS_AT_ONCE = 128
+_MOST_CELLS = 4_000  # along one side
+
+
+def heights_above_ground(
+    xyz: NDArray[np.float64], is_sure: NDArray[np.bool_], cell_m: float
+) -> NDArray[np.float64]:
+    """Height of every point above the low surfaces around it.
+
+    1. In every square cell, the height below which a tenth of its sure points lie.
+    2. The median of each cell and those around it, which drops cells without ground and cells
+       with a patch below it.
+    3. Cells without sure points take the mean of those around, a few cells far.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        m.
+    is_sure : (n,) bool
+        Points on surfaces that go on; where there are too few, all points are taken.
+
+    Returns
+    -------
+    (n,) float64
+        m; NaN where no ground is near.
+    """
+    if not xyz.shape[0]:
+        return np.zeros(0)
+    used = np.flatnonzero(is_sure)
+    if used.size < _FEWEST:
+        used = np.arange(xyz.shape[0])
+    lowest = np.percentile(xyz[used, :2], 0.5, axis=0) - 30 * cell_m
+    highest = np.percentile(xyz[used, :2], 99.5, axis=0) + 30 * cell_m
+    shape = np.minimum(np.ceil((highest - lowest) / cell_m).astype(np.int64) + 1, _MOST_CELLS)
+    side = np.maximum((highest - lowest) / (shape - 1), 1e-9)
+    squares = np.clip(((xyz[:, :2] - lowest) / side).astype(np.int64), 0, shape - 1)
+    numbers = squares[:, 0] * shape[1] + squares[:, 1]
+    grid = np.full(int(shape.prod()), np.nan)
+    cells, low = low_heights(xyz[used, 2], numbers[used])
+    grid[cells] = low
+    heights: NDArray[np.float64] = xyz[:, 2] - ground_of(grid.reshape(shape)).ravel()[numbers]
+    return heights
+
+
+def low_heights(
+    heights: NDArray[np.float64], numbers: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """The height below which a tenth of a cell's points lie.
+
+    Parameters
+    ----------
+    heights : (n,) float64
+        m.
+    numbers : (n,) int64
+        Each point's cell.
+
+    Returns
+    -------
+    cells : (k,) int64
+        Rising.
+    low : (k,) float64
+        m; NaN for a cell of few points.
+    """
+    order = np.lexsort((heights, numbers))
+    numbers = numbers[order]
+    firsts = np.flatnonzero(np.r_[True, numbers[1:] != numbers[:-1]][: numbers.size])
+    sizes = np.diff(np.r_[firsts, numbers.size])
+    chosen = heights[order][firsts + (sizes * _LOW_SHARE).astype(np.int64)]
+    return numbers[firsts], np.where(sizes >= _FEWEST, chosen, np.nan)
+
+
+def ground_of(grid: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(h, w) heights of the ground from low heights of cells; NaN where none is near."""
+    for _ in range(_PASSES):
+        grid = _smoothed(grid)
+    return grid
+
+
+def _smoothed(grid: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The median of 25 cells; NaN stays where none of them is known."""
+    padded = np.pad(grid, _ASIDE, constant_values=np.nan)
+    smooth = np.full(grid.shape, np.nan)
+    for start in range(0, grid.shape[0], _ROWS_AT_ONCE):
+        strip = padded[start : start + _ROWS_AT_ONCE + 2 * _ASIDE]
+        if not np.isnan(strip).all():
+            smooth[start : start + _ROWS_AT_ONCE] = _medians(strip)
+    return smooth
+
+
+def _medians(strip: NDArray[np.float64]) -> NDArray[np.float64]:
+    height, width = strip.shape[0] - 2 * _ASIDE, strip.shape[1] - 2 * _ASIDE
+    steps = range(2 * _ASIDE + 1)
+    stack = np.stack([strip[i : i + height, j : j + width] for i in steps for j in steps])
+    stack.sort(axis=0)  # NaN last
+    known = (~np.isnan(stack)).sum(axis=0)
+    middle = np.maximum(known - 1, 0) // 2
+    medians: NDArray[np.float64] = np.take_along_axis(stack, middle[None], axis=0)[0]
+    return medians

@@ -1,0 +1,149 @@
+"""Statistical outlier removal: a point whose neighbours are unusually far is noise.
+
+After the road-surface study: with d the mean distance to the k nearest, a point is noise when
+d > mean(d) + α · standard deviation(d) over the whole cloud; k = 113, α = 1.5. As in Open3D the
+point itself is one of the k, and the deviation divides by n − 1; without itself it is PCL's form.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.monitor import Monitor, SilentMonitor
+from processing.noise.morton import nested_cells
+from processing.noise.nearest_kernels import CellPoints, nearest_kernel
+from processing.noise.sharing import shared_out
+
+NEIGHBOURS = 113
+DEVIATIONS = 1.5
+
+_POINTS_AT_ONCE = 8_192
+_FINEST = 2**20
+
+
+@dataclass(frozen=True)
+class DistanceSums:
+    """What is kept of the mean distances of many points, to be added up over parts of a cloud."""
+
+    count: int = 0
+    total: float = 0.0
+    squares: float = 0.0
+
+    @classmethod
+    def of(cls, means: NDArray[np.float64]) -> DistanceSums:
+        """The sums of (n,) mean distances; NaN are left out."""
+        known = means[~np.isnan(means)]
+        return cls(known.size, math.fsum(known), math.fsum(known * known))
+
+    def __add__(self, other: DistanceSums) -> DistanceSums:
+        return DistanceSums(
+            self.count + other.count, self.total + other.total, self.squares + other.squares
+        )
+
+    def limit(self, deviations: float) -> float:
+        """Mean plus so many standard deviations; infinite for fewer than two points."""
+        if self.count < 2:
+            return math.inf
+        mean = self.total / self.count
+        variance = max(0.0, self.squares - self.count * mean * mean) / (self.count - 1)
+        return mean + deviations * math.sqrt(variance)
+
+
+def mean_distances(
+    xyz: NDArray[np.float64],
+    neighbours: int = NEIGHBOURS,
+    *,
+    counts_itself: bool = True,
+    monitor: Monitor | None = None,
+) -> NDArray[np.float64]:
+    """Mean distance of every point to its nearest.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        m; points that aren't finite get NaN and are nobody's neighbour.
+
+    Returns
+    -------
+    (n,) float64
+        m. In a cloud of fewer points all of them are the neighbours.
+    """
+    wanted = np.flatnonzero(np.isfinite(xyz).all(axis=1))
+    means = np.full(xyz.shape[0], np.nan)
+    means[wanted] = distances_of(
+        xyz, wanted, neighbours, counts_itself=counts_itself, monitor=monitor
+    )[0]
+    return means
+
+
+def distances_of(
+    xyz: NDArray[np.float64],
+    wanted: NDArray[np.int64],
+    neighbours: int = NEIGHBOURS,
+    *,
+    counts_itself: bool = True,
+    monitor: Monitor | None = None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Distances of some points of a cloud to their nearest in all of it.
+
+    Parameters
+    ----------
+    wanted : (k,) int64
+        Indices of finite points.
+
+    Returns
+    -------
+    means, farthest : (k,) float64
+        m: the mean over the nearest, and the farthest of them; infinite where there are too few.
+    """
+    finite = np.flatnonzero(np.isfinite(xyz).all(axis=1))
+    if not wanted.size:
+        return np.zeros(0), np.zeros(0)
+    extent = float(np.ptp(xyz[finite], axis=0).max())
+    cells = nested_cells(xyz[finite], extent / _FINEST)
+    points = CellPoints(cells.codes, cells.local_xyz, cells.cell_m)
+    asked = neighbours if counts_itself else neighbours + 1
+    nearest = min(finite.size, asked)
+    divisor = max(1, nearest if counts_itself else nearest - 1)
+    is_wanted = np.zeros(xyz.shape[0], np.bool_)
+    is_wanted[wanted] = True
+    numbers = finite[cells.order]
+    is_wanted = is_wanted[numbers]
+    found = np.full((finite.size, 2), np.inf)
+
+    def measure(start: int, stop: int) -> None:
+        nearest_kernel(points, is_wanted, nearest, start, stop, found)
+
+    shared_out(measure, finite.size, _POINTS_AT_ONCE, monitor or SilentMonitor())
+    by_point = np.empty((xyz.shape[0], 2))
+    by_point[numbers] = found
+    farthest = by_point[wanted, 1] if nearest == asked else np.full(wanted.size, np.inf)
+    return by_point[wanted, 0] / divisor, farthest
+
+
+def statistical_outliers(
+    xyz: NDArray[np.float64],
+    neighbours: int = NEIGHBOURS,
+    deviations: float = DEVIATIONS,
+    *,
+    counts_itself: bool = True,
+    monitor: Monitor | None = None,
+) -> NDArray[np.bool_]:
+    """Points whose neighbours are farther than usual in the whole cloud.
+
+    Returns
+    -------
+    (n,) bool
+        Points that aren't finite are outliers.
+    """
+    means = mean_distances(xyz, neighbours, counts_itself=counts_itself, monitor=monitor)
+    return ~(means <= DistanceSums.of(means).limit(deviations))
+
+
+def warm_up() -> None:
+    """Compile the kernels."""
+    statistical_outliers(np.eye(3))

@@ -1,0 +1,113 @@
+"""Classes that a tool found, as labels over the delivered classes: one step that can be undone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from datetime import datetime
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.labels.label_column import labels_of
+from processing.points.drive import Drive
+from processing.points.ordering import read_stretch
+from processing.project.change import Change
+from processing.project.found_features import FoundFeatures, parameter_values
+from processing.project.label_change import MOST_POINTS, LabelChange
+from processing.project.runs import Run, new_run_id
+from processing.text import Text
+from processing.tools.tool import FinishedColumns, Tool
+
+_CLASS = "classification"
+_FOUND = Text("{tool}: {count} points classified", "{tool}: {count}点を分類")
+_NOTHING = Text("{tool}: no point gets another class", "{tool}: クラスの変わる点はありません")
+_TAKEN_BACK = Text(
+    "{found}, earlier ones of {count} points taken back",
+    "{found}（以前の分類{count}点を取り消し）",
+)
+
+
+def found_classes(
+    result: FinishedColumns,
+    tool: Tool,
+    parameters: object,
+    drive: Drive,
+    *,
+    started: datetime,
+    finished: datetime,
+) -> FoundFeatures:
+    """Make labels of the classes in a tool's result.
+
+    Delivered classes stay as they are. A point gets a label where the tool gives it another class
+    than it was delivered with. Labels by hand count more and stay, but for those of the tool's own
+    classes: these may come from an earlier run, and are taken back where the tool no longer says
+    so.
+
+    Parameters
+    ----------
+    result : FinishedColumns
+        With the column ``classification``; it can be removed afterwards.
+    parameters : object
+        An instance of the tool's own parameter class.
+    started, finished : datetime
+        With their time zone.
+    """
+    labels: list[LabelChange] = []
+    given = taken_back = 0
+    for start in range(0, drive.count, MOST_POINTS):
+        stop = min(start + MOST_POINTS, drive.count)
+        found = result.read(_CLASS, start, stop)
+        after = np.where(found != _delivered(drive, start, stop), found, 0).astype(np.uint8)
+        change = _relabelled(drive, np.arange(start, stop), after, tool.gives_classes)
+        if change is not None:
+            labels.append(change)
+            codes = change.codes_after()
+            given += int((codes > 0).sum())
+            taken_back += int((codes == 0).sum())
+    summary = (_FOUND if given else _NOTHING).filled(tool=tool.name, count=f"{given:,}")
+    if taken_back:
+        summary = _TAKEN_BACK.filled(found=summary, count=f"{taken_back:,}")
+    run = Run(
+        id=new_run_id(),
+        tool=tool.id,
+        version=tool.version,
+        parameters=parameter_values(tool, parameters),
+        drives=(drive.id,),
+        started=started,
+        finished=finished,
+        summary=summary,
+    )
+    return FoundFeatures(run, Change(labels=tuple(labels)))
+
+
+def classes_now(
+    found: FoundFeatures, tool: Tool, drive_of: Callable[[str], Drive]
+) -> FoundFeatures:
+    """The same labels for points that may have been painted since the tool ran."""
+    labels = [
+        _relabelled(
+            drive_of(one.drive), one.unpacked_points(), one.codes_after(), tool.gives_classes
+        )
+        for one in found.change.labels
+    ]
+    kept = tuple(one for one in labels if one is not None)
+    return replace(found, change=replace(found.change, labels=kept))
+
+
+def _relabelled(
+    drive: Drive, points: NDArray[np.int64], after: NDArray[np.uint8], own: tuple[int, ...]
+) -> LabelChange | None:
+    """The labels of those points that get another one than they have."""
+    before = labels_of(drive, points)
+    is_free = (before == 0) | np.isin(before, own)
+    changed = is_free & (before != after)
+    if not changed.any():
+        return None
+    return LabelChange.of(drive.id, points[changed], before[changed], after[changed])
+
+
+def _delivered(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:
+    if not drive.columns.has(_CLASS):
+        return np.zeros(stop - start, np.uint8)
+    return np.asarray(read_stretch(drive.folder, _CLASS, start, stop))

@@ -1,0 +1,166 @@
+"""Noise found in a project is a layer of labels, one step; by the command line a new file."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Iterator
+from pathlib import Path
+
+import laspy
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.cli.run import command
+from app.document import Document
+from app.jobs import JobQueue
+from processing.labels.label_column import labels_of
+from processing.points.drive import Drive
+from processing.project.change import Change
+from processing.project.importing import ImportRequest
+from processing.project.label_change import LabelChange
+from processing.text import Text
+from processing.tools.noise import NoiseParameters
+from tests.builders import write_laz, write_trajectory_csv
+from tests.noisy_street import NoisyStreet, noisy_street
+
+WAIT_MS = 30_000
+SIGN = 65
+
+
+@pytest.fixture(scope="module")
+def scene() -> NoisyStreet:
+    made = noisy_street(7, length_m=6.0)
+    made.drive.columns["classification"][:] = np.arange(made.drive.count) % 5
+    made.drive.columns["classification"][:50] = 18
+    return made
+
+
+@pytest.fixture
+def delivery(scene: NoisyStreet, tmp_path: Path) -> ImportRequest:
+    cloud = write_laz(scene.drive, tmp_path / "左.laz")
+    return ImportRequest((cloud,), (write_trajectory_csv(scene.drive, tmp_path / "軌跡.csv"),))
+
+
+@pytest.fixture
+def street(
+    qapp: QApplication, delivery: ImportRequest, tmp_path: Path, qtbot: QtBot
+) -> Iterator[Document]:
+    jobs = JobQueue()
+    document = Document(jobs)
+    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
+        document.create(tmp_path / "p.zuka", "EPSG:6677")
+    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
+        document.import_files(delivery)
+    yield document
+    jobs.close()
+    document.close()
+    document.tiles.close()
+
+
+def find_noise(document: Document, qtbot: QtBot, **parameters: float | str) -> Text:
+    """Run the tool; gives what was told."""
+    told: list[Text] = []
+    document.told.connect(told.append)
+    (drive,) = document.drives()
+    with qtbot.waitSignal(document.told, timeout=WAIT_MS):
+        document.start_run("noise", drive.id, NoiseParameters(**parameters))  # type: ignore[arg-type] - by name
+    return told[-1]
+
+
+def all_labels(drive: Drive) -> NDArray[np.uint8]:
+    return labels_of(drive, np.arange(drive.count))
+
+
+def paint(document: Document, points: NDArray[np.int64], code: int) -> None:
+    (drive,) = document.drives()
+    after = np.full(points.size, code, np.uint8)
+    change = LabelChange.of(drive.id, points, labels_of(drive, points), after)
+    assert document.apply(Text.same("paint"), Change(labels=(change,)))
+
+
+def test_noise_is_a_layer_of_labels_that_one_undo_takes_back(
+    street: Document, scene: NoisyStreet, qtbot: QtBot
+) -> None:
+    (drive,) = street.drives()
+    delivered = np.array(drive.columns["classification"])
+    told = find_noise(street, qtbot)
+    labels = all_labels(drive)
+    assert set(np.unique(labels)) == {0, 7, 18}
+    is_noise = scene.noise > 0
+    assert ((labels > 0) == is_noise)[50:].mean() > 0.99
+    assert told.en == f"Noise: {(labels > 0).sum():,} points classified"
+    # What was delivered as noise has that class already.
+    np.testing.assert_array_equal(drive.columns["classification"], delivered)
+    (run,) = street.runs()
+    assert (run.tool, run.parameters["method"]) == ("noise", "combined")
+    assert street.undo()
+    assert not all_labels(drive).any()
+    assert street.redo()
+    np.testing.assert_array_equal(all_labels(drive), labels)
+
+
+def test_labels_by_hand_stay_and_those_of_an_earlier_run_are_taken_back(
+    street: Document, scene: NoisyStreet, qtbot: QtBot
+) -> None:
+    (drive,) = street.drives()
+    noise = np.flatnonzero(scene.noise == 7)[:40]
+    paint(street, noise, SIGN)
+    find_noise(street, qtbot, method="radius", neighbours=2000)
+    by_radius = all_labels(drive)
+    assert (by_radius[50:] > 0).all()
+    told = find_noise(street, qtbot)
+    labels = all_labels(drive)
+    assert (labels[noise] == SIGN).all()
+    assert (labels > 0).mean() < 0.1
+    assert "taken back" in told.en
+    assert street.undo()
+    np.testing.assert_array_equal(all_labels(drive), by_radius)
+
+
+def test_points_painted_while_the_tool_runs_keep_what_was_painted(
+    street: Document, scene: NoisyStreet, qtbot: QtBot
+) -> None:
+    (drive,) = street.drives()
+    find_noise(street, qtbot)
+    before = all_labels(drive)
+    assert street.undo()
+    noise = np.flatnonzero(before > 0)[:20]
+    told: list[Text] = []
+    street.told.connect(told.append)
+    street.start_run("noise", drive.id, NoiseParameters())
+    # The job's result comes on this thread, so what is painted now is painted before it comes.
+    paint(street, noise, SIGN)
+    qtbot.waitUntil(lambda: bool(told), timeout=WAIT_MS)
+    labels = all_labels(drive)
+    assert (labels[noise] == SIGN).all()
+    rest = np.setdiff1d(np.arange(drive.count), noise)
+    np.testing.assert_array_equal(labels[rest], before[rest])
+
+
+@pytest.mark.parametrize("method", ["combined", "radius", "statistical"])
+def test_the_command_line_keeps_order_places_and_all_other_classes(
+    scene: NoisyStreet, delivery: ImportRequest, tmp_path: Path, method: str
+) -> None:
+    output = tmp_path / "out.laz"
+    (source,) = delivery.inputs
+    arguments = Namespace(
+        tool="noise",
+        inputs=[source],
+        trajectory=list(delivery.trajectories),
+        images=[],
+        crs="",
+        set=[f"method={method}", "neighbours=30"],
+        output=output,
+    )
+    assert command(arguments) == 0
+    given, found = laspy.read(source), laspy.read(output)
+    for name in ("X", "Y", "Z", "gps_time", "intensity"):
+        np.testing.assert_array_equal(given[name], found[name])
+    before, after = np.asarray(given.classification), np.asarray(found.classification)
+    changed = before != after
+    assert changed.any()
+    assert set(np.unique(after[changed])) <= {7, 18}
+    assert {path.name for path in tmp_path.iterdir()} == {"左.laz", "軌跡.csv", "out.laz"}
