@@ -13,6 +13,7 @@ from processing.bench.image_cases import measure_image, measure_switch
 from processing.bench.import_cases import measure_import, measure_import_memory
 from processing.bench.label_case import measure_labels
 from processing.bench.large_case import measure_large
+from processing.bench.noise_cases import measure_noise
 from processing.bench.peer_cases import measure_normals, measure_searchable
 from processing.bench.review_case import measure_review
 from processing.bench.start_case import measure_start
@@ -29,6 +30,7 @@ CASES: Mapping[str, Case] = {
     "review": measure_review,
     "labels": measure_labels,
     "normals": measure_normals,
+    "noise": measure_noise,
     "memory": measure_import_memory,
     "growth": measure_growth,
     "large": measure_large,

@@ -1,7 +1,7 @@
-"""Other programs that find normals of a cloud, as they are installed: Open3D, PCL, CloudCompare.
+"""Other programs as they are installed, for normals and outliers: Open3D, PCL, CloudCompare.
 
-Each gives the seconds that it needs for the normals alone, its search tree included: reading and
-writing files is not counted, as far as the program tells.
+For normals each gives the seconds that it needs for them alone, its search tree included: reading
+and writing files is not counted, as far as the program tells.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 RADIUS_M = 0.2
 MOST_NEIGHBOURS = 30
+OUTLIER_RADIUS_M, OUTLIER_NEIGHBOURS, OUTLIER_DEVIATIONS = 0.5, 113, 1.5
 _LONGEST_S = 1800
 _PCL_SAYS = re.compile(r"Computed normals in ([0-9.]+) ms")
 _CLOUDCOMPARE_SAYS = re.compile(r"\[ComputeCloudNormals\] Timing: ([0-9.]+) s")
@@ -55,6 +56,22 @@ def open3d_searchable(
 
     cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(local_xyz))
     return cloud, open3d.geometry.KDTreeFlann(cloud)
+
+
+def remove_radius(local_xyz: NDArray[np.float64]) -> None:
+    """Open3D's radius outliers: 0.5 m, 113 points; its cloud and tree are made for it."""
+    import open3d
+
+    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(local_xyz))
+    cloud.remove_radius_outlier(OUTLIER_NEIGHBOURS, OUTLIER_RADIUS_M)
+
+
+def remove_statistical(local_xyz: NDArray[np.float64]) -> None:
+    """Open3D's statistical outliers: 113 neighbours, 1.5 deviations."""
+    import open3d
+
+    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(local_xyz))
+    cloud.remove_statistical_outlier(OUTLIER_NEIGHBOURS, OUTLIER_DEVIATIONS)
 
 
 def pcl_normals_s(local_xyz: NDArray[np.float64], folder: Path) -> float | None:

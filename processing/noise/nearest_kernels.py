@@ -2,8 +2,12 @@
 
 1. Points are taken in groups: the largest cube that holds no more than k.
 2. The 27 cubes around a group are searched for all its points. What is found is exact for a point
-   when the k-th neighbour is nearer than the outside of these cubes.
-3. Any other point descends the tree of cubes, nearest cube first, and leaves out the cubes that
+   when the k-th neighbour is nearer than the outside of these cubes. For what is left the next
+   larger cubes are taken.
+3. No point's k-th neighbour is farther than that of another point and the way to that one: this
+   bounds what is looked at. Mostly it is about as far as that of the point before, so that few
+   distances have to be put in order.
+4. Any other point descends the tree of cubes, nearest cube first, and leaves out the cubes that
    are farther than its k-th neighbour so far.
 """
 
@@ -25,6 +29,10 @@ _TOP = 20
 _LEAF = 24
 _MOST_GATHERED = 16_384
 _STACK = 8 * (_TOP + 2)
+_AND_A_BIT = 1 + 1e-9  # for roundings
+_PROBABLY = 1.06  # of the square of the radius of the point before
+_BLOCK = 32
+_GATHERINGS = 2
 
 
 class CellPoints(NamedTuple):
@@ -53,27 +61,74 @@ def nearest_kernel(
     heap = np.empty(nearest)
     stack = np.empty((_STACK, 3), np.int64)
     bounds = np.empty(_STACK)
-    position = first
+    position, before = first, -1
     while position < stop:
         level, end = _group_at(points.codes, position, nearest)
         end = min(end, stop)
-        if not is_wanted[position:end].any():
-            position = end
-            continue
-        count = _gather(points, position, level, near)
-        for point in range(position, end):
-            if not is_wanted[point]:
-                continue
-            total, largest = -1.0, 0.0
+        found[position:end, 0] = -1.0
+        for wider in range(_GATHERINGS):
+            if not _is_any_open(is_wanted, found, position, end):
+                break
+            count = _gather(points, position, level + wider, near)
             if count >= nearest:
-                margin = _margin(points, point, level)
-                total, largest = _sum_within(
-                    points.xyz[point], near, count, margin, nearest, squares
+                group = (position, end, level + wider)
+                before = _sum_group(
+                    points, is_wanted, nearest, group, before, near, count, squares, found
                 )
-            if total < 0:
-                total, largest = _sum_by_descent(points, point, heap, stack, bounds)
-            found[point, 0], found[point, 1] = total, math.sqrt(largest)
+        for point in range(position, end):
+            if is_wanted[point] and found[point, 0] < 0.0:
+                heap[:] = math.inf
+                if before >= 0:
+                    bound = (found[before, 1] + _apart(points, before, point)) * _AND_A_BIT
+                    heap[:] = bound * bound
+                _sum_by_descent(points, point, heap, stack, bounds, found[point])
+                before = point
         position = end
+
+
+@kernel
+def _is_any_open(is_wanted: NDArray[np.bool_], found: _Floats, first: int, end: int) -> bool:
+    """Whether a wanted point has no sum yet."""
+    left = 0
+    for point in range(first, end):
+        left += is_wanted[point] and found[point, 0] < 0.0
+    return left > 0
+
+
+@kernel
+def _sum_group(
+    points: CellPoints,
+    is_wanted: NDArray[np.bool_],
+    nearest: int,
+    group: tuple[int, int, int],
+    before: int,
+    near: _Floats,
+    count: int,
+    squares: _Floats,
+    found: _Floats,
+) -> int:
+    """Measure those points of a group that aren't yet; gives the last point that was."""
+    position, end, level = group
+    for point in range(position, end):
+        if not is_wanted[point] or found[point, 0] >= 0.0:
+            continue
+        reach, probable = _margin(points, point, level), math.inf
+        if before >= 0:
+            probable = found[before, 1]
+            reach = min(reach, (probable + _apart(points, before, point)) * _AND_A_BIT)
+        reaches = (reach, probable)
+        _sum_within(points.xyz[point], near, count, reaches, squares, nearest, found[point])
+        if found[point, 0] >= 0.0:
+            before = point
+    return before
+
+
+@kernel
+def _apart(points: CellPoints, one: int, other: int) -> float:
+    square = 0.0
+    for axis in range(3):
+        square += (points.xyz[one, axis] - points.xyz[other, axis]) ** 2
+    return math.sqrt(square)
 
 
 @kernel
@@ -141,39 +196,71 @@ def _margin(points: CellPoints, point: int, level: int) -> float:
     side = points.side * (1 << level)
     margin = 2 * side
     for axis in range(3):
-        inside = points.xyz[point, axis] % side
+        place = points.xyz[point, axis]
+        inside = place - math.floor(place / side) * side
         margin = min(margin, side + min(inside, side - inside))
     return margin * (1 - 1e-9)
 
 
 @kernel
 def _sum_within(
-    place: _Floats, near: _Floats, count: int, margin: float, nearest: int, squares: _Floats
-) -> tuple[float, float]:
-    """Sum of the distances to the nearest, and the largest square; −1 when beyond the margin."""
-    limit = margin * margin
-    used = 0
+    place: _Floats,
+    near: _Floats,
+    count: int,
+    reaches: tuple[float, float],
+    squares: _Floats,
+    nearest: int,
+    found: _Floats,
+) -> None:
+    """Sum of the distances to the nearest, and the farthest; nothing when that is beyond reach.
+
+    ``reaches``: how far all points are in ``near``; how far the k-th probably is.
+    """
     x, y, z = place[0], place[1], place[2]
     for other in range(count):
         dx, dy, dz = near[0, other] - x, near[1, other] - y, near[2, other] - z
         squares[other] = dx * dx + dy * dy + dz * dz
+    limit = reaches[0] * reaches[0]
+    guess = reaches[1] * reaches[1] * _PROBABLY
+    inside = 0
     for other in range(count):
-        square = squares[other]
-        squares[used] = square
-        used += 1 if square <= limit else 0
+        inside += 1 if squares[other] <= guess else 0
+    if guess < limit and inside >= nearest:
+        limit = guess
+    used = _kept_within(squares, count, limit)
     if used < nearest:
-        return -1.0, 0.0
+        return
     _select(squares, used, nearest)
-    total, largest = 0.0, 0.0
+    found[1] = math.sqrt(squares[nearest - 1])
     for k in range(nearest):
-        total += math.sqrt(squares[k])
-        largest = max(largest, squares[k])
-    return total, largest
+        squares[k] = math.sqrt(squares[k])
+    total = 0.0
+    for k in range(nearest):
+        total += squares[k]
+    found[0] = total
+
+
+@kernel
+def _kept_within(squares: _Floats, count: int, limit: float) -> int:
+    """Bring the values within a limit to the front; gives how many they are."""
+    used = 0
+    for start in range(0, count, _BLOCK):
+        end = min(start + _BLOCK, count)
+        inside = 0
+        for other in range(start, end):
+            inside += 1 if squares[other] <= limit else 0
+        if inside == 0:
+            continue
+        for other in range(start, end):
+            square = squares[other]
+            squares[used] = square
+            used += 1 if square <= limit else 0
+    return used
 
 
 @kernel
 def _select(values: _Floats, count: int, wanted: int) -> None:
-    """Bring the smallest values to the front, in any order."""
+    """Bring the smallest values to the front, the largest of them last, in any order else."""
     low, high = 0, count - 1
     while low < high:
         pivot = values[(low + high) // 2]
@@ -197,9 +284,14 @@ def _select(values: _Floats, count: int, wanted: int) -> None:
 
 @kernel
 def _sum_by_descent(
-    points: CellPoints, point: int, heap: _Floats, stack: _Integers, bounds: _Floats
-) -> tuple[float, float]:
-    heap[:] = math.inf
+    points: CellPoints,
+    point: int,
+    heap: _Floats,
+    stack: _Integers,
+    bounds: _Floats,
+    found: _Floats,
+) -> None:
+    """Sum of the distances and the farthest; ``heap`` holds squares that none of them reaches."""
     place = points.xyz[point]
     stack[0, 0], stack[0, 1], stack[0, 2] = _TOP + 1, 0, points.codes.size
     bounds[0] = 0.0
@@ -221,7 +313,7 @@ def _sum_by_descent(
     total = 0.0
     for k in range(heap.size):
         total += math.sqrt(heap[k])
-    return total, heap[0]
+    found[0], found[1] = total, math.sqrt(heap[0])
 
 
 @kernel

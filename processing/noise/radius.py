@@ -5,8 +5,8 @@ The point itself counts, as it does in Open3D and PCL, so that the three agree p
 
 1. Cells with a diagonal below the radius: more than N points in one cell keep each other, and no
    distance is measured.
-2. Elsewhere the cells around are counted, nearest first: whole cells that lie inside the sphere
-   unmeasured, the others point by point, until more than N are found.
+2. Elsewhere the points of the cells around are measured, nearest cell first, until more than N
+   are found.
 """
 
 from __future__ import annotations

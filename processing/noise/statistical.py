@@ -37,7 +37,7 @@ class DistanceSums:
     def of(cls, means: NDArray[np.float64]) -> DistanceSums:
         """The sums of (n,) mean distances; NaN are left out."""
         known = means[~np.isnan(means)]
-        return cls(known.size, math.fsum(known), math.fsum(known * known))
+        return cls(known.size, float(known.sum()), float(known @ known))
 
     def __add__(self, other: DistanceSums) -> DistanceSums:
         return DistanceSums(

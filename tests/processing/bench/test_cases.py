@@ -11,6 +11,7 @@ from processing.bench.growth import exponent_of, measure_growth
 from processing.bench.image_cases import measure_image, measure_switch
 from processing.bench.import_cases import measure_import, measure_import_memory
 from processing.bench.label_case import measure_labels
+from processing.bench.noise_cases import measure_noise
 from processing.bench.peer_cases import measure_normals, measure_searchable
 
 LITTLE = BenchWish(most_points=20_000, share=0.2)
@@ -36,6 +37,15 @@ def test_normals_are_compared_with_each_peer_or_it_says_that_one_is_missing() ->
     for row in rows:
         assert row.is_met is None
         assert (row.value is None) == ("is not installed" in row.detail)
+
+
+def test_noise_is_compared_with_a_peer_and_the_combined_has_a_time() -> None:
+    rows = measure_noise(LITTLE)
+    assert [row.name for row in rows] == ["noise-radius", "noise-statistical", "noise-combined"]
+    for row in rows:
+        assert row.value is not None
+        assert row.value > 0
+        assert row.target is not None
 
 
 def test_memory_of_an_import_is_some_of_it_in_no_file() -> None:
