@@ -1,0 +1,199 @@
+"""Ground without a parameter to set: the surface of a whole cloud, found in passes over blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.ground.band import Band, Tolerances, classify, ground_band, heights_at
+from processing.ground.below import ghosts, sunk_points
+from processing.ground.cells import Blocks, CellGrid, Levels, choose_cells, levels_above
+from processing.ground.morphology import filled
+from processing.ground.regions import Shape, standing_cells
+from processing.monitor import Monitor
+from processing.text import Text
+
+_ROUNDS = 3
+_PERSON_M = 1.5
+_FEW_SHARE = 1e-3
+_GAP_CELLS = 4
+_MARGIN_SHARE = 0.12
+_MARGIN_M = 0.025
+
+
+@dataclass(frozen=True)
+class GroundHabits:
+    """What ground and the things on it are like; the same for every kind of survey.
+
+    Attributes
+    ----------
+    widest_m : float
+        Width of the largest thing that may stand on the ground, a hall.
+    grid_m : float
+        Side of a cell; 0 lets the data choose it.
+    rise_m, rise_share : float
+        A bump up to this, and this share of a cell's side, is the ground's own.
+    flank : float
+        Rise over width from which a bump is looked at.
+    steep, steep_small : float
+        Rise over run of the sides of a thing, steeper than earth lies; of one a few cells wide.
+    rim_share : float
+        Share of its rim along which a thing has such sides.
+    tolerances : Tolerances
+    """
+
+    widest_m: float = 50.0
+    grid_m: float = 0.0
+    rise_m: float = 0.05
+    rise_share: float = 0.15
+    flank: float = 0.10
+    steep: float = 0.8
+    steep_small: float = 0.3
+    rim_share: float = 0.45
+    tolerances: Tolerances = field(default_factory=Tolerances)
+
+
+@dataclass(frozen=True)
+class GroundSurface:
+    """Ground of a cloud, everywhere within its extent.
+
+    Attributes
+    ----------
+    grid : CellGrid
+    band : Band
+    measured : (rows, columns) bool
+        Cells in which ground was measured, and gaps up to four cells wide between such; elsewhere
+        the surface is only filled in.
+    """
+
+    grid: CellGrid
+    band: Band
+    measured: NDArray[np.bool_]
+
+    def is_ground(self, xyz: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Which points are ground: (n,) bool; (n, 3) float64, m, in any order and any blocks."""
+        return classify(xyz, self.grid, self.band)
+
+    def heights_at(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Ground height at places, m: (n,) float64; NaN outside the cloud's extent."""
+        return heights_at(xy, self.grid, self.band.heights)
+
+    def is_filled_at(self, xy: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether the height at a place is filled in and not measured: (n,) bool."""
+        cells = np.floor((xy - self.grid.origin[:2]) / self.grid.size_m)
+        limits = np.array([self.grid.columns - 1, self.grid.rows - 1])
+        column, row = np.clip(np.nan_to_num(cells), 0, limits).astype(np.int64).T
+        outside = ~np.all((cells >= 0) & (cells <= limits), axis=1)
+        filled_in: NDArray[np.bool_] = outside | ~self.measured[row, column]
+        return filled_in
+
+
+def find_ground(blocks: Blocks, habits: GroundHabits, monitor: Monitor) -> GroundSurface:
+    """The ground of a whole cloud, in about a dozen passes over its blocks.
+
+    Parameters
+    ----------
+    blocks : callable
+        Gives the cloud's blocks, each (n, 3) float64, m, afresh at every call. How it is cut, and
+        the order of the points, change nothing in the result.
+
+    Raises
+    ------
+    OutOfRange
+        Fewer than three points, or all at one place.
+
+    Notes
+    -----
+    Memory: some 80 bytes a cell, whatever the number of points; cells are larger where a cloud's
+    extent would need more than ``cells.MOST_CELLS``.
+    """
+    passes = _Passes(blocks, monitor)
+    grid = choose_cells(passes, habits.grid_m)
+    shape = Shape(
+        widest_m=habits.widest_m,
+        rise_m=habits.rise_m + habits.rise_share * grid.size_m,
+        flank=habits.flank,
+        steep=habits.steep,
+        rim_share=habits.rim_share,
+        small_steep=habits.steep_small,
+    )
+    levels, standing = _lowest_ground(passes, grid, shape)
+    ground = np.isfinite(levels.lowest) & ~standing
+    if not ground.any():
+        ground = np.isfinite(levels.lowest)
+    surface = filled(levels.lowest, ground)
+    band = ground_band(passes, grid, surface, ground, habits.tolerances)
+    return GroundSurface(grid, band, _without_small_gaps(ground))
+
+
+def _without_small_gaps(ground: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    import cv2
+
+    element = np.ones((_GAP_CELLS + 1, _GAP_CELLS + 1), np.uint8)
+    closed = cv2.morphologyEx(ground.astype(np.uint8), cv2.MORPH_CLOSE, element)
+    return closed > 0
+
+
+class _Passes:
+    """Blocks that tell a monitor how many passes were made."""
+
+    def __init__(self, blocks: Blocks, monitor: Monitor) -> None:
+        self._blocks = blocks
+        self._monitor = monitor
+        self._done = 0
+
+    def __call__(self) -> Iterator[NDArray[np.float64]]:
+        self._done += 1
+        self._monitor.report(
+            1.0 - 0.85**self._done, Text("Looking for the ground", "地面を探しています")
+        )
+        for xyz in self._blocks():
+            self._monitor.check()
+            yield xyz
+
+
+def _lowest_ground(
+    blocks: Blocks, grid: CellGrid, shape: Shape
+) -> tuple[Levels, NDArray[np.bool_]]:
+    """Lowest heights that are not under the ground, and the cells where they lie on things."""
+    size_m = grid.size_m
+    gap_m = max(0.10, 0.6 * size_m)
+    floor = np.full((grid.rows, grid.columns), -np.inf, np.float32)
+    levels = levels_above(blocks, grid, floor, gap_m)
+    for _ in range(_ROUNDS):
+        hidden = sunk_points(levels, size_m)
+        if not hidden.any():
+            break
+        _raise_floor(floor, levels, hidden, size_m)
+        levels = levels_above(blocks, grid, floor, gap_m)
+    for _ in range(_ROUNDS):
+        known = np.isfinite(levels.lowest)
+        crowded = levels.second < levels.lowest + _PERSON_M
+        surface = filled(levels.lowest, known)
+        standing = standing_cells(levels.lowest, surface, crowded, size_m, shape)
+        hidden = ghosts(levels.lowest, levels.second, known & ~standing, size_m)
+        if not hidden.any():
+            break
+        _raise_floor(floor, levels, hidden, size_m)
+        levels = levels_above(blocks, grid, floor, gap_m)
+        if hidden.sum() < _FEW_SHARE * known.sum():
+            standing &= ~hidden
+            break
+    return levels, standing | ~np.isfinite(levels.lowest)
+
+
+def _raise_floor(
+    floor: NDArray[np.float32], levels: Levels, hidden: NDArray[np.bool_], size_m: float
+) -> None:
+    """Let cells of points under the ground begin a little below the ground around them."""
+    import cv2
+
+    near_hidden = cv2.dilate(hidden.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
+    trusted = np.isfinite(levels.lowest) & ~near_hidden
+    if not trusted.any():
+        return
+    expected = filled(levels.lowest, trusted) - (_MARGIN_SHARE * size_m + _MARGIN_M)
+    floor[hidden] = np.maximum(expected, levels.lowest + 1e-3)[hidden]

@@ -1,0 +1,289 @@
+"""Standing things: parts of the lowest surface that rise steeply along most of their rim."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.ground.morphology import nearest_known, opened
+from processing.kernels import kernel
+
+_WINDOWS = 14
+_SMALL = 2
+_LEVEL_FACTOR = 1.5
+_CLEAR = 0.3
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What a thing that stands on the ground looks like, in numbers a surveyor can judge.
+
+    Attributes
+    ----------
+    widest_m : float
+        Width of the largest thing to be removed.
+    rise_m : float
+        A bump lower than this is ground.
+    flank : float
+        Rise over width from which a bump is looked at.
+    steep : float
+        Rise over run of a rim that counts as the side of a thing (not of a heap).
+    rim_share : float
+        Share of the rim that must be so steep.
+    small_steep : float
+        The same as ``steep`` for a bump a few cells wide.
+    crowded : float
+        Share of all these numbers that is enough where points lie above the lowest.
+    barrier : float
+        Rise over run at which a region is cut in two, as a tree is from the roof beside it.
+    """
+
+    widest_m: float
+    rise_m: float
+    flank: float
+    steep: float
+    rim_share: float
+    small_steep: float = 0.3
+    crowded: float = 0.5
+    barrier: float = 1.0
+
+
+def standing_cells(
+    heights: NDArray[np.float32],
+    surface: NDArray[np.float32],
+    crowded: NDArray[np.bool_],
+    size_m: float,
+    shape: Shape,
+) -> NDArray[np.bool_]:
+    """Cells whose lowest point lies on a thing and not on the ground.
+
+    Parameters
+    ----------
+    heights : (rows, columns) float32
+        m; not finite where nothing was measured.
+    surface : (rows, columns) float32
+        The same without holes.
+    crowded : (rows, columns) bool
+        Where points lie above the lowest one, no higher than a person reaches.
+
+    Notes
+    -----
+    From small to large windows: what an opening takes away is a thing where its rim is steep, and
+    leaves the surface before the next window; crests, heaps and terraces, which somewhere go down
+    gently, stay.
+    """
+    standing = np.zeros(heights.shape, np.bool_)
+    measured = np.isfinite(heights)
+    surface = surface.copy()
+    nearest = nearest_known(measured)
+    share_of = np.where(crowded, np.float32(shape.crowded), np.float32(1.0))
+    radii = _radii(shape.widest_m / 2 / size_m, max(heights.shape))
+    for radius in [*radii, radii[-1], radii[-1]]:
+        lower = opened(surface, radius)
+        rise = shape.flank * radius * size_m + shape.rise_m
+        raised = surface - lower > share_of * np.float32(rise)
+        if not raised.any():
+            continue
+        steep = shape.steep if radius > _SMALL else shape.small_steep
+        steep_of = share_of * np.float32(steep)
+        free = measured & ~standing
+        things = rim_shares(raised, heights, (free, nearest), size_m, steep_of) >= shape.rim_share
+        rest = raised & ~things
+        split = rim_shares(
+            rest, heights, (free & ~things, nearest), size_m, steep_of, shape.barrier
+        )
+        things |= split >= shape.rim_share
+        unclear = rest & ~things & np.isnan(split)
+        if unclear.any():
+            free &= ~things
+            around = rim_shares(
+                unclear, heights, (free, nearest_known(free)), size_m, steep_of, shape.barrier
+            )
+            things |= around >= shape.rim_share
+        standing |= things
+        surface[things] = lower[things]
+    return standing
+
+
+def _radii(largest: float, extent: int) -> list[int]:
+    largest = max(1.0, min(largest, extent / 2))
+    return sorted({round(r) for r in np.geomspace(1.0, largest, _WINDOWS)})
+
+
+def rim_shares(
+    raised: NDArray[np.bool_],
+    heights: NDArray[np.float32],
+    measured: tuple[NDArray[np.bool_], NDArray[np.int32]],
+    size_m: float,
+    steep: NDArray[np.float32],
+    barrier: float = np.inf,
+) -> NDArray[np.float64]:
+    """For each raised cell, the share of its region's rim that rises by ``steep``: 0 elsewhere.
+
+    Parameters
+    ----------
+    measured : pair of (rows, columns) bool and int32
+        Cells to compare with, and the nearest measured cell of every cell.
+    barrier : float
+        Rise over run that divides regions; infinite joins all raised neighbours.
+
+    Returns
+    -------
+    (rows, columns) float64
+        NaN where most of a rim borders on cells that are not to compare with.
+
+    Notes
+    -----
+    The rise is taken between measured cells over their true distance, so that a gap between them
+    doesn't make a side gentle.
+    """
+    free, nearest = measured
+    if not raised.any() or not (free & ~raised).any():
+        return np.zeros(raised.shape)
+    labels: NDArray[np.int32] = np.zeros(raised.shape, np.int32)
+    if np.isfinite(barrier):
+        stack = np.empty(int(raised.sum()), np.int64)
+        count = _label_kernel(raised, heights, nearest, size_m, barrier, stack, labels) + 1
+    else:
+        import cv2
+
+        count, found = cv2.connectedComponents(raised.astype(np.uint8), connectivity=8)
+        labels = np.asarray(found, np.int32)
+    rim = np.zeros(count)
+    rising = np.zeros(count)
+    level = np.zeros(count)
+    hidden = np.zeros(count)
+    _rim_kernel(labels, heights, free, nearest, size_m, steep, rim, rising, level, hidden)
+    share: NDArray[np.float64] = rising / np.maximum(rim, 1)
+    share[rising < _LEVEL_FACTOR * level] = 0.0
+    share[rim < _CLEAR * (rim + hidden)] = np.nan
+    share[0] = 0.0
+    return share[labels]
+
+
+@kernel
+def _fall_beyond(
+    labels: NDArray[np.int32],
+    heights: NDArray[np.float32],
+    nearest: NDArray[np.int32],
+    r: int,
+    c: int,
+    down: int,
+    right: int,
+) -> float:
+    """Fall over run of the ground outside a rim: the side of a heap goes on falling there."""
+    far_row, far_column = r + 2 * down, c + 2 * right
+    rows, columns = labels.shape
+    if far_row < 0 or far_column < 0 or far_row >= rows or far_column >= columns:
+        return 0.0
+    if labels[far_row, far_column] != 0:
+        return 0.0
+    a, b = nearest[r, c] // columns, nearest[r, c] % columns
+    d, e = nearest[far_row, far_column] // columns, nearest[far_row, far_column] % columns
+    run = np.sqrt((a - d) ** 2.0 + (b - e) ** 2.0)
+    if run == 0.0:
+        return 0.0
+    return float(heights[a, b] - heights[d, e]) / float(run)
+
+
+@kernel
+def _rim_kernel(
+    labels: NDArray[np.int32],
+    heights: NDArray[np.float32],
+    free: NDArray[np.bool_],
+    nearest: NDArray[np.int32],
+    size_m: float,
+    steep: NDArray[np.float32],
+    rim: NDArray[np.float64],
+    rising: NDArray[np.float64],
+    level: NDArray[np.float64],
+    hidden: NDArray[np.float64],
+) -> None:
+    rows, columns = labels.shape
+    for row in range(rows):
+        for column in range(columns):
+            label = labels[row, column]
+            if label == 0:
+                continue
+            for side in range(4):
+                down = (side == 0) - (side == 1)
+                right = (side == 2) - (side == 3)
+                r, c = row + down, column + right
+                if r < 0 or c < 0 or r >= rows or c >= columns or labels[r, c] == label:
+                    continue
+                from_row, from_column = (
+                    nearest[row, column] // columns,
+                    nearest[row, column] % columns,
+                )
+                to_row, to_column = nearest[r, c] // columns, nearest[r, c] % columns
+                run = size_m * np.sqrt(
+                    (from_row - to_row) ** 2.0 + (from_column - to_column) ** 2.0
+                )
+                if run == 0.0:
+                    continue
+                if not free[to_row, to_column] or not free[from_row, from_column]:
+                    hidden[label] += 1.0
+                    continue
+                rise = heights[from_row, from_column] - heights[to_row, to_column]
+                rim[label] += 1.0
+                if rise < 0.1 * run:
+                    level[label] += 1.0
+                fall = _fall_beyond(labels, heights, nearest, r, c, down, right)
+                rise -= max(0.0, fall) * run / size_m
+                if rise > steep[row, column] * run:
+                    rising[label] += 1.0
+
+
+@kernel
+def _label_kernel(
+    raised: NDArray[np.bool_],
+    heights: NDArray[np.float32],
+    nearest: NDArray[np.int32],
+    size_m: float,
+    barrier: float,
+    stack: NDArray[np.int64],
+    labels: NDArray[np.int32],
+) -> int:
+    rows, columns = raised.shape
+    count = 0
+    for first in range(rows * columns):
+        if (
+            not raised[first // columns, first % columns]
+            or labels[first // columns, first % columns]
+        ):
+            continue
+        count += 1
+        labels[first // columns, first % columns] = count
+        stack[0] = first
+        held = 1
+        while held:
+            held -= 1
+            row, column = stack[held] // columns, stack[held] % columns
+            from_row, from_column = nearest[row, column] // columns, nearest[row, column] % columns
+            for side in range(4):
+                r = row + (side == 0) - (side == 1)
+                c = column + (side == 2) - (side == 3)
+                if r < 0 or c < 0 or r >= rows or c >= columns:
+                    continue
+                if not raised[r, c] or labels[r, c]:
+                    continue
+                to_row, to_column = nearest[r, c] // columns, nearest[r, c] % columns
+                run = size_m * np.sqrt(
+                    (from_row - to_row) ** 2.0 + (from_column - to_column) ** 2.0
+                )
+                rise = abs(heights[from_row, from_column] - heights[to_row, to_column])
+                if rise <= barrier * run:
+                    labels[r, c] = count
+                    stack[held] = r * columns + c
+                    held += 1
+    return count
+
+
+def warm_up() -> None:
+    """Compile the kernels of this file."""
+    heights = np.zeros((8, 8), np.float32)
+    heights[3:5, 3:5] = 2.0
+    crowded = np.zeros((8, 8), np.bool_)
+    standing_cells(heights, heights, crowded, 1.0, Shape(4.0, 0.1, 0.1, 0.8, 0.45))

@@ -1,0 +1,133 @@
+"""Faces of steps and walls: columns of points with ground at their foot and ground at their top."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.kernels import kernel
+
+_LOWEST_FACE_M = 0.25
+_SHORTEST_M = 5.0
+_FEET = 0.2
+_HEADS = 0.3
+_LONG_M = 15.0
+_HEADS_OF_LONG = 0.12
+_REACH_M = 8.0
+
+
+def column_tops(bins: NDArray[np.uint64]) -> NDArray[np.float32]:
+    """How far up the points of a cell go from the ground without a gap: (rows, columns), m.
+
+    Parameters
+    ----------
+    bins : (rows, columns) uint64
+        Bit ``k`` is set where a point lies ``k`` to ``k + 1`` tenths of a metre above the ground.
+    """
+    tops = np.zeros(bins.shape, np.float32)
+    _tops_kernel(bins, tops)
+    return tops
+
+
+def faces(
+    surface: NDArray[np.float32],
+    ground: NDArray[np.bool_],
+    tops: NDArray[np.float32],
+    size_m: float,
+) -> NDArray[np.float32]:
+    """Height that a step's or a wall's face reaches in a cell: (rows, columns), m; −inf without.
+
+    Parameters
+    ----------
+    surface : (rows, columns) float32
+        Ground, m.
+    ground : (rows, columns) bool
+        Where it was measured.
+    tops : (rows, columns) float32
+        Height of the column of points that stands on it, m.
+
+    Notes
+    -----
+    A face has measured ground near its foot on one side and near its top on the other; a fence or
+    a machine has ground near its foot on both.
+    """
+    import cv2
+
+    column = tops > max(_LOWEST_FACE_M, size_m)
+    free = ground & ~column
+    count, found, boxes, _ = cv2.connectedComponentsWithStats(
+        column.astype(np.uint8), connectivity=8
+    )
+    labels: NDArray[np.int32] = np.asarray(found, np.int32)
+    if count < 2 or not free.any():
+        return np.full(column.shape, -np.inf, np.float32)
+    reach = max(2, round(_REACH_M / size_m))
+    upper = np.where(column, surface + tops, -np.inf).astype(np.float32)
+    rim, feet, heads = np.zeros(count), np.zeros(count), np.zeros(count)
+    _sides_kernel(labels, surface, free, tops, reach, rim, feet, heads, upper)
+    length = size_m * np.hypot(boxes[:, cv2.CC_STAT_WIDTH], boxes[:, cv2.CC_STAT_HEIGHT])
+    needed = np.where(length >= _LONG_M, _HEADS_OF_LONG, _HEADS)
+    face = (length >= _SHORTEST_M) & (feet >= _FEET * rim) & (heads >= needed * rim) & (rim > 0)
+    face[0] = False
+    upper[~face[labels]] = -np.inf
+    return cv2.dilate(upper, np.ones((3, 3), np.uint8)).astype(np.float32)
+
+
+@kernel
+def _tops_kernel(bins: NDArray[np.uint64], tops: NDArray[np.float32]) -> None:
+    for row in range(bins.shape[0]):
+        for column in range(bins.shape[1]):
+            empty = 0
+            for k in range(64):
+                if (bins[row, column] >> np.uint64(k)) & np.uint64(1):
+                    tops[row, column] = 0.1 * (k + 1)
+                    empty = 0
+                else:
+                    empty += 1
+                    if empty > 3:
+                        break
+
+
+@kernel
+def _sides_kernel(
+    labels: NDArray[np.int32],
+    surface: NDArray[np.float32],
+    free: NDArray[np.bool_],
+    tops: NDArray[np.float32],
+    reach: int,
+    rim: NDArray[np.float64],
+    feet: NDArray[np.float64],
+    heads: NDArray[np.float64],
+    upper: NDArray[np.float32],
+) -> None:
+    rows, columns = labels.shape
+    for row in range(rows):
+        for column in range(columns):
+            label = labels[row, column]
+            if label == 0:
+                continue
+            for side in range(4):
+                down = (side == 0) - (side == 1)
+                right = (side == 2) - (side == 3)
+                for step in range(1, reach + 1):
+                    r, c = row + step * down, column + step * right
+                    if r < 0 or c < 0 or r >= rows or c >= columns or labels[r, c] == label:
+                        break
+                    if not free[r, c]:
+                        continue
+                    beyond = surface[r, c] - surface[row, column]
+                    rim[label] += 1.0
+                    if beyond < 0.25 * tops[row, column]:
+                        feet[label] += 1.0
+                    elif beyond > 0.65 * tops[row, column]:
+                        heads[label] += 1.0
+                        upper[row, column] = max(upper[row, column], surface[r, c])
+                    break
+
+
+def warm_up() -> None:
+    """Compile the kernels of this file."""
+    surface = np.zeros((4, 4), np.float32)
+    bins = np.zeros((4, 4), np.uint64)
+    bins[1] = 63
+    faces(surface, np.ones((4, 4), np.bool_), column_tops(bins), 0.2)

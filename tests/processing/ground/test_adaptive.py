@@ -1,0 +1,125 @@
+"""Ground of clouds whose truth is built in."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from processing.errors import OutOfRange
+from processing.ground.adaptive import GroundHabits, GroundSurface, find_ground
+from processing.monitor import SilentMonitor
+
+
+def _plane(side_m: float, step_m: float, slope: float = 0.0) -> np.ndarray:
+    x, y = np.meshgrid(np.arange(0.0, side_m, step_m), np.arange(0.0, side_m, step_m))
+    noise = np.random.default_rng(1).normal(0.0, 0.003, x.size)
+    return np.column_stack([x.ravel(), y.ravel(), slope * x.ravel() + noise])
+
+
+def _box(low: tuple[float, float, float], high: tuple[float, float, float]) -> np.ndarray:
+    """Points on the top and the four sides."""
+    rng = np.random.default_rng(2)
+    low_corner, high_corner = np.array(low), np.array(high)
+    points = rng.uniform(low_corner, high_corner, (8000, 3))
+    side = rng.integers(0, 5, len(points))
+    points[side == 0, 2] = high[2]
+    for number, (axis, value) in enumerate(((0, low[0]), (0, high[0]), (1, low[1]), (1, high[1]))):
+        points[side == number + 1, axis] = value
+    return points
+
+
+def _found(xyz: np.ndarray) -> GroundSurface:
+    return find_ground(lambda: [xyz], GroundHabits(), SilentMonitor())
+
+
+def _without(xyz: np.ndarray, low: tuple[float, float], high: tuple[float, float]) -> np.ndarray:
+    inside = np.all((xyz[:, :2] > low) & (xyz[:, :2] < high), axis=1)
+    return xyz[~inside]
+
+
+def test_a_machine_on_a_slope_is_removed_and_the_slope_stays() -> None:
+    ground = _without(_plane(30.0, 0.12, slope=0.3), (10.0, 10.0), (14.0, 12.5))
+    machine = _box((10.0, 10.0, 3.3), (14.0, 12.5, 6.5))
+    is_ground = _found(np.vstack([ground, machine])).is_ground(np.vstack([ground, machine]))
+    assert is_ground[: len(ground)].mean() > 0.99
+    assert is_ground[len(ground) :].mean() < 0.06
+
+
+def test_a_heap_at_the_slope_of_repose_is_ground() -> None:
+    xyz = _plane(30.0, 0.12)
+    xyz[:, 2] += np.clip(2.0 - 0.7 * np.hypot(xyz[:, 0] - 15.0, xyz[:, 1] - 15.0), 0.0, 2.0)
+    assert _found(xyz).is_ground(xyz).mean() > 0.99
+
+
+def test_a_step_of_two_metres_stays_with_its_face() -> None:
+    xyz = _plane(30.0, 0.12)
+    xyz[:, 2] += np.where(xyz[:, 0] > 15.0, 2.0, 0.0)
+    rng = np.random.default_rng(3)
+    face = np.column_stack(
+        [np.full(6000, 15.0), rng.uniform(0.0, 29.0, 6000), rng.uniform(0.0, 2.0, 6000)]
+    )
+    whole = np.vstack([xyz, face])
+    is_ground = _found(whole).is_ground(whole)
+    assert is_ground[: len(xyz)].mean() > 0.99
+    assert is_ground[len(xyz) :].mean() > 0.9
+
+
+def test_points_under_the_ground_are_rejected_and_do_not_pull_it_down() -> None:
+    ground = _plane(20.0, 0.1)
+    rng = np.random.default_rng(4)
+    ghosts = ground[rng.choice(len(ground), 300, replace=False)] - [0.0, 0.0, 1.0]
+    whole = np.vstack([ground, ghosts])
+    is_ground = _found(whole).is_ground(whole)
+    assert is_ground[: len(ground)].mean() > 0.99
+    assert not is_ground[len(ground) :].any()
+
+
+def test_a_hole_behind_a_machine_is_filled_and_said_to_be_filled() -> None:
+    surface = _found(_without(_plane(30.0, 0.12, slope=0.2), (10.0, 10.0), (15.0, 15.0)))
+    places = np.array([[12.5, 12.5], [5.0, 5.0], [-9.0, 5.0]])
+    assert surface.is_filled_at(places).tolist() == [True, False, True]
+    assert surface.heights_at(places)[:2] == pytest.approx([2.5, 1.0], abs=0.1)
+    assert np.isnan(surface.heights_at(places)[2])
+
+
+def test_blocks_in_another_order_give_the_same_ground() -> None:
+    xyz = np.vstack([_plane(20.0, 0.15), _box((8.0, 8.0, 0.0), (10.0, 11.0, 2.0))])
+    shuffled = np.random.default_rng(5).permutation(len(xyz))
+    parts = np.array_split(xyz[shuffled], 7)
+    whole = _found(xyz).is_ground(xyz)
+    cut = find_ground(lambda: iter(parts), GroundHabits(), SilentMonitor())
+    assert np.array_equal(cut.is_ground(xyz), whole)
+
+
+def test_a_sparse_cloud_from_the_air_loses_its_hall_and_keeps_its_hill() -> None:
+    rng = np.random.default_rng(6)
+    xyz = np.column_stack([rng.uniform(0.0, 160.0, (20000, 2)), np.zeros(20000)])
+    xyz[:, 2] = 5.0 * np.sin(xyz[:, 0] / 30.0) + rng.normal(0.0, 0.03, 20000)
+    hall = np.all((xyz[:, :2] > [40.0, 50.0]) & (xyz[:, :2] < [85.0, 80.0]), axis=1)
+    xyz[hall, 2] = 16.0
+    is_ground = _found(xyz).is_ground(xyz)
+    assert is_ground[~hall].mean() > 0.98
+    assert not is_ground[hall].any()
+
+
+def test_points_without_coordinates_and_spikes_of_ten_kilometres_are_not_ground() -> None:
+    ground = _plane(20.0, 0.1)
+    odd = np.array(
+        [[np.nan, 1.0, 0.0], [5.0, 5.0, np.inf], [1e4, 5.0, 0.0], [5.0, 5.0, -1e4], [5.0, 5.0, 1e4]]
+    )
+    whole = np.vstack([ground, odd])
+    is_ground = _found(whole).is_ground(whole)
+    assert is_ground[: len(ground)].mean() > 0.99
+    assert not is_ground[len(ground) :].any()
+
+
+@pytest.mark.parametrize("count", [3, 10])
+def test_a_handful_of_level_points_is_ground(count: int) -> None:
+    xyz = np.random.default_rng(7).uniform(0.0, 1.0, (count, 3)) * [5.0, 5.0, 0.0]
+    assert _found(xyz).is_ground(xyz).all()
+
+
+@pytest.mark.parametrize("xyz", [np.zeros((0, 3)), np.full((9, 3), np.nan), np.ones((10, 3))])
+def test_a_cloud_without_extent_is_refused_in_a_sentence(xyz: np.ndarray) -> None:
+    with pytest.raises(OutOfRange, match="at least three points"):
+        _found(xyz)
