@@ -68,7 +68,9 @@ def test_large_coordinates_and_duplicates_do_not_change_the_ground() -> None:
     xyz, _ = _with_machine()
     doubled = np.vstack([xyz, xyz])
     found = published_ground(doubled, PublishedSteps(), SilentMonitor()).is_ground
-    moved = published_ground(xyz + [3e6, 5e6, 0.0], PublishedSteps(), SilentMonitor()).is_ground
+    moved = published_ground(
+        xyz + np.array([3e6, 5e6, 0.0]), PublishedSteps(), SilentMonitor()
+    ).is_ground
     alone = published_ground(xyz, PublishedSteps(), SilentMonitor()).is_ground
     assert np.array_equal(found[: len(xyz)], alone)
     assert np.array_equal(moved, alone)

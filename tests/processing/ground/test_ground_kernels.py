@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from ground import band, cells, morphology, walls
+
+from processing.ground import band, cells, morphology, walls
 
 
 def test_levels_are_the_lowest_height_and_the_next_clearly_above() -> None:
