@@ -1,0 +1,209 @@
+"""``zuka score`` on small files with figures worked out by hand, and on files that don't fit."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import laspy
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from app.cli.terminal import BAD_INPUT, DONE, run_in_terminal
+
+OFFSET = (-11_000.0, -35_000.0, 100.0)
+TRUTH = np.array([0, 0, 0, 0, 0, 0, 7, 7, 18, 18], np.uint8)
+RESULT = np.array([0, 0, 0, 0, 1, 7, 7, 18, 18, 0], np.uint8)
+KINDS = np.array([1, 1, 2, 2, 0, 0, -1, -1, -1, -1], np.int8)
+
+
+def places(count: int = 10) -> NDArray[np.int64]:
+    random = np.random.default_rng(3)
+    return random.integers(0, 40_000, (count, 3))
+
+
+def write_las(
+    path: Path, integers: NDArray[np.int64], codes: NDArray[np.uint8], scale: float = 0.001
+) -> Path:
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.scales, header.offsets = [scale] * 3, list(OFFSET)
+    las = laspy.LasData(header)
+    las.X, las.Y, las.Z = integers.T.astype(np.int32)
+    las.classification = codes
+    las.write(path)
+    return path
+
+
+def scored(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict[str, Any]:
+    assert run_in_terminal(["score", *map(str, arguments), "--json"]) == DONE
+    told: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return told
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
+    assert run_in_terminal(["score", *map(str, arguments)]) == BAD_INPUT
+    written = capsys.readouterr()
+    assert written.out == ""
+    # Progress comes before it; what is wrong is the last line, and one line.
+    line = written.err.rstrip("\n").splitlines()[-1]
+    assert line.count(" | ") == 2
+    return line
+
+
+def test_noise_is_scored_by_both_classes_with_what_doing_nothing_would_give(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    result = write_las(tmp_path / "結果.laz", places(), RESULT)
+    np.savez(tmp_path / "truth.npz", code=TRUTH, kind=KINDS, ground_z=np.zeros(10, np.float32))
+    told = scored(capsys, "noise", result, tmp_path / "truth.npz")
+    assert told["points"] == 10
+    assert told["paired_by"] == "order"
+    kept, nothing, noise = told["classes"].values()
+    assert list(told["classes"]) == ["kept", "kept_if_nothing_is_removed", "noise"]
+    assert (kept["tp"], kept["fp"], kept["fn"], kept["tn"]) == (5, 1, 1, 3)
+    assert kept["precision"] == kept["recall"] == kept["f"] == pytest.approx(5 / 6)
+    assert (nothing["precision"], nothing["recall"]) == (0.6, 1.0)
+    assert (noise["precision"], noise["recall"], noise["f"]) == (0.75, 0.75, 0.75)
+    assert told["shares"]["noise_share"] == {"points": 4, "of": 10, "share": 0.4}
+    assert told["shares"]["noise_left"]["points"] == 1
+    assert told["shares"]["true_lost"] == {"points": 1, "of": 6, "share": pytest.approx(1 / 6)}
+    # Three noise points were found, and one of them lies below although it was called 18.
+    assert told["shares"]["right_code"] == {"points": 2, "of": 3, "share": pytest.approx(2 / 3)}
+    shares = {kind: one["share"] for kind, one in told["kinds"]["kind"].items()}
+    assert shares == {"-1": 0.75, "0": 0.5, "1": 1.0, "2": 1.0}
+
+
+def test_ground_is_scored_with_both_types_of_error(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    truth = np.array([2, 2, 2, 2, 2, 2, 1, 1, 1, 7], np.uint8)
+    codes = np.array([2, 2, 2, 2, 1, 18, 1, 1, 2, 7], np.uint8)
+    result = write_las(tmp_path / "result.las", places(), codes)
+    np.save(tmp_path / "labels_after.npy", truth)
+    np.save(tmp_path / "kinds_after.npy", np.array([0, 0, 0, 0, 0, 0, 1, 1, 3, -2], np.int8))
+    told = scored(capsys, "ground", result, tmp_path / "labels_after.npy")
+    removed, ground = told["classes"]["removed"], told["classes"]["ground"]
+    assert (removed["precision"], removed["recall"]) == (0.6, 0.75)
+    assert removed["f"] == pytest.approx(2 * 0.6 * 0.75 / 1.35)
+    assert (ground["tp"], ground["fp"], ground["fn"], ground["tn"]) == (4, 1, 2, 3)
+    assert told["shares"]["type_1"]["share"] == pytest.approx(2 / 6)
+    assert told["shares"]["type_2"]["share"] == pytest.approx(1 / 4)
+    assert told["shares"]["total_error"] == {"points": 3, "of": 10, "share": 0.3}
+    assert told["figures"]["kappa"] == pytest.approx((0.7 - 0.5) / 0.5)
+    assert told["kinds"]["kind"]["3"] == {"points": 0, "of": 1, "share": 0.0}
+
+
+def test_a_perfect_result_scores_one_and_undefined_figures_are_null(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    truth = write_las(tmp_path / "truth.laz", places(), np.full(10, 2, np.uint8))
+    told = scored(capsys, "ground", truth, truth)
+    assert told["classes"]["ground"]["f"] == 1.0
+    assert told["classes"]["removed"]["f"] is None
+    assert told["figures"]["kappa"] is None
+    assert run_in_terminal(["score", "ground", str(truth), str(truth)]) == DONE
+    assert "–" in capsys.readouterr().out
+
+
+def test_text_of_the_isprs_test_has_ground_0_and_object_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    integers = places() // 10
+    written = integers * 0.01 + np.array(OFFSET)
+    is_object = np.array([0, 1] * 5)
+    lines = [
+        f"{x:.2f}\t{y:.2f}\t{z:.2f}\t{code}"
+        for (x, y, z), code in zip(written, is_object, strict=True)
+    ]
+    (tmp_path / "samp.txt").write_text("\n".join(lines) + "\n", "ascii")
+    codes = np.where(is_object == 1, 1, 2).astype(np.uint8)
+    result = write_las(tmp_path / "result.laz", integers, codes, scale=0.01)
+    told = scored(capsys, "ground", result, tmp_path / "samp.txt")
+    assert told["paired_by"] == "order"
+    assert told["classes"]["removed"]["f"] == told["classes"]["ground"]["f"] == 1.0
+    assert told["classes"]["removed"]["tp"] == 5
+
+
+def test_points_in_another_order_are_paired_by_their_places_duplicates_one_to_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    integers = places(500)
+    integers[100:150] = integers[:50]
+    integers[150:160] = integers[:10]
+    codes = np.random.default_rng(1).choice(np.array([1, 2], np.uint8), 500)
+    codes[100:150] = codes[:50]
+    codes[150:160] = codes[:10]
+    truth = write_las(tmp_path / "truth.laz", integers, codes)
+    order = np.random.default_rng(2).permutation(500)
+    result = write_las(tmp_path / "result.las", integers[order], codes[order])
+    told = scored(capsys, "ground", result, truth)
+    assert told["paired_by"] == "place"
+    assert told["points"] == 500
+    assert told["classes"]["removed"]["f"] == told["classes"]["ground"]["f"] == 1.0
+
+
+def test_a_result_that_lacks_points_is_refused_with_their_number(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    integers, codes = places(100), np.full(100, 2, np.uint8)
+    truth = write_las(tmp_path / "truth.laz", integers, codes)
+    result = write_las(tmp_path / "result.laz", integers[:90], codes[:90])
+    line = refused(capsys, "ground", result, truth)
+    assert "0 of the result's 90 points and 10 of the truth's 100" in line
+    np.save(tmp_path / "truth.npy", codes)
+    line = refused(capsys, "ground", result, tmp_path / "truth.npy")
+    assert "The truth has 100 points, the result 90." in line
+
+
+@pytest.mark.parametrize(
+    ("name", "array", "says"),
+    [
+        ("a.npy", np.zeros((5, 2), np.uint8), "whole numbers"),
+        ("a.npy", np.full(10, 300), "whole numbers"),
+        ("a.npy", np.zeros(10), "whole numbers"),
+        ("a.npy", np.array([{"code": 2}] * 10, object), "damaged"),
+    ],
+)
+def test_arrays_that_are_no_codes_are_refused(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    name: str,
+    array: NDArray[np.generic],
+    says: str,
+) -> None:
+    result = write_las(tmp_path / "result.laz", places(), RESULT)
+    np.save(tmp_path / name, array)
+    assert says in refused(capsys, "noise", result, tmp_path / name)
+
+
+def test_a_truth_that_is_missing_cut_off_or_of_another_tool_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    result = write_las(tmp_path / "result.laz", places(), RESULT)
+    assert "no such file" in refused(capsys, "noise", result, tmp_path / "none.npz")
+    np.savez(tmp_path / "truth.npz", ground=np.zeros(10, bool))
+    assert "no array of true classes" in refused(capsys, "noise", result, tmp_path / "truth.npz")
+    whole = (tmp_path / "truth.npz").read_bytes()
+    (tmp_path / "truth.npz").write_bytes(whole[: len(whole) // 2])
+    assert "damaged" in refused(capsys, "noise", result, tmp_path / "truth.npz")
+    (tmp_path / "truth.txt").write_text("1 2 3 0\n1 2 nan 1\n", "ascii")
+    assert "point 2" in refused(capsys, "ground", result, tmp_path / "truth.txt")
+    (tmp_path / "truth.txt").write_text("1 2 3 0\n1 2 3 0.5\n", "ascii")
+    assert "point 2" in refused(capsys, "ground", result, tmp_path / "truth.txt")
+    assert "noise, ground" in refused(capsys, "curbs", result, tmp_path / "truth.txt")
+
+
+def test_the_table_lines_up_in_japanese_too(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ZUKA_LANGUAGE", "ja")
+    result = write_las(tmp_path / "result.laz", places(), RESULT)
+    np.savez(tmp_path / "truth.npz", signal=TRUTH == 0)
+    assert run_in_terminal(["score", "noise", str(result), str(tmp_path / "truth.npz")]) == DONE
+    lines = capsys.readouterr().out.splitlines()
+    head, kept, *_ = lines[2:]
+    assert head.split() == ["正例とするクラス", "適合率", "再現率", "F値", "TP", "FP", "FN", "TN"]
+    wide = [len(line) + sum(ord(one) > 0x2E80 for one in line) for line in (head, kept)]
+    assert wide[0] == wide[1]
