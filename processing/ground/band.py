@@ -17,6 +17,8 @@ _WINDOW = 5
 _LEAST_PER_CELL = 0.2
 _ROUNDS = 3
 _OWN_POINTS = 3
+_FOOT_REACH_M = 0.4
+_FINE_CELL_M = 0.5
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,9 @@ class Band:
         something stands.
     face_low, face_high : (rows, columns) float32
         Between these heights points on the face of a step are ground; empty elsewhere.
+    feet : (rows, columns) uint16
+        Bit ``4 r + c`` is set where a thing stands on that sixteenth of a cell, over whose foot
+        no point is ground.
     roughness_m : float
         Standard deviation of ground points about the surface, in the median of the cells.
     """
@@ -41,6 +46,7 @@ class Band:
     above: NDArray[np.float32]
     face_low: NDArray[np.float32]
     face_high: NDArray[np.float32]
+    feet: NDArray[np.uint16]
     roughness_m: float
 
 
@@ -93,7 +99,8 @@ def ground_band(
     steepness = steepness_of(surface, size_m)
     reach = tolerances.near_m + size_m * (tolerances.near_share + 0.5 * steepness)
     reach = np.where(ground, reach, 0.0).astype(np.float32)
-    is_level = steepness <= tolerances.face_slope
+    # Larger cells hold no face of a step, but the jump from a roof to the ground.
+    is_level = (steepness <= tolerances.face_slope) | (size_m > _FINE_CELL_M)
     for _ in range(_ROUNDS):
         counts, totals, _ = _sums(blocks, grid, surface, reach)
         # Beside a step the mean swings more from round to round; the lowest heights serve there.
@@ -106,8 +113,13 @@ def ground_band(
         spread + tolerances.side_share * size_m + tolerances.slope_share * rise
     ).astype(np.float32)
     bins = np.zeros(surface.shape, np.uint64)
+    feet = np.zeros(surface.shape, np.uint16)
     for xyz in blocks():
-        _columns_kernel(np.ascontiguousarray(xyz), grid.origin, size_m, surface, bins)
+        _columns_kernel(
+            np.ascontiguousarray(xyz), grid.origin, size_m, surface, thick, (bins, feet)
+        )
+    if size_m > _FINE_CELL_M:
+        feet[:] = 0
     foot = tolerances.foot_deviations * roughness + tolerances.slope_share * rise
     above = np.where(_stands(bins, thick) | ~ground, np.minimum(thick, foot), thick)
     lowest = cv2.erode(surface, np.ones((3, 3), np.uint8))
@@ -123,6 +135,7 @@ def ground_band(
         above.astype(np.float32),
         face_low.astype(np.float32),
         face_high.astype(np.float32),
+        feet,
         typical,
     )
 
@@ -145,6 +158,7 @@ def classify(xyz: NDArray[np.float64], grid: CellGrid, band: Band) -> NDArray[np
         grid.origin,
         grid.size_m,
         (band.heights, band.below, band.above, band.face_low, band.face_high),
+        band.feet,
         is_ground,
     )
     return is_ground
@@ -263,8 +277,10 @@ def _columns_kernel(
     origin: NDArray[np.float64],
     size_m: float,
     surface: NDArray[np.float32],
-    bins: NDArray[np.uint64],
+    thick: NDArray[np.float32],
+    held: tuple[NDArray[np.uint64], NDArray[np.uint16]],
 ) -> None:
+    bins, feet = held
     for point in range(xyz.shape[0]):
         x = (xyz[point, 0] - origin[0]) / size_m
         y = (xyz[point, 1] - origin[1]) / size_m
@@ -272,7 +288,11 @@ def _columns_kernel(
         if np.isfinite(z) and 0.0 <= x < surface.shape[1] and 0.0 <= y < surface.shape[0]:
             offset = z - _at(surface, y, x)
             if 0.0 <= offset < 6.4:
-                bins[int(y), int(x)] |= np.uint64(1) << np.uint64(int(offset / 0.1))
+                row, column = int(y), int(x)
+                bins[row, column] |= np.uint64(1) << np.uint64(int(offset / 0.1))
+                if thick[row, column] < offset < thick[row, column] + _FOOT_REACH_M:
+                    part = int(4 * (y - row)) * 4 + int(4 * (x - column))
+                    feet[row, column] |= np.uint16(1) << np.uint16(part)
 
 
 @kernel
@@ -287,6 +307,7 @@ def _classify_kernel(
         NDArray[np.float32],
         NDArray[np.float32],
     ],
+    feet: NDArray[np.uint16],
     is_ground: NDArray[np.bool_],
 ) -> None:
     surface, below, above, face_low, face_high = grids
@@ -299,6 +320,9 @@ def _classify_kernel(
             offset = z - _at(surface, y, x)
             in_band = -below[row, column] <= offset <= above[row, column]
             on_face = face_low[row, column] <= z <= face_high[row, column]
+            part = int(4 * (y - row)) * 4 + int(4 * (x - column))
+            if (feet[row, column] >> np.uint16(part)) & np.uint16(1):
+                in_band = False
             is_ground[point] = in_band or on_face
 
 

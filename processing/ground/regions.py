@@ -14,6 +14,8 @@ _WINDOWS = 14
 _SMALL = 2
 _LEVEL_FACTOR = 1.5
 _CLEAR = 0.3
+_GAP = 2.0
+_LEVEL = 0.1
 
 
 @dataclass(frozen=True)
@@ -136,8 +138,8 @@ def rim_shares(
 
     Notes
     -----
-    The rise is taken between measured cells over their true distance, so that a gap between them
-    doesn't make a side gentle.
+    The rise is taken between measured cells over their true distance. Across a gap a fall that is
+    not steep says nothing: the side may be as steep, in the thing's own shadow.
     """
     free, nearest = measured
     if not raised.any() or not (free & ~raised).any():
@@ -227,9 +229,12 @@ def _rim_kernel(
                     hidden[label] += 1.0
                     continue
                 rise = heights[from_row, from_column] - heights[to_row, to_column]
+                is_level = rise < _LEVEL * run
+                if run > _GAP * size_m and not is_level and rise <= steep[row, column] * run:
+                    hidden[label] += 1.0
+                    continue
                 rim[label] += 1.0
-                if rise < 0.1 * run:
-                    level[label] += 1.0
+                level[label] += is_level
                 fall = _fall_beyond(labels, heights, nearest, r, c, down, right)
                 rise -= max(0.0, fall) * run / size_m
                 if rise > steep[row, column] * run:
