@@ -3,41 +3,32 @@
 After the road-surface study: a point is noise when its sphere of 0.5 m holds at most 113 points.
 The point itself counts, as it does in Open3D and PCL, so that the three agree point by point.
 
-1. Cells with a diagonal below the radius: more than N points in one cell keep each other, and no
-   distance is measured.
-2. Elsewhere the points of the cells around are measured, nearest cell first, until more than N
-   are found.
+1. Cells with a diagonal below the radius: more than N points in one cell keep each other, and
+   where the cells around hold no more than N, all are noise; no distance is measured.
+2. Elsewhere the points of the cells around are measured, nearest column first, until more than N
+   are found. Rounded distances do unless so many are near the radius that they may decide; then
+   exact ones are taken.
 """
 
 from __future__ import annotations
-
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.kernels import kernel
 from processing.monitor import Monitor, SilentMonitor
+from processing.noise.flat_cells import FlatCells, flat_cells
 from processing.noise.sharing import shared_out
 
 RADIUS_M = 0.5
 NEIGHBOURS = 113
 
-_CLIP = 2**20 - 2
 _CELLS_AT_ONCE = 4_096
-
-
-class FlatCells(NamedTuple):
-    """Occupied cells, with the places that find them.
-
-    ``starts``: (c + 1,) into the sorted points; ``keys``: (c,) rising; ``is_border``: (c,) cells
-    into which far points were put, so that they may be larger than a cell.
-    """
-
-    xyz: NDArray[np.float64]
-    keys: NDArray[np.int64]
-    starts: NDArray[np.int64]
-    is_border: NDArray[np.bool_]
+_REACH = 2  # cells
+_MOST_NEAR = 4_096
+_BLOCK = 128
+_ROUNDING = 4e-6  # of a square, for coordinates of 24 binary digits within 3 cells
+_KEPT, _OUTLIER, _OPEN = 0, 1, 2
 
 
 def radius_outliers(
@@ -66,55 +57,32 @@ def radius_outliers(
     -------
     (n,) bool
     """
-    outliers = np.ones(xyz.shape[0], bool)
-    finite = np.flatnonzero(np.isfinite(xyz).all(axis=1))
-    if not finite.size:
-        return outliers
-    cells, order = _flat_cells(xyz[finite], radius_m / np.sqrt(3.0) * (1 - 1e-9))
-    found = np.zeros(finite.size, np.bool_)
-    offsets, reach = _offsets_by_distance()
+    monitor = monitor or SilentMonitor()
+    outliers = np.ones(xyz.shape[0], np.bool_)
+    cells = flat_cells(xyz, radius_m / np.sqrt(3.0) * (1 - 1e-9), monitor)
+    columns = _columns_by_distance(cells)
     limit = neighbours if counts_itself else neighbours + 1
 
-    def count(start: int, stop: int) -> None:
-        radius_kernel(cells, offsets, reach, radius_m, limit, start, stop, found)
+    def judge(start: int, stop: int) -> None:
+        radius_kernel(cells, columns, radius_m, limit, start, stop, outliers)
 
-    shared_out(count, cells.keys.size, _CELLS_AT_ONCE, monitor or SilentMonitor())
-    outliers[finite[order]] = found
+    shared_out(judge, cells.keys.size, _CELLS_AT_ONCE, monitor)
     return outliers
 
 
-def _flat_cells(xyz: NDArray[np.float64], side: float) -> tuple[FlatCells, NDArray[np.int64]]:
-    middle = np.median(xyz, axis=0)
-    indices = np.floor((xyz - middle) / side)
-    is_far = np.abs(indices).max(axis=1) >= _CLIP // 2
-    whole = np.clip(indices, -_CLIP // 2, _CLIP // 2).astype(np.int64) + _CLIP // 2 + 1
-    keys = (whole[:, 0] << 42) | (whole[:, 1] << 21) | whole[:, 2]
-    order = np.argsort(keys, kind="stable")
-    keys = keys[order]
-    firsts: NDArray[np.int64] = np.flatnonzero(np.r_[True, keys[1:] != keys[:-1]])
-    is_border = np.zeros(firsts.size, np.bool_)
-    is_border[np.searchsorted(firsts, np.flatnonzero(is_far[order]), "right") - 1] = True
-    # Coordinates as they came: distances are the same to the bit in whatever part of a cloud.
-    return FlatCells(xyz[order], keys[firsts], np.r_[firsts, keys.size], is_border), order
-
-
-def _offsets_by_distance() -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-    """(k, 3) steps to the cells that a sphere may reach, nearest first; (k,) the own cell."""
-    steps = np.arange(-2, 3)
-    grid = np.stack(np.meshgrid(steps, steps, steps, indexing="ij"), -1).reshape(-1, 3)
-    gaps = np.maximum(np.abs(grid) - 1, 0)
-    is_reached = (gaps**2).sum(axis=1) < 3.0 + 1e-6  # radius² in cells
-    near = grid[is_reached]
-    far = (near**2).sum(axis=1)
-    chosen = np.ascontiguousarray(near[np.argsort(far, kind="stable")]).astype(np.int64)
-    return chosen, far[np.argsort(far, kind="stable")] == 0
+def _columns_by_distance(cells: FlatCells) -> NDArray[np.int64]:
+    """(k,) what leads from a cell's key to those of the columns around, nearest first."""
+    steps = np.arange(-_REACH, _REACH + 1)
+    grid = np.stack(np.meshgrid(steps, steps, indexing="ij"), -1).reshape(-1, 2)
+    near = grid[np.argsort((grid**2).sum(axis=1), kind="stable")]
+    offsets: NDArray[np.int64] = near[:, 0] * cells.along + near[:, 1] * cells.across
+    return offsets
 
 
 @kernel
 def radius_kernel(
     cells: FlatCells,
-    offsets: NDArray[np.int64],
-    is_own: NDArray[np.bool_],
+    columns: NDArray[np.int64],
     radius: float,
     limit: int,
     first: int,
@@ -122,53 +90,118 @@ def radius_kernel(
     outliers: NDArray[np.bool_],
 ) -> None:
     """Mark the outliers of the cells ``first … stop − 1``."""
-    near_starts = np.empty(offsets.shape[0], np.int64)
-    near_stops = np.empty(offsets.shape[0], np.int64)
-    square = radius * radius
+    runs = np.empty((columns.size, 2), np.int64)
+    places = np.searchsorted(cells.keys, cells.keys[first] + columns - _REACH)
+    near = np.empty((3, _MOST_NEAR), np.float32)
     for cell in range(first, stop):
         start, end = cells.starts[cell], cells.starts[cell + 1]
-        own = 0 if cells.is_border[cell] else end - start
-        if own > limit:
-            outliers[start:end] = False
+        if end - start > limit and not cells.is_border[cell]:
+            for point in range(start, end):
+                outliers[cells.order[point]] = False
             continue
-        used = _find_near(cells, cell, offsets, is_own, near_starts, near_stops)
+        total = _find_runs(cells, cells.keys[cell], columns, places, runs)
+        if total <= limit:
+            continue
+        count = 0 if cells.is_border[cell] else _gather(cells.xyz, start, runs, near)
         for point in range(start, end):
-            count = own
-            x, y, z = cells.xyz[point, 0], cells.xyz[point, 1], cells.xyz[point, 2]
-            for k in range(used):
-                for other in range(near_starts[k], near_stops[k]):
-                    dx = cells.xyz[other, 0] - x
-                    dy = cells.xyz[other, 1] - y
-                    dz = cells.xyz[other, 2] - z
-                    if dx * dx + dy * dy + dz * dz < square:
-                        count += 1
-                if count > limit:
-                    break
-            outliers[point] = count <= limit
+            verdict = _rounded(cells.xyz, start, point, near, count, radius, limit)
+            if verdict == _OPEN or (verdict == _OUTLIER and count < total):
+                verdict = _exact(cells.xyz, point, runs, radius, limit)
+            outliers[cells.order[point]] = verdict == _OUTLIER
 
 
 @kernel
-def _find_near(
+def _find_runs(
     cells: FlatCells,
-    cell: int,
-    offsets: NDArray[np.int64],
-    is_own: NDArray[np.bool_],
-    starts: NDArray[np.int64],
-    stops: NDArray[np.int64],
+    key: int,
+    columns: NDArray[np.int64],
+    places: NDArray[np.int64],
+    runs: NDArray[np.int64],
 ) -> int:
-    """Note the points of the occupied cells around one, without its own unless at the border."""
-    used = 0
-    key = cells.keys[cell]
-    for k in range(offsets.shape[0]):
-        if is_own[k] and not cells.is_border[cell]:
-            continue
-        wanted = key + (offsets[k, 0] << 42) + (offsets[k, 1] << 21) + offsets[k, 2]
-        place = np.searchsorted(cells.keys, wanted)
-        if place < cells.keys.size and cells.keys[place] == wanted:
-            starts[used] = cells.starts[place]
-            stops[used] = cells.starts[place + 1]
-            used += 1
-    return used
+    """Note the points of the columns around a cell; gives how many they are.
+
+    ``places`` goes up through the cells as ``key`` does, so that nothing is searched for.
+    """
+    total = 0
+    last = cells.keys.size
+    for k in range(columns.size):
+        wanted = key + columns[k] - _REACH
+        place = places[k]
+        while place < last and cells.keys[place] < wanted:
+            place += 1
+        places[k] = place
+        runs[k, 0] = cells.starts[place]
+        while place < last and cells.keys[place] <= wanted + 2 * _REACH:
+            place += 1
+        runs[k, 1] = cells.starts[place]
+        total += runs[k, 1] - runs[k, 0]
+    return total
+
+
+@kernel
+def _gather(
+    xyz: NDArray[np.float64], origin: int, runs: NDArray[np.int64], near: NDArray[np.float32]
+) -> int:
+    """Copy the points of the columns, from a point as origin, as far as there is room."""
+    count = 0
+    x, y, z = xyz[origin, 0], xyz[origin, 1], xyz[origin, 2]
+    for k in range(runs.shape[0]):
+        for point in range(runs[k, 0], min(runs[k, 1], runs[k, 0] + near.shape[1] - count)):
+            near[0, count] = xyz[point, 0] - x
+            near[1, count] = xyz[point, 1] - y
+            near[2, count] = xyz[point, 2] - z
+            count += 1
+    near[:, count : -(-count // _BLOCK) * _BLOCK] = np.inf
+    return count
+
+
+@kernel
+def _rounded(
+    xyz: NDArray[np.float64],
+    origin: int,
+    point: int,
+    near: NDArray[np.float32],
+    count: int,
+    radius: float,
+    limit: int,
+) -> int:
+    """What rounded distances to the gathered points say: kept, outlier, or open."""
+    x = np.float32(xyz[point, 0] - xyz[origin, 0])
+    y = np.float32(xyz[point, 1] - xyz[origin, 1])
+    z = np.float32(xyz[point, 2] - xyz[origin, 2])
+    surely = np.float32(radius * radius * (1 - _ROUNDING))
+    perhaps = np.float32(radius * radius * (1 + _ROUNDING))
+    least, most = 0, 0
+    for start in range(0, count, _BLOCK):
+        inside, outside = np.int32(0), np.int32(0)
+        eastings, northings = near[0, start : start + _BLOCK], near[1, start : start + _BLOCK]
+        heights = near[2, start : start + _BLOCK]
+        for other in range(_BLOCK):  # always whole blocks: so many at a time
+            dx, dy, dz = eastings[other] - x, northings[other] - y, heights[other] - z
+            square = dx * dx + dy * dy + dz * dz
+            inside = np.int32(inside + np.int32(square < surely))
+            outside = np.int32(outside + np.int32(square > perhaps))
+        least += int(inside)
+        most += _BLOCK - int(outside)
+        if least > limit:
+            return _KEPT
+    return _OUTLIER if most <= limit else _OPEN
+
+
+@kernel
+def _exact(
+    xyz: NDArray[np.float64], point: int, runs: NDArray[np.int64], radius: float, limit: int
+) -> int:
+    """Kept or outlier, from the coordinates as they are."""
+    count = 0
+    x, y, z = xyz[point, 0], xyz[point, 1], xyz[point, 2]
+    for k in range(runs.shape[0]):
+        for other in range(runs[k, 0], runs[k, 1]):
+            dx, dy, dz = xyz[other, 0] - x, xyz[other, 1] - y, xyz[other, 2] - z
+            count += dx * dx + dy * dy + dz * dz < radius * radius
+        if count > limit:
+            return _KEPT
+    return _OUTLIER
 
 
 def warm_up() -> None:
