@@ -91,7 +91,9 @@ class GroundSurface:
         return filled_in
 
 
-def find_ground(blocks: Blocks, habits: GroundHabits, monitor: Monitor) -> GroundSurface:
+def find_ground(
+    blocks: Blocks, habits: GroundHabits, monitor: Monitor, grid: CellGrid | None = None
+) -> GroundSurface:
     """The ground of a whole cloud, in about a dozen passes over its blocks.
 
     Parameters
@@ -99,11 +101,13 @@ def find_ground(blocks: Blocks, habits: GroundHabits, monitor: Monitor) -> Groun
     blocks : callable
         Gives the cloud's blocks, each (n, 3) float64, m, afresh at every call. How it is cut, and
         the order of the points, change nothing in the result.
+    grid : CellGrid, optional
+        The cells to use; points outside them are passed over. Without it the data choose it.
 
     Raises
     ------
     OutOfRange
-        Fewer than three points, or all at one place.
+        Without a grid: fewer than three points, or all at one place.
 
     Notes
     -----
@@ -111,7 +115,7 @@ def find_ground(blocks: Blocks, habits: GroundHabits, monitor: Monitor) -> Groun
     extent would need more than ``cells.MOST_CELLS``.
     """
     passes = _Passes(blocks, monitor)
-    grid = choose_cells(passes, habits.grid_m)
+    grid = choose_cells(passes, habits.grid_m) if grid is None else grid
     shape = Shape(
         widest_m=habits.widest_m,
         rise_m=habits.rise_m + habits.rise_share * grid.size_m,

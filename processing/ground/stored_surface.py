@@ -1,0 +1,303 @@
+"""StoredSurface: the ground of a recording as a file of tiles, for volumes, sections and views.
+
+``ground_surface.tiles`` lies in the folder of each drive that it was found from; it may be deleted
+at any time. Only tiles that hold points are there, so a road of many kilometres stays small.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import struct
+from collections import OrderedDict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.errors import BadFile, told_as_user_error
+from processing.ground.band import heights_at
+from processing.ground.cells import CellGrid
+from processing.points.drive import Drive
+from processing.text import Text
+
+FILE_NAME = "ground_surface.tiles"
+_START = struct.Struct("<8sQ")
+_MAGIC = b"ZUKAGND1"
+_KEPT_TILES = 8
+
+
+@dataclass(frozen=True)
+class SurfaceTile:
+    """A rectangle of cells; neighbours overlap by a cell or two, so that heights go on between them.
+
+    Attributes
+    ----------
+    row, column : int
+        Its first cell in the grid of the whole surface.
+    heights : (rows, columns) float32
+        Ground at the cells' centres, m above the grid's origin; NaN where there is no surface.
+    filled : (rows, columns) bool
+        Where the height is filled in and not measured.
+    """
+
+    row: int
+    column: int
+    heights: NDArray[np.float32]
+    filled: NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class _Place:
+    row: int
+    column: int
+    rows: int
+    columns: int
+    at: int
+
+
+class SurfaceWriter:
+    """Writes a surface tile by tile; the caller gives the file its name when it is whole.
+
+    Parameters
+    ----------
+    path : Path
+    grid : CellGrid
+        Of the whole surface.
+    crs : str
+        ``EPSG:n``, or empty when unknown.
+
+    Raises
+    ------
+    NoSpace
+    """
+
+    def __init__(self, path: Path, grid: CellGrid, crs: str) -> None:
+        self._path = path
+        self._grid = grid
+        self._crs = crs
+        self._tiles: list[list[int]] = []
+        with told_as_user_error(path):
+            self._file = path.open("wb")
+            self._file.write(_START.pack(_MAGIC, 0))
+
+    def add(self, tile: SurfaceTile) -> None:
+        """Append a tile."""
+        with told_as_user_error(self._path):
+            place = [tile.row, tile.column, *tile.heights.shape, self._file.tell()]
+            self._file.write(np.ascontiguousarray(tile.heights, "<f4").data)
+            self._file.write(np.ascontiguousarray(tile.filled, np.uint8).data)
+        self._tiles.append(place)
+
+    def close(self) -> None:
+        """Write what the tiles are and close the file."""
+        grid = self._grid
+        facts = {
+            "origin": grid.origin.tolist(),
+            "cell_m": grid.size_m,
+            "rows": grid.rows,
+            "columns": grid.columns,
+            "crs": self._crs,
+            "tiles": self._tiles,
+        }
+        with told_as_user_error(self._path), self._file as file:
+            at = file.tell()
+            file.write(json.dumps(facts).encode())
+            file.seek(0)
+            file.write(_START.pack(_MAGIC, at))
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        if error is None:
+            self.close()
+        else:
+            self._file.close()
+
+
+class StoredSurface:
+    """Ground that a run found, measured and filled in; a few tiles are held in memory.
+
+    Parameters
+    ----------
+    path : Path
+        As :class:`SurfaceWriter` wrote it.
+
+    Attributes
+    ----------
+    grid : CellGrid
+        Cells of the whole surface; ``origin`` in m, project CRS.
+    crs : str
+        ``EPSG:n``, or empty when unknown.
+
+    Raises
+    ------
+    MissingInput, BadFile
+        There is no such file, or it isn't what was written.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        with told_as_user_error(path), path.open("rb") as file:
+            start = file.read(_START.size)
+            size = os.fstat(file.fileno()).st_size
+            magic, at = _START.unpack(start) if len(start) == _START.size else (b"", 0)
+            if magic != _MAGIC or not _START.size <= at < size:
+                raise _damaged(path, 0)
+            file.seek(at)
+            text = file.read()
+        try:
+            self._take(json.loads(text))
+        except (ValueError, TypeError, KeyError) as error:
+            raise _damaged(path, at) from error
+        if any(one.at + 5 * one.rows * one.columns > at for one in self._places):
+            raise _damaged(path, at)
+        self._held: OrderedDict[int, SurfaceTile] = OrderedDict()
+
+    # The values come from JSON, whose types only the field names tell.
+    def _take(self, facts: dict[str, Any]) -> None:
+        origin = np.array(facts["origin"], np.float64)
+        size_m = float(facts["cell_m"])
+        self.grid = CellGrid(origin, size_m, int(facts["rows"]), int(facts["columns"]))
+        self.crs = str(facts["crs"])
+        self._places = [_Place(*(int(value) for value in tile)) for tile in facts["tiles"]]
+
+    def heights_at(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Ground height at places, m: (n,) float64; NaN where there is no surface.
+
+        Parameters
+        ----------
+        xy : (n, 2) float64
+            m, project CRS.
+        """
+        heights = np.full(len(xy), np.nan)
+        for number, inside in self._by_tile(xy):
+            tile = self._tile(number)
+            heights[inside] = heights_at(xy[inside], self._grid_of(tile), tile.heights)
+        return heights
+
+    def is_filled_at(self, xy: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """Whether a height is filled in and not measured: (n,) bool; true without a surface."""
+        filled = np.ones(len(xy), np.bool_)
+        for number, inside in self._by_tile(xy):
+            tile = self._tile(number)
+            grid = self._grid_of(tile)
+            column, row = np.floor((xy[inside] - grid.origin[:2]) / grid.size_m).astype(np.int64).T
+            row, column = np.minimum(row, grid.rows - 1), np.minimum(column, grid.columns - 1)
+            filled[inside] = tile.filled[row, column] | np.isnan(tile.heights[row, column])
+        return filled
+
+    def tiles(self) -> Iterator[SurfaceTile]:
+        """All tiles, one at a time."""
+        for number in range(len(self._places)):
+            yield self._read(number)
+
+    def _by_tile(self, xy: NDArray[np.float64]) -> Iterator[tuple[int, NDArray[np.int64]]]:
+        """Tiles that hold places, and which places; each place is given to one tile."""
+        column, row = ((xy - self.grid.origin[:2]) / self.grid.size_m).T
+        is_free = np.isfinite(column) & np.isfinite(row)
+        if not is_free.any():
+            return
+        low = row[is_free].min(), column[is_free].min()
+        high = row[is_free].max(), column[is_free].max()
+        # Tiles overlap by a cell on either side: where two have a place, the inner one knows more.
+        for edge in (1, 0):
+            for number, tile in enumerate(self._places):
+                top, right = tile.row + tile.rows, tile.column + tile.columns
+                if low[0] >= top or low[1] >= right:
+                    continue
+                if high[0] < tile.row or high[1] < tile.column:
+                    continue
+                in_rows = (row >= tile.row + edge) & (row < top - edge)
+                in_columns = (column >= tile.column + edge) & (column < right - edge)
+                inside = np.flatnonzero(is_free & in_rows & in_columns)
+                if inside.size:
+                    is_free[inside] = False
+                    yield number, inside
+
+    def _grid_of(self, tile: SurfaceTile) -> CellGrid:
+        shift = self.grid.size_m * np.array([tile.column, tile.row, 0.0])
+        return CellGrid(self.grid.origin + shift, self.grid.size_m, *tile.heights.shape)
+
+    def _tile(self, number: int) -> SurfaceTile:
+        if number not in self._held:
+            self._held[number] = self._read(number)
+            while len(self._held) > _KEPT_TILES:
+                self._held.popitem(last=False)
+        self._held.move_to_end(number)
+        return self._held[number]
+
+    def _read(self, number: int) -> SurfaceTile:
+        place = self._places[number]
+        shape, count = (place.rows, place.columns), place.rows * place.columns
+        with told_as_user_error(self._path), self._path.open("rb") as file:
+            file.seek(place.at)
+            heights = np.fromfile(file, "<f4", count)
+            filled = np.fromfile(file, np.uint8, count)
+        if filled.size != count:
+            raise _damaged(self._path, place.at)
+        return SurfaceTile(
+            place.row,
+            place.column,
+            heights.astype(np.float32, copy=False).reshape(shape),
+            filled.astype(np.bool_).reshape(shape),
+        )
+
+
+def ground_surface_of(drive: Drive) -> StoredSurface | None:
+    """The ground that the last run of ``ground`` found for a drive; None without one.
+
+    Raises
+    ------
+    BadFile
+        The file is damaged; it can be deleted.
+    """
+    path = drive.folder / FILE_NAME
+    return StoredSurface(path) if path.is_file() else None
+
+
+def keep_surface(path: Path, drives: tuple[Drive, ...]) -> None:
+    """Let drives on the same disk keep a surface in place of an older one; ``path`` stays.
+
+    Raises
+    ------
+    NoSpace, InUse
+        Drives before the one that failed have the new surface.
+    """
+    for drive in drives:
+        target = drive.folder / FILE_NAME
+        temporary = target.with_suffix(".part")
+        with told_as_user_error(target):
+            try:
+                temporary.unlink(missing_ok=True)
+                try:
+                    # One copy on the disk serves all drives of a recording.
+                    os.link(path, temporary)
+                except OSError:
+                    shutil.copyfile(path, temporary)
+                temporary.replace(target)
+            finally:
+                temporary.unlink(missing_ok=True)
+
+
+def _damaged(path: Path, byte: int) -> BadFile:
+    return BadFile(
+        Text("The stored ground surface is damaged.", "保存された地表面データが壊れています。"),
+        Text.same(f"{path}, byte {byte}"),
+        Text(
+            "Delete the file and run the tool “Ground” again; nothing else needs it.",
+            "このファイルを削除し、「地面抽出」をもう一度実行してください。"
+            "ほかのデータには影響しません。",
+        ),
+    )
