@@ -8,6 +8,8 @@ from numpy.typing import NDArray
 from processing.kernels import kernel
 
 _SWEEPS = 24
+_FEW_STEPS = 8
+_RELAXED_CELLS = 16
 
 
 def opened(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
@@ -23,13 +25,54 @@ def opened(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
 
     side = round(0.414 * radius)
     square = np.ones((2 * side + 1, 2 * side + 1), np.uint8)
+    if radius - side <= _FEW_STEPS:
+        padded = np.pad(heights, radius, mode="edge")
+        lowest = _eroded_by_cross(cv2.erode(padded, square), radius - side)
+        highest = -_eroded_by_cross(cv2.erode(-lowest, square), radius - side)
+        return np.ascontiguousarray(highest[radius:-radius, radius:-radius])
+    # Twice the radius, so that no sum of lines is cut off where the inside looks.
+    padded = np.pad(heights, 2 * radius, mode="edge")
+    lowest = _eroded_by_diamond(cv2.erode(padded, square), radius - side)
+    highest = -_eroded_by_diamond(cv2.erode(-lowest, square), radius - side)
+    return np.ascontiguousarray(highest[2 * radius : -2 * radius, 2 * radius : -2 * radius])
+
+
+def _eroded_by_cross(heights: NDArray[np.float32], steps: int) -> NDArray[np.float32]:
+    import cv2
+
     cross = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-    surface = np.pad(heights, radius, mode="edge")
-    for turn in (cv2.erode, cv2.dilate):
-        surface = turn(surface, square).astype(np.float32, copy=False)
-        surface = turn(surface, cross, iterations=radius - side).astype(np.float32, copy=False)
-    inside = slice(radius, -radius)
-    return np.ascontiguousarray(surface[inside, inside])
+    return cv2.erode(heights, cross, iterations=steps).astype(np.float32, copy=False)
+
+
+def _eroded_by_diamond(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
+    """Lowest height within so many steps along rows and columns.
+
+    A diamond is the sum of two diagonal lines and a cross; a line's lowest height is found by
+    doubling its length, which takes few steps where crosses alone would take one for each cell.
+    """
+    lowest = _eroded_by_cross(heights, 1)
+    for slope in (1, -1):
+        lowest = _lowest_along_diagonal(lowest, radius - 1, slope)
+    # Both lines went down from the cell; the diamond lies about it.
+    lowest[radius - 1 :] = lowest[: lowest.shape[0] - radius + 1].copy()
+    return lowest
+
+
+def _lowest_along_diagonal(
+    heights: NDArray[np.float32], steps: int, slope: int
+) -> NDArray[np.float32]:
+    """Lowest height of each cell and the next cells down a diagonal."""
+    reached = 0
+    lowest = heights
+    while reached < steps:
+        step = min(reached + 1, steps - reached)
+        longer = lowest.copy()
+        right = slice(None, -step) if slope > 0 else slice(step, None)
+        farther = slice(step, None) if slope > 0 else slice(None, -step)
+        np.minimum(lowest[:-step, right], lowest[step:, farther], out=longer[:-step, right])
+        lowest = longer
+        reached += step
+    return lowest
 
 
 def filled(heights: NDArray[np.float32], known: NDArray[np.bool_]) -> NDArray[np.float32]:
@@ -53,8 +96,23 @@ def filled(heights: NDArray[np.float32], known: NDArray[np.bool_]) -> NDArray[np
         coarse_heights, coarse_known = _halved(surface, known)
         coarse = filled(coarse_heights, coarse_known)
         _prolong_kernel(coarse, known, surface)
-        _relax_kernel(known, _SWEEPS, surface)
+        there, back = _near_known(known)
+        _relax_kernel(there, back, _SWEEPS, surface)
     return surface
+
+
+def _near_known(known: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Cells to relax, counted along the rows, and the same with each row from its end.
+
+    Far from what is known the coarser skin is as smooth as relaxing would make it.
+    """
+    import cv2
+
+    element = np.ones((2 * _RELAXED_CELLS + 1, 2 * _RELAXED_CELLS + 1), np.uint8)
+    near = (cv2.dilate(known.view(np.uint8), element) > 0) & ~known
+    columns = known.shape[1]
+    turned = np.flatnonzero(near[:, ::-1])
+    return np.flatnonzero(near), turned + (columns - 1 - 2 * (turned % columns))
 
 
 def nearest_known(known: NDArray[np.bool_]) -> NDArray[np.int32]:
@@ -125,29 +183,32 @@ def _prolong_kernel(
 
 
 @kernel
-def _relax_kernel(known: NDArray[np.bool_], sweeps: int, surface: NDArray[np.float32]) -> None:
-    rows, columns = known.shape
+def _relax_kernel(
+    there: NDArray[np.int64],
+    back: NDArray[np.int64],
+    sweeps: int,
+    surface: NDArray[np.float32],
+) -> None:
+    rows, columns = surface.shape
     for sweep in range(sweeps):
-        for row in range(rows):
-            for step in range(columns):
-                column = step if sweep % 2 == 0 else columns - 1 - step
-                if known[row, column]:
-                    continue
-                total = np.float32(0.0)
-                count = 0
-                if row > 0:
-                    total += surface[row - 1, column]
-                    count += 1
-                if row < rows - 1:
-                    total += surface[row + 1, column]
-                    count += 1
-                if column > 0:
-                    total += surface[row, column - 1]
-                    count += 1
-                if column < columns - 1:
-                    total += surface[row, column + 1]
-                    count += 1
-                surface[row, column] = total / np.float32(count)
+        cells = there if sweep % 2 == 0 else back
+        for place in range(cells.shape[0]):
+            row, column = cells[place] // columns, cells[place] % columns
+            total = np.float32(0.0)
+            count = 0
+            if row > 0:
+                total += surface[row - 1, column]
+                count += 1
+            if row < rows - 1:
+                total += surface[row + 1, column]
+                count += 1
+            if column > 0:
+                total += surface[row, column - 1]
+                count += 1
+            if column < columns - 1:
+                total += surface[row, column + 1]
+                count += 1
+            surface[row, column] = total / np.float32(count)
 
 
 def warm_up() -> None:
