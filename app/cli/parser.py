@@ -104,6 +104,16 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
     running.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
     running.add_argument("--output", type=Path, required=True, metavar="OUT")
     running.set_defaults(module="run")
+    studying = commands.add_parser("study", help="a tool with many settings, judged by a truth")
+    studying.add_argument("tool", metavar="TOOL")
+    _add_inputs(studying)
+    studying.add_argument("--truth", action="append", required=True, type=Path, metavar="T")
+    studying.add_argument(
+        "--vary", action="append", required=True, metavar="NAME=FROM:TO:STEPS", help="once or twice"
+    )
+    studying.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
+    studying.add_argument("--output", type=Path, required=True, metavar="OUT.csv")
+    studying.set_defaults(module="study")
     picturing = commands.add_parser("image", help="a point-cloud image as PNG")
     _add_inputs(picturing)
     picturing.add_argument("--kind", required=True, metavar="KIND")

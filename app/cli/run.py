@@ -27,7 +27,7 @@ _RUNNING = 0.8
 def command(arguments: argparse.Namespace) -> int:
     """Run a tool on every drive of the input and write its result."""
     tool = tool_of(arguments.tool)
-    parameters = filled_in(tool.parameters, _settings(arguments.set))
+    parameters = filled_in(tool.parameters, settings_of_words(arguments.set))
     _check_output(tool, arguments.output)
     monitor = terminal_monitor()
     with (
@@ -83,7 +83,14 @@ def _write_features(
     return (output,)
 
 
-def _settings(words: list[str]) -> dict[str, str]:
+def settings_of_words(words: list[str]) -> dict[str, str]:
+    """What ``--set NAME=VALUE`` says, by name.
+
+    Raises
+    ------
+    OutOfRange
+        A setting has no value.
+    """
     settings = {}
     for word in words:
         name, sign, value = word.partition("=")

@@ -1,4 +1,4 @@
-"""What a pixel can show: the eight attributes of the thesis (Takahashi 2022, figure 3-8)."""
+"""What a pixel shows: the eight attributes of Takahashi 2022, figure 3-8, and judgements."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from processing.image.colour_maps import (
     class_colours,
     grey_ramp,
     height_ramp,
+    judgement_colours,
     normal_ramp,
     segment_colours,
     stretched,
@@ -24,6 +25,7 @@ from processing.image.colour_maps import (
 from processing.image.drive_sample import value_at_percent
 from processing.image.kinds import ImageKind
 from processing.image.normals import RowLayout, SurfaceShapes, surface_shapes
+from processing.points.judgement import JUDGED
 from processing.points.ordering import read_stretch
 from processing.text import Text
 
@@ -81,9 +83,18 @@ ATTRIBUTES: Mapping[str, Attribute] = {
             ("intensity",),
         ),
         Attribute("class", Text("Class", "クラス"), ("classification",)),
+        Attribute(
+            "judged",
+            Text("Right and wrong", "正誤"),
+            (JUDGED,),
+            Text(
+                "Show the points of a run in the evaluation first.",
+                "先に評価パネルで実行結果の正誤を表示してください。",
+            ),
+        ),
     )
 }
-"""By id, in the order of the thesis."""
+"""By id, those of the thesis first, in its order."""
 
 
 def colours(
@@ -277,6 +288,10 @@ def _label(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
     return shown
 
 
+def _judged(drive: Drive, points: _Points) -> _Colours:
+    return np.asarray(judgement_colours()[drive.columns[JUDGED][points]])
+
+
 def _class(drive: Drive, points: _Points) -> _Colours:
     return np.asarray(class_colours()[drive.columns["classification"][points]])
 
@@ -292,4 +307,5 @@ _PLAIN: Mapping[str, Callable[[Drive, _Points], _Colours]] = {
     "segment": _segment,
     "color": _color,
     "class": _class,
+    "judged": _judged,
 }

@@ -6,18 +6,30 @@ a colour that no ramp comes near.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.points.classes import point_classes
+from processing.points.judgement import Judgement
 
 Colours = NDArray[np.uint8]
 
 EMPTY_COLOUR = (8, 24, 88)
 UNKNOWN_COLOUR = (96, 96, 96)
 """Points whose attribute isn't known: too few neighbours, in no camera image."""
+
+JUDGEMENT_COLOURS: Mapping[Judgement, str] = {
+    Judgement.RIGHTLY_KEPT: "#9a9a9a",
+    Judgement.RIGHTLY_REMOVED: "#56b4e9",
+    Judgement.WRONGLY_REMOVED: "#d55e00",
+    Judgement.WRONGLY_KEPT: "#f0e442",
+}
+"""Of Okabe and Ito (2008), and a grey: told apart by every eye, the two mistakes also in print."""
+
+_NOT_JUDGED = (64, 64, 64)
 
 HEIGHT_STEPS = 24
 SEGMENT_COLOURS = 1024
@@ -54,6 +66,15 @@ def class_colours() -> Colours:
     table = np.full((256, 3), UNKNOWN_COLOUR, np.uint8)
     for one in point_classes():
         table[one.code] = one.rgb
+    return table
+
+
+@lru_cache(maxsize=1)
+def judgement_colours() -> Colours:
+    """(256, 3) by `Judgement`: what is right is grey or blue, what is wrong stands out."""
+    table = np.full((256, 3), _NOT_JUDGED, np.uint8)
+    for judgement, colour in JUDGEMENT_COLOURS.items():
+        table[judgement] = tuple(bytes.fromhex(colour[1:]))
     return table
 
 

@@ -39,6 +39,8 @@ COLUMN_TYPES: Mapping[str, tuple[str, int]] = {
     "seen_color": ("u1", 3),
     "is_seen": ("u1", 1),
     "label": ("u1", 1),
+    "truth": ("u1", 1),
+    "judged": ("u1", 1),
 }
 """Column name to dtype and values per point."""
 

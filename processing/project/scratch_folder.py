@@ -44,6 +44,24 @@ def scratch_folder(beside: Path) -> Iterator[Path]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
+@contextmanager
+def whole_folder(folder: Path) -> Iterator[Path]:
+    """A new folder for what is kept when it is whole; removed where the body fails.
+
+    Raises
+    ------
+    NoSpace, MissingInput
+        The folder can't be made.
+    """
+    with told_as_user_error(folder):
+        folder.mkdir(parents=True)
+    try:
+        yield folder
+    except BaseException:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
+
+
 def _locked(beside: Path) -> tuple[Path, FileLock]:
     while True:
         folder = beside / f"{_PREFIX}{uuid4().hex}"

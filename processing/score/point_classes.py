@@ -42,6 +42,21 @@ class TwoByTwo:
     misses: int
     rejections: int
 
+    @staticmethod
+    def of(is_true: NDArray[np.bool_], is_found: NDArray[np.bool_]) -> TwoByTwo:
+        """Count a block of points: (n,) bool each, whether a point is positive and is called so."""
+        true, found = int(np.count_nonzero(is_true)), int(np.count_nonzero(is_found))
+        hits = int(np.count_nonzero(is_true & is_found))
+        return TwoByTwo(hits, found - hits, true - hits, is_true.size - true - found + hits)
+
+    def __add__(self, other: TwoByTwo) -> TwoByTwo:
+        return TwoByTwo(
+            self.hits + other.hits,
+            self.false_alarms + other.false_alarms,
+            self.misses + other.misses,
+            self.rejections + other.rejections,
+        )
+
     @property
     def count(self) -> int:
         """All points."""

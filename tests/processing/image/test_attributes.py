@@ -48,9 +48,9 @@ def lightness(rgb: NDArray[np.uint8]) -> NDArray[np.float64]:
     return np.asarray(np.where(y > 0.008856, 116 * np.cbrt(y) - 16, 903.3 * y))
 
 
-def test_the_eight_attributes_of_the_contract_are_there() -> None:
+def test_the_eight_attributes_of_the_contract_are_there_and_what_an_evaluation_shows() -> None:
     wanted = ["intensity", "height", "normal", "shape", "segment", "color", "label", "class"]
-    assert list(ATTRIBUTES) == wanted
+    assert list(ATTRIBUTES) == [*wanted, "judged"]
     for attribute in ATTRIBUTES.values():
         assert attribute.title.en
         assert attribute.title.ja

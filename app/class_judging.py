@@ -1,0 +1,218 @@
+"""ClassJudging: truths of points, and how good runs and settings are by them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from datetime import UTC, datetime
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Signal
+
+from app.adoption import Adoption
+from app.document import Document
+from app.jobs import JobQueue, Lane
+from app.truth_work import StudyWish, judged_work, study_work, truth_by_hand_work, truth_file_work
+from processing.errors import UserError
+from processing.image.clip import Clip
+from processing.monitor import Monitor
+from processing.points.drive import Drive
+from processing.points.judgement import JUDGED
+from processing.project.class_evaluation import ClassEvaluation, evaluate_classes
+from processing.project.project import Project
+from processing.project.study_store import KeptStudy, StudyStore, new_study_id
+from processing.project.truth_making import Checked, MadeTruth
+from processing.project.truth_store import Truth, TruthStore, new_truth_id
+from processing.score.parameter_study import ParameterStudy
+from processing.text import Text
+from processing.tools.tool import FinishedColumns
+
+_MADE = Text("Truth of {points} points: {name}", "{points}点の正解を登録しました: {name}")
+_JUDGING = Text("Evaluation", "評価")
+
+
+class ClassJudging(QObject):
+    """Truths, evaluations and studies of the open project.
+
+    Parameters
+    ----------
+    document : Document
+    jobs : JobQueue
+
+    Signals
+    -------
+    truths_changed, studies_changed
+        There are others now; also when a project was opened or closed.
+    judged(truth: str, evaluations: tuple[ClassEvaluation, ...])
+        What :meth:`judge` asked for.
+    truth_made(truth: Truth), study_made(kept: KeptStudy)
+        A new one.
+    """
+
+    truths_changed = Signal()
+    studies_changed = Signal()
+    judged = Signal(str, object)
+    truth_made = Signal(object)
+    study_made = Signal(object)
+
+    def __init__(self, document: Document, jobs: JobQueue, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._document = document
+        self._adoption = Adoption(jobs, self)
+        self._adoption.refused.connect(document.refused)
+        document.about_to_close.connect(self._adoption.give_up)
+        document.opened.connect(self._on_document_opened)
+        document.closed.connect(self._tell_all)
+
+    # What there is.
+
+    def truths(self) -> tuple[Truth, ...]:
+        """The truths of the open project."""
+        project = self._document.project
+        return () if project is None else TruthStore(project.settings).all()
+
+    def studies(self) -> tuple[KeptStudy, ...]:
+        """The studies of the open project, the first one first."""
+        project = self._document.project
+        return () if project is None else StudyStore(project.settings).all()
+
+    # Truths.
+
+    def make_truth(self, checked: Checked, clip: Clip | None) -> str:
+        """Let the classes of the drive shown, as they stand now, be a truth; gives the job's id.
+
+        Parameters
+        ----------
+        clip : Clip or None
+            What the 3D view shows, for ``Checked.CLIP``.
+        """
+        project, drive = self._open(), self._shown()
+        if project is None or drive is None:
+            return ""
+        clip = clip if checked is Checked.CLIP else None
+        runs = self._document.runs() if checked is Checked.PAINTED else None
+        work = truth_by_hand_work(drive, project.temporary_folder(), clip=clip, runs=runs)
+        return self._start_truth(project, _NAMES[checked].filled(drive=drive.info.name), work)
+
+    def load_truth(self, path: Path) -> str:
+        """Take the truth of a delivered file from a file; gives the job's id."""
+        project = self._open()
+        if project is None:
+            return ""
+        work = truth_file_work(self._document.drives(), path, project.temporary_folder())
+        return self._start_truth(project, Text.same(path.name), work)
+
+    def remove_truth(self, id_: str) -> None:
+        """Forget a truth for good."""
+        self._change(lambda project: self._forget_truth(project, id_), self.truths_changed.emit)
+
+    def remove_study(self, id_: str) -> None:
+        """Forget a study for good."""
+        self._change(
+            lambda project: StudyStore(project.settings).remove(id_), self.studies_changed.emit
+        )
+
+    # Judging.
+
+    def judge(self, truth: str) -> None:
+        """Count all runs by a truth in the background; `judged` tells what came of it."""
+        project = self._open()
+        if project is None or TruthStore(project.settings).get(truth) is None:
+            self.judged.emit(truth, ())
+            return
+        runs, drives = self._document.runs(), self._document.drives()
+
+        def work(monitor: Monitor) -> tuple[ClassEvaluation, ...]:
+            return evaluate_classes(runs, drives, truth, monitor)
+
+        def take(found: tuple[ClassEvaluation, ...]) -> None:
+            self.judged.emit(truth, found)
+
+        # Nobody waits for it, but for the numbers: it is no entry in the list of jobs.
+        self._adoption.start(project, _JUDGING, work, take, lane=Lane.AT_HAND)
+
+    def show_points(self, truth: str, evaluation: ClassEvaluation) -> str:
+        """Colour the points by what was right and wrong, in all views; gives the job's id."""
+        project = self._open()
+        if project is None:
+            return ""
+        drives = [self._document.drive(id_) for id_ in evaluation.drives]
+        work = judged_work(drives, truth, evaluation, project.temporary_folder())
+
+        def take(found: tuple[tuple[Drive, FinishedColumns], ...]) -> None:
+            for drive, columns in found:
+                columns.hand_over(drive.columns)
+                self._document.tiles.drop(drive.id)
+                self._document.shared.map_changes.drive_columns_changed.emit(drive.id)
+            self._document.shared.view_settings.change_look(attribute=JUDGED)
+
+        return self._adoption.start(project, _JUDGING, work, take)
+
+    def study(self, wish: StudyWish) -> str:
+        """Go through values of parameters on the drive shown; gives the job's id."""
+        project, drive = self._open(), self._shown()
+        truth = None if project is None else TruthStore(project.settings).get(wish.truth)
+        if project is None or drive is None or truth is None:
+            return ""
+        title, work = study_work(wish, drive, project.temporary_folder())
+
+        def take(study: ParameterStudy) -> None:
+            kept = KeptStudy(
+                new_study_id(), study, truth.name, drive.info.name, wish.is_part, datetime.now(UTC)
+            )
+            StudyStore(project.settings).add(kept)
+            self.studies_changed.emit()
+            self.study_made.emit(kept)
+
+        return self._adoption.start(project, title, work, take)
+
+    def _start_truth(
+        self, project: Project, name: Text, work: Callable[[Monitor], MadeTruth]
+    ) -> str:
+        def take(made: MadeTruth) -> None:
+            moment = datetime.now(UTC)
+            truth = Truth(new_truth_id(), name, dict(made.known), moment)
+            store = TruthStore(project.settings)
+            store.add(truth, made.folders, self._document.drive)
+            self.truths_changed.emit()
+            self.truth_made.emit(truth)
+            self._document.told.emit(_MADE.filled(points=f"{truth.points:,}", name=name))
+
+        title = Text("Truth: {name}", "正解: {name}").filled(name=name)
+        return self._adoption.start(project, title, work, take)
+
+    def _forget_truth(self, project: Project, id_: str) -> None:
+        TruthStore(project.settings).remove(id_, self._document.drive)
+
+    def _change(self, act: Callable[[Project], None], tell: Callable[[], None]) -> None:
+        project = self._open()
+        if project is None:
+            return
+        try:
+            act(project)
+        except UserError as error:
+            self._document.refused.emit(error)
+        tell()
+
+    def _open(self) -> Project | None:
+        return self._document.project
+
+    def _shown(self) -> Drive | None:
+        shown = self._document.shared.view_settings.drive_id
+        return self._document.drive(shown) if shown else None
+
+    def _on_document_opened(self) -> None:
+        project = self._open()
+        if project is not None:
+            TruthStore(project.settings).remove_unlisted(project.drives)
+        self._tell_all()
+
+    def _tell_all(self) -> None:
+        self.truths_changed.emit()
+        self.studies_changed.emit()
+
+
+_NAMES = {
+    Checked.WHOLE: Text("{drive}: all checked", "{drive}: 全体を確認"),
+    Checked.CLIP: Text("{drive}: a part checked", "{drive}: 一部を確認"),
+    Checked.PAINTED: Text("{drive}: painted points", "{drive}: 手動ラベル"),
+}

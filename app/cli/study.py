@@ -1,0 +1,108 @@
+"""``zuka study``: a tool over a grid of one or two parameters, judged by a truth; a table."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from pathlib import Path
+
+from app.cli.aligned import aligned
+from app.cli.opened import OpenedInput, opened_input, terminal_monitor
+from app.cli.output import print_lines
+from app.cli.run import settings_of_words
+from app.language import system_language
+from processing.errors import OutOfRange
+from processing.formats.safe_write import refuse_inputs
+from processing.monitor import Monitor, PartMonitor
+from processing.points.drive import Drive
+from processing.points.ordering import read_stretch
+from processing.project.class_tables import write_study
+from processing.project.scratch_folder import scratch_folder
+from processing.project.truth_of_file import coded_truth, truth_of_file
+from processing.project.truth_store import TRUTH
+from processing.runner import check_needs, tool_of
+from processing.score.asked_classes import ASKED
+from processing.score.parameter_study import (
+    ParameterStudy,
+    StudyRequest,
+    TruthOf,
+    study,
+    varied_of,
+)
+from processing.text import Language, Text
+from processing.tools.parameters import filled_in
+
+_READING = 0.1
+_HEAD = (Text("precision", "適合率"), Text("recall", "再現率"), Text.same("F"))
+
+
+def command(arguments: argparse.Namespace) -> int:
+    """Study a tool on every drive of the input that has a truth, and write the table."""
+    tool = tool_of(arguments.tool)
+    fixed = settings_of_words(arguments.set)
+    filled_in(tool.parameters, fixed)
+    varied = varied_of(tool.id, arguments.vary)
+    _check_output(arguments.output)
+    monitor = terminal_monitor()
+    with (
+        opened_input(arguments, monitor) as opened,
+        scratch_folder(arguments.output.parent) as scratch,
+    ):
+        never = [*arguments.truth, *_delivered(opened)]
+        refuse_inputs(arguments.output, never)
+        for drive in opened.drives:
+            check_needs(tool, drive)
+        reading = PartMonitor(monitor, 0.0, _READING)
+        drives, truth = _truth_of(opened, arguments.truth, scratch, reading)
+        request = StudyRequest(tool.id, drives, fixed, varied)
+        found = study(request, truth, PartMonitor(monitor, _READING, 1.0), scratch / "runs")
+        write_study(arguments.output, found, never=never)
+    print_lines(*_lines(found, system_language()), str(arguments.output))
+    return 0
+
+
+def _truth_of(
+    opened: OpenedInput, files: list[Path], scratch: Path, monitor: Monitor
+) -> tuple[tuple[Drive, ...], TruthOf]:
+    """The drives that files say the truth of, and what they say."""
+    folders: dict[str, Path] = {}
+    for number, path in enumerate(files):
+        into = scratch / f"truth-{number}"
+        part = PartMonitor(monitor, number / len(files), (number + 1) / len(files))
+        folders |= truth_of_file(opened.drives, coded_truth(path), into, part).folders
+    drives = tuple(drive for drive in opened.drives if drive.id in folders)
+    return drives, lambda drive, start, stop: read_stretch(folders[drive.id], TRUTH, start, stop)
+
+
+def _lines(found: ParameterStudy, language: Language) -> list[str]:
+    """Every setting with the scores of what the tool looks for, the best one marked."""
+    names = [one.parameter for one in found.varied]
+    best = found.best
+    rows = [
+        [
+            *names,
+            *(
+                f"{ASKED[found.tool].found.spoken(language)}:{one.spoken(language)}"
+                for one in _HEAD
+            ),
+            "",
+        ]
+    ]
+    for cell in found.cells:
+        scores = cell.counts.precision, cell.counts.recall, cell.counts.f_measure
+        words = [f"{100 * one:.3f} %" if not math.isnan(one) else "-" for one in scores]
+        rows.append([*(str(one) for one in cell.values), *words, "*" if cell is best else ""])
+    return aligned(rows)
+
+
+def _delivered(opened: OpenedInput) -> list[Path]:
+    return [path for drive in opened.drives for path in drive.delivered_files]
+
+
+def _check_output(output: Path) -> None:
+    if output.suffix.lower() != ".csv":
+        raise OutOfRange(
+            Text("A study is written as a table.", "検討結果は表として書き出します。"),
+            Text.same(str(output)),
+            Text("Give a name ending in .csv.", ".csv で終わる名前を指定してください。"),
+        )

@@ -1,0 +1,109 @@
+"""What judging by a truth has done in the background: functions for a job's thread."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from processing.image.clip import Clip
+from processing.monitor import Monitor, PartMonitor
+from processing.points.drive import Drive
+from processing.project.class_evaluation import ClassEvaluation, judged_columns
+from processing.project.runs import Run
+from processing.project.truth_making import MadeTruth, truth_as_it_stands
+from processing.project.truth_of_file import coded_truth, truth_of_file
+from processing.project.truth_study import study_by_truth
+from processing.runner import tool_of
+from processing.score.asked_classes import ASKED
+from processing.score.parameter_study import ParameterStudy, StudyRequest, Varied
+from processing.text import Text
+from processing.tools.parameters import Value
+from processing.tools.tool import FinishedColumns
+
+
+@dataclass(frozen=True)
+class StudyWish:
+    """A parameter study as somebody asks for it.
+
+    Attributes
+    ----------
+    tool : str
+    truth : str
+        Id of the truth that judges.
+    fixed : tuple of (str, value)
+        The other parameters.
+    varied : tuple of Varied
+    is_part : bool
+        Only around the points whose truth is known.
+    """
+
+    tool: str
+    truth: str
+    fixed: tuple[tuple[str, Value], ...]
+    varied: tuple[Varied, ...]
+    is_part: bool
+
+
+def truth_by_hand_work(
+    drive: Drive, into: Path, *, clip: Clip | None, runs: Sequence[Run] | None
+) -> Callable[[Monitor], MadeTruth]:
+    """The classes of a drive as they stand become a truth.
+
+    Parameters
+    ----------
+    runs : sequence of Run or None
+        Of the project, where only what was painted beside them counts.
+    """
+    beside = None
+    if runs is not None:
+        beside = {run.id: ASKED[run.tool].codes for run in runs if run.tool in ASKED}
+
+    def work(monitor: Monitor) -> MadeTruth:
+        return truth_as_it_stands(drive, into, monitor, clip=clip, painted_beside=beside)
+
+    return work
+
+
+def truth_file_work(
+    drives: Sequence[Drive], path: Path, into: Path
+) -> Callable[[Monitor], MadeTruth]:
+    """The classes in a file become a truth of the points that they belong to."""
+
+    def work(monitor: Monitor) -> MadeTruth:
+        return truth_of_file(drives, coded_truth(path), into, monitor)
+
+    return work
+
+
+def judged_work(
+    drives: Sequence[Drive], truth: str, evaluation: ClassEvaluation, into: Path
+) -> Callable[[Monitor], tuple[tuple[Drive, FinishedColumns], ...]]:
+    """A column of what was right and wrong for each drive."""
+
+    def work(monitor: Monitor) -> tuple[tuple[Drive, FinishedColumns], ...]:
+        found = []
+        for number, drive in enumerate(drives):
+            part = PartMonitor(monitor, number / len(drives), (number + 1) / len(drives))
+            columns = judged_columns(
+                drive, truth, evaluation, into.with_name(f"{into.name}-{number}"), part
+            )
+            found.append((drive, columns))
+        return tuple(found)
+
+    return work
+
+
+def study_work(
+    wish: StudyWish, drive: Drive, into: Path
+) -> tuple[Text, Callable[[Monitor], ParameterStudy]]:
+    """A tool is tried with many settings."""
+    request = StudyRequest(wish.tool, (drive,), dict(wish.fixed), wish.varied)
+    title = Text("Parameter study: {tool}", "パラメータ検討: {tool}").filled(
+        tool=tool_of(wish.tool).name
+    )
+
+    def work(monitor: Monitor) -> ParameterStudy:
+        return study_by_truth(request, wish.truth, into, monitor, is_part=wish.is_part)
+
+    return title, work

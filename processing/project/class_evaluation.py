@@ -1,0 +1,143 @@
+"""How good runs that give classes were, by a truth: counts for each run, and a picture."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.monitor import Monitor, PartMonitor
+from processing.points.columns import ColumnWriter
+from processing.points.drive import Drive
+from processing.points.judgement import JUDGED, judged
+from processing.project.run_findings import has_finding, read_finding
+from processing.project.runs import Run
+from processing.project.scratch_folder import whole_folder
+from processing.project.truth_making import classes_as_they_stand
+from processing.project.truth_store import has_truth, read_truth
+from processing.score.asked_classes import ASKED
+from processing.score.point_classes import TwoByTwo, is_one_of
+from processing.tools.tool import FinishedColumns
+
+_AT_ONCE = 1 << 20
+
+
+@dataclass(frozen=True)
+class ClassEvaluation:
+    """One run, or the cloud as it stands, against a truth.
+
+    Attributes
+    ----------
+    tool : str
+        What was asked, a key of :data:`processing.score.asked_classes.ASKED`.
+    run : Run or None
+        None: the classes as they stand now, corrections by hand and all.
+    drives : tuple of str
+        On which it was counted.
+    counts : TwoByTwo
+        Of the points whose truth is known; positive are those that the tool looks for.
+    """
+
+    tool: str
+    run: Run | None
+    drives: tuple[str, ...]
+    counts: TwoByTwo
+
+
+def evaluate_classes(
+    runs: Sequence[Run], drives: Sequence[Drive], truth: str, monitor: Monitor
+) -> tuple[ClassEvaluation, ...]:
+    """Count every run that is kept, and for each tool the classes as they stand now.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+    drives : sequence of Drive
+        Those of the project.
+    truth : str
+        Its id.
+
+    Returns
+    -------
+    tuple of ClassEvaluation
+        Tool by tool; the runs in their order, then the cloud as it stands.
+
+    Raises
+    ------
+    MissingInput, Cancelled
+    """
+    known = [drive for drive in drives if has_truth(drive, truth)]
+    wanted: list[tuple[str, Run | None, list[Drive]]] = []
+    for tool in ASKED:
+        judged_runs = []
+        for run in runs:
+            on = [one for one in known if one.id in run.drives and has_finding(one, run.id)]
+            if run.tool == tool and on:
+                judged_runs.append((tool, run, on))
+        if judged_runs:
+            wanted += judged_runs
+            wanted.append((tool, None, [one for one in known if _is_on(one, judged_runs)]))
+    found = []
+    for number, (tool, which, on) in enumerate(wanted):
+        part = PartMonitor(monitor, number / len(wanted), (number + 1) / len(wanted))
+        counts = TwoByTwo(0, 0, 0, 0)
+        for drive in on:
+            counts += _counted(drive, truth, tool, which, part)
+        found.append(ClassEvaluation(tool, which, tuple(one.id for one in on), counts))
+    return tuple(found)
+
+
+def judged_columns(
+    drive: Drive, truth: str, evaluation: ClassEvaluation, into: Path, monitor: Monitor
+) -> FinishedColumns:
+    """A picture of one evaluation: the column ``judged`` of a drive.
+
+    Parameters
+    ----------
+    into : Path
+        A new folder on the drive's disk.
+
+    Raises
+    ------
+    MissingInput, NoSpace, Cancelled
+    """
+    tool, run, asked = evaluation.tool, evaluation.run, ASKED[evaluation.tool]
+    with whole_folder(into), ColumnWriter(into) as writer:
+        writer.append({JUDGED: np.empty(0, np.uint8)})
+        for start in range(0, drive.count, _AT_ONCE):
+            monitor.check()
+            monitor.report(start / drive.count)
+            stop = min(start + _AT_ONCE, drive.count)
+            codes = read_truth(drive, truth, start, stop)
+            is_true, is_found = is_one_of(codes, asked.codes), _found(drive, tool, run, start, stop)
+            if not asked.removes:
+                is_true, is_found = ~is_true, ~is_found
+            writer.append({JUDGED: judged(codes > 0, is_true, is_found)})
+    return FinishedColumns(into, (JUDGED,), drive.count)
+
+
+def _is_on(drive: Drive, wanted: Sequence[tuple[str, Run | None, list[Drive]]]) -> bool:
+    return any(drive in on for _, _, on in wanted)
+
+
+def _counted(drive: Drive, truth: str, tool: str, run: Run | None, monitor: Monitor) -> TwoByTwo:
+    counts = TwoByTwo(0, 0, 0, 0)
+    for start in range(0, drive.count, _AT_ONCE):
+        monitor.check()
+        monitor.report(start / drive.count)
+        stop = min(start + _AT_ONCE, drive.count)
+        codes = read_truth(drive, truth, start, stop)
+        is_known = codes > 0
+        if is_known.any():
+            is_found = _found(drive, tool, run, start, stop)[is_known]
+            counts += TwoByTwo.of(is_one_of(codes[is_known], ASKED[tool].codes), is_found)
+    return counts
+
+
+def _found(drive: Drive, tool: str, run: Run | None, start: int, stop: int) -> NDArray[np.bool_]:
+    if run is not None:
+        return read_finding(drive, run.id, start, stop)
+    return is_one_of(classes_as_they_stand(drive, start, stop), ASKED[tool].codes)

@@ -1,0 +1,127 @@
+"""Making a truth of the classes as they stand now, after somebody corrected them.
+
+The column is written into a folder of its own, a stretch at a time, in a worker's thread;
+:class:`processing.project.truth_store.TruthStore` adopts the folder.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.image.clip import Clip
+from processing.labels.label_column import LABEL
+from processing.monitor import Monitor
+from processing.points.columns import ColumnWriter
+from processing.points.drive import Drive
+from processing.points.ordering import read_stretch
+from processing.project.run_findings import has_finding, read_finding
+from processing.project.scratch_folder import whole_folder
+from processing.project.truth_store import TRUTH
+from processing.score.point_classes import is_one_of
+
+OTHER = 1
+"""The code of a point that is known to be none of the classes asked for."""
+
+_CLASS = "classification"
+_AT_ONCE = 1_000_000
+
+
+class Checked(Enum):
+    """Which points a person vouches for."""
+
+    WHOLE = "whole"
+    """All of the drive: every class is right as it stands."""
+    CLIP = "clip"
+    """All within the part that the 3D view shows."""
+    PAINTED = "painted"
+    """Those that were given a class by hand, and no others."""
+
+
+@dataclass(frozen=True)
+class MadeTruth:
+    """Finished columns.
+
+    Attributes
+    ----------
+    folders : mapping of str to Path
+        By drive.
+    known : mapping of str to int
+        By drive, points whose truth is known.
+    """
+
+    folders: Mapping[str, Path]
+    known: Mapping[str, int]
+
+
+def truth_as_it_stands(
+    drive: Drive,
+    into: Path,
+    monitor: Monitor,
+    *,
+    clip: Clip | None = None,
+    painted_beside: Mapping[str, Collection[int]] | None = None,
+) -> MadeTruth:
+    """Take the classes of a drive as they stand now for the truth.
+
+    A label counts before the delivered class; a point without either is `OTHER`.
+
+    Parameters
+    ----------
+    into : Path
+        A new folder on the drive's disk.
+    clip : Clip or None
+        Outside of it nothing is known.
+    painted_beside : mapping of str to codes, or None
+        Runs by id with the classes that they look for: only points count that have a label which
+        none of these runs gave, since that one was set by hand. None: all points count.
+
+    Raises
+    ------
+    NoSpace, Cancelled
+    """
+    known = 0
+    with whole_folder(into), ColumnWriter(into) as writer:
+        writer.append({TRUTH: np.empty(0, np.uint8)})
+        for start in range(0, drive.count, _AT_ONCE):
+            monitor.check()
+            monitor.report(start / drive.count)
+            stop = min(start + _AT_ONCE, drive.count)
+            codes = classes_as_they_stand(drive, start, stop)
+            if clip is not None:
+                codes[~clip.holds(drive.xyz(slice(start, stop)))] = 0
+            if painted_beside is not None:
+                codes[~_is_by_hand(drive, start, stop, painted_beside)] = 0
+            known += int(np.count_nonzero(codes))
+            writer.append({TRUTH: codes})
+    return MadeTruth({drive.id: into}, {drive.id: known})
+
+
+def classes_as_they_stand(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:
+    """Labels over delivered classes of the points ``start … stop − 1``: (k,) uint8, never 0."""
+    codes = np.zeros(stop - start, np.uint8)
+    if drive.columns.has(_CLASS):
+        codes = np.asarray(read_stretch(drive.folder, _CLASS, start, stop))
+    if drive.columns.has(LABEL):
+        labels = np.asarray(drive.columns[LABEL][start:stop])
+        codes = np.where(labels > 0, labels, codes)
+    return np.maximum(codes, np.uint8(OTHER))
+
+
+def _is_by_hand(
+    drive: Drive, start: int, stop: int, runs: Mapping[str, Collection[int]]
+) -> NDArray[np.bool_]:
+    if not drive.columns.has(LABEL):
+        return np.zeros(stop - start, np.bool_)
+    labels = np.asarray(drive.columns[LABEL][start:stop])
+    is_by_hand = labels > 0
+    for run, codes in runs.items():
+        if has_finding(drive, run):
+            said = read_finding(drive, run, start, stop)
+            is_by_hand &= ~(said & is_one_of(labels, codes))
+    return is_by_hand

@@ -1,0 +1,105 @@
+"""A parameter study judged by a truth of the project: on a whole drive, or where it is quick."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.errors import told_as_user_error
+from processing.monitor import Monitor, PartMonitor
+from processing.points.drive import Drive
+from processing.points.drive_part import write_part
+from processing.points.ordering import read_stretch
+from processing.project.truth_store import TRUTH, read_truth
+from processing.score.parameter_study import ParameterStudy, StudyRequest, TruthOf, study
+
+MARGIN_M = 5.0
+"""So far around the points with a known truth a tool sees the others."""
+
+_AT_ONCE = 1 << 20
+_CUTTING = 0.05
+
+
+def study_by_truth(
+    request: StudyRequest, truth: str, into: Path, monitor: Monitor, *, is_part: bool
+) -> ParameterStudy:
+    """Study a tool on drives that have a truth.
+
+    Parameters
+    ----------
+    request : StudyRequest
+    truth : str
+        Its id.
+    into : Path
+        A new folder on a disk with room for a run; it is removed in the end.
+    is_part : bool
+        Look only at the box around the points whose truth is known, and `MARGIN_M` more. Quick,
+        but what a method takes from the whole cloud it takes from the part then.
+
+    Raises
+    ------
+    UserError
+        As :func:`processing.score.parameter_study.study`.
+    Cancelled
+    """
+    with told_as_user_error(into):
+        into.mkdir(parents=True)
+    try:
+        if not is_part:
+            return study(request, _truth_of(truth), monitor, into)
+        cutting = PartMonitor(monitor, 0.0, _CUTTING)
+        parts = tuple(
+            _part(drive, truth, into / f"part-{number}", cutting)
+            for number, drive in enumerate(request.drives)
+        )
+        rest = PartMonitor(monitor, _CUTTING, 1.0)
+        return study(replace(request, drives=parts), _truth_of_part, rest, into)
+    finally:
+        shutil.rmtree(into, ignore_errors=True)
+
+
+def _truth_of(id_: str) -> TruthOf:
+    def read(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:
+        return read_truth(drive, id_, start, stop)
+
+    return read
+
+
+def _truth_of_part(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:
+    return np.asarray(read_stretch(drive.folder, TRUTH, start, stop))
+
+
+def _part(drive: Drive, truth: str, into: Path, monitor: Monitor) -> Drive:
+    """The surroundings of a drive's points with a known truth, and the truth beside them."""
+    low, high = _box_of_known(drive, truth, monitor)
+
+    def is_near(start: int, stop: int) -> NDArray[np.bool_]:
+        xyz = drive.xyz(slice(start, stop))
+        inside: NDArray[np.bool_] = np.all((xyz >= low) & (xyz <= high), axis=1)
+        return inside
+
+    def beside(start: int, stop: int) -> Mapping[str, NDArray[np.uint8]]:
+        return {TRUTH: read_truth(drive, truth, start, stop)}
+
+    return write_part(drive, is_near, into, monitor, beside=beside)
+
+
+def _box_of_known(
+    drive: Drive, truth: str, monitor: Monitor
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    for start in range(0, drive.count, _AT_ONCE):
+        monitor.check()
+        stop = min(start + _AT_ONCE, drive.count)
+        known = np.flatnonzero(read_truth(drive, truth, start, stop)) + start
+        if known.size:
+            xyz = drive.xyz(known)
+            low, high = np.fmin(low, xyz.min(axis=0)), np.fmax(high, xyz.max(axis=0))
+    # A part of space in plan: what stands above and below a point belongs to its surroundings.
+    low[2], high[2] = -np.inf, np.inf
+    return low - MARGIN_M, high + MARGIN_M
