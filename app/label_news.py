@@ -14,5 +14,5 @@ def tell_labels(
     """Drop the tiles whose points have other labels now, and tell the views."""
     for drive, label in labels:
         points = label.unpacked_points()
-        tiles.drop_touched(drive, "label", points)
+        tiles.drop_relabelled(drive, points)
         map_changes.labels_changed.emit(drive.id, points)

@@ -16,12 +16,13 @@ from widgets.image_view.side_by_side import ImageViews
 from widgets.shared.image_lay import ImageLay
 
 _NAME = "views"
+_HIDES_NOISE = "hides_noise"
 _AFTER_MS = 2_000
 _LAYS = ("is_vertical", "is_mirrored_across", "is_reversed_along")
 
 
 class ViewMemory(QObject):
-    """Keeps the image's drive, the images beside it and hidden drives for the next opening.
+    """Keeps the image's drive, the images beside it and what is hidden for the next opening.
 
     Parameters
     ----------
@@ -42,6 +43,7 @@ class ViewMemory(QObject):
         for changed in (
             settings.image_changed,
             settings.hidden_drives_changed,
+            settings.look_changed,
             images.images_changed,
         ):
             changed.connect(self._later.start)
@@ -58,6 +60,7 @@ class ViewMemory(QObject):
         settings.hide_drives(
             frozenset(map(str, hidden if isinstance(hidden, list) else [])) & set(kinds)
         )
+        settings.change_look(hides_noise=told.get(_HIDES_NOISE) is True)
         shown = _shown(told)
         if shown is not None and shown.kind in kinds.get(shown.drive_id, ()):
             settings.show_image(shown.drive_id, shown.kind)
@@ -69,7 +72,9 @@ class ViewMemory(QObject):
 
     def _on_document_about_to_close(self) -> None:
         self._keep()
-        self._document.shared.view_settings.hide_drives(frozenset())
+        settings = self._document.shared.view_settings
+        settings.hide_drives(frozenset())
+        settings.change_look(hides_noise=False)
         self._later.stop()
 
     def _keep(self) -> None:
@@ -83,6 +88,7 @@ class ViewMemory(QObject):
         told: dict[str, JsonValue] = {
             **_told(main),
             "hidden": list(hidden),
+            _HIDES_NOISE: settings.look.hides_noise,
             "beside": [_told(one) for one in self._images.images],
         }
         if told != project.settings.get(_NAME):

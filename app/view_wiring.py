@@ -16,6 +16,7 @@ from processing.errors import UserError
 from processing.formats.profile_dxf import ProfileLook, write_profile_dxf
 from processing.section.cut import Cut
 from processing.text import Text
+from widgets.shared.view_settings import PointLook
 
 _KEPT = Text("The camera offsets are kept.", "カメラの補正値を保存しました。")
 _WROTE = Text("Wrote {path}.", "{path} を書き出しました。")
@@ -34,6 +35,7 @@ def connect_views(parts: WindowParts) -> None:
     images.images_changed.connect(wiring.on_images_changed)
     parts.scene_view.clipping.changed.connect(wiring.on_clipping_changed)
     parts.document.shared.view_settings.image_lay_changed.connect(wiring.on_settings_lay_changed)
+    parts.document.shared.view_settings.look_changed.connect(wiring.on_settings_look_changed)
     section.told.connect(parts.status_line.show_message)
     section.settings_changed.connect(parts.settings.remember_section)
     section.profile_export_requested.connect(wiring.on_section_profile_export_requested)
@@ -78,6 +80,9 @@ class _ViewWiring(QObject):
         actions["image-upwards"].setChecked(lay.is_vertical)
         actions["image-mirrored"].setChecked(lay.is_mirrored_across)
         actions["image-reversed"].setChecked(lay.is_reversed_along)
+
+    def on_settings_look_changed(self, look: PointLook) -> None:
+        self._parts.window.actions_by_id["hide-noise"].setChecked(look.hides_noise)
 
     def on_section_profile_export_requested(self) -> None:
         document, section = self._parts.document, self._parts.section_view

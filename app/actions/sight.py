@@ -1,4 +1,4 @@
-"""Sight actions: which way images run, what stands beside them, what 3D leaves out."""
+"""Sight actions: which way images run, what stands beside them, what views leave out."""
 
 from __future__ import annotations
 
@@ -16,10 +16,13 @@ _CLIPS = {
     ClipChoice.SECTION: Text("Within the section", "断面の範囲"),
 }
 
+_NOISE_HIDDEN = Text("Noise is hidden in all views.", "すべてのビューでノイズを隠しています。")
+_NOISE_SHOWN = Text("Noise is shown again.", "ノイズを再び表示しています。")
+
 
 def sight_actions(parts: WindowParts) -> tuple[Action, ...]:
     """What images and 3D show of the recording."""
-    return (*_lays(parts), *_beside(parts), *_clips(parts))
+    return (*_lays(parts), *_beside(parts), *_clips(parts), _hide_noise(parts))
 
 
 def _lays(parts: WindowParts) -> tuple[Action, ...]:
@@ -83,6 +86,32 @@ def _beside(parts: WindowParts) -> tuple[Action, ...]:
             is_checked=images.is_locked,
             needs_project=True,
         ),
+    )
+
+
+def _hide_noise(parts: WindowParts) -> Action:
+    settings = parts.document.shared.view_settings
+
+    def toggle() -> None:
+        hides_noise = not settings.look.hides_noise
+        settings.change_look(hides_noise=hides_noise)
+        parts.status_line.show_message(_NOISE_HIDDEN if hides_noise else _NOISE_SHOWN)
+
+    return Action(
+        "hide-noise",
+        Text("Hide noise", "ノイズを隠す"),
+        toggle,
+        "view",
+        ("Shift+N",),
+        "mdi6.blur-off",
+        toolbar=2,
+        is_checkable=True,
+        is_checked=settings.look.hides_noise,
+        hint=Text(
+            "Points whose class is noise are neither drawn nor picked, in any view.",
+            "クラスがノイズの点を、すべてのビューで表示せず、選択もできないようにします。",
+        ),
+        needs_project=True,
     )
 
 

@@ -15,6 +15,7 @@ from processing.cameras.camera import Camera
 from processing.cameras.choice import pixels_per_radian
 from processing.cameras.depth_kernels import ALONE_M, sizes_kernel
 from processing.image.tiles import TileKey, TilePyramid
+from processing.points.counted_classes import class_columns
 
 if TYPE_CHECKING:  # a drive knows its cameras, so importing it here would be a circle
     from processing.points.drive import Drive
@@ -185,8 +186,7 @@ class Surroundings:
         sizes_kernel(xyz, is_filled, limit, sizes, normals)
         away = xyz[is_filled]
         is_there = (away * away).sum(axis=1) >= OWN_BODY_M**2
-        if drive.columns.has("classification"):
-            is_there &= ~np.isin(drive.columns["classification"][points], _NOT_THERE)
+        is_there &= ~np.isin(class_columns(drive.columns).codes_of(points), _NOT_THERE)
         return SizedPoints(
             points[is_there],
             away[is_there],

@@ -13,6 +13,7 @@ from processing.drafting.polyline import Polyline
 from processing.image.point_image import PointCloudImage
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.image.tiles import TILE
+from processing.points.counted_classes import class_columns
 from processing.points.drive import Drive
 from processing.project.feature import Position, Vertex
 
@@ -145,11 +146,12 @@ class _Search:
         )
 
     def pairs_in(self, drive: Drive) -> _Pairs:
-        """All points of a drive that are near a place."""
+        """All points of a drive that are near a place, but for noise."""
+        classes = class_columns(drive.columns)
         xyz, starts, stops = drive.columns["xyz"], *self._stretches(_image_of(drive))
         frame = np.array([*drive.info.scale, *(drive.info.offset - self.corner), self.cell_m])
         found = [
-            self._pairs_among(np.asarray(xyz[start:stop]), frame)
+            self._pairs_among(_without(classes.noise_between(start, stop), xyz[start:stop]), frame)
             for start, stop in zip(starts.tolist(), stops.tolist(), strict=True)
         ]
         return _united(found)
@@ -182,6 +184,11 @@ class _Search:
         last = tile_rows[np.diff(tile_rows, append=rows + 1) > 1]
         ends = np.minimum((last + 1) * TILE, image.rows)
         return image.row_starts[first * TILE], image.row_starts[ends]
+
+
+def _without(noise: NDArray[np.bool_], xyz: NDArray[np.int32]) -> NDArray[np.int32]:
+    """The points that are no noise: as they are where there is none, which costs nothing."""
+    return np.asarray(xyz)[~noise] if noise.any() else np.asarray(xyz)
 
 
 def _image_of(drive: Drive) -> PointCloudImage:

@@ -25,6 +25,7 @@ from processing.image.colour_maps import (
 from processing.image.drive_sample import value_at_percent
 from processing.image.kinds import ImageKind
 from processing.image.normals import RowLayout, SurfaceShapes, surface_shapes
+from processing.points.counted_classes import class_columns
 from processing.points.judgement import JUDGED
 from processing.points.ordering import read_stretch
 from processing.text import Text
@@ -95,6 +96,9 @@ ATTRIBUTES: Mapping[str, Attribute] = {
     )
 }
 """By id, those of the thesis first, in its order."""
+
+SHOWS_LABELS = frozenset({"label", "class"})
+"""Attributes that show what was painted, or found by a tool that classifies."""
 
 
 def colours(
@@ -293,7 +297,8 @@ def _judged(drive: Drive, points: _Points) -> _Colours:
 
 
 def _class(drive: Drive, points: _Points) -> _Colours:
-    return np.asarray(class_colours()[drive.columns["classification"][points]])
+    """What counts: labels, by hand or by a tool, over the delivered classes."""
+    return np.asarray(class_colours()[class_columns(drive.columns).codes_of(points)])
 
 
 _STRETCHED: Mapping[str, Callable[[Drive, _Points, float, float], _Colours]] = {

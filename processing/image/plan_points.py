@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from processing.image.kinds import ImageKind
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.image.tiles import TileKey
+from processing.points.counted_classes import class_columns
 from processing.points.drive import Drive
 
 Floats = NDArray[np.float64]
@@ -58,10 +59,15 @@ class PlanPoints:
     ----------
     drives : sequence of (Drive, ImageKind)
         With the image whose tiles are searched.
+    hides_noise : bool
+        Points whose class is noise are not found.
     """
 
-    def __init__(self, drives: Sequence[tuple[Drive, ImageKind]]) -> None:
+    def __init__(
+        self, drives: Sequence[tuple[Drive, ImageKind]], *, hides_noise: bool = False
+    ) -> None:
         self._drives = tuple(drives)
+        self._hides_noise = hides_noise
         self._read: OrderedDict[tuple[int, TileKey], _TilePoints] = OrderedDict()
 
     def point_at(self, sought: Sought) -> tuple[Drive, int] | None:
@@ -104,7 +110,8 @@ class PlanPoints:
         there = self._read.pop((number, key), None)
         if there is None:
             drive, kind = self._drives[number]
-            points = drive.image(kind).pyramid.points(key).ravel()
+            classes = class_columns(drive.columns) if self._hides_noise else None
+            points = drive.image(kind).pyramid.points(key, without_noise=classes).ravel()
             points = points[points >= 0]
             there = _TilePoints(points, drive.xyz(points))
         self._read[number, key] = there

@@ -7,7 +7,7 @@ which pixel a point is, and rasters are made for the stretch that is asked for.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,12 +21,14 @@ from processing.image.point_image_kernels import (
     PixelLayout,
     columns_kernel,
     first_at_column,
+    noiseless_raster_kernel,
     raster_kernel,
     shown_point,
     stretches_kernel,
 )
 from processing.image.rows_of_kind import Revolutions
 from processing.image.tiles import TilePyramid
+from processing.points.counted_classes import ClassColumns
 
 if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a circle
     from processing.points.drive import Drive
@@ -34,6 +36,7 @@ if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a cir
 _Integers = NDArray[np.int64]
 
 _MOST_ROWS_ASIDE = 8
+_Number = TypeVar("_Number", bound=np.generic)
 
 
 class PointCloudImage:
@@ -181,10 +184,18 @@ class PointCloudImage:
         doubled = 2 * layout.pulses[points] - layout.origins[rows]
         return rows, (doubled * layout.per_span // layout.spans[rows]).astype(np.int32)
 
-    def nearest_filled(self, row: int, column: int, within_px: int = 3) -> int:
+    def nearest_filled(
+        self,
+        row: int,
+        column: int,
+        within_px: int = 3,
+        *,
+        without_noise: ClassColumns | None = None,
+    ) -> int:
         """The point shown at a pixel, or nearest to it in the row; −1 where all is empty.
 
         Cells of a top view are as near in the rows above and below, of which a few are looked at.
+        See :meth:`raster` for ``without_noise``.
         """
         if not 0 <= row < self.rows:
             return -1
@@ -193,7 +204,7 @@ class PointCloudImage:
         columns = range(max(0, column - within_px), min(self.width, column + within_px + 1))
         if not len(columns):
             return -1
-        shown = self.raster(rows, columns)
+        shown = self.raster(rows, columns, without_noise=without_noise)
         filled_rows, filled = np.nonzero(shown >= 0)
         if not filled.size:
             return -1
@@ -201,7 +212,14 @@ class PointCloudImage:
         nearest = away.argmin()
         return int(shown[filled_rows[nearest], filled[nearest]])
 
-    def raster(self, rows: range, columns: range, step: int = 1) -> _Integers:
+    def raster(
+        self,
+        rows: range,
+        columns: range,
+        step: int = 1,
+        *,
+        without_noise: ClassColumns | None = None,
+    ) -> _Integers:
         """The points shown in a window.
 
         Parameters
@@ -210,6 +228,9 @@ class PointCloudImage:
             Consecutive, inside the image.
         step : int
             Every so many rows; and of so many columns the first filled one.
+        without_noise : ClassColumns, optional
+            The classes by which points of noise are left out: their pixels show the next point
+            that is none, or are empty.
 
         Returns
         -------
@@ -221,7 +242,10 @@ class PointCloudImage:
         if raster.size:
             self._check_window(rows, columns)
             window = np.array([rows.start, step, columns.start, columns.stop])
-            raster_kernel(self.layout, window, raster)
+            if without_noise is None:
+                raster_kernel(self.layout, window, raster)
+            else:
+                noiseless_raster_kernel(self.layout, without_noise, window, raster)
         return raster
 
     def points_in(self, rows: range, columns: range) -> _Integers:
@@ -268,12 +292,14 @@ def warm_up() -> None:
     coordinates = Coordinates(np.zeros((4, 3), np.int32), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0))
     image = PointCloudImage(ImageKind.TOP_VIEW, np.array([0, 1, 1, 5]), 4, coordinates=coordinates)
     image.raster(range(2), range(4))
+    codes = _read_only(np.zeros(4, np.uint8))
+    image.raster(range(2), range(4), without_noise=ClassColumns(codes, codes))
     image.points_at(0, 1)
     image.columns_of(0, 4)
     image.pyramid.prepare()
 
 
-def _read_only(values: _Integers) -> _Integers:
+def _read_only(values: NDArray[_Number]) -> NDArray[_Number]:
     # Kernels are compiled for read-only arrays, which is what mapped columns are.
     view = np.asarray(values).view(np.ndarray)
     view.flags.writeable = False

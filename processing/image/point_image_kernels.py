@@ -8,9 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.kernels import kernel
+from processing.points.counted_classes import NOISE_CODES, ClassColumns
 
 _Integers = NDArray[np.int64]
 _LINEAR_STEPS = 4
+_LOW_NOISE, _HIGH_NOISE = NOISE_CODES
+_NONE = -1
 
 
 class PixelLayout(NamedTuple):
@@ -89,6 +92,33 @@ def raster_kernel(layout: PixelLayout, window: _Integers, raster: _Integers) -> 
 
 
 @kernel
+def noiseless_raster_kernel(
+    layout: PixelLayout, classes: ClassColumns, window: _Integers, raster: _Integers
+) -> None:
+    """As :func:`raster_kernel`, but points of noise are not there."""
+    step, first_column = window[1], window[2]
+    for i in range(raster.shape[0]):
+        row = window[0] + i * step
+        stop = layout.row_starts[row + 1]
+        raster[i, :] = -1
+        point = first_at_column(layout, row, first_column)
+        while point < stop:
+            column = _column(layout, row, point)
+            if column >= window[3]:
+                break
+            end = point + 1
+            while end < stop and _column(layout, row, end) == column:
+                end += 1
+            shown = _shown_good_point(layout, classes, row, point, end)
+            point = end
+            if shown >= 0:
+                j = (column - first_column) // step
+                raster[i, j] = shown
+                if step > 1:
+                    point = _skip_to(layout, row, end, first_column + (j + 1) * step)
+
+
+@kernel
 def columns_kernel(layout: PixelLayout, first: _Integers, columns: NDArray[np.int32]) -> None:
     """Columns of consecutive points; ``first``: the first point and its row."""
     point, row = first[0], first[1]
@@ -110,6 +140,35 @@ def stretches_kernel(layout: PixelLayout, windows: _Integers, stretches: _Intege
             stretches[line, 0] = first_at_column(layout, row, windows[k, 2])
             stretches[line, 1] = first_at_column(layout, row, windows[k, 3])
             line += 1
+
+
+@kernel
+def _shown_good_point(
+    layout: PixelLayout, classes: ClassColumns, row: int, start: int, end: int
+) -> int:
+    """The point of a pixel nearest its centre that is no noise, of equals the first; else −1."""
+    origin, span = layout.origins[row], layout.spans[row]
+    best, best_distance = _NONE, span + 1
+    for point in range(start, end):
+        if _is_noise(classes, point):
+            continue
+        if layout.per_span == 1:
+            return point
+        rest = (2 * layout.pulses[point] - origin) * layout.per_span % span
+        distance = abs(2 * rest - span)
+        if distance < best_distance:
+            best, best_distance = point, distance
+    return int(best)
+
+
+@kernel
+def _is_noise(classes: ClassColumns, point: int) -> bool:
+    code = 0
+    if classes.labels.size > 0:
+        code = int(classes.labels[point])
+    if code == 0 and classes.delivered.size > 0:
+        code = int(classes.delivered[point])
+    return code in (_LOW_NOISE, _HIGH_NOISE)
 
 
 @kernel

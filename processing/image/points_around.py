@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.kernels import kernel
+from processing.points.counted_classes import class_columns
 
 if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
     from processing.points.drive import Drive
@@ -22,7 +23,8 @@ _ROWS_ASIDE = 16
 def neighbours(drive: Drive, point: int, radius_m: float) -> _Integers:
     """Points within a distance of a point, in rising order, taken from the rows around its own.
 
-    Rows are skipped where they are so close that others reach as far.
+    Rows are skipped where they are so close that others reach as far. Noise is no surface: of
+    points of that class only the one itself is among them.
 
     Returns
     -------
@@ -41,7 +43,9 @@ def neighbours(drive: Drive, point: int, radius_m: float) -> _Integers:
     count = _near_kernel(
         integers, scale, np.column_stack([starts, stops]), (point, radius_m), found
     )
-    return found[:count]
+    near = found[:count]
+    is_noise = class_columns(drive.columns).are_noise(near)
+    return np.asarray(near[~is_noise | (near == point)])
 
 
 def rows_to_take(drive: Drive, point: int, radius_m: float) -> tuple[int, int]:

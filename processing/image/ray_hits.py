@@ -16,6 +16,7 @@ from processing.image.point_image import PointCloudImage
 from processing.image.point_image_kernels import stretches_kernel
 from processing.image.tiles import TileKey
 from processing.kernels import kernel
+from processing.points.counted_classes import class_columns
 from processing.points.drive import Drive
 
 Floats = NDArray[np.float64]
@@ -89,7 +90,13 @@ class RayHits:
         self._kept: Floats = np.empty((0, 4))
 
     def search_tile(
-        self, drive: Drive, image: PointCloudImage, key: TileKey, clip: Clip | None
+        self,
+        drive: Drive,
+        image: PointCloudImage,
+        key: TileKey,
+        clip: Clip | None,
+        *,
+        hides_noise: bool = False,
     ) -> None:
         """Look through all points of the recording in the area of a tile.
 
@@ -97,6 +104,8 @@ class RayHits:
         ----------
         clip : Clip or None
             Points outside don't count.
+        hides_noise : bool
+            Points whose class is noise don't either.
         """
         rows, columns = image.pyramid.rows_columns(key)
         window = np.array([[rows.start, rows.stop, columns.start, columns.stop]])
@@ -106,12 +115,15 @@ class RayHits:
         xyz = drive.columns["xyz"].view(np.ndarray)
         matrix = self._matrix_of_integers(drive.info.scale, drive.info.offset)
         found = np.empty((room, 4))
-        limits = self._limits(is_clipped=clip is not None)
+        limits = self._limits(is_clipped=clip is not None or hides_noise)
         count = hits_kernel(xyz, stretches, matrix, limits, found)
         found = found[:count]
         if clip is not None:
             points = found[:, _POINT].astype(np.int64)
             found = found[clip.holds(drive.xyz(points))]
+        if hides_noise and len(found):
+            points = found[:, _POINT].astype(np.int64)
+            found = found[~class_columns(drive.columns).are_noise(points)]
         self._keep(drive.id, found)
 
     def search_cloud(self, drive_id: str, points: Integers, local_xyz: NDArray[np.float32]) -> None:

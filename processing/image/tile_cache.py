@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from processing.errors import UNCHANGED, NoSpace, UserError
 from processing.image import point_image
-from processing.image.attributes import colours
+from processing.image.attributes import SHOWS_LABELS, colours
 from processing.image.kinds import ImageKind
 from processing.image.tile_reading import expect_tile
 from processing.image.tiles import TileKey
 from processing.image.touched_tiles import TouchedTiles
+from processing.points.counted_classes import class_columns
 from processing.points.drive import Drive
 from processing.text import Text
 
@@ -26,7 +27,13 @@ _LOADERS = 2
 
 @dataclass(frozen=True)
 class TileRequest:
-    """A tile as a view wants to show it."""
+    """A tile as a view wants to show it.
+
+    Attributes
+    ----------
+    hides_noise : bool
+        Without the points whose class is noise.
+    """
 
     drive_id: str
     kind: ImageKind
@@ -34,6 +41,7 @@ class TileRequest:
     attribute: str
     low_percent: float
     high_percent: float
+    hides_noise: bool = False
 
 
 @dataclass(frozen=True)
@@ -185,8 +193,8 @@ class TileCache:
             for refused in [refused for refused in self._refusals if refused[0] == drive_id]:
                 del self._refusals[refused]
 
-    def drop_touched(self, drive: Drive, attribute: str, points: NDArray[np.int64]) -> None:
-        """Forget the tiles of one attribute that show some points: those changed.
+    def drop_relabelled(self, drive: Drive, points: NDArray[np.int64]) -> None:
+        """Forget the tiles that show labels of some points, or hide points by them.
 
         Parameters
         ----------
@@ -195,9 +203,12 @@ class TileCache:
         with self._changed:
             # What is being made now may show points as they were.
             self._ages[drive.id] = self._ages.get(drive.id, 0) + 1
-            self._refusals.pop((drive.id, attribute), None)
+            for attribute in SHOWS_LABELS:
+                self._refusals.pop((drive.id, attribute), None)
             mine = [
-                one for one in self._tiles if (one.drive_id, one.attribute) == (drive.id, attribute)
+                one
+                for one in self._tiles
+                if one.drive_id == drive.id and (one.hides_noise or one.attribute in SHOWS_LABELS)
             ]
         touched = {
             kind: TouchedTiles(drive.image(kind), points) for kind in {one.kind for one in mine}
@@ -306,8 +317,10 @@ class TileCache:
     def _pixels_of(self, request: TileRequest, drive_of: Callable[[str], Drive]) -> TilePixels:
         drive = drive_of(request.drive_id)
         image = drive.image(request.kind)
-        expect_tile(drive.columns, image, request.key, request.attribute)
-        points = image.pyramid.points(request.key)
+        hides_noise = request.hides_noise
+        expect_tile(drive.columns, image, request.key, request.attribute, hides_noise=hides_noise)
+        classes = class_columns(drive.columns) if hides_noise else None
+        points = image.pyramid.points(request.key, without_noise=classes)
         shown = colours(drive, points, request.attribute, request.low_percent, request.high_percent)
         return TilePixels(points, shown)
 

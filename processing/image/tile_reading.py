@@ -23,14 +23,24 @@ _MADE_FROM = {
     "shape": ("shape",),
     "color": ("seen_color", "is_seen", "color"),
     "label": ("label",),
+    "class": ("label",),
 }
 """Columns an attribute looks at where they are, besides those it needs."""
+
+_NOISE_IS_TOLD_BY = ("classification", "label")
 
 _NEAR_POINTS = 2_000
 """Rows no farther apart than this are read as one."""
 
 
-def expect_tile(columns: Columns, image: PointCloudImage, key: TileKey, attribute: str) -> None:
+def expect_tile(
+    columns: Columns,
+    image: PointCloudImage,
+    key: TileKey,
+    attribute: str,
+    *,
+    hides_noise: bool = False,
+) -> None:
     """Tell that a tile of an image is made next; comes back at once."""
     rows, _ = image.pyramid.rows_columns(key)
     sampled = np.arange(rows.start, rows.stop, 1 << key.level)
@@ -40,6 +50,7 @@ def expect_tile(columns: Columns, image: PointCloudImage, key: TileKey, attribut
     is_apart = starts[1:] - stops[:-1] > _NEAR_POINTS
     starts = starts[np.concatenate([[True], is_apart])]
     stops = stops[np.concatenate([is_apart, [True]])]
-    for name in ("pulse", *ATTRIBUTES[attribute].needs, *_MADE_FROM.get(attribute, ())):
+    names = ("pulse", *ATTRIBUTES[attribute].needs, *_MADE_FROM.get(attribute, ()))
+    for name in dict.fromkeys(names + (_NOISE_IS_TOLD_BY if hides_noise else ())):
         if columns.has(name):
             columns.expect(name, starts, stops)

@@ -19,6 +19,7 @@ from processing.image.tile_bounds import PORTION_POINTS, TileBounds
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST, STEPS
 from processing.image.tile_kernels import TILE as TILE
 from processing.monitor import Monitor
+from processing.points.counted_classes import ClassColumns
 
 if TYPE_CHECKING:  # the image makes its pyramid, so importing it here would be a circle
     from processing.image.point_image import PointCloudImage
@@ -113,15 +114,21 @@ class TilePyramid:
             range(key.column * size, min(self._image.width, (key.column + 1) * size)),
         )
 
-    def points(self, key: TileKey) -> NDArray[np.int64]:
+    def points(
+        self, key: TileKey, *, without_noise: ClassColumns | None = None
+    ) -> NDArray[np.int64]:
         """The points that a tile shows: at most (256, 256) int64, −1 where empty.
 
-        Of a tile that has all points these, one behind the other: (1, n).
+        Of a tile that has all points these, one behind the other: (1, n). Without noise, as
+        :meth:`PointCloudImage.raster` leaves it out.
         """
         rows, columns = self.rows_columns(key)
         if key.has_all:
-            return self._image.points_in(rows, columns)[None]
-        return self._image.raster(rows, columns, 1 << key.level)
+            points = self._image.points_in(rows, columns)
+            if without_noise is not None:
+                points = points[~without_noise.are_noise(points)]
+            return points[None]
+        return self._image.raster(rows, columns, 1 << key.level, without_noise=without_noise)
 
     def bounds(self, key: TileKey) -> NDArray[np.float64] | None:
         """Lowest and highest coordinates of all points below a tile; None when it has none.

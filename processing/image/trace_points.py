@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.points_around import rows_to_take
+from processing.points.counted_classes import class_columns
 
 if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
     from processing.points.drive import Drive
@@ -100,11 +101,14 @@ def _gathered(drive: Drive, start: int, end: int, places: _Floats) -> tuple[_Int
     low = int(np.searchsorted(pulses, int(pulses[first]) - round(margins[0])))
     high = int(np.searchsorted(pulses, int(pulses[last]) + round(margins[1]) + 1))
     longest = _DETOUR * float(np.linalg.norm(places[1] - places[0])) + _DETOUR_M
-    points, xyz = [], []
+    points, xyz, classes = [], [], class_columns(drive.columns)
     for begin in range(low, high, _AT_ONCE):
         part = drive.xyz(slice(begin, min(high, begin + _AT_ONCE)))
         ways = sum(np.linalg.norm(part - place, axis=1) for place in places)
         kept = np.flatnonzero(ways <= longest)
+        # Noise is no line, whatever one clicked on.
+        near = kept + begin
+        kept = kept[~classes.are_noise(near) | (near == start) | (near == end)]
         points.append(kept + begin)
         xyz.append(part[kept] - places[0])
     return np.concatenate(points), np.concatenate(xyz)

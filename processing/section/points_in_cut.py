@@ -12,6 +12,7 @@ from processing.image.point_image_kernels import PixelLayout, stretches_kernel
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.image.tiles import TileKey
 from processing.kernels import kernel
+from processing.points.counted_classes import seen_points
 from processing.section.cut import Cut
 
 if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
@@ -42,13 +43,17 @@ class SectionPoints:
     section: _Floats
 
 
-def points_in_cut(drive: Drive, cut: Cut, most: int = MOST_POINTS) -> _Integers:
+def points_in_cut(
+    drive: Drive, cut: Cut, most: int = MOST_POINTS, *, hides_noise: bool = False
+) -> _Integers:
     """The measured points within a cut, at any height.
 
     Parameters
     ----------
     most : int
         Of more points than this every so many are given, in the order of their measurement.
+    hides_noise : bool
+        Without the points whose class is noise.
 
     Returns
     -------
@@ -67,13 +72,16 @@ def points_in_cut(drive: Drive, cut: Cut, most: int = MOST_POINTS) -> _Integers:
         _plan_of(drive, cut),
         found,
     )
-    inside = np.sort(found[:count])
+    inside = seen_points(drive.columns, np.sort(found[:count]), hides_noise=hides_noise)
+    count = inside.size
     return inside if count <= most else inside[np.arange(most) * count // most]
 
 
-def section_points(drive: Drive, cut: Cut, most: int = MOST_POINTS) -> SectionPoints:
+def section_points(
+    drive: Drive, cut: Cut, most: int = MOST_POINTS, *, hides_noise: bool = False
+) -> SectionPoints:
     """The points within a cut with their places in it, sorted by offset."""
-    points = points_in_cut(drive, cut, most)
+    points = points_in_cut(drive, cut, most, hides_noise=hides_noise)
     section = cut.to_section(drive.xyz(points))
     order = np.argsort(section[:, 0], kind="stable")
     return SectionPoints(drive.id, points[order], section[order])
@@ -83,9 +91,9 @@ def ground_near(drive: Drive, cut: Cut) -> int:
     """The measured point of the ground nearest to a cut's middle in plan; −1 where none is.
 
     Looked for within a metre to either side, below the middle: as a trajectory runs above the
-    road. The ground is the median height there.
+    road. The ground is the median height there, and no noise.
     """
-    near = section_points(drive, replace(cut, half_length_m=1.0))
+    near = section_points(drive, replace(cut, half_length_m=1.0), hides_noise=True)
     below = near.section[:, 1] <= cut.middle[2]
     if not below.any():
         return -1

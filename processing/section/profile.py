@@ -123,14 +123,14 @@ def profile_of(
     station_m: float | None = None,
     title: Text = Text.same(""),
 ) -> Profile:
-    """What a cut shows of some drives and of the map.
+    """What a cut shows of some drives, but for noise, and of the map.
 
     Parameters
     ----------
     lines : sequence of DrawnLine
         Of the whole map, or those near the cut.
     """
-    found = [section_points(drive, cut).section for drive in drives]
+    found = [section_points(drive, cut, hides_noise=True).section for drive in drives]
     section = np.concatenate([np.empty((0, 3)), *found])
     stride = max(1, -(-len(section) // _MOST_POINTS))
     crossings = [crossing for line in lines for crossing in crossings_of(cut, line)]

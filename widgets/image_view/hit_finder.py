@@ -11,6 +11,7 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QPolygonF
 
 from processing.image.beam import beam_at
+from processing.points.counted_classes import class_columns, seen_points
 from processing.project.catalogue import Geometry
 from processing.project.feature import PointReference
 from widgets.image_view.feature_overlay import FeatureOverlay
@@ -22,6 +23,7 @@ from widgets.mouse_tools.mouse_tool import Boxed, Hit, Ray
 from widgets.shared.cursor import Place
 from widgets.shared.outlines import are_inside, is_rectangle
 from widgets.shared.snap_state import SnapState
+from widgets.shared.view_settings import ViewSettings
 
 Floats = NDArray[np.float64]
 
@@ -37,24 +39,32 @@ def place_of(picture: Picture, point: int) -> Place:
     return Place((easting, northing, height), PointReference(picture.drive.id, point))
 
 
-def point_under(picture: Picture, viewport: Viewport, position: QPointF) -> int:
+def point_under(
+    picture: Picture, viewport: Viewport, position: QPointF, *, hides_noise: bool = False
+) -> int:
     """The point shown at a position; −1 where the pixel is empty."""
-    return _point_near(picture, viewport, position, 0)
+    return _point_near(picture, viewport, position, 0, hides_noise=hides_noise)
 
 
-def point_clicked(picture: Picture, viewport: Viewport, position: QPointF) -> int:
+def point_clicked(
+    picture: Picture, viewport: Viewport, position: QPointF, *, hides_noise: bool = False
+) -> int:
     """The point shown at a position, or the nearest of the row within 3 pixels; else −1."""
-    return _point_near(picture, viewport, position, _CLICK_PX)
+    return _point_near(picture, viewport, position, _CLICK_PX, hides_noise=hides_noise)
 
 
-def _point_near(picture: Picture, viewport: Viewport, position: QPointF, within_px: int) -> int:
+def _point_near(
+    picture: Picture, viewport: Viewport, position: QPointF, within_px: int, *, hides_noise: bool
+) -> int:
     row, column = picture.pixel_at(*viewport.to_picture(position.x(), position.y()))
     if not (0 <= row < picture.image.rows and 0 <= column < picture.image.width):
         return -1
     # Far out one screen pixel stands for several columns; each of them is under the mouse.
     across = viewport.zoom_v if picture.rows_go_right else viewport.zoom_u
     below_mouse = 0 if across >= 1 else math.ceil(0.5 / across)
-    return picture.image.nearest_filled(row, column, max(within_px, below_mouse))
+    classes = class_columns(picture.drive.columns) if hides_noise else None
+    within_px = max(within_px, below_mouse)
+    return picture.image.nearest_filled(row, column, within_px, without_noise=classes)
 
 
 class HitFinder:
@@ -64,6 +74,8 @@ class HitFinder:
     ----------
     overlay : FeatureOverlay
     snap : SnapState
+    settings : ViewSettings
+        Say whether noise is hidden.
 
     Attributes
     ----------
@@ -72,9 +84,10 @@ class HitFinder:
     viewport : Viewport
     """
 
-    def __init__(self, overlay: FeatureOverlay, snap: SnapState) -> None:
+    def __init__(self, overlay: FeatureOverlay, snap: SnapState, settings: ViewSettings) -> None:
         self._overlay = overlay
         self._snap = snap
+        self._settings = settings
         self.picture: Picture | None = None
         self.viewport = Viewport()
 
@@ -83,7 +96,7 @@ class HitFinder:
         picture, viewport = self.picture, self.viewport
         if picture is None:
             return Hit(None, modifiers=modifiers)
-        point = point_clicked(picture, viewport, position)
+        point = point_clicked(picture, viewport, position, hides_noise=self._hides_noise)
         place = None if point < 0 else place_of(picture, point)
         feature, vertex, segment = self._feature_at(position)
         return Hit(
@@ -101,7 +114,7 @@ class HitFinder:
         """The point shown at a position; None where the pixel is empty."""
         if self.picture is None:
             return None
-        point = point_under(self.picture, self.viewport, position)
+        point = point_under(self.picture, self.viewport, position, hides_noise=self._hides_noise)
         return None if point < 0 else place_of(self.picture, point)
 
     def quick_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
@@ -125,7 +138,12 @@ class HitFinder:
             rows, columns = picture.image.pixel_of(points)
             places = picture.places(rows, columns.astype(np.int64))
             points = points[are_inside(viewport.to_screen(places), outline)]
+        points = seen_points(picture.drive.columns, points, hides_noise=self._hides_noise)
         return Boxed(features, {picture.drive.id: points}, modifiers)
+
+    @property
+    def _hides_noise(self) -> bool:
+        return self._settings.look.hides_noise
 
     def _feature_at(self, position: QPointF) -> tuple[str, int, int]:
         """Id, vertex and segment of the feature under the mouse; an area also by its inside."""

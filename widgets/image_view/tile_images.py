@@ -16,6 +16,7 @@ from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtGui import QColor, QImage
 
 from processing.errors import UserError
+from processing.image.attributes import SHOWS_LABELS
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.tiles import TileKey
@@ -122,10 +123,10 @@ class TileImages(QObject):
     def show_labels(self, drive_id: str, points: NDArray[np.int64]) -> None:
         """The labels of these points of a drive have changed."""
         picture, touched = self._picture, None
-        if picture is not None and picture.drive.id == drive_id and self._look.attribute == "label":
+        if picture is not None and picture.drive.id == drive_id and self._look.follows_labels:
             touched = TouchedTiles(picture.image, points)
         for slot, made in self._made.items():
-            is_old = made.token[:1] == ("label",) and slot[0] == drive_id
+            is_old = slot[0] == drive_id and made.token[:1] == (True,)
             if picture is not None and touched is not None and slot[1] is picture.image.kind:
                 is_old &= slot[2] in touched
             if is_old:
@@ -219,10 +220,15 @@ class TileImages(QObject):
     def _request_for(self, picture: Picture, key: TileKey) -> TileRequest:
         look = self._look
         ends = look.low_percent, look.high_percent
-        return TileRequest(picture.drive.id, picture.image.kind, key, look.attribute, *ends)
+        kind = picture.image.kind
+        return TileRequest(
+            picture.drive.id, kind, key, look.attribute, *ends, hides_noise=look.hides_noise
+        )
 
     def _token(self, request: TileRequest) -> tuple[object, ...]:
-        return request.attribute, request.low_percent, request.high_percent, self._age
+        follows_labels = request.hides_noise or request.attribute in SHOWS_LABELS
+        ends = request.low_percent, request.high_percent
+        return follows_labels, request.attribute, *ends, request.hides_noise, self._age
 
     def _drawn(self, picture: Picture, pixels: TilePixels) -> QImage:
         colours = pixels.colours

@@ -97,7 +97,7 @@ class ImageView(QWidget):
         self._images.setParent(self)
         self._places = FeaturePlaces(source)
         self._overlay = FeatureOverlay(self._places, shared.view_settings)
-        self._hits = HitFinder(self._overlay, shared.snap)
+        self._hits = HitFinder(self._overlay, shared.snap, shared.view_settings)
         self._gesture = Gesture(self._hits, shared.cursor)
         self._navigation = Navigation()
         self._cursor = ShownCursor()

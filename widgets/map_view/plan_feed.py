@@ -264,7 +264,8 @@ def _chosen(
 def _wanted(wish: PlanWish, number: int, key: TileKey) -> WantedTile:
     drive, kind = wish.drives[number]
     look = wish.look
-    request = TileRequest(drive.id, kind, key, look.attribute, look.low_percent, look.high_percent)
+    ends = look.low_percent, look.high_percent
+    request = TileRequest(drive.id, kind, key, look.attribute, *ends, hides_noise=look.hides_noise)
     return WantedTile(number, drive, request)
 
 

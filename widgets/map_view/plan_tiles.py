@@ -59,6 +59,12 @@ class TilePoints:
     spacing_m: float
 
 
+@dataclass(frozen=True, eq=False)
+class _Placed:
+    points: NDArray[np.int64]
+    local_xyz: NDArray[np.float32]
+
+
 class PlanTiles:
     """Gets tiles for one worker.
 
@@ -78,7 +84,7 @@ class PlanTiles:
         self._changed = changed
         self._is_outdated = is_outdated
         self._arrived: dict[TileRequest, TilePixels | None] = {}
-        self._places: OrderedDict[TileRequest, NDArray[np.float32]] = OrderedDict()
+        self._places: OrderedDict[TileRequest, _Placed] = OrderedDict()
         self._kept_points = 0
 
     def forget(self) -> None:
@@ -162,17 +168,21 @@ class PlanTiles:
         is_filled = points >= 0
         points = points[is_filled]
         key = replace(tile.request, attribute="", low_percent=0.0, high_percent=0.0)
-        places = self._places.pop(key, None)
-        if places is None:
-            places = tile.drive.local_xyz(points, origin)
-            self._kept_points += len(places)
-        self._places[key] = places
+        placed = self._places.pop(key, None)
+        # Where noise is hidden, a label changes which points there are.
+        if placed is not None and not np.array_equal(placed.points, points):
+            self._kept_points -= len(placed.points)
+            placed = None
+        if placed is None:
+            placed = _Placed(points, tile.drive.local_xyz(points, origin))
+            self._kept_points += len(points)
+        self._places[key] = placed
         while self._kept_points > _KEPT_POINTS and len(self._places) > 1:
             _, dropped = self._places.popitem(last=False)
-            self._kept_points -= len(dropped)
+            self._kept_points -= len(dropped.points)
         spacing_m = tile.drive.image(tile.request.kind).pyramid.spacing_m(tile.request.key)
         colours = pixels.colours.reshape(-1, 3)[is_filled]
-        return TilePoints(tile.number, points, places, colours, spacing_m)
+        return TilePoints(tile.number, points, placed.local_xyz, colours, spacing_m)
 
     def _on_tiles_done(self, request: TileRequest, pixels: TilePixels) -> None:
         with self._changed:

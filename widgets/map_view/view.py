@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,11 +33,13 @@ from widgets.map_view.furniture import (
     paint_slab,
     paint_ways,
 )
+from widgets.map_view.plan_enclosed import points_below
 from widgets.map_view.plan_feed import PlanFeed, PlanWish, ShownPlan, whole_frame
 from widgets.map_view.plan_lay import PlanLay, Spot, frame_of, on_plan
 from widgets.map_view.plan_pictures import PlanPictures
 from widgets.map_view.way import Way, ways_of
 from widgets.parts.opening_page import OpeningPage
+from widgets.plane_view.feature_hits import Points
 from widgets.plane_view.lay import Lay
 from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
@@ -106,7 +109,7 @@ class MapView(PlaneView):
         self.viewport_changed.connect(self._wish)
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
         shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
-        shared.view_settings.look_changed.connect(self._wish)
+        shared.view_settings.look_changed.connect(self._on_settings_look_changed)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
         shared.view_settings.hidden_drives_changed.connect(self._on_settings_image_changed)
         self._read_drives()
@@ -228,6 +231,14 @@ class MapView(PlaneView):
         }
 
     @override
+    def finder_inside(self, outline: QPolygonF) -> Callable[[], Points] | None:
+        shown, viewport = self._pictures.newest, self.viewport
+        if shown is None:
+            return None
+        corners = [viewport.to_plane(corner.x(), corner.y()) for corner in outline.toList()]
+        return partial(points_below, shown, np.array(corners), viewport.scale)
+
+    @override
     def on_drives_changed(self) -> None:
         self._age += 1
         self._pictures.clear()
@@ -301,8 +312,13 @@ class MapView(PlaneView):
             self._wish()
 
     def _on_map_labels_changed(self, drive_id: str, _points: object) -> None:
-        if self._shared.view_settings.look.attribute == "label":
+        if self._shared.view_settings.look.follows_labels:
+            self._find_anew()
             self._on_map_drive_columns_changed(drive_id)
+
+    def _on_settings_look_changed(self) -> None:
+        self._find_anew()
+        self._wish()
 
     def _on_settings_image_changed(self) -> None:
         before = self._drives
@@ -331,9 +347,13 @@ class MapView(PlaneView):
         drives = [drive for drive, _ in self._drives]
         if drives != before:
             self._ways = ways_of(drives)
-        self._points = PlanPoints(self._drives)
+        self._find_anew()
         self._empty.setVisible(not any(drive.count for drive in self._source.drives()))
         self._wish()
+
+    def _find_anew(self) -> None:
+        hides_noise = self._shared.view_settings.look.hides_noise
+        self._points = PlanPoints(self._drives, hides_noise=hides_noise)
 
     def _wish(self) -> None:
         """Ask for a picture of what is seen, unless nobody sees it."""

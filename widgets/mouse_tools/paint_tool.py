@@ -14,6 +14,7 @@ from processing.errors import UserError
 from processing.labels.label_column import labels_of
 from processing.labels.rules import PaintRule
 from processing.points.classes import point_classes
+from processing.points.counted_classes import class_columns, seen_points
 from processing.project.change import Change
 from processing.project.label_change import LabelChange, label_changes
 from processing.text import Text
@@ -43,10 +44,13 @@ class Painted:
         Drive id to the points below it.
     rule : PaintRule
         As it was then.
+    hides_noise : bool
+        Whether noise was hidden then: what isn't seen isn't painted.
     """
 
     points: Points
     rule: PaintRule
+    hides_noise: bool = False
 
     def changes(self, source: MapSource) -> tuple[LabelChange, ...]:
         """What it changes, as labels are now; drives that are gone are left out.
@@ -62,8 +66,10 @@ class Painted:
             if drive_id in drives:
                 if (np.diff(points) <= 0).any():
                     points = np.unique(points)
-                labels = labels_of(drives[drive_id], points)
-                chosen = self.rule.chosen(labels)
+                drive = drives[drive_id]
+                points = seen_points(drive.columns, points, hides_noise=self.hides_noise)
+                labels = labels_of(drive, points)
+                chosen = self.rule.chosen(labels, class_columns(drive.columns).codes_of(points))
                 made += label_changes(drive_id, points[chosen], labels[chosen], self.rule.code)
         return tuple(made)
 
@@ -171,7 +177,7 @@ class PaintTool(MouseTool):
         if sum(one.size for one in points.values()) > _MANY_POINTS:
             self._paint_later(lambda: points)
             return
-        painted = Painted(points, self._shared.labels.rule)
+        painted = Painted(points, self._shared.labels.rule, self._hides_noise)
         try:
             self._ask_for(painted, painted.changes(self._source))
         except UserError as error:
@@ -180,13 +186,13 @@ class PaintTool(MouseTool):
 
     def _paint_later(self, points_of: Callable[[], Points]) -> None:
         """The same with points that are found beside the window."""
-        stroke, rule = self._stroke, self._shared.labels.rule
+        stroke, rule, hides_noise = self._stroke, self._shared.labels.rule, self._hides_noise
         if stroke is None:
             return
         stroke.is_whole = True
 
         def work() -> tuple[Painted, tuple[LabelChange, ...]]:
-            painted = Painted(points_of(), rule)
+            painted = Painted(points_of(), rule, hides_noise)
             return painted, painted.changes(self._source)
 
         def take(result: object) -> None:
@@ -197,6 +203,10 @@ class PaintTool(MouseTool):
                 self._show_chosen()
 
         self._at_hand(work, take)
+
+    @property
+    def _hides_noise(self) -> bool:
+        return self._shared.view_settings.look.hides_noise
 
     def _as_of_now(
         self, painted: Painted, changes: tuple[LabelChange, ...]

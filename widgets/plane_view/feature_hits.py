@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from typing import Protocol
 
 import numpy as np
 import shapely
@@ -27,8 +28,20 @@ from widgets.shared.feature_hits import (
 
 Floats = NDArray[np.float64]
 
-PointAt = Callable[[Spot, float, bool], Place | None]
-PointsInside = Callable[[QPolygonF], Mapping[str, NDArray[np.int64]]]
+Points = Mapping[str, NDArray[np.int64]]
+
+
+class Measured(Protocol):
+    """The view that knows which measured points are where."""
+
+    def place_at(self, place: Spot, reach: float, *, exact: bool) -> Place | None:
+        """The measured point at a place of the plane."""
+
+    def points_inside(self, outline: QPolygonF) -> Points:
+        """The measured points in an outline in the widget."""
+
+    def finder_inside(self, outline: QPolygonF) -> Callable[[], Points] | None:
+        """What looks up all of them; None where those are all."""
 
 
 class PlaneHits:
@@ -36,11 +49,7 @@ class PlaneHits:
 
     Parameters
     ----------
-    point_at : callable
-        From a place of the plane, a distance on it, and whether all measured points count, to the
-        measured point there.
-    points_inside : callable
-        From an outline in the widget to the measured points in it.
+    measured : Measured
 
     Attributes
     ----------
@@ -52,9 +61,8 @@ class PlaneHits:
         Chosen features, which are hit before others.
     """
 
-    def __init__(self, point_at: PointAt, points_inside: PointsInside) -> None:
-        self._point_at = point_at
-        self._points_inside = points_inside
+    def __init__(self, measured: Measured) -> None:
+        self._measured = measured
         self.lay: Lay | None = None
         self.features: PlaneFeatures | None = None
         self.viewport = PlaneViewport()
@@ -76,7 +84,10 @@ class PlaneHits:
         pixels = self.viewport.to_screen(features.places)
         pixels[~features.is_near] = np.nan
         inside = features_inside(features.flat, pixels, outline)
-        return Boxed(inside, self._points_inside(outline), modifiers)
+        measured = self._measured
+        return Boxed(
+            inside, measured.points_inside(outline), modifiers, measured.finder_inside(outline)
+        )
 
     def _hit(self, position: QPointF, modifiers: Qt.KeyboardModifier, *, is_exact: bool) -> Hit:
         lay, viewport = self.lay, self.viewport
@@ -84,7 +95,7 @@ class PlaneHits:
             return Hit(None, modifiers=modifiers)
         spot = viewport.to_plane(position.x(), position.y())
         reach = REACH_PX / viewport.scale
-        place = self._point_at(spot, reach, is_exact)
+        place = self._measured.place_at(spot, reach, exact=is_exact)
         feature = self._feature_at((position.x(), position.y()))
         return Hit(
             place,

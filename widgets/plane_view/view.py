@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,7 @@ from typing_extensions import override
 from processing.text import Language
 from widgets.mouse_tools.menu_wish import MenuWish
 from widgets.mouse_tools.mouse_tool import MouseTool
-from widgets.plane_view.feature_hits import PlaneHits
+from widgets.plane_view.feature_hits import PlaneHits, Points
 from widgets.plane_view.hand import PlaneHand
 from widgets.plane_view.lay import Lay, Spot
 from widgets.plane_view.live_painter import LiveContent, LivePainter, paint_words, spot_of
@@ -86,7 +86,7 @@ class PlaneView(QWidget):
         self._cursor_before: Place | None = None
         self._map = ProjectedMap(source, shared)
         self._map.read_all()
-        self._hits = PlaneHits(self._point_at, self.points_inside)
+        self._hits = PlaneHits(self)
         self._hits.selected = shared.selection.features
         self._hand = PlaneHand(self, self._hits, shared)
         self._still = StillPicture()
@@ -150,6 +150,10 @@ class PlaneView(QWidget):
     def points_inside(self, outline: QPolygonF) -> Mapping[str, NDArray[np.int64]]:  # noqa: ARG002
         """The measured points in an outline in the widget: drive id to points, sorted."""
         return {}
+
+    def finder_inside(self, outline: QPolygonF) -> Callable[[], Points] | None:  # noqa: ARG002
+        """What looks up all of them, in any thread; None where they are all drawn."""
+        return None
 
     def on_cursor_moved(self, place: Place) -> None:
         """The shared cursor was moved elsewhere than in this view."""
@@ -380,9 +384,6 @@ class PlaneView(QWidget):
     def _place_first(self) -> None:
         if not self._is_placed and self._viewport.width > 1 and self.lay() is not None:
             self.show_everything()
-
-    def _point_at(self, spot: Spot, reach: float, is_exact: bool) -> Place | None:  # noqa: FBT001
-        return self.place_at(spot, reach, exact=is_exact)
 
     def _on_plane(self, place: Place) -> Spot | None:
         lay = self.lay()

@@ -89,7 +89,7 @@ class SceneView(QWidget):
         self._drives = ShownDrives(source, shared.view_settings)
         self._cursor_before: Place | None = None
         self._cursor: Place | None = shared.cursor.place
-        self._finder = PointFinder()
+        self._finder = PointFinder(shared.view_settings)
         self._hits = SceneHits(self._finder, Projection(Camera((0.0, 0.0, 10.0)), 1, 1))
         self._map = MapLayer(source, shared, self)
         self._map.outdated.connect(self._show_map)

@@ -127,11 +127,12 @@ class SectionFeed(QObject):
 
     def _fulfil(self, wish: SectionWish) -> None:
         parts: list[SectionPoints] = []
+        most, hides_noise = MOST_POINTS // max(len(wish.drives), 1), wish.look.hides_noise
         for drive in wish.drives:
             if self._is_outdated():
                 return
             try:
-                parts.append(section_points(drive, wish.cut, MOST_POINTS // len(wish.drives)))
+                parts.append(section_points(drive, wish.cut, most, hides_noise=hides_noise))
             except UserError:  # the image view says why; here its points are just not there
                 parts.append(SectionPoints(drive.id, np.empty(0, np.int64), np.empty((0, 3))))
         is_slow = not wish.is_by_distance and wish.look.attribute not in _AT_ONCE

@@ -1,6 +1,8 @@
-"""SectionLines: the lines that sections stand on: trajectories and what is drawn."""
+"""SectionLines: the lines that sections stand on: trajectories, what is drawn, a site's axis."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from PySide6.QtCore import QObject
@@ -9,6 +11,7 @@ from processing.errors import UserError
 from processing.points.drive import Drive
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature, Position
+from processing.section.site_axis import site_axis
 from processing.section.stations import Stations
 from widgets.mouse_tools.near_features import NearFeatures
 from widgets.section_view.standing import CutLine, Standing
@@ -43,13 +46,25 @@ class SectionLines(QObject):
         self._near = NearFeatures(source, shared.map_changes, self)
         self._drawn: dict[str, tuple[Feature, CutLine | None]] = {}
         self._driven: dict[str, CutLine | None] = {}
+        self._axis: CutLine | None = None
+        self._has_looked_for_axis = False
         shared.map_changes.drives_changed.connect(self._on_drives_changed)
         shared.map_changes.features_changed.connect(self._on_features_changed)
 
     @property
-    def has_trajectory(self) -> bool:
-        """Whether any drive has a trajectory that leads somewhere."""
-        return any(self.trajectory(drive) is not None for drive in self._source.drives())
+    def has_own(self) -> bool:
+        """Whether there is a line to stand on though none is drawn."""
+        drives = self._source.drives()
+        return any(self.trajectory(drive) for drive in drives) or self.axis is not None
+
+    @property
+    def axis(self) -> CutLine | None:
+        """The middle line of a site where nobody drove; None where a drive has a trajectory."""
+        drives = self._source.drives()
+        if not self._has_looked_for_axis and not any(map(self.trajectory, drives)):
+            self._has_looked_for_axis = True
+            self._axis = _axis_of(drives)
+        return self._axis
 
     def drawn(self, feature_id: str) -> CutLine | None:
         """A drawn line or the outline of an area; None where there is none with a length."""
@@ -77,7 +92,7 @@ class SectionLines(QObject):
     def across_trajectory(self, place: Place) -> Standing | None:
         """Where a section across the nearest trajectory goes through a place.
 
-        That of the place's own drive goes before others.
+        That of the place's own drive goes before others; where nobody drove, the site's axis.
         """
         drives = self._source.drives()
         if place.measured is not None:
@@ -86,18 +101,24 @@ class SectionLines(QObject):
         if not lines:
             others = [self.trajectory(drive) for drive in self._source.drives()]
             lines = [line for line in others if line is not None]
+        if not lines and self.axis is not None:
+            lines = [self.axis]
         found = [self.standing_at(line, place) for line in lines]
         return min(found, key=lambda one: _distance(one, place), default=None)
 
     def start(self) -> Standing | None:
-        """Near the beginning of the drive that the image view shows, or of the first one."""
+        """Near the beginning of the drive that the image view shows, or of the first one.
+
+        Where nobody drove, in the middle of the site.
+        """
         chosen = self._shared.view_settings.drive_id
         drives = sorted(self._source.drives(), key=lambda drive: drive.id != chosen)
         for drive in drives:
             line = self.trajectory(drive)
             if line is not None:
                 return Standing(line, min(_START_M, line.stations.length_m / 2))
-        return None
+        axis = self.axis
+        return None if axis is None else Standing(axis, axis.stations.length_m / 2)
 
     def under(self, place: Place) -> Standing | None:
         """The line under a place, drawn ones before trajectories; None where none is near."""
@@ -119,7 +140,9 @@ class SectionLines(QObject):
         if best is not None:
             return self.standing_at(best[1], place)
         driven = self.across_trajectory(place)
-        is_near = driven is not None and _distance(driven, place) <= _TRAJECTORY_REACH_M
+        if driven is None or driven.line.is_axis:
+            return None  # nothing on the ground shows an axis
+        is_near = _distance(driven, place) <= _TRAJECTORY_REACH_M
         return driven if is_near else None
 
     def at_hand(self) -> str:
@@ -152,6 +175,7 @@ class SectionLines(QObject):
     def _on_drives_changed(self) -> None:
         self._drawn.clear()
         self._driven.clear()
+        self._axis, self._has_looked_for_axis = None, False
 
     def _on_features_changed(self, ids: tuple[str, ...]) -> None:
         for id_ in ids:
@@ -173,6 +197,14 @@ def _line_of(feature: Feature) -> CutLine | None:
     except UserError:  # a line without length is no line to cut across
         return None
     return CutLine(feature.id, "", stations)
+
+
+def _axis_of(drives: Sequence[Drive]) -> CutLine | None:
+    try:
+        found = site_axis(drives)
+    except UserError:  # a damaged drive; the image view says why
+        return None
+    return None if found is None else CutLine("", "", found.stations, found.half_length_m)
 
 
 def _driven_line(drive: Drive) -> CutLine | None:

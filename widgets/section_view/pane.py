@@ -172,7 +172,7 @@ class SectionPane(PlaneView):
             return self.tr("The section appears here once a recording is open.")
         if self._standing is not None:
             return self.tr("Points are being looked for.")
-        if self._lines.has_trajectory:
+        if self._lines.has_own:
             return self.tr("Click a place in another view to cut there.")
         return self.tr("This recording has no trajectory: select a drawn line to cut across it.")
 
@@ -327,7 +327,7 @@ class SectionPane(PlaneView):
             self._ask()
 
     def _on_map_labels_changed(self, drive_id: str, _points: object) -> None:
-        if self._shared.view_settings.look.attribute == "label":
+        if self._shared.view_settings.look.follows_labels:
             self._on_map_drive_columns_changed(drive_id)
 
     # What is done in more than one place.

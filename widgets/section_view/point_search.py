@@ -61,7 +61,7 @@ def measured_point(picture: SectionPicture, at: Floats, reach: Floats) -> Place 
     around = replace(cut, middle=(east, north, cut.middle[2]), half_length_m=float(reach[0]))
     best: tuple[Floats, Drive, int] | None = None
     for drive in picture.wish.drives:
-        near = section_points(drive, around, drive.count)
+        near = section_points(drive, around, drive.count, hides_noise=picture.wish.look.hides_noise)
         section = near.section + np.array([at[0], 0.0, 0.0])
         found = _nearest(section, at, reach)
         if found < 0:
@@ -74,7 +74,11 @@ def measured_point(picture: SectionPicture, at: Floats, reach: Floats) -> Place 
 def points_within(
     picture: SectionPicture, viewport: PlaneViewport, outline: QPolygonF
 ) -> dict[str, NDArray[np.int64]]:
-    """All measured points of the slab in an outline in the widget: drive id to points, rising."""
+    """All measured points of the slab in an outline in the widget: drive id to points, rising.
+
+    But for noise while it is hidden.
+    """
+    hides_noise = picture.wish.look.hides_noise
     cut, bounds = picture.wish.cut, outline.boundingRect()
     lay = SectionLay(cut)
     ends = [viewport.to_plane(x, 0.0)[0] for x in (bounds.left(), bounds.right())]
@@ -83,7 +87,7 @@ def points_within(
     around = replace(cut, middle=(east, north, cut.middle[2]), half_length_m=half_m)
     found = {}
     for drive in picture.wish.drives:
-        points = points_in_cut(drive, around, drive.count)
+        points = points_in_cut(drive, around, drive.count, hides_noise=hides_noise)
         section = cut.to_section(drive.xyz(points))
         inside = are_inside(viewport.to_screen(lay.on_plane(section)), outline)
         inside &= np.abs(section[:, 0]) <= cut.half_length_m

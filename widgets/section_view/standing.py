@@ -13,7 +13,7 @@ LEAST_WIDTH_M, MOST_WIDTH_M = 0.02, 20.0
 BEYOND_M = 30.0
 """So far the section can be stepped straight on beyond the ends of a line."""
 
-_HALF_LENGTH_M = 15.0
+HALF_LENGTH_M = 15.0
 _BESIDE_M = 5.0
 _EXACT_M = 1e-4
 
@@ -27,13 +27,21 @@ class CutLine:
     feature : str
         Id of the drawn line; empty for a trajectory.
     drive : str
-        Id of the drive whose trajectory it is; empty for a drawn line.
+        Id of the drive whose trajectory it is; empty for other lines.
     stations : Stations
+    half_length_m : float
+        So far sections across it reach to either side.
     """
 
     feature: str
     drive: str
     stations: Stations
+    half_length_m: float = HALF_LENGTH_M
+
+    @property
+    def is_axis(self) -> bool:
+        """Whether it is neither drawn nor driven, but leads through the middle of a site."""
+        return not self.feature and not self.drive
 
 
 @dataclass(frozen=True)
@@ -61,9 +69,9 @@ class Standing:
     @property
     def cut(self) -> Cut:
         """The slab; long enough to hold the place that it goes through."""
-        stations = self.line.stations
+        stations, half_m = self.line.stations, self.line.half_length_m
         make = stations.cut_along if self.is_along else stations.cut_at
-        cut = make(self.station_m, self.width_m, _HALF_LENGTH_M)
+        cut = make(self.station_m, self.width_m, half_m)
         if self.through is None:
             return cut
         offset, _, away = cut.to_section([self.through])[0].tolist()
@@ -71,7 +79,7 @@ class Standing:
         if abs(away) > _EXACT_M:
             east, north = cut.normal
             middle = middle[0] + away * east, middle[1] + away * north, middle[2]
-        half_m = max(_HALF_LENGTH_M, abs(offset) + _BESIDE_M)
+        half_m = max(half_m, abs(offset) + _BESIDE_M)
         return replace(cut, middle=middle, half_length_m=half_m)
 
     @property

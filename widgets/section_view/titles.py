@@ -10,6 +10,7 @@ from widgets.shared.map_source import MapSource
 _ACROSS = Text("Across {line}", "{line}の横断")
 _ALONG = Text("Along {line}", "{line}の縦断")
 _TRAJECTORY = Text("the trajectory", "走行軌跡")
+_SITE = Text("the site", "現場")
 _DRAWN = Text("“{kind}”", "「{kind}」")
 _STATION = Text("{m:.2f} m", "{m:.2f} m")
 _BEFORE = Text("{m:.2f} m before its beginning", "始点の{m:.2f} m手前")
@@ -25,6 +26,8 @@ _BACK, _AHEAD = Text("◂ back", "◂ 手前"), Text("ahead ▸", "前方 ▸")
 def line_title(source: MapSource, standing: Standing) -> Text:
     """Across or along which line."""
     named = _ALONG if standing.is_along else _ACROSS
+    if standing.line.is_axis:
+        return named.filled(line=_SITE)
     feature = source.feature(standing.line.feature) if standing.line.feature else None
     if feature is None:
         return named.filled(line=_TRAJECTORY)

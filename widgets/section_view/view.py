@@ -300,8 +300,9 @@ class SectionView(QWidget):
             self._stand(standing)
 
     def _on_selection_features_changed(self, ids: frozenset[str]) -> None:
-        is_free = self._standing is not None and not self._followed
-        if is_free or self._followed in ids:
+        standing = self._standing
+        is_driven = standing is not None and not standing.line.is_axis and not self._followed
+        if is_driven or self._followed in ids:
             return
         lines = [id_ for id_ in ids if self._lines.drawn(id_) is not None]
         if len(lines) == 1:

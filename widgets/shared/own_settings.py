@@ -46,6 +46,7 @@ class OwnSettings(QObject):
             low_percent=look.low_percent,
             high_percent=look.high_percent,
             point_size_px=look.point_size_px,
+            hides_noise=look.hides_noise,
         )
         self.settings.hide_kinds(shared.hidden_kinds)
         self.settings.hide_runs(shared.hidden_runs)

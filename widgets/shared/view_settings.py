@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QObject, Signal
 
+from processing.image.attributes import SHOWS_LABELS
 from processing.image.kinds import ImageKind
 from processing.project.feature import Feature, Status
 from widgets.shared.image_lay import ImageLay
@@ -23,12 +24,20 @@ class PointLook:
         Percentiles of the drive that become the dark and the bright end.
     point_size_px : float
         Size of a point in 3D.
+    hides_noise : bool
+        Points whose class is noise are not there: they are neither drawn nor picked.
     """
 
     attribute: str = "intensity"
     low_percent: float = 2.0
     high_percent: float = 98.0
     point_size_px: float = 2.0
+    hides_noise: bool = False
+
+    @property
+    def follows_labels(self) -> bool:
+        """Whether what is drawn depends on the labels of points."""
+        return self.hides_noise or self.attribute in SHOWS_LABELS
 
 
 class ViewSettings(QObject):
@@ -107,6 +116,7 @@ class ViewSettings(QObject):
         low_percent: float | None = None,
         high_percent: float | None = None,
         point_size_px: float | None = None,
+        hides_noise: bool | None = None,
     ) -> None:
         """Set some fields of the look; None leaves one as it is."""
         old = self._look
@@ -115,6 +125,7 @@ class ViewSettings(QObject):
             old.low_percent if low_percent is None else low_percent,
             old.high_percent if high_percent is None else high_percent,
             old.point_size_px if point_size_px is None else point_size_px,
+            old.hides_noise if hides_noise is None else hides_noise,
         )
         if look != self._look:
             self._look = look

@@ -48,7 +48,7 @@ def test_the_cache_forgets_only_the_tiles_of_points_that_changed(drive):
                 cache._keep(request, pixels)
         before = cache.held_bytes
         touched = TouchedTiles(image, np.array([0]))
-        cache.drop_touched(drive, "label", np.array([0]))
+        cache.drop_relabelled(drive, np.array([0]))
         gone = [request for request in requests if cache.get(request) is None]
         assert gone == [r for r in requests if r.attribute == "label" and r.key in touched]
         assert 0 < len(gone) < len(requests) / 2

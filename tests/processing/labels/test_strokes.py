@@ -87,8 +87,8 @@ def test_a_jump_from_one_thing_to_another_is_no_way():
 def test_rules_choose_the_points_that_are_painted():
     labels = np.array([0, 2, 6, 11, 6], np.uint8)
     everything = PaintRule(6)
-    assert everything.chosen(labels).tolist() == [True, True, False, True, False]
+    assert everything.chosen(labels, labels).tolist() == [True, True, False, True, False]
     unlabelled = PaintRule(6, PaintOver.UNLABELLED)
-    assert unlabelled.chosen(labels).tolist() == [True, False, False, False, False]
+    assert unlabelled.chosen(labels, labels).tolist() == [True, False, False, False, False]
     one_class = PaintRule(0, PaintOver.ONE_CLASS, 6)
-    assert one_class.chosen(labels).tolist() == [False, False, True, False, True]
+    assert one_class.chosen(labels, labels).tolist() == [False, False, True, False, True]

@@ -19,6 +19,7 @@ from widgets.scene_view.camera import Camera
 from widgets.scene_view.points.point_finder import PointFinder
 from widgets.scene_view.points.scene_tile import DrawnTile, SceneTile
 from widgets.scene_view.projection import NEAR_M, Projection
+from widgets.shared.view_settings import ViewSettings
 
 Floats = NDArray[np.float64]
 DriveImage = tuple[Drive, ImageKind]
@@ -107,7 +108,7 @@ def test_a_pick_is_what_looking_at_every_point_gives(
         if what == "box"
         else None
     )
-    finder = PointFinder()
+    finder = PointFinder(ViewSettings())
     finder.use(shown, ORIGIN)
     finder.clip_to(clip)
     found = finder.exact([drawn_of(*one) for one in shown], projection, *pixel)
@@ -130,7 +131,7 @@ def test_a_point_that_no_pixel_of_the_image_shows_is_found(drives: tuple[DriveIm
     assert hidden.size
     place = drive.xyz(hidden[:1])[0]
     camera = Camera((0.0, 0.0, 0.0), pitch_deg=-50.0).centred_on(place - ORIGIN, 0.6)
-    finder = PointFinder()
+    finder = PointFinder(ViewSettings())
     finder.use([(drive, kind)], ORIGIN)
     found = finder.exact([drawn_of(drive, kind)], Projection(camera, 800, 600), 400.0, 300.0)
     assert found is not None
@@ -141,7 +142,7 @@ def test_a_point_that_no_pixel_of_the_image_shows_is_found(drives: tuple[DriveIm
 def test_drives_without_anything_in_the_picture_are_not_searched(
     drives: tuple[DriveImage, ...],
 ) -> None:
-    finder = PointFinder()
+    finder = PointFinder(ViewSettings())
     finder.use(drives, ORIGIN)
     camera = Camera((0.0, 0.0, 50.0), pitch_deg=-90.0)
     assert finder.exact([], Projection(camera, 800, 600), 400.0, 300.0) is None

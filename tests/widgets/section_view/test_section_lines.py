@@ -86,7 +86,9 @@ def test_without_a_trajectory_a_drawn_line_is_cut_across(qtbot: QtBot, tmp_path:
     (tmp_path / "drives").mkdir()
     (made,) = import_drives(ImportRequest((points,), ()), tmp_path / "drives", SilentMonitor())
     hand = shown(qtbot, OpenMap((Drive(made),)))
-    assert "no trajectory: select a drawn line" in hand.pane.words()
+    across_site = hand.view.standing
+    assert across_site is not None
+    assert across_site.line.is_axis
     line = curb_line(hand)
     hand.do(lambda: hand.map.shared.selection.choose_features(frozenset({line.id})))
     assert hand.view.followed == line.id

@@ -179,7 +179,7 @@ class Cloud(QObject):
 
     def refresh_labels(self, drive_id: str, points: NDArray[np.int64]) -> None:
         """Labels of points changed: get the colours of the tiles that show them again."""
-        if self._showing.look.attribute == "label":
+        if self._showing.look.follows_labels:
             touched = self._touched(drive_id, points)
             self._shown = {
                 tile: shown

@@ -14,12 +14,14 @@ from processing.image.kinds import ImageKind
 from processing.image.ray_hits import RayHit, RayHits
 from processing.image.tile_descent import ray_kernel
 from processing.image.tiles import TILE, TileKey
+from processing.points.counted_classes import seen_points
 from processing.points.drive import Drive
 from processing.project.feature import PointReference
 from widgets.scene_view.points.picking import entry_depths, pick, ray_at, sight_at
 from widgets.scene_view.points.scene_tile import DrawnTile
 from widgets.scene_view.projection import NEAR_M, Projection
 from widgets.shared.cursor import Place
+from widgets.shared.view_settings import ViewSettings
 
 Floats = NDArray[np.float64]
 
@@ -39,9 +41,16 @@ class FoundPoint:
 
 
 class PointFinder:
-    """Looks up points of the drives that a view shows."""
+    """Looks up points of the drives that a view shows.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    settings : ViewSettings
+        Say whether noise is hidden.
+    """
+
+    def __init__(self, settings: ViewSettings) -> None:
+        self._settings = settings
         self._drives: dict[str, tuple[Drive, ImageKind]] = {}
         self._origin: Floats = np.zeros(3)
         self._clip: Clip | None = None
@@ -80,7 +89,8 @@ class PointFinder:
 
         def search(number: int, hits: RayHits) -> None:
             drive, kind = self._drives[near[number][0]]
-            hits.search_tile(drive, drive.image(kind), near[number][1], self._clip)
+            image, key = drive.image(kind), near[number][1]
+            hits.search_tile(drive, image, key, self._clip, hides_noise=self._hides_noise)
 
         sight = sight_at(projection, self._origin, x, y)
         return self._found(pick(np.concatenate(entries), search, sight))
@@ -123,11 +133,16 @@ class PointFinder:
             image = drive.image(kind)
             if image.pyramid.is_ready:
                 points = points_enclosed(drive, image, sight, outline)
+                points = seen_points(drive.columns, points, hides_noise=self._hides_noise)
                 if self._clip is not None:
                     points = points[self._clip.holds(drive.xyz(points))]
                 if points.size:
                     found[drive.id] = points
         return found
+
+    @property
+    def _hides_noise(self) -> bool:
+        return self._settings.look.hides_noise
 
     def _tiles_on(self, drive_id: str, ray: Floats) -> tuple[list[TileKey], Floats]:
         """The finest tiles of a drive that a cone meets, and where it enters them."""

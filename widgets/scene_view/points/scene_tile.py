@@ -86,7 +86,12 @@ class SceneTile:
     def showing(self) -> Showing:
         """What its colours show, and of which part of space."""
         request = self.request
-        look = PointLook(request.attribute, request.low_percent, request.high_percent)
+        look = PointLook(
+            request.attribute,
+            request.low_percent,
+            request.high_percent,
+            hides_noise=request.hides_noise,
+        )
         return Showing(look, self.clip)
 
     def clipped(self, clip: Clip | None, origin: NDArray[np.float64]) -> SceneTile:

@@ -156,9 +156,11 @@ class TileFeed(QObject):
         self._emit_chosen(Choice(wish, chosen, is_final))
         wanted = [*chosen, *sorted(wish.kept - set(chosen), key=lambda tile: tile.key.rank)]
         lacking = [tile for tile in wanted if (tile, wish.showing) not in wish.known]
-        self._show_anew([wish.there[tile] for tile in lacking if tile in wish.there], wish)
+        # Those whose points stay need only other colours.
+        staying = _with_their_points(wish)
+        self._show_anew([wish.there[tile] for tile in lacking if tile in staying], wish)
         look = wish.showing.look
-        requests = [_request_of(tile, look) for tile in lacking if tile not in wish.there]
+        requests = [_request_of(tile, look) for tile in lacking if tile not in staying]
         self._tiles.keep_only(self._on_tiles_done, set(requests))
         # The cache serves the newest request first, and coarse tiles are to come first.
         for request in reversed(requests):
@@ -225,6 +227,19 @@ class TileFeed(QObject):
         self._emit_arrived((tile.clipped(wish.showing.clip, wish.origin),))
 
 
+def _with_their_points(wish: Wish) -> frozenset[TileId]:
+    """The tiles that are there with the points that are wished for, whatever their colours.
+
+    Where noise is hidden, tiles of which nothing is known any more may hold others.
+    """
+    hides_noise, known = wish.showing.look.hides_noise, {tile for tile, _ in wish.known}
+    return frozenset(
+        tile
+        for tile, there in wish.there.items()
+        if there.request.hides_noise is hides_noise and (tile in known or not hides_noise)
+    )
+
+
 def _coloured(tile: SceneTile, drive: Drive, look: PointLook) -> SceneTile:
     """The tile before it was clipped, in other colours."""
     whole = tile if tile.whole is None else tile.whole
@@ -233,6 +248,7 @@ def _coloured(tile: SceneTile, drive: Drive, look: PointLook) -> SceneTile:
 
 
 def _request_of(tile: TileId, look: PointLook) -> TileRequest:
+    ends = look.low_percent, look.high_percent
     return TileRequest(
-        tile.drive_id, tile.kind, tile.key, look.attribute, look.low_percent, look.high_percent
+        tile.drive_id, tile.kind, tile.key, look.attribute, *ends, hides_noise=look.hides_noise
     )
