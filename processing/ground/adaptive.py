@@ -12,6 +12,7 @@ from processing.ground.band import Band, Tolerances, classify, ground_band, heig
 from processing.ground.below import ghosts, sunk_points
 from processing.ground.cells import Blocks, CellGrid, Levels, choose_cells, levels_above
 from processing.ground.morphology import filled
+from processing.ground.neighbours import off_neighbours
 from processing.ground.regions import Shape, standing_cells
 from processing.monitor import Monitor
 from processing.text import Text
@@ -128,6 +129,8 @@ def find_ground(
     ground = np.isfinite(levels.lowest) & ~standing
     if not ground.any():
         ground = np.isfinite(levels.lowest)
+    crowded = levels.second < levels.lowest + _PERSON_M
+    ground &= ~off_neighbours(levels.lowest, ground, crowded, grid.size_m)
     surface = filled(levels.lowest, ground)
     band = ground_band(passes, grid, surface, ground, habits.tolerances)
     return GroundSurface(grid, band, _without_small_gaps(ground))

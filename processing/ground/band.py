@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.ground.cells import Blocks, CellGrid
+from processing.ground.morphology import steepness_of
 from processing.ground.walls import column_tops, faces
 from processing.kernels import kernel
 
@@ -138,16 +139,6 @@ def ground_band(
         feet,
         typical,
     )
-
-
-def steepness_of(surface: NDArray[np.float32], size_m: float) -> NDArray[np.float32]:
-    """Rise over run of a surface: (rows, columns) float32."""
-    import cv2
-
-    scale = 1.0 / (8.0 * size_m)
-    east = cv2.Sobel(surface, cv2.CV_32F, 1, 0, scale=scale, borderType=cv2.BORDER_REPLICATE)
-    north = cv2.Sobel(surface, cv2.CV_32F, 0, 1, scale=scale, borderType=cv2.BORDER_REPLICATE)
-    return np.hypot(east, north).astype(np.float32)
 
 
 def classify(xyz: NDArray[np.float64], grid: CellGrid, band: Band) -> NDArray[np.bool_]:

@@ -129,6 +129,16 @@ def nearest_known(known: NDArray[np.bool_]) -> NDArray[np.int32]:
     return nearest
 
 
+def steepness_of(surface: NDArray[np.float32], size_m: float) -> NDArray[np.float32]:
+    """Rise over run of a surface: (rows, columns) float32."""
+    import cv2
+
+    scale = 1.0 / (8.0 * size_m)
+    east = cv2.Sobel(surface, cv2.CV_32F, 1, 0, scale=scale, borderType=cv2.BORDER_REPLICATE)
+    north = cv2.Sobel(surface, cv2.CV_32F, 0, 1, scale=scale, borderType=cv2.BORDER_REPLICATE)
+    return np.hypot(east, north).astype(np.float32)
+
+
 def _halved(
     heights: NDArray[np.float32], known: NDArray[np.bool_]
 ) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:

@@ -14,6 +14,8 @@ _HEADS = 0.3
 _LONG_M = 15.0
 _HEADS_OF_LONG = 0.12
 _REACH_M = 8.0
+_CREST_CELLS = 7
+_JOIN_CELLS = 3
 
 
 def column_tops(bins: NDArray[np.uint64]) -> NDArray[np.float32]:
@@ -49,16 +51,18 @@ def faces(
     Notes
     -----
     A face has measured ground near its foot on one side and near its top on the other; a fence or
-    a machine has ground near its foot on both.
+    a machine has ground near its foot on both, also where it touches a face. A face goes up to
+    its crest near by, behind which the ground may lie in shadow.
     """
     import cv2
 
     column = tops > max(_LOWEST_FACE_M, size_m)
     free = ground & ~column
     count, found, boxes, _ = cv2.connectedComponentsWithStats(
-        column.astype(np.uint8), connectivity=8
+        cv2.dilate(column.astype(np.uint8), np.ones((_JOIN_CELLS, _JOIN_CELLS), np.uint8)),
+        connectivity=8,
     )
-    labels: NDArray[np.int32] = np.asarray(found, np.int32)
+    labels: NDArray[np.int32] = np.where(column, found, 0).astype(np.int32)
     if count < 2 or not free.any():
         return np.full(column.shape, -np.inf, np.float32)
     reach = max(2, round(_REACH_M / size_m))
@@ -70,7 +74,9 @@ def faces(
     face = (length >= _SHORTEST_M) & (feet >= _FEET * rim) & (heads >= needed * rim) & (rim > 0)
     face[0] = False
     upper[~face[labels]] = -np.inf
-    return cv2.dilate(upper, np.ones((3, 3), np.uint8)).astype(np.float32)
+    near = cv2.dilate(upper, np.ones((3, 3), np.uint8)).astype(np.float32)
+    highest = cv2.dilate(upper, np.ones((_CREST_CELLS, _CREST_CELLS), np.uint8)).astype(np.float32)
+    return np.where(np.isfinite(near), highest, near)
 
 
 @kernel
@@ -86,6 +92,24 @@ def _tops_kernel(bins: NDArray[np.uint64], tops: NDArray[np.float32]) -> None:
                     empty += 1
                     if empty > 3:
                         break
+
+
+@kernel
+def _first_free(
+    labels: NDArray[np.int32], free: NDArray[np.bool_], cell: int, side: int, reach: int
+) -> int:
+    """The first cell to one side that is open ground: −1 where the same column comes first."""
+    rows, columns = labels.shape
+    row, column = cell // columns, cell % columns
+    down = (side == 0) - (side == 1)
+    right = (side == 2) - (side == 3)
+    for step in range(1, reach + 1):
+        r, c = row + step * down, column + step * right
+        if r < 0 or c < 0 or r >= rows or c >= columns or labels[r, c] == labels[row, column]:
+            return -1
+        if free[r, c]:
+            return int(r * columns + c)
+    return -1
 
 
 @kernel
@@ -106,23 +130,22 @@ def _sides_kernel(
             label = labels[row, column]
             if label == 0:
                 continue
+            low_sides = 0
             for side in range(4):
-                down = (side == 0) - (side == 1)
-                right = (side == 2) - (side == 3)
-                for step in range(1, reach + 1):
-                    r, c = row + step * down, column + step * right
-                    if r < 0 or c < 0 or r >= rows or c >= columns or labels[r, c] == label:
-                        break
-                    if not free[r, c]:
-                        continue
-                    beyond = surface[r, c] - surface[row, column]
-                    rim[label] += 1.0
-                    if beyond < 0.25 * tops[row, column]:
-                        feet[label] += 1.0
-                    elif beyond > 0.65 * tops[row, column]:
-                        heads[label] += 1.0
-                        upper[row, column] = max(upper[row, column], surface[r, c])
-                    break
+                beside = _first_free(labels, free, row * columns + column, side, reach)
+                if beside < 0:
+                    continue
+                height = surface[beside // columns, beside % columns]
+                beyond = height - surface[row, column]
+                rim[label] += 1.0
+                if beyond < 0.25 * tops[row, column]:
+                    feet[label] += 1.0
+                    low_sides |= 1 << side
+                elif beyond > 0.65 * tops[row, column]:
+                    heads[label] += 1.0
+                    upper[row, column] = max(upper[row, column], height)
+            if low_sides & 3 == 3 or low_sides & 12 == 12:
+                upper[row, column] = -np.inf
 
 
 def warm_up() -> None:

@@ -123,3 +123,54 @@ def test_a_handful_of_level_points_is_ground(count: int) -> None:
 def test_a_cloud_without_extent_is_refused_in_a_sentence(xyz: np.ndarray) -> None:
     with pytest.raises(OutOfRange, match="at least three points"):
         _found(xyz)
+
+
+def test_the_foot_of_a_fence_goes_with_the_fence() -> None:
+    ground = _plane(20.0, 0.05)
+    rng = np.random.default_rng(8)
+    fence = np.column_stack(
+        [rng.uniform(5.0, 15.0, 6000), np.full(6000, 10.02), rng.uniform(0.0, 1.5, 6000)]
+    )
+    whole = np.vstack([ground, fence])
+    is_ground = _found(whole).is_ground(whole)
+    assert is_ground[: len(ground)].mean() > 0.99
+    assert not is_ground[len(ground) :].any()
+
+
+def test_a_machine_with_a_shadow_behind_it_is_removed() -> None:
+    ground = _without(_plane(30.0, 0.12, slope=0.1), (10.0, 10.0), (14.0, 20.0))
+    machine = _box((10.0, 10.0, 1.2), (14.0, 12.5, 3.0))
+    whole = np.vstack([ground, machine[machine[:, 1] < 12.4]])
+    is_ground = _found(whole).is_ground(whole)
+    assert is_ground[: len(ground)].mean() > 0.99
+    assert is_ground[len(ground) :].mean() < 0.03
+
+
+def test_a_step_seen_from_below_keeps_its_crest_with_the_ground_behind_in_shadow() -> None:
+    xyz = _without(_plane(30.0, 0.12), (15.0, -1.0), (18.0, 31.0))
+    xyz[:, 2] += np.where(xyz[:, 0] > 15.0, 1.5, 0.0)
+    rng = np.random.default_rng(9)
+    face = np.column_stack(
+        [np.full(4000, 15.0), rng.uniform(0.0, 29.0, 4000), rng.uniform(0.0, 1.5, 4000)]
+    )
+    whole = np.vstack([xyz, face])
+    is_ground = _found(whole).is_ground(whole)
+    assert is_ground[: len(xyz)].mean() > 0.99
+    assert is_ground[len(xyz) :].mean() > 0.9
+
+
+def test_a_fence_that_ends_at_a_wall_is_no_part_of_the_wall() -> None:
+    ground = _plane(30.0, 0.08)
+    ground[:, 2] += np.where(ground[:, 0] > 15.0, 3.0, 0.0)
+    rng = np.random.default_rng(10)
+    face = np.column_stack(
+        [np.full(12000, 15.0), rng.uniform(0.0, 29.0, 12000), rng.uniform(0.0, 3.0, 12000)]
+    )
+    fence = np.column_stack(
+        [rng.uniform(9.0, 15.0, 4000), np.full(4000, 15.0), rng.uniform(0.0, 1.5, 4000)]
+    )
+    whole = np.vstack([ground, face, fence])
+    is_ground = _found(whole).is_ground(whole)
+    assert is_ground[: len(ground)].mean() > 0.99
+    assert is_ground[len(ground) : len(ground) + len(face)].mean() > 0.9
+    assert is_ground[len(ground) + len(face) :].mean() < 0.15
