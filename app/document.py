@@ -282,7 +282,10 @@ class Document(QObject):
             self.told.emit(found.run.summary)
             return found.change
 
-        return self._changed(push)
+        is_stored = self._changed(push)
+        if found.change.labels:
+            self._first_look.show_classes()
+        return is_stored
 
     def do_at_hand(self, work: Callable[[], object], take: Callable[[object | None], None]) -> None:
         """Do a moment's work for the tool in the hand; it gets None where that failed."""

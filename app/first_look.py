@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from processing.image.attributes import telling_attribute
 from processing.image.kinds import ImageKind
 from processing.points.drive import Drive
-from widgets.shared.view_settings import ViewSettings
+from widgets.shared.view_settings import PointLook, ViewSettings
 
 
 class FirstLook:
@@ -34,6 +34,11 @@ class FirstLook:
         telling = telling_attribute(drives[0], wanted)
         self._stands_for = {} if telling == wanted else {telling: wanted}
         settings.change_look(attribute=telling)
+
+    def show_classes(self) -> None:
+        """Show what a tool just said of every point, unless something was chosen to be shown."""
+        if self._settings.look.attribute == PointLook().attribute:
+            self._settings.change_look(attribute="class")
 
 
 def best_kind(drive: Drive, wanted: ImageKind) -> ImageKind:

@@ -7,7 +7,7 @@ from functools import partial
 
 from app.actions.action import Action, map_action
 from app.window_parts import WindowParts
-from processing.points.classes import point_classes
+from processing.points.classes import class_key, point_classes
 from processing.text import Text
 from widgets.mouse_tools.paint_tool import ERASE, PaintTool, class_name
 
@@ -46,10 +46,10 @@ def label_actions(parts: WindowParts) -> tuple[Action, ...]:
 def choose_class(parts: WindowParts, key: str) -> bool:
     """Let a number key choose a class while a paint tool is in the hand; says whether it did.
 
-    A key chooses the class of its code, 0 the eraser.
+    A key chooses the class of its code, 0 the eraser, 8 noise that isn't below the ground.
     """
-    codes = {str(one.code): one.code for one in point_classes()} | {"0": 0}
-    if not isinstance(parts.toolbox.tool, PaintTool) or key not in codes:
+    codes = {class_key(one.code): one.code for one in point_classes()} | {"0": 0}
+    if not isinstance(parts.toolbox.tool, PaintTool) or not key or key not in codes:
         return False
     parts.document.shared.labels.choose(codes[key])
     parts.status_line.show_message(class_name(codes[key]) if codes[key] else ERASE)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,8 @@ from processing.errors import Unsuitable
 from processing.image.point_image import PointCloudImage
 from processing.kernels import kernel
 from processing.points.drive import Drive
+from processing.section.cut import Cut
+from processing.section.points_in_cut import points_in_cut
 from processing.text import Text
 
 _Floats = NDArray[np.float64]
@@ -54,6 +57,38 @@ def points_under_brush(drive: Drive, start: _Floats, end: _Floats, radius_m: flo
         room = np.empty(count, np.int64)
         _near_way_kernel(integers, scale, stretches, (way, radius_m), room)
     return room[:count]
+
+
+def points_in_slab(drive: Drive, cut: Cut, way: _Floats, radius_m: float) -> _Integers:
+    """All measured points of a section's slab as near in its picture to the way of a brush.
+
+    Parameters
+    ----------
+    cut : Cut
+        Points outside its slab are not painted, however near they are.
+    way : (2, 2) float64
+        Offset and height of both ends, m; the same for a click.
+    radius_m : float
+
+    Returns
+    -------
+    (n,) int64
+        Rising.
+    """
+    offsets = way[:, 0]
+    east, north, _ = cut.to_space([[offsets.mean(), 0.0, 0.0]])[0].tolist()
+    half_m = float(np.ptp(offsets)) / 2 + radius_m
+    around = replace(cut, middle=(east, north, cut.middle[2]), half_length_m=half_m)
+    points = points_in_cut(drive, around, drive.count)
+    places = cut.to_section(drive.xyz(points))[:, :2]
+    along = way[1] - way[0]
+    length = float(along @ along)
+    share = (
+        np.clip((places - way[0]) @ along / length, 0.0, 1.0) if length else np.zeros(len(places))
+    )
+    away = places - way[0] - share[:, None] * along
+    is_near = (away**2).sum(axis=1) <= radius_m**2
+    return np.asarray(points[is_near])
 
 
 def segments_of(drive: Drive, points: _Integers) -> NDArray[np.int32]:

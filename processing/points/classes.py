@@ -13,6 +13,8 @@ from processing.errors import BadFile, told_as_user_error
 from processing.text import Text
 from resources import path_of
 
+_LAST_KEY = 9
+_HIGH_NOISE, _KEY_OF_HIGH_NOISE = 18, "8"
 _COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
 
 
@@ -43,6 +45,16 @@ class PointClass:
 def point_classes() -> tuple[PointClass, ...]:
     """The classes that come with the program, by rising code."""
     return read_classes(path_of("catalogue/classes.toml"))
+
+
+def class_key(code: int) -> str:
+    """The number key that takes a class, with a paint tool in the hand; empty without one.
+
+    It is the class's own number; 8, which no class has, takes noise that isn't below the ground.
+    """
+    if code == _HIGH_NOISE:
+        return _KEY_OF_HIGH_NOISE
+    return str(code) if 0 <= code <= _LAST_KEY and str(code) != _KEY_OF_HIGH_NOISE else ""
 
 
 def read_classes(path: Path) -> tuple[PointClass, ...]:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Qt, Signal
 
 from processing.project.feature import Position, Vertex
+from processing.section.cut import Cut
 from widgets.shared.cursor import Place
 
 
@@ -28,10 +29,17 @@ class DragShape(Enum):
 
 @dataclass(frozen=True)
 class Ray:
-    """A line of sight, project CRS: of the eye in 3D, of the laser in the image."""
+    """A line of sight, project CRS: of the eye in 3D, of the laser in the image.
+
+    Attributes
+    ----------
+    slab : Cut or None
+        The slab that it goes through at right angles, in a section.
+    """
 
     origin: Position
     direction: Position
+    slab: Cut | None = None
 
 
 @dataclass(frozen=True)

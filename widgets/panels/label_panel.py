@@ -15,7 +15,7 @@ from PySide6.QtWidgets import (
 )
 
 from processing.labels.rules import PaintOver, PaintRule
-from processing.points.classes import point_classes
+from processing.points.classes import class_key, point_classes
 from processing.text import Language
 from widgets.mouse_tools.paint_tool import class_name
 from widgets.panels.label_tally import LabelTally
@@ -28,7 +28,6 @@ from widgets.shared.swatch import swatch_of
 
 _CODE = Qt.ItemDataRole.UserRole
 _NAME, _COUNT, _KEY = range(3)
-_LAST_KEY = 9
 _UNKNOWN_COLOUR = "#606060"
 _LEAST_COLUMN_PX = 16
 _LEAST_HIGH_PX = 40
@@ -132,7 +131,7 @@ class LabelPanel(QWidget):
         self._mark()
 
     def _add(self, code: int, colour: str, name: str, count: int) -> None:
-        key = str(code) if code <= _LAST_KEY else ""
+        key = class_key(code)
         item = QTreeWidgetItem(self._list, [name, f"{count:,}" if count else "", key])
         item.setData(_NAME, _CODE, code)
         item.setIcon(_NAME, swatch_of(colour or "#00000000"))

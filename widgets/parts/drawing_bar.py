@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 from processing.drafting.measuring import Measure
 from processing.project.catalogue import FeatureKind
 from processing.text import Language, Text
+from widgets.parts.class_chips import ClassChips
 from widgets.parts.elided_label import ElidedLabel
 from widgets.shared.shared_state import SharedState
 from widgets.shared.snap_state import SNAP_NAMES, SnapMode
@@ -24,7 +25,7 @@ from widgets.shared.swatch import SWATCH_PX, swatch_of
 
 _FARTHEST_M = 999.0
 _HIGHEST_M = 99.0
-_MEASURING = "measure"
+_MEASURING, _PAINTING = "measure", "paint-"
 _NO_SNAP = Text("no snapping", "スナップなし")
 _ON_PLANE = Text("working plane", "作業平面")
 _SNAP = Text("Snap: {names}", "スナップ: {names}")
@@ -78,6 +79,7 @@ class DrawingBar(QWidget):
         self._kind.setIconSize(QSize(SWATCH_PX, SWATCH_PX))
         self._kind.setToolTip(self.tr("What is drawn: choose by name (Ctrl+K) or number key"))
         self._kind.clicked.connect(self.kind_wanted)
+        self._classes = ClassChips(shared.labels, language, self)
         self._snaps = QToolButton(self)
         self._snaps.setAutoRaise(True)
         self._snaps.setToolTip(self.tr("What clicks snap to (Alt+1 to Alt+7)"))
@@ -98,6 +100,7 @@ class DrawingBar(QWidget):
         layout.setContentsMargins(8, 0, 8, 4)
         layout.setSpacing(8)
         layout.addWidget(self._kind)
+        layout.addWidget(self._classes)
         layout.addWidget(self._distance_name)
         layout.addWidget(self._distance)
         layout.addWidget(self._rise_name)
@@ -133,9 +136,15 @@ class DrawingBar(QWidget):
         self._kind.setIcon(QIcon() if kind is None else swatch_of(kind.colour))
 
     def show_tool(self, name: str) -> None:
-        """Say what a tool expects; only parallel copies have a distance, measures have no kind."""
+        """Say what a tool expects; only parallel copies have a distance, measures have no kind.
+
+        Paint tools have classes in place of a kind, and snap to nothing.
+        """
         self._tool = name
-        self._kind.setVisible(not name.startswith(_MEASURING))
+        is_painting = name.startswith(_PAINTING)
+        self._kind.setVisible(not is_painting and not name.startswith(_MEASURING))
+        self._classes.setVisible(is_painting)
+        self._snaps.setVisible(not is_painting)
         is_parallel = name == "parallel"
         for part in (self._distance_name, self._distance, self._rise_name, self._rise):
             part.setVisible(is_parallel)

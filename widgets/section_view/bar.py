@@ -92,12 +92,20 @@ class SectionBar(QWidget):
             self.tr("Write the ground line with heights, and what crosses it"),
             self,
         )
+        self._ground = IconButton(
+            "mdi6.terrain",
+            self.tr("Ground"),
+            self.tr("Draw the ground that was found: dashed where it is filled in"),
+            self,
+            is_switch=True,
+        )
         self._lay_out()
         for box in (self._lying, self._heights):
             box.activated.connect(self._on_settings_edited)
         for field in (self._width, self._step):
             field.valueChanged.connect(self._on_settings_edited)
         self._line.activated.connect(self._on_line_activated)
+        self._ground.toggled.connect(self._on_settings_edited)
         self._live.toggled.connect(self._on_settings_edited)
         self._pin.toggled.connect(self.pin_toggled)
         self._template.clicked.connect(self.template_requested)
@@ -111,7 +119,9 @@ class SectionBar(QWidget):
             *self._named(self.tr("Step"), self._step),
             *self._named(self.tr("Heights"), self._heights),
         )
-        self._buttons = self._group(self._live, self._pin, self._template, self._export)
+        self._buttons = self._group(
+            self._live, self._pin, self._ground, self._template, self._export
+        )
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(4, 0, 4, 4)
         self._grid.setHorizontalSpacing(_GAP_PX)
@@ -172,7 +182,14 @@ class SectionBar(QWidget):
         # The model changed, not the user.
         blocked = [
             QSignalBlocker(one)
-            for one in (self._lying, self._width, self._step, self._heights, self._live)
+            for one in (
+                self._lying,
+                self._width,
+                self._step,
+                self._heights,
+                self._live,
+                self._ground,
+            )
         ]
         self._lying.setCurrentIndex(int(settings.is_along))
         self._width.setValue(settings.width_m)
@@ -180,6 +197,7 @@ class SectionBar(QWidget):
         if settings.exaggeration in EXAGGERATIONS:
             self._heights.setCurrentIndex(EXAGGERATIONS.index(settings.exaggeration))
         self._live.setChecked(settings.is_live)
+        self._ground.setChecked(settings.shows_ground)
         for one in blocked:
             one.unblock()
 
@@ -200,6 +218,7 @@ class SectionBar(QWidget):
             exaggeration=EXAGGERATIONS[self._heights.currentIndex()],
             is_along=bool(self._lying.currentIndex()),
             is_live=self._live.isChecked(),
+            shows_ground=self._ground.isChecked(),
         )
         self.settings_chosen.emit(self._settings)
 

@@ -15,6 +15,9 @@ from processing.image.attributes import colours
 from processing.points.drive import Drive
 from processing.section.cut import Cut
 from processing.section.points_in_cut import MOST_POINTS, SectionPoints, section_points
+from processing.section.surface_line import SurfaceLine
+from widgets.section_view.found_ground import FoundGround
+from widgets.section_view.settings import SectionSettings
 from widgets.section_view.standing import Standing
 from widgets.shared.view_settings import PointLook
 
@@ -40,15 +43,16 @@ class SectionWish:
         Its slab.
     drives : tuple of Drive
     look : PointLook
-    is_by_distance : bool
-        Colours tell the distance from the plane instead of the look's attribute.
+    settings : SectionSettings
+        Say whether colours tell the distance from the plane instead of the look's attribute, and
+        whether the ground is shown.
     """
 
     standing: Standing
     cut: Cut
     drives: tuple[Drive, ...]
     look: PointLook
-    is_by_distance: bool = False
+    settings: SectionSettings
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,6 +73,8 @@ class SectionPicture:
         Whether there are more points than these.
     is_final : bool
         Whether the colours are those wished for.
+    ground : tuple of SurfaceLine
+        In the plane of the cut, as the tool “ground” found it.
     """
 
     wish: SectionWish
@@ -78,6 +84,7 @@ class SectionPicture:
     colours: NDArray[np.uint8]
     is_thinned: bool
     is_final: bool = True
+    ground: tuple[SurfaceLine, ...] = ()
 
 
 class SectionFeed(QObject):
@@ -97,6 +104,7 @@ class SectionFeed(QObject):
         self._changed = threading.Condition()
         self._next: SectionWish | None = None
         self._is_closed = False
+        self._ground = FoundGround()
         self._worker = threading.Thread(target=self._work, name="section", daemon=True)
         self._worker.start()
 
@@ -135,11 +143,13 @@ class SectionFeed(QObject):
                 parts.append(section_points(drive, wish.cut, most, hides_noise=hides_noise))
             except UserError:  # the image view says why; here its points are just not there
                 parts.append(SectionPoints(drive.id, np.empty(0, np.int64), np.empty((0, 3))))
-        is_slow = not wish.is_by_distance and wish.look.attribute not in _AT_ONCE
+        ground = self._ground.lines(wish.drives, wish.cut) if wish.settings.shows_ground else ()
+        is_slow = not wish.settings.is_by_distance and wish.look.attribute not in _AT_ONCE
         if is_slow:
-            self._tell(replace(picture_of(wish, parts, _PLAIN), is_final=False))
+            plain = picture_of(wish, parts, _PLAIN)
+            self._tell(replace(plain, is_final=False, ground=ground))
         if not (is_slow and self._is_outdated()):
-            self._tell(picture_of(wish, parts, wish.look.attribute))
+            self._tell(replace(picture_of(wish, parts, wish.look.attribute), ground=ground))
 
     def _tell(self, picture: SectionPicture) -> None:
         if not self._is_closed:
@@ -155,7 +165,7 @@ def picture_of(wish: SectionWish, parts: Sequence[SectionPoints], attribute: str
     section = np.concatenate([np.empty((0, 3)), *(part.section for part in parts)])
     points = np.concatenate([np.empty(0, np.int64), *(part.points for part in parts)])
     numbers = np.repeat(np.arange(len(parts)), [part.points.size for part in parts])
-    if wish.is_by_distance:
+    if wish.settings.is_by_distance:
         painted = distance_colours(section[:, 2], wish.cut.width_m / 2)
     else:
         shown = [

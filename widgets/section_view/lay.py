@@ -69,7 +69,7 @@ class SectionLay:
         x, y = place
         start = self.cut.to_space([[x, self.height_of(y), -self.cut.width_m / 2]])[0]
         east, north = self.cut.normal
-        return Ray(_position(start), (east, north, 0.0))
+        return Ray(_position(start), (east, north, 0.0), self.cut)
 
     def reach_m(
         self,

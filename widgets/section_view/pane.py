@@ -22,6 +22,7 @@ from widgets.plane_view.viewport import PlaneViewport
 from widgets.section_view.feed import SectionFeed, SectionPicture, SectionWish
 from widgets.section_view.frame import BOTTOM_PX, LEFT_PX, paint_frame
 from widgets.section_view.ground import GroundPainter
+from widgets.section_view.ground_line import paint_ground_legend, paint_ground_lines
 from widgets.section_view.lay import SectionLay
 from widgets.section_view.lines import SectionLines
 from widgets.section_view.marks import NamedMark, SectionMarks, mark_under, marks_of, paint_marks
@@ -146,7 +147,7 @@ class SectionPane(PlaneView):
             drawn = replace(viewport, exaggeration=settings.exaggeration)
             moved = viewport.to_screen(ground) - drawn.to_screen(ground)
             self.set_viewport(drawn.panned(0.0, float(moved[0, 1])))
-        if before.is_by_distance is not settings.is_by_distance:
+        if before.wanted != settings.wanted:
             self._ask()
 
     @override
@@ -201,6 +202,7 @@ class SectionPane(PlaneView):
         if picture is None or marks is None:
             return
         selected = self._shared.selection.features
+        paint_ground_lines(painter, viewport, picture.wish.cut, picture.ground)
         paint_marks(painter, marks, viewport, catalogue, selected)
         words = frame_words(
             self._source,
@@ -211,6 +213,7 @@ class SectionPane(PlaneView):
             is_empty=not picture.points.size,
         )
         paint_frame(painter, viewport, picture.wish.cut, words)
+        paint_ground_legend(painter, viewport, picture.ground, self._language)
         named = self._named
         if named is not None:
             x, y = viewport.to_screen(np.array([named.place]))[0].tolist()
@@ -327,7 +330,8 @@ class SectionPane(PlaneView):
             self._ask()
 
     def _on_map_labels_changed(self, drive_id: str, _points: object) -> None:
-        if self._shared.view_settings.look.follows_labels:
+        # A run of “ground” gives labels, and another ground with them.
+        if self._shared.view_settings.look.follows_labels or self._settings.shows_ground:
             self._on_map_drive_columns_changed(drive_id)
 
     # What is done in more than one place.
@@ -336,9 +340,7 @@ class SectionPane(PlaneView):
         if self._standing is None or self._is_closed or not self.isVisible():
             return  # what is hidden is looked for when it is shown
         standing, look = self._standing, self._shared.view_settings.look
-        wish = SectionWish(
-            standing, standing.cut, self._drives(), look, self._settings.is_by_distance
-        )
+        wish = SectionWish(standing, standing.cut, self._drives(), look, self._settings)
         self._asked = wish
         self._feed.wish(wish)
 

@@ -25,6 +25,8 @@ class SectionSettings:
         Whether the slab follows the mouse over lines in any view.
     is_by_distance : bool
         Whether points are coloured by their distance from the plane.
+    shows_ground : bool
+        Whether the ground that the tool “ground” found is drawn.
     """
 
     width_m: float = 1.0
@@ -33,3 +35,9 @@ class SectionSettings:
     is_along: bool = False
     is_live: bool = True
     is_by_distance: bool = False
+    shows_ground: bool = True
+
+    @property
+    def wanted(self) -> tuple[bool, bool]:
+        """What has to be looked up: colours by distance, the found ground."""
+        return self.is_by_distance, self.shows_ground

@@ -14,13 +14,17 @@ from widgets.section_view.settings import EXAGGERATIONS, SectionSettings
 def add_settings(
     menu: QMenu, settings: SectionSettings, choose: Callable[[SectionSettings], None]
 ) -> None:
-    """Offer colours and heights; what was chosen is told as the settings then wanted."""
+    """Offer colours, ground and heights; what was chosen is told as the settings then wanted."""
     colours = menu.addAction(
         QCoreApplication.translate("SectionMenu", "Colour by distance from the plane")
     )
     colours.setCheckable(True)
     colours.setChecked(settings.is_by_distance)
     colours.toggled.connect(lambda is_on: choose(replace(settings, is_by_distance=is_on)))
+    ground = menu.addAction(QCoreApplication.translate("SectionMenu", "Line of the found ground"))
+    ground.setCheckable(True)
+    ground.setChecked(settings.shows_ground)
+    ground.toggled.connect(lambda is_on: choose(replace(settings, shows_ground=is_on)))
     heights = menu.addMenu(QCoreApplication.translate("SectionMenu", "Heights"))
     for factor in EXAGGERATIONS:
         entry = heights.addAction(f"{factor:g}×")

@@ -45,7 +45,8 @@ def drive(tmp_path: Path) -> Drive:
 
 def noise_of(drive: Drive) -> NDArray[np.bool_]:
     labels = np.asarray(drive.columns["label"])
-    return (labels == NOISE_CODES[0]) | (labels == NOISE_CODES[1])
+    noise: NDArray[np.bool_] = np.isin(labels, NOISE_CODES)
+    return noise
 
 
 def test_the_codes_of_noise_are_those_of_the_class_table() -> None:

@@ -1,4 +1,4 @@
-"""Where nobody drove, sections stand on the longer middle line of the site, whatever lies far off."""
+"""Where nobody drove, sections stand on the longer middle line of the site."""
 
 from __future__ import annotations
 

@@ -12,6 +12,7 @@ from processing.labels.rules import PaintOver
 from processing.labels.strokes import points_under_brush
 from processing.points.drive import Drive
 from processing.project.change import Change
+from processing.section.cut import Cut
 from processing.text import Text
 from tests.widgets.builders import OpenMap, do_now, imported_drive, place_on
 from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit
@@ -19,6 +20,7 @@ from widgets.mouse_tools.paint_brush import PaintBrush
 from widgets.mouse_tools.paint_outline import PaintOutline
 from widgets.mouse_tools.paint_segments import IN_NO_SEGMENT, NO_SEGMENTS, PaintSegments
 from widgets.mouse_tools.paint_tool import NOTHING_THERE, PaintTool
+from widgets.section_view.lay import SectionLay
 
 NOWHERE = Hit(None)
 
@@ -66,10 +68,11 @@ class Easel:
 
     def apply(self, label: Text, change: Change) -> None:
         self.changes.append((label, change))
-        make_column(self.drive)
         for one in change.labels:
-            assert (labels_of(self.drive, one.unpacked_points()) == one.codes_before()).all()
-            write_labels(self.drive, one.unpacked_points(), one.codes_after())
+            drive = self.map.drive(one.drive)
+            make_column(drive)
+            assert (labels_of(drive, one.unpacked_points()) == one.codes_before()).all()
+            write_labels(drive, one.unpacked_points(), one.codes_after())
 
     def hit(self, point: int) -> Hit:
         return Hit(place_on(self.drive, point))
@@ -305,3 +308,63 @@ def test_escape_in_a_flood_drops_it_though_work_is_under_way(easel):
     later.do_all()
     assert easel.changes == []
     assert easel.chosen.size == 0
+
+
+def test_noise_that_is_hidden_is_not_painted(easel):
+    tool = brush(easel)
+    make_column(easel.drive)
+    under = easel.brush(5000)
+    write_labels(easel.drive, under[:5], np.full(5, 7, np.uint8))
+    easel.map.shared.view_settings.change_look(hides_noise=True)
+    tool.press(easel.hit(5000))
+    tool.release(easel.hit(5000))
+    assert (easel.labels[under[:5]] == 7).all()
+    assert (easel.labels[under[5:]] == easel.palette.rule.code).all()
+    easel.map.shared.view_settings.change_look(hides_noise=False)
+    tool.press(easel.hit(5000))
+    tool.release(easel.hit(5000))
+    assert (easel.labels[under] == easel.palette.rule.code).all()
+
+
+def test_only_one_class_is_painted_over_by_what_counts_of_each_point(easel):
+    tool = brush(easel)
+    under = easel.brush(5000)
+    delivered = np.zeros(easel.drive.count, np.uint8)
+    delivered[under[:6]] = 18
+    easel.drive.columns.add("classification", delivered)
+    make_column(easel.drive)
+    write_labels(easel.drive, under[:2], np.full(2, 6, np.uint8))
+    easel.palette.choose(1)
+    easel.palette.paint_over(PaintOver.ONE_CLASS, 18)
+    tool.press(easel.hit(5000))
+    tool.release(easel.hit(5000))
+    np.testing.assert_array_equal(easel.labels[under[:6]], [6, 6, 1, 1, 1, 1])
+    assert not easel.labels[under[6:]].any()
+
+
+def test_in_a_section_the_brush_is_a_circle_through_the_slab_of_every_drive(easel, tmp_path):
+    other = imported_drive(tmp_path / "other", head="right", seed=2)
+    easel.map.all_drives = (easel.drive, other)
+    tool = brush(easel)
+    easel.palette.set_radius(0.5)
+    xyz = easel.drive.xyz(np.array([5000]))[0]
+    cut = Cut(tuple(xyz.tolist()), (1.0, 0.0), width_m=0.6)
+    lay = SectionLay(cut)
+    for drive in easel.map.drives():
+        drive.image(drive.image_kinds[-1]).pyramid.prepare()
+
+    def hit(offset: float) -> Hit:
+        return Hit(None, ray=lay.ray((offset, 0.0)))
+
+    tool.press(hit(-1.0))
+    tool.move(hit(1.0))
+    tool.release(hit(1.0))
+    ((_, change),) = easel.changes
+    painted = {one.drive: one.unpacked_points() for one in change.labels}
+    for drive in easel.map.drives():
+        section = cut.to_section(drive.xyz(slice(0, drive.count)))
+        aside = np.maximum(np.abs(section[:, 0]) - 1.0, 0.0)
+        inside = np.hypot(aside, section[:, 1] - xyz[2]) <= 0.5
+        inside &= np.abs(section[:, 2]) <= 0.3
+        assert inside.any()
+        np.testing.assert_array_equal(painted[drive.id], np.flatnonzero(inside))

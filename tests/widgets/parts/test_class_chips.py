@@ -1,0 +1,71 @@
+"""Classes at hand while a paint tool is: a click puts one on the brush."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import Qt
+from pytestqt.qtbot import QtBot
+
+from processing.points.classes import class_key, point_classes
+from processing.text import Text
+from tests.widgets.builders import shared_state
+from widgets.parts.class_chips import AT_HAND, ClassChips
+from widgets.parts.drawing_bar import DrawingBar
+from widgets.shared.label_palette import LabelPalette
+
+
+def test_a_click_puts_a_class_on_the_brush_and_shows_it(qtbot: QtBot) -> None:
+    palette = LabelPalette()
+    chips = ClassChips(palette, "ja")
+    qtbot.addWidget(chips)
+    chips.show()
+    assert [chips.chip(code).text() for code in AT_HAND] == [
+        "地面",
+        "その他",
+        "低ノイズ",
+        "高ノイズ",
+    ]
+    for code in AT_HAND:
+        for _ in range(2):
+            qtbot.mouseClick(chips.chip(code), Qt.MouseButton.LeftButton)
+            assert palette.rule.code == code
+            assert [one for one in AT_HAND if chips.chip(one).isChecked()] == [code]
+
+
+def test_another_class_is_shown_as_long_as_it_is_on_the_brush(qtbot: QtBot) -> None:
+    palette = LabelPalette()
+    chips = ClassChips(palette, "en")
+    qtbot.addWidget(chips)
+    chips.show()
+    assert not chips.chip(6).isVisible()
+    palette.choose(6)
+    assert chips.chip(6).isVisible()
+    assert chips.chip(6).isChecked()
+    palette.choose(0)
+    assert not chips.chip(6).isVisible()
+    assert not any(chips.chip(code).isChecked() for code in AT_HAND)
+
+
+def test_every_class_at_hand_has_a_key_and_no_key_two_classes(qtbot: QtBot) -> None:
+    keys = [key for one in point_classes() if (key := class_key(one.code))]
+    assert len(keys) == len(set(keys))
+    chips = ClassChips(LabelPalette(), "en")
+    qtbot.addWidget(chips)
+    for code in AT_HAND:
+        assert class_key(code) in keys
+        assert f"({class_key(code)})" in chips.chip(code).toolTip()
+
+
+def test_the_drawing_bar_has_classes_for_paint_tools_and_kinds_for_others(qtbot: QtBot) -> None:
+    hints = {"paint-lasso": Text.same("a"), "line": Text.same("b")}
+    bar = DrawingBar(shared_state(), hints, "en")
+    qtbot.addWidget(bar)
+    bar.show()
+    chips = bar.findChild(ClassChips)
+    assert chips is not None
+    assert not chips.isVisible()
+    high = bar.height()
+    bar.show_tool("paint-lasso")
+    assert chips.isVisible()
+    bar.show_tool("line")
+    assert not chips.isVisible()
+    assert bar.height() == high

@@ -1,0 +1,72 @@
+"""ClassChips: the classes painted most, each a click away while a paint tool is in the hand."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSize, Qt
+from PySide6.QtWidgets import QHBoxLayout, QToolButton, QWidget
+
+from processing.labels.rules import PaintRule
+from processing.points.classes import class_key, point_classes
+from processing.text import Language
+from widgets.shared.label_palette import LabelPalette
+from widgets.shared.swatch import SWATCH_PX, swatch_of
+
+AT_HAND = (2, 1, 7, 18)
+"""Ground, what stands on it, and noise below and above: what corrections are made with."""
+
+
+class ClassChips(QWidget):
+    """A button for each class at hand, and one for the class on the brush where it is another.
+
+    Parameters
+    ----------
+    palette : LabelPalette
+        What the buttons show and change.
+    """
+
+    def __init__(
+        self, palette: LabelPalette, language: Language, parent: QWidget | None = None
+    ) -> None:
+        super().__init__(parent)
+        self._palette = palette
+        self._language: Language = language
+        self._chips: dict[int, QToolButton] = {}
+        layout = QHBoxLayout(self)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(4)
+        for one in point_classes():
+            if one.code:
+                self._chips[one.code] = self._chip(one.code, one.colour, one.name.spoken(language))
+        for code in (*AT_HAND, *(code for code in self._chips if code not in AT_HAND)):
+            layout.addWidget(self._chips[code])
+        palette.rule_changed.connect(self._on_palette_rule_changed)
+        self._on_palette_rule_changed(palette.rule)
+
+    def chip(self, code: int) -> QToolButton:
+        """The button of a class; KeyError where the table has none."""
+        return self._chips[code]
+
+    def _chip(self, code: int, colour: str, name: str) -> QToolButton:
+        chip = QToolButton(self)
+        chip.setCheckable(True)
+        chip.setAutoRaise(True)
+        # The keys stay with the view that is painted in.
+        chip.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        chip.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        chip.setIconSize(QSize(SWATCH_PX, SWATCH_PX))
+        chip.setIcon(swatch_of(colour))
+        chip.setText(name)
+        key = class_key(code)
+        words = self.tr("Paint this class")
+        chip.setToolTip(f"{words} ({key})" if key else words)
+        chip.clicked.connect(lambda: self._choose(code))
+        return chip
+
+    def _choose(self, code: int) -> None:
+        self._palette.choose(code)
+        self._on_palette_rule_changed(self._palette.rule)  # a second click leaves it pressed
+
+    def _on_palette_rule_changed(self, rule: PaintRule) -> None:
+        for code, chip in self._chips.items():
+            chip.setChecked(code == rule.code)
+            chip.setVisible(code in AT_HAND or code == rule.code)
