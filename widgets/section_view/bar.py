@@ -118,10 +118,9 @@ class SectionBar(QWidget):
             *self._named(self.tr("Width"), self._width),
             *self._named(self.tr("Step"), self._step),
             *self._named(self.tr("Heights"), self._heights),
+            self._ground,
         )
-        self._buttons = self._group(
-            self._live, self._pin, self._ground, self._template, self._export
-        )
+        self._buttons = self._group(self._live, self._pin, self._template, self._export)
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(4, 0, 4, 4)
         self._grid.setHorizontalSpacing(_GAP_PX)

@@ -1,0 +1,82 @@
+"""The ground that the tool “ground” found is drawn in the section, until it is turned off."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtGui import QImage
+from pytestqt.qtbot import QtBot
+
+from processing.ground.cells import CellGrid
+from processing.ground.stored_surface import FILE_NAME, SurfaceTile, SurfaceWriter, keep_surface
+from tests.widgets.builders import OpenMap, imported_drive
+from tests.widgets.section_view.conftest import Hand, shown
+
+YELLOW = np.array([0xF0, 0xE4, 0x42])
+
+
+def ground_in(hand: Hand, folder: Path, height_m: float) -> None:
+    """Let the drive keep a flat ground, filled in east of the middle."""
+    (drive,) = hand.map.drives()
+    low, high = np.array(drive.info.lowest), np.array(drive.info.highest)
+    low, high = np.floor(low) - 30.0, np.ceil(high) + 30.0
+    columns, rows = (high - low)[:2].astype(int).tolist()
+    grid = CellGrid(np.array([low[0], low[1], height_m]), 1.0, rows, columns)
+    filled = np.zeros((rows, columns), np.bool_)
+    cut = hand.view.cut
+    assert cut is not None
+    filled[:, int(cut.middle[0] - low[0]) :] = True
+    with SurfaceWriter(folder / "ground", grid, "") as writer:
+        writer.add(SurfaceTile(0, 0, np.zeros((rows, columns), np.float32), filled))
+    keep_surface(folder / "ground", (drive,))
+    hand.do(lambda: hand.map.shared.map_changes.drive_columns_changed.emit(drive.id))
+
+
+def yellow(hand: Hand) -> NDArray[np.int64]:
+    """Columns of the window's pixels, below the legend, that are the line's."""
+    image = hand.pane.grab().toImage().convertToFormat(QImage.Format.Format_RGBA8888)
+    pixels = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), -1, 4)
+    is_line = np.abs(pixels[80:, :, :3] - YELLOW).max(axis=2) < 24
+    return np.flatnonzero(is_line.any(axis=0))
+
+
+def test_ground_is_solid_where_measured_dashed_where_filled_and_can_be_hidden(
+    qtbot: QtBot, tmp_path: Path
+) -> None:
+    hand = shown(qtbot, OpenMap((imported_drive(tmp_path / "street"),)))
+    picture, lay = hand.pane.picture, hand.pane.lay()
+    assert picture is not None
+    assert lay is not None
+    assert picture.ground == ()
+    assert not yellow(hand).size
+    viewport = hand.pane.viewport
+    ground_in(hand, tmp_path, lay.height_of(viewport.to_plane(0.0, viewport.height * 0.6)[1]))
+    picture = hand.pane.picture
+    assert picture is not None
+    assert {line.is_filled for line in picture.ground} == {False, True}
+    columns = yellow(hand)
+    assert columns.size
+    # Without a gap on one side, with gaps on the other.
+    middle = hand.pane.viewport.to_screen(np.zeros((1, 2)))[0, 0]
+    sides = [columns[columns < middle - 80], columns[columns > middle + 80]]
+    gaps = sorted(int((np.diff(side) > 2).sum()) for side in sides)
+    assert gaps[0] == 0
+    assert gaps[1] > 5
+    hand.do(lambda: hand.view.use_settings(replace(hand.view.settings, shows_ground=False)))
+    assert not yellow(hand).size
+    hand.view.close()
+
+
+def test_a_damaged_surface_is_just_not_there(qtbot: QtBot, tmp_path: Path) -> None:
+    hand = shown(qtbot, OpenMap((imported_drive(tmp_path / "street"),)))
+    (drive,) = hand.map.drives()
+    (drive.folder / FILE_NAME).write_bytes(b"ZUKAGND1" + bytes(20))
+    hand.do(lambda: hand.map.shared.map_changes.drive_columns_changed.emit(drive.id))
+    picture = hand.pane.picture
+    assert picture is not None
+    assert picture.points.size
+    assert picture.ground == ()
+    hand.view.close()
