@@ -22,6 +22,7 @@ from app.actions.review import review_actions
 from app.actions.sight import sight_actions
 from app.actions.tool_entries import TOOL_ENTRIES
 from app.actions.view import view_actions
+from app.class_judging import ClassJudging
 from app.cli.window_wish import WindowWish
 from app.document import Document
 from app.hand import make_toolbox
@@ -45,6 +46,8 @@ from widgets.camera_view.panel import CameraPanel
 from widgets.image_view.side_by_side import ImageViews
 from widgets.map_view.view import MapView
 from widgets.panels.attribute_panel import AttributePanel
+from widgets.panels.class_evaluation.class_panel import ClassPanel
+from widgets.panels.class_evaluation.study_panel import StudyPanel
 from widgets.panels.evaluation_panel import EvaluationPanel
 from widgets.panels.feature_table import FeatureTable
 from widgets.panels.jobs_panel import JobsPanel
@@ -154,6 +157,7 @@ def _make_lasting(settings: Settings) -> LastingParts:
         document=document,
         review=review,
         source_watch=SourceWatch(document, document),
+        judging=ClassJudging(document, jobs, document),
         toolbox=make_toolbox(document),
         window=MainWindow(),
     )
@@ -182,6 +186,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         document=document,
         review=lasting.review,
         source_watch=lasting.source_watch,
+        judging=lasting.judging,
         toolbox=lasting.toolbox,
         image_views=image_views,
         scene_view=scene_view,
@@ -208,6 +213,8 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         attribute_panel=AttributePanel(document, shared, language),
         review_panel=ReviewPanel(document, shared, language),
         evaluation_panel=EvaluationPanel(document, shared, language),
+        class_panel=ClassPanel(shared, language),
+        study_panel=StudyPanel(language),
         label_panel=LabelPanel(document, shared, language),
         template_panel=TemplatePanel(
             document, shared, document.templates, document.do_at_hand, language=language

@@ -1,20 +1,26 @@
-"""The evaluation of runs as files: the table as CSV, the curve as PNG or PDF."""
+"""Evaluations and studies as files: the table as CSV, the plot as PNG or PDF."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Protocol
 
 from PySide6.QtCore import QMarginsF, QRectF, QSizeF, Qt
 from PySide6.QtGui import QFont, QGuiApplication, QImage, QPageSize, QPainter, QPdfWriter
 
 from processing.errors import NoSpace, Unsuitable
 from processing.formats.safe_write import written_safely
+from processing.project.class_evaluation import ClassEvaluation
+from processing.project.class_tables import write_class_evaluations, write_study
 from processing.project.evaluation_table import write_evaluation
 from processing.project.run_evaluation import RunEvaluation
+from processing.score.parameter_study import ParameterStudy
 from processing.text import Text
+from widgets.panels.class_evaluation.study_plot import StudyPlot
 from widgets.panels.reliability_plot import PlotColours, ReliabilityPlot
 
+_PICTURES = (".png", ".pdf")
 _SIDE_MM = 150.0
 _PNG_PX = 1800
 _FONT_MM = 3.5
@@ -41,10 +47,56 @@ def write_evaluation_file(
     NoSpace, InUse, MissingInput, BadFile
         What stands against writing; what was there before stays.
     """
-    ending = path.suffix.lower()
-    if ending not in (".png", ".pdf"):
+    if path.suffix.lower() not in _PICTURES:
         write_evaluation(path, evaluations)
         return
+    _write_plot(path, plot, "" if plot is None else plot.words.title)
+
+
+def write_classes_file(
+    path: Path, evaluations: Sequence[ClassEvaluation], truth: str, *, never: Iterable[Path] = ()
+) -> None:
+    """Write the table of runs that give classes.
+
+    Parameters
+    ----------
+    truth : str
+        Name of the truth.
+    never : iterable of Path
+        Files that must not be overwritten.
+
+    Raises
+    ------
+    NoSpace, InUse, MissingInput, BadFile
+        What stands against writing; what was there before stays.
+    """
+    write_class_evaluations(path, evaluations, truth, never=never)
+
+
+def write_study_file(
+    path: Path, study: ParameterStudy, plot: StudyPlot | None, *, never: Iterable[Path] = ()
+) -> None:
+    """Write a study's table or its plot, by the ending of the name.
+
+    Raises
+    ------
+    Unsuitable
+        There is no plot.
+    NoSpace, InUse, MissingInput, BadFile
+        What stands against writing; what was there before stays.
+    """
+    if path.suffix.lower() not in _PICTURES:
+        write_study(path, study, never=never)
+        return
+    _write_plot(path, plot, "" if plot is None else plot.title)
+
+
+class _Plot(Protocol):
+    def paint(self, painter: QPainter, area: QRectF, colours: PlotColours) -> None:
+        """Paint it into an area, in the painter's font."""
+
+
+def _write_plot(path: Path, plot: _Plot | None, title: str) -> None:
     if plot is None:
         raise Unsuitable(
             Text("There is no curve yet.", "グラフはまだありません。"),
@@ -52,7 +104,8 @@ def write_evaluation_file(
             Text("Judge some candidates first.", "先に候補を判定してください。"),
         )
     with written_safely(path) as temporary:
-        is_whole = _write_pdf(temporary, plot) if ending == ".pdf" else _write_png(temporary, plot)
+        is_pdf = path.suffix.lower() == ".pdf"
+        is_whole = _write_pdf(temporary, plot, title) if is_pdf else _write_png(temporary, plot)
         if not is_whole:
             raise NoSpace(
                 Text("The picture can't be written.", "図を書き込めません。"),
@@ -64,7 +117,7 @@ def write_evaluation_file(
             )
 
 
-def _write_png(path: Path, plot: ReliabilityPlot) -> bool:
+def _write_png(path: Path, plot: _Plot) -> bool:
     picture = QImage(_PNG_PX, _PNG_PX, QImage.Format.Format_RGB32)
     picture.fill(Qt.GlobalColor.white)
     per_mm = _PNG_PX / _SIDE_MM
@@ -75,12 +128,12 @@ def _write_png(path: Path, plot: ReliabilityPlot) -> bool:
     return picture.save(str(path))
 
 
-def _write_pdf(path: Path, plot: ReliabilityPlot) -> bool:
+def _write_pdf(path: Path, plot: _Plot, title: str) -> bool:
     page = QPdfWriter(str(path))
     page.setResolution(_PDF_DPI)
     page.setPageSize(QPageSize(QSizeF(_SIDE_MM, _SIDE_MM), QPageSize.Unit.Millimeter))
     page.setPageMargins(QMarginsF(0, 0, 0, 0))
-    page.setTitle(plot.words.title)
+    page.setTitle(title)
     painter = QPainter()
     if not painter.begin(page):
         return False
@@ -88,7 +141,7 @@ def _write_pdf(path: Path, plot: ReliabilityPlot) -> bool:
     return painter.end()
 
 
-def _paint(painter: QPainter, plot: ReliabilityPlot, per_mm: float) -> None:
+def _paint(painter: QPainter, plot: _Plot, per_mm: float) -> None:
     """In the screen's units, so that lines are as thick on paper as beside it."""
     font = QFont(QGuiApplication.font())
     scale = per_mm * _FONT_MM / max(font.pixelSize(), 1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QScrollArea, QWidget
+from PySide6.QtWidgets import QFrame, QScrollArea, QTabWidget, QWidget
 
 from app.window_contents import Panel
 from app.window_parts import WindowParts
@@ -85,10 +85,23 @@ def _scrolled(panel: QWidget) -> QScrollArea:
     return area
 
 
+def _evaluation_pages(parts: WindowParts) -> QTabWidget:
+    """One place for everything that says how good tools are."""
+    pages = QTabWidget()
+    pages.setDocumentMode(True)
+    for title, page in (
+        (Text("Candidates", "候補"), parts.evaluation_panel),
+        (Text("Point classes", "点のクラス"), _scrolled(parts.class_panel)),
+        (Text("Parameter study", "パラメータ検討"), _scrolled(parts.study_panel)),
+    ):
+        pages.addTab(page, title.spoken(parts.language))
+    return pages
+
+
 def _lower_panels(parts: WindowParts) -> tuple[Panel, ...]:
     """Tables, which wait to be called."""
     evaluation, table = Text("Evaluation", "評価"), Text("Table of features", "地物一覧")
     return (
-        Panel("evaluation", evaluation, parts.evaluation_panel, _BELOW, 900, 260, is_hidden=True),
+        Panel("evaluation", evaluation, _evaluation_pages(parts), _BELOW, 900, 280, is_hidden=True),
         Panel("features", table, parts.feature_table, _BELOW, 900, 230, is_hidden=True, key="F6"),
     )

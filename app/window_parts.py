@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
+from app.class_judging import ClassJudging
 from app.document import Document
 from app.jobs import JobQueue
 from app.main_window import MainWindow
@@ -20,6 +21,8 @@ from widgets.image_view.view import ImageView
 from widgets.map_view.view import MapView
 from widgets.mouse_tools.toolbox import MouseToolbox
 from widgets.panels.attribute_panel import AttributePanel
+from widgets.panels.class_evaluation.class_panel import ClassPanel
+from widgets.panels.class_evaluation.study_panel import StudyPanel
 from widgets.panels.evaluation_panel import EvaluationPanel
 from widgets.panels.feature_table import FeatureTable
 from widgets.panels.jobs_panel import JobsPanel
@@ -48,6 +51,7 @@ class LastingParts:
     document: Document
     review: Review
     source_watch: SourceWatch
+    judging: ClassJudging
     toolbox: MouseToolbox
     window: MainWindow
 
@@ -66,6 +70,7 @@ class WindowParts:
     document: Document
     review: Review
     source_watch: SourceWatch
+    judging: ClassJudging
     toolbox: MouseToolbox
     image_views: ImageViews
     scene_view: SceneView
@@ -84,6 +89,8 @@ class WindowParts:
     attribute_panel: AttributePanel
     review_panel: ReviewPanel
     evaluation_panel: EvaluationPanel
+    class_panel: ClassPanel
+    study_panel: StudyPanel
     label_panel: LabelPanel
     template_panel: TemplatePanel
     feature_table: FeatureTable

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject
 
+from app.class_wiring import connect_classes
 from app.drawing_wiring import connect_drawing
 from app.drive_wiring import connect_drives
 from app.import_wiring import connect_imports
@@ -44,6 +45,7 @@ def connect_parts(parts: WindowParts) -> None:
     connect_imports(parts)
     connect_review(parts)
     connect_templates(parts)
+    connect_classes(parts)
     parts.window.closed.connect(wiring.on_window_closed)
     wiring.on_undo_stack_changed()
     wiring.on_toolbox_tool_chosen(parts.toolbox.name)

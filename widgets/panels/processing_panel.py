@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
 )
 
 from processing.text import Language, Text
+from processing.tools.parameters import Value
 from processing.tools.registry import TOOLS
 from processing.tools.tool import Tool
 from widgets.panels.parameter_form import ParameterForm
@@ -44,9 +45,12 @@ class ProcessingPanel(QWidget):
     -------
     run_requested(tool: str, parameters: object)
         The tool's id and its frozen parameters.
+    values_changed
+        A tool is set otherwise.
     """
 
     run_requested = Signal(str, object)
+    values_changed = Signal()
 
     def __init__(
         self,
@@ -95,6 +99,25 @@ class ProcessingPanel(QWidget):
     def form(self) -> ParameterForm | None:
         """The form of the chosen tool."""
         return self._forms.get(self.tool)
+
+    def parameters_of(self, tool: str) -> object:
+        """A tool's frozen parameters as its form has them, or its defaults."""
+        form = self._forms.get(tool)
+        return self._tools[tool].parameters() if form is None else form.value()
+
+    def use_values(self, tool: str, values: Mapping[str, Value]) -> None:
+        """Choose a tool and set some of its parameters.
+
+        Raises
+        ------
+        OutOfRange
+            As :meth:`ParameterForm.set_values`.
+        """
+        self.show_tool(tool)
+        form = self._forms.get(tool)
+        if form is not None:
+            form.set_values(values)
+            self.values_changed.emit()
 
     def ask_reasons_from(self, reason: Reason) -> None:
         """Ask this whether a tool can run."""
@@ -177,6 +200,7 @@ class ProcessingPanel(QWidget):
         self._explanation.setText(tool.explanation.spoken(self._language))
         if tool.id not in self._forms:
             self._forms[tool.id] = ParameterForm(tool.parameters, self._language)
+            self._forms[tool.id].changed.connect(self.values_changed)
         self._scroll.takeWidget()
         for form in self._forms.values():
             # Forms keep what was typed while another tool is looked at.

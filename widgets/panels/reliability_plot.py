@@ -179,7 +179,7 @@ class ReliabilityView(QWidget):
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self._plot: ReliabilityPlot | None = None
-        self.setMinimumSize(160, 160)
+        self.setMinimumSize(160, 120)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     @property

@@ -1,0 +1,190 @@
+"""Wiring of the evaluation of classes: truths, runs judged by them, and parameter studies."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from PySide6.QtCore import QCoreApplication, QObject
+from PySide6.QtGui import QIcon
+from PySide6.QtWidgets import QFileDialog, QMessageBox
+
+from app.evaluation_files import write_classes_file, write_study_file
+from app.truth_work import StudyWish
+from app.window_parts import WindowParts
+from processing.errors import UserError
+from processing.project.class_evaluation import ClassEvaluation
+from processing.project.found_features import parameter_values
+from processing.project.study_store import KeptStudy
+from processing.project.truth_making import Checked
+from processing.project.truth_store import Truth
+from processing.runner import tool_of
+from processing.text import Text
+from processing.tools.parameters import Value
+
+_WROTE = Text("Wrote {path}.", "{path} を書き出しました。")
+
+
+def connect_classes(parts: WindowParts) -> None:
+    """Connect the pages of the evaluation with the document; again for new ones."""
+    wiring = _ClassWiring(parts)
+    panel, studies, judging = parts.class_panel, parts.study_panel, parts.judging
+    judging.truths_changed.connect(wiring.show_truths)
+    judging.studies_changed.connect(wiring.show_studies)
+    judging.judged.connect(panel.show_evaluations)
+    judging.truth_made.connect(wiring.on_judging_truth_made)
+    judging.study_made.connect(wiring.on_judging_study_made)
+    parts.document.told.connect(panel.refresh)
+    panel.judgement_wanted.connect(judging.judge)
+    panel.points_requested.connect(wiring.on_panel_points_requested)
+    panel.export_requested.connect(wiring.on_panel_export_requested)
+    panel.truths.making_requested.connect(wiring.on_truths_making_requested)
+    panel.truths.loading_requested.connect(wiring.on_truths_loading_requested)
+    panel.truths.removal_requested.connect(wiring.on_truths_removal_requested)
+    panel.truths.truth_chosen.connect(wiring.on_truths_truth_chosen)
+    studies.study_requested.connect(wiring.on_studies_study_requested)
+    studies.values_wanted.connect(wiring.on_studies_values_wanted)
+    studies.export_requested.connect(wiring.on_studies_export_requested)
+    studies.removal_requested.connect(judging.remove_study)
+    studies.ask_values_from(wiring.values_of)
+    parts.processing_panel.values_changed.connect(studies.refresh)
+    wiring.show_truths()
+    wiring.show_studies()
+
+
+class _ClassWiring(QObject):
+    """What has to be translated between the pages and the document."""
+
+    def __init__(self, parts: WindowParts) -> None:
+        super().__init__(parts.window.centralWidget())  # goes with the widgets
+        self._parts = parts
+        self._judging = parts.judging
+
+    def show_truths(self) -> None:
+        self._parts.class_panel.truths.show_truths(self._judging.truths())
+        self.on_truths_truth_chosen()
+
+    def show_studies(self) -> None:
+        self._parts.study_panel.show_studies(self._judging.studies())
+
+    def values_of(self, tool: str) -> Mapping[str, Value]:
+        """A tool's parameters as its form has them."""
+        parameters = self._parts.processing_panel.parameters_of(tool)
+        values = parameter_values(tool_of(tool), parameters)
+        return {name: value for name, value in values.items() if value is not None}
+
+    def on_judging_truth_made(self, truth: Truth) -> None:
+        self._parts.class_panel.truths.choose(truth.id)
+
+    def on_judging_study_made(self, kept: KeptStudy) -> None:
+        self._parts.study_panel.show_studies(self._judging.studies(), chosen=kept.id)
+
+    def on_truths_truth_chosen(self) -> None:
+        why_not = ""
+        if not self._parts.class_panel.truths.truth:
+            why_not = QCoreApplication.translate(
+                "ClassWiring", "Make a truth on the page of point classes first."
+            )
+        self._parts.study_panel.form.refuse(why_not)
+
+    def on_truths_making_requested(self, checked: Checked) -> None:
+        self._judging.make_truth(checked, self._parts.scene_view.clipping.clip)
+
+    def on_truths_loading_requested(self) -> None:
+        project = self._parts.document.project
+        if project is None:
+            return
+        path, _ = QFileDialog.getOpenFileName(
+            self._parts.window,
+            QCoreApplication.translate("ClassWiring", "Take the truth from a file"),
+            str(project.folder.parent),
+            QCoreApplication.translate(
+                "ClassWiring", "Classes of points (*.las *.laz *.npy *.npz *.txt);;All files (*)"
+            ),
+        )
+        if path:
+            self._judging.load_truth(Path(path))
+
+    def on_truths_removal_requested(self, truth: str) -> None:
+        """Forgotten for good, so it is asked for."""
+        box = QMessageBox(self._parts.window)
+        box.setWindowTitle(QCoreApplication.translate("ClassWiring", "Forget a truth"))
+        box.setText(
+            QCoreApplication.translate(
+                "ClassWiring", "The truth is removed from the project for good. Forget it?"
+            )
+        )
+        forget = box.addButton(
+            QCoreApplication.translate("ClassWiring", "Forget it"),
+            QMessageBox.ButtonRole.DestructiveRole,
+        )
+        cancel = box.addButton(QMessageBox.StandardButton.Cancel)
+        cancel.setIcon(QIcon())  # no other button has one
+
+        def decide() -> None:
+            if box.clickedButton() is forget:
+                self._judging.remove_truth(truth)
+            box.deleteLater()
+
+        box.finished.connect(decide)
+        box.open()
+
+    def on_panel_points_requested(self, truth: str, evaluation: ClassEvaluation) -> None:
+        self._judging.show_points(truth, evaluation)
+
+    def on_panel_export_requested(self) -> None:
+        panel = self._parts.class_panel
+        truth = panel.truth
+        path = self._asked_path("classes.csv")
+        if path is not None and truth is not None:
+            name = truth.name.spoken(self._parts.language)
+            self._write(
+                path, lambda: write_classes_file(path, panel.evaluations, name, never=self._never())
+            )
+
+    def on_studies_study_requested(self) -> None:
+        form = self._parts.study_panel.form
+        self._judging.study(
+            StudyWish(
+                tool=form.tool,
+                truth=self._parts.class_panel.truths.truth,
+                fixed=tuple(self.values_of(form.tool).items()),
+                varied=form.varied,
+                is_part=form.is_part,
+            )
+        )
+
+    def on_studies_values_wanted(self, tool: str, values: Mapping[str, Value]) -> None:
+        self._parts.processing_panel.use_values(tool, values)
+        self._parts.window.show_panel("processing")
+
+    def on_studies_export_requested(self, ending: str) -> None:
+        panel = self._parts.study_panel
+        kept = panel.kept
+        path = self._asked_path(f"study.{ending}")
+        if path is not None and kept is not None:
+            self._write(
+                path, lambda: write_study_file(path, kept.study, panel.plot, never=self._never())
+            )
+
+    def _never(self) -> tuple[Path, ...]:
+        drives = self._parts.document.drives()
+        return tuple(file for drive in drives for file in drive.delivered_files)
+
+    def _asked_path(self, name: str) -> Path | None:
+        project = self._parts.document.project
+        if project is None:
+            return None
+        title = QCoreApplication.translate("ViewWiring", "Write the evaluation")
+        start = str(project.folder.parent / name)
+        files = f"*.{name.rpartition('.')[2]}"
+        chosen, _ = QFileDialog.getSaveFileName(self._parts.window, title, start, files)
+        return Path(chosen) if chosen else None
+
+    def _write(self, path: Path, write: Callable[[], None]) -> None:
+        try:
+            write()
+        except UserError as error:
+            self._parts.document.refused.emit(error)
+            return
+        self._parts.document.told.emit(_WROTE.filled(path=path.name))

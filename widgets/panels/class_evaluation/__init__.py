@@ -1,0 +1,1 @@
+"""How good tools are that give classes: truths, runs judged by them, and parameter studies."""

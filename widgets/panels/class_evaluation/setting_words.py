@@ -1,0 +1,83 @@
+"""Settings of a tool in words: what was chosen, and what is not as usual."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from PySide6.QtCore import QDateTime, QLocale
+
+from processing.project.runs import Run
+from processing.project.truth_store import Truth
+from processing.score.asked_classes import ASKED
+from processing.text import Language, Text
+from processing.tools.parameters import Parameter, Value, parameters_of
+from processing.tools.registry import TOOLS
+
+_MOMENT = Text("d MMM HH:mm", "M月d日 HH:mm")
+_NAMED_TRUTH = Text("{name}, {moment}", "{name}（{moment}）")
+
+
+def parameter_of(tool: str, id_: str) -> Parameter | None:
+    """The declaration of a parameter; None where the program no longer has it."""
+    if tool not in TOOLS:
+        return None
+    return next((one for one in parameters_of(TOOLS[tool].parameters) if one.id == id_), None)
+
+
+def parameter_name(tool: str, id_: str, language: Language) -> str:
+    """What a parameter is called, with its unit."""
+    parameter = parameter_of(tool, id_)
+    if parameter is None:
+        return id_
+    unit = f" [{parameter.unit}]" if parameter.unit else ""
+    return parameter.name.spoken(language) + unit
+
+
+def value_words(tool: str, id_: str, value: object, language: Language) -> str:
+    """A value as people read it: the name of a choice, a number without idle zeros."""
+    parameter = parameter_of(tool, id_)
+    if parameter is not None:
+        for choice in parameter.choices:
+            if choice.value == value:
+                return choice.name.spoken(language)
+    if isinstance(value, bool):
+        return "✓" if value else "–"
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def settings_words(tool: str, values: Mapping[str, Value | None], language: Language) -> str:
+    """All choices, and the other values that are not the default: ``Radius (ROR), 0.3 m``."""
+    words = []
+    for id_, value in values.items():
+        parameter = parameter_of(tool, id_)
+        if parameter is None or value is None:
+            continue
+        if parameter.kind == "choice":
+            words.append(value_words(tool, id_, value, language))
+        elif value != parameter.default:
+            told = value_words(tool, id_, value, language)
+            name = parameter.name.spoken(language)
+            words.append(f"{name} {told} {parameter.unit}".rstrip())
+    return ", ".join(words)
+
+
+def moment_of(run: Run, language: Language) -> str:
+    """When a run began, in local time."""
+    return _moment(run.started.timestamp(), language)
+
+
+def name_of_truth(truth: Truth, language: Language) -> str:
+    """What a truth is called, and when it was made."""
+    moment = _moment(truth.made.timestamp(), language)
+    return _NAMED_TRUTH.filled(name=truth.name, moment=moment).spoken(language)
+
+
+def sides_words(tool: str, language: Language) -> str:
+    """Which points are kept and removed, for a tool: ``kept point · noise point``."""
+    asked = ASKED[tool]
+    return f"{asked.kept.spoken(language)} · {asked.removed.spoken(language)}"
+
+
+def _moment(seconds: float, language: Language) -> str:
+    started = QDateTime.fromSecsSinceEpoch(int(seconds))
+    return QLocale(language).toString(started, _MOMENT.spoken(language))
