@@ -264,7 +264,7 @@ class Document(QObject):
             if done.columns is not None:
                 self._store_columns(drive, done.columns, replaces=lane is not Lane.PREPARED)
             if done.found is not None:
-                done.keep_said(drive)
+                done.keep_with(self.drive)
                 self.store_run(done.found)
 
         return self._adoption.start(project, title, work, take, lane=lane)

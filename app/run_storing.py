@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 from processing.errors import told_as_user_error
+from processing.formats.safe_write import refuse_inputs
+from processing.ground.stored_surface import FILE_NAME as SURFACE
+from processing.ground.stored_surface import StoredSurface, keep_surface
 from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.project.found_classes import found_classes
 from processing.project.found_features import FoundFeatures, found_features
 from processing.project.run_findings import adopt_finding, write_finding
-from processing.runner import RunRequest, run, tool_of
+from processing.project.surface_files import delivered_files, surface_file_of, write_surface
+from processing.runner import RunRequest, drives_of, run, run_together, tool_of
 from processing.score.asked_classes import ASKED
 from processing.tools.tool import CandidateResult, FinishedColumns
 
@@ -28,24 +33,34 @@ class FinishedRun:
         In a folder on the drive's disk; None for a tool that finds candidates or classes.
     found : FoundFeatures or None
         The run with its candidates or labels; None for a tool that makes columns.
-    said : Path or None
-        What the run said of each point of the drive, to be kept with it; in a folder of its own.
+    kept : Path or None
+        A folder with what the drives keep of the run beside its labels.
     """
 
     columns: FinishedColumns | None = None
     found: FoundFeatures | None = None
-    said: Path | None = None
+    kept: Path | None = None
 
-    def keep_said(self, drive: Drive) -> None:
-        """Keep with a drive what the run said of its points.
+    def keep_with(self, drive_of: Callable[[str], Drive]) -> None:
+        """Keep with its drives what the run said of their points, and the surface it found.
 
         Raises
         ------
         NoSpace, InUse
         """
-        if self.found is not None and self.said is not None:
-            adopt_finding(drive, self.found.run.id, self.said)
-            shutil.rmtree(self.said.parent, ignore_errors=True)
+        if self.found is None or self.kept is None:
+            return
+        try:
+            drives = tuple(drive_of(id_) for id_ in self.found.run.drives)
+            for drive in drives:
+                said = self.kept / drive.id
+                if said.is_file():
+                    adopt_finding(drive, self.found.run.id, said)
+            surface = self.kept / SURFACE
+            if surface.is_file():
+                keep_surface(surface, drives)
+        finally:
+            shutil.rmtree(self.kept, ignore_errors=True)
 
 
 def finished_run(request: RunRequest, into: Path, monitor: Monitor) -> FinishedRun:
@@ -62,21 +77,48 @@ def finished_run(request: RunRequest, into: Path, monitor: Monitor) -> FinishedR
         As :func:`processing.runner.run`; `Cancelled`.
     """
     started = datetime.now(UTC)
-    result = run(request, monitor, into=into)
     tool, parameters, drive = tool_of(request.tool), request.parameters, request.drive
-    times = {"started": started, "finished": datetime.now(UTC)}
+    if tool.gives_classes:
+        return _classes(request, into, monitor, started)
+    result = run(request, monitor, into=into)
     if isinstance(result, CandidateResult):
+        times = {"started": started, "finished": datetime.now(UTC)}
         return FinishedRun(found=found_features(result, tool, parameters, drive.id, **times))
-    if not tool.gives_classes:
-        return FinishedRun(columns=result)
+    return FinishedRun(columns=result)
+
+
+def _classes(request: RunRequest, into: Path, monitor: Monitor, started: datetime) -> FinishedRun:
+    """Labels for the points of all drives that the run is about."""
+    tool, drives = tool_of(request.tool), drives_of(request)
+    surface_file = surface_file_of(request.parameters)
+    if surface_file is not None:
+        refuse_inputs(surface_file, delivered_files(drives, request.beside))
+    together = run_together(request, monitor, into=into)
+    kept = into.with_name(f"{into.name}-kept")
     try:
-        found = found_classes(result, tool, parameters, drive, **times)
-        if tool.id not in ASKED:
-            return FinishedRun(found=found)
-        said = into.with_name(f"{into.name}-said") / "said"
-        with told_as_user_error(said):
-            said.parent.mkdir()
-        write_finding(result, ASKED[tool.id].codes, said)
-        return FinishedRun(found=found, said=said)
+        with told_as_user_error(kept):
+            kept.mkdir()
+            for file in together.kept:
+                file.replace(kept / file.name)
+        results = list(zip(drives, together.columns, strict=True))
+        if tool.id in ASKED:
+            for drive, result in results:
+                write_finding(result, ASKED[tool.id].codes, kept / drive.id)
+        if surface_file is not None:
+            write_surface(
+                StoredSurface(kept / SURFACE), surface_file, delivered_files(drives), monitor
+            )
+        found = found_classes(
+            results,
+            tool,
+            request.parameters,
+            started=started,
+            finished=datetime.now(UTC),
+            note=together.note,
+        )
+    except BaseException:
+        shutil.rmtree(kept, ignore_errors=True)
+        raise
     finally:
-        result.remove()
+        shutil.rmtree(into, ignore_errors=True)
+    return FinishedRun(found=found, kept=kept)

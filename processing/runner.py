@@ -18,12 +18,22 @@ from processing.monitor import Monitor
 from processing.points.columns import Columns
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
+from processing.points.recorded_together import recorded_together
 from processing.text import Text
 from processing.tools.blocks import POINTS_PER_BLOCK, JoinedResults, blocks_of
 from processing.tools.registry import TOOLS
-from processing.tools.tool import CandidateResult, FinishedColumns, Needs, PointBlock, Tool
+from processing.tools.tool import (
+    CandidateResult,
+    FinishedColumns,
+    Needs,
+    PointBlock,
+    TogetherResult,
+    Tool,
+)
 
 RunResult = FinishedColumns | CandidateResult
+
+_RUNNING = Text("{tool}: {name}", "{tool}: {name}")
 
 
 @dataclass(frozen=True)
@@ -82,18 +92,58 @@ def run(
     """
     tool = tool_of(request.tool)
     check_needs(tool, request.drive)
-    text = Text("{tool}: {name}", "{tool}: {name}").filled(
-        tool=tool.name, name=request.drive.info.name
-    )
+    text = _RUNNING.filled(tool=tool.name, name=request.drive.info.name)
     monitor.check()
     monitor.report(0.0, text)
     result: RunResult
     if tool.find is not None:
         result = tool.find(request.drive, request.parameters, monitor)
+    elif tool.mark_together is not None:
+        result, *others = _marked_together(request, monitor, into, points_per_block).columns
+        for other in others:
+            other.remove()
     else:
         result = _columns(tool, request, monitor, into, points_per_block)
     monitor.report(1.0, text)
     return result
+
+
+def drives_of(request: RunRequest) -> tuple[Drive, ...]:
+    """The drives that one run is about: the request's, and for some tools those recorded with it.
+
+    Raises
+    ------
+    OutOfRange
+        There is no such tool.
+    """
+    if tool_of(request.tool).mark_together is None:
+        return (request.drive,)
+    return recorded_together(request.drive, request.beside)
+
+
+def run_together(
+    request: RunRequest,
+    monitor: Monitor,
+    *,
+    into: Path,
+    points_per_block: int = POINTS_PER_BLOCK,
+) -> TogetherResult:
+    """Run a tool that says something about points on all drives that :func:`drives_of` names.
+
+    Parameters
+    ----------
+    into : Path
+        As :func:`run`; it holds the columns of all the drives.
+
+    Raises
+    ------
+    Unsuitable, OutOfRange, NoSpace, Cancelled
+        As :func:`run`.
+    """
+    if tool_of(request.tool).mark_together is None:
+        result = run(request, monitor, into=into, points_per_block=points_per_block)
+        return TogetherResult((result,) if isinstance(result, FinishedColumns) else ())
+    return _marked_together(request, monitor, into, points_per_block)
 
 
 def columns_of(result: RunResult) -> Mapping[str, NDArray[Any]]:
@@ -205,6 +255,24 @@ def _columns(
         finished = results.finished(monitor)
         monitor.check()
     return finished
+
+
+def _marked_together(
+    request: RunRequest, monitor: Monitor, into: Path, points_per_block: int
+) -> TogetherResult:
+    tool, drives = tool_of(request.tool), drives_of(request)
+    if tool.mark_together is None:
+        message = f"{tool.id} takes drives one by one"
+        raise ValueError(message)
+    for drive in drives:
+        check_needs(tool, drive)
+    monitor.report(
+        0.0, _RUNNING.filled(tool=tool.name, name=", ".join(drive.info.name for drive in drives))
+    )
+    with _removed_on_failure(into):
+        marked = tool.mark_together(drives, request.parameters, into, points_per_block, monitor)
+        monitor.check()
+    return marked
 
 
 @contextmanager

@@ -3,25 +3,32 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
+from contextlib import ExitStack
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 from app.cli.opened import OpenedInput, opened_input, terminal_monitor
 from app.cli.output import print_lines
 from processing.errors import OutOfRange
-from processing.formats.safe_write import refuse_inputs
+from processing.formats.safe_write import refuse_inputs, written_safely
+from processing.ground.stored_surface import StoredSurface
 from processing.monitor import Monitor, PartMonitor
+from processing.points.drive import Drive
 from processing.project.feature import Feature
 from processing.project.feature_files import check_ending, write_feature_file
 from processing.project.found_features import found_features
 from processing.project.point_results import check_point_output, write_point_results
 from processing.project.scratch_folder import scratch_folder
-from processing.runner import RunRequest, check_needs, run, tool_of
+from processing.project.surface_files import surface_file_of, write_surface_content
+from processing.runner import RunRequest, check_needs, drives_of, run, run_together, tool_of
 from processing.text import Text
 from processing.tools.parameters import filled_in
 from processing.tools.tool import CandidateResult, FinishedColumns, Tool
 
 _RUNNING = 0.8
+_NOTE = Text("{tool}: {note}", "{tool}: {note}")
 
 
 def command(arguments: argparse.Namespace) -> int:
@@ -35,29 +42,80 @@ def command(arguments: argparse.Namespace) -> int:
         scratch_folder(arguments.output.parent) as scratch,
     ):
         _check_first(tool, opened, arguments.output, monitor)
-        columns: list[FinishedColumns] = []
-        features: list[Feature] = []
-        for number, drive in enumerate(opened.drives):
-            share = _RUNNING / len(opened.drives)
-            part = PartMonitor(monitor, number * share, (number + 1) * share)
-            started = datetime.now(UTC)
-            beside = tuple(other for other in opened.drives if other is not drive)
-            request = RunRequest(tool.id, drive, parameters, beside)
-            result = run(request, part, into=scratch / str(number))
-            if isinstance(result, CandidateResult):
-                times = {"started": started, "finished": datetime.now(UTC)}
-                found = found_features(result, tool, parameters, drive.id, **times)
-                features.extend(found.change.added)
-            else:
-                columns.append(result)
-        writing = PartMonitor(monitor, _RUNNING, 1.0)
-        if tool.find is not None:
-            paths = _write_features(features, opened, arguments.output, writing)
-        else:
-            pairs = list(zip(opened.drives, columns, strict=True))
-            paths = write_point_results(pairs, arguments.output, writing)
+        wish = _Wish(tool, parameters, opened, arguments.output)
+        paths = (_points if tool.find is None else _found)(wish, scratch, monitor)
     print_lines(*(str(path) for path in paths))
     return 0
+
+
+@dataclass(frozen=True)
+class _Wish:
+    """What is to be run on what, and where the result goes."""
+
+    tool: Tool
+    parameters: object
+    opened: OpenedInput
+    output: Path
+
+    def request(self, drive: Drive) -> RunRequest:
+        """A run on a drive, with all others beside it."""
+        beside = tuple(other for other in self.opened.drives if other is not drive)
+        return RunRequest(self.tool.id, drive, self.parameters, beside)
+
+
+def _found(wish: _Wish, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
+    """What a tool finds on each drive, as one file."""
+    features: list[Feature] = []
+    share = _RUNNING / max(1, len(wish.opened.drives))
+    for number, drive in enumerate(wish.opened.drives):
+        part = PartMonitor(monitor, number * share, (number + 1) * share)
+        started = datetime.now(UTC)
+        result = run(wish.request(drive), part, into=scratch / str(number))
+        if isinstance(result, CandidateResult):
+            times = {"started": started, "finished": datetime.now(UTC)}
+            found = found_features(result, wish.tool, wish.parameters, drive.id, **times)
+            features.extend(found.change.added)
+    writing = PartMonitor(monitor, _RUNNING, 1.0)
+    return _write_features(features, wish.opened, wish.output, writing)
+
+
+def _points(wish: _Wish, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
+    """What a tool says about points, beside the points of each file; surfaces where wanted."""
+    drives = wish.opened.drives
+    wanted = surface_file_of(wish.parameters)
+    if wanted is not None:
+        refuse_inputs(wanted, _delivered(wish.opened))
+    columns: dict[str, FinishedColumns] = {}
+    surfaces: list[tuple[str, Path]] = []
+    while left := [drive for drive in drives if drive.id not in columns]:
+        request = wish.request(left[0])
+        together = drives_of(request)
+        ends = (len(columns) / len(drives), (len(columns) + len(together)) / len(drives))
+        part = PartMonitor(monitor, _RUNNING * ends[0], _RUNNING * ends[1])
+        result = run_together(request, part, into=scratch / str(len(columns)))
+        if result.note.en:
+            said = _NOTE.filled(tool=wish.tool.name, note=result.note)
+            monitor.report(_RUNNING * ends[1], said)
+        columns |= {one.id: found for one, found in zip(together, result.columns, strict=True)}
+        surfaces.extend((left[0].info.name, path) for path in result.kept)
+    with ExitStack() as whole:
+        for path, surface in _surface_files(wanted, surfaces):
+            never = _delivered(wish.opened)
+            temporary = whole.enter_context(written_safely(path, never=never))
+            write_surface_content(StoredSurface(surface), temporary, monitor)
+        pairs = [(drive, columns[drive.id]) for drive in drives]
+        return write_point_results(pairs, wish.output, PartMonitor(monitor, _RUNNING, 1.0))
+
+
+def _surface_files(
+    wanted: Path | None, surfaces: list[tuple[str, Path]]
+) -> Iterator[tuple[Path, Path]]:
+    """A file for each surface; where there are several, the name of a drive is added."""
+    if wanted is None:
+        return
+    for name, surface in surfaces:
+        alone = len(surfaces) == 1
+        yield wanted if alone else wanted.with_name(f"{wanted.stem}-{name}{wanted.suffix}"), surface
 
 
 def _check_first(tool: Tool, opened: OpenedInput, output: Path, monitor: Monitor) -> None:

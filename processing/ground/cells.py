@@ -16,6 +16,8 @@ Blocks = Callable[[], Iterable[NDArray[np.float64]]]
 
 MOST_CELLS = 48_000_000
 _MOST_COARSE = 256
+_MOST_PARTS = 4096
+_COARSE_M = 5.0
 _POINTS_OF_COARSE = 50
 _SMALLEST_CELL_M = 0.20
 _LARGEST_CELL_M = 10.0
@@ -68,7 +70,9 @@ class Levels:
     above: NDArray[np.uint16]
 
 
-def choose_cells(blocks: Blocks, grid_m: float = 0.0) -> CellGrid:
+def choose_cells(
+    blocks: Blocks, grid_m: float = 0.0, most_cells: int | None = MOST_CELLS
+) -> CellGrid:
     """A grid whose cells hold about one point where the cloud is thin.
 
     Parameters
@@ -78,6 +82,8 @@ def choose_cells(blocks: Blocks, grid_m: float = 0.0) -> CellGrid:
         finite are passed over.
     grid_m : float
         Side of a cell; 0 lets the data choose it.
+    most_cells : int or None
+        Cells are larger where the extent would need more; None for who cuts the plan into tiles.
 
     Raises
     ------
@@ -96,10 +102,11 @@ def choose_cells(blocks: Blocks, grid_m: float = 0.0) -> CellGrid:
             Text("Choose a cloud with more points.", "点数の多い点群を選んでください。"),
         )
     extent = high[:2] - low[:2]
-    size_m = grid_m if grid_m > 0.0 else _spacing(blocks, low, extent, count)
-    size_m = max(
-        size_m, float(np.sqrt(extent.prod() / MOST_CELLS)), float(extent.max() / MOST_CELLS)
-    )
+    # Whole centimetres, so that what was chosen can be said and set.
+    size_m = grid_m if grid_m > 0.0 else round(_spacing(blocks, low, extent, count), 2)
+    if most_cells is not None:
+        largest = max(float(np.sqrt(extent.prod() / most_cells)), float(extent.max() / most_cells))
+        size_m = max(size_m, largest)
     columns, rows = (np.floor(extent / size_m).astype(np.int64) + 1).tolist()
     return CellGrid(low, size_m, rows, columns)
 
@@ -107,7 +114,9 @@ def choose_cells(blocks: Blocks, grid_m: float = 0.0) -> CellGrid:
 def _spacing(
     blocks: Blocks, low: NDArray[np.float64], extent: NDArray[np.float64], count: int
 ) -> float:
-    parts = int(np.clip(np.sqrt(count / _POINTS_OF_COARSE), 1, _MOST_COARSE))
+    # On a long street a share of its extent says little: parts are some metres wide there.
+    most = int(np.clip(extent.max() / _COARSE_M, _MOST_COARSE, _MOST_PARTS))
+    parts = int(np.clip(np.sqrt(count / _POINTS_OF_COARSE), 1, most))
     coarse_m = max(float(extent.max()) / parts, 1e-3)
     counts = np.zeros((parts + 1, parts + 1), np.int64)
     for xyz in blocks():
@@ -141,11 +150,7 @@ def _extent(blocks: Blocks) -> tuple[NDArray[np.float64], NDArray[np.float64], i
     high = np.full(3, -np.inf)
     count = 0
     for xyz in blocks():
-        finite = xyz[np.isfinite(xyz).all(axis=1)]
-        count += len(finite)
-        if len(finite):
-            low = np.minimum(low, finite.min(axis=0))
-            high = np.maximum(high, finite.max(axis=0))
+        count += _extent_kernel(np.ascontiguousarray(xyz), low, high)
     return low, high, count
 
 
@@ -185,6 +190,22 @@ def _held_bins(counts: NDArray[np.int64]) -> tuple[int, int]:
     if occupied[-1] - last < _EMPTY_BINS:
         last = int(occupied[-1])
     return first, last
+
+
+@kernel
+def _extent_kernel(
+    xyz: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
+) -> int:
+    count = 0
+    for point in range(xyz.shape[0]):
+        x, y, z = xyz[point, 0], xyz[point, 1], xyz[point, 2]
+        if not np.isfinite(x + y + z):
+            continue
+        count += 1
+        low[0], high[0] = min(low[0], x), max(high[0], x)
+        low[1], high[1] = min(low[1], y), max(high[1], y)
+        low[2], high[2] = min(low[2], z), max(high[2], z)
+    return count
 
 
 @kernel

@@ -21,27 +21,33 @@ def opened(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
     ----------
     Soille 2003: an octagon is the sum of squares and crosses; the shares here make it regular.
     """
-    import cv2
-
     side = round(0.414 * radius)
     square = np.ones((2 * side + 1, 2 * side + 1), np.uint8)
     if radius - side <= _FEW_STEPS:
         padded = np.pad(heights, radius, mode="edge")
-        lowest = _eroded_by_cross(cv2.erode(padded, square), radius - side)
-        highest = -_eroded_by_cross(cv2.erode(-lowest, square), radius - side)
+        lowest = _eroded_by_cross(_eroded(padded, square), radius - side)
+        highest = -_eroded_by_cross(_eroded(-lowest, square), radius - side)
         return np.ascontiguousarray(highest[radius:-radius, radius:-radius])
     # Twice the radius, so that no sum of lines is cut off where the inside looks.
     padded = np.pad(heights, 2 * radius, mode="edge")
-    lowest = _eroded_by_diamond(cv2.erode(padded, square), radius - side)
-    highest = -_eroded_by_diamond(cv2.erode(-lowest, square), radius - side)
+    lowest = _eroded_by_diamond(_eroded(padded, square), radius - side)
+    highest = -_eroded_by_diamond(_eroded(-lowest, square), radius - side)
     return np.ascontiguousarray(highest[2 * radius : -2 * radius, 2 * radius : -2 * radius])
+
+
+def _eroded(
+    heights: NDArray[np.float32], element: NDArray[np.uint8], times: int = 1
+) -> NDArray[np.float32]:
+    import cv2
+
+    return cv2.erode(heights, element, iterations=times).astype(np.float32, copy=False)
 
 
 def _eroded_by_cross(heights: NDArray[np.float32], steps: int) -> NDArray[np.float32]:
     import cv2
 
     cross = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-    return cv2.erode(heights, cross, iterations=steps).astype(np.float32, copy=False)
+    return _eroded(heights, np.asarray(cross, np.uint8), steps)
 
 
 def _eroded_by_diamond(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:

@@ -7,12 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.ground.lowest_points import lowest_points, require_points
+from processing.errors import OutOfRange
+from processing.ground.cells import Blocks
+from processing.ground.lowest_points import LowestPoints, lowest_ground, require_points
 from processing.ground.triangles import Triangles, triangulated
-from processing.monitor import Monitor
+from processing.monitor import Monitor, PartMonitor
 from processing.text import Text
 
+MOST_CORNERS = 1_000_000
 _BLOCK = 1_000_000
+_FINDING = 0.6
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,45 @@ class PublishedSteps:
     fine_grid_m: float = 0.0
     distance_m: float = 0.3
     most_removals: int = 1
+
+
+@dataclass(frozen=True)
+class PublishedSurface:
+    """The triangles that the method ends with.
+
+    Attributes
+    ----------
+    triangles : Triangles
+    distance_m : float
+        A point no farther from them, vertically, is ground.
+    removals : int
+        How often corners were removed.
+    """
+
+    triangles: Triangles
+    distance_m: float
+    removals: int
+
+    def judged(
+        self, xyz: NDArray[np.float64]
+    ) -> tuple[NDArray[np.bool_], NDArray[np.float64], int]:
+        """Which points of a block are ground, and how high they are above the triangles.
+
+        Returns
+        -------
+        is_ground : (n,) bool
+        above : (n,) float64
+            m; NaN for points without coordinates.
+        outside_hull : int
+            Points beyond the triangles, judged by the nearest corner.
+        """
+        finite = np.flatnonzero(np.isfinite(xyz).all(axis=1))
+        heights, is_outside = self.triangles.located(xyz[finite, :2])
+        above = np.full(len(xyz), np.nan)
+        above[finite] = xyz[finite, 2] - heights
+        with np.errstate(invalid="ignore"):
+            is_ground = np.abs(above) <= self.distance_m
+        return is_ground, above, int(is_outside.sum())
 
 
 @dataclass(frozen=True)
@@ -78,32 +121,66 @@ def published_ground(
     Raises
     ------
     OutOfRange
-        Fewer than three finite points.
+        Fewer than three finite points, or too many corners, as :func:`published_surface`.
 
     References
     ----------
     Specification noise_ground.md, B3.1 to B3.3.
     """
-    require_points(xyz, 3)
-    monitor.report(0.0, Text("Looking for the ground", "地面を探しています"))
-    corners = lowest_points(xyz, steps.grid_m)
-    kept, removals = _without_steep(xyz[corners], steps, monitor)
-    monitor.report(0.3)
-    first = triangulated(kept)
-    fine = _lowest_on_slopes(xyz, first, steps, monitor)
-    monitor.report(0.6)
-    triangles = triangulated(np.concatenate((kept, xyz[fine])))
+    surface = published_surface(lambda: [xyz], steps, PartMonitor(monitor, 0.0, _FINDING))
     is_ground = np.zeros(len(xyz), np.bool_)
     outside = 0
     for start in range(0, len(xyz), _BLOCK):
         monitor.check()
         block = xyz[start : start + _BLOCK]
-        finite = np.flatnonzero(np.isfinite(block).all(axis=1))
-        off = np.abs(block[finite, 2] - triangles.heights_at(block[finite, :2]))
-        is_ground[start + finite] = off <= steps.distance_m
-        outside += int((triangles.triangle_of(block[finite, :2]) < 0).sum())
-        monitor.report(0.6 + 0.4 * (start + len(block)) / len(xyz))
-    return PublishedGround(is_ground, triangles, outside, removals)
+        is_ground[start : start + _BLOCK], _, beyond = surface.judged(block)
+        outside += beyond
+        monitor.report(_FINDING + (1.0 - _FINDING) * (start + len(block)) / len(xyz))
+    return PublishedGround(is_ground, surface.triangles, outside, surface.removals)
+
+
+def published_surface(blocks: Blocks, steps: PublishedSteps, monitor: Monitor) -> PublishedSurface:
+    """The triangles of a cloud that comes in blocks; how it is cut changes nothing.
+
+    Parameters
+    ----------
+    blocks : callable
+        Gives the cloud's blocks, each (n, 3) float64, m, afresh at every call, in the same order.
+
+    Raises
+    ------
+    OutOfRange
+        Fewer than three finite points; more corners than can be joined in memory.
+
+    References
+    ----------
+    Specification noise_ground.md, B3.1 and B3.2.
+    """
+    require_points(blocks, 3)
+    monitor.report(0.0, Text("Looking for the ground", "地面を探しています"))
+    corners = lowest_ground(blocks, steps.grid_m).lowest.xyz
+    _refuse_too_many(len(corners))
+    kept, removals = _without_steep(corners, steps, monitor)
+    monitor.report(0.5)
+    fine = _lowest_on_slopes(blocks, triangulated(kept), steps, monitor)
+    triangles = triangulated(np.concatenate((kept, fine)))
+    monitor.report(1.0)
+    return PublishedSurface(triangles, steps.distance_m, removals)
+
+
+def _refuse_too_many(corners: int) -> None:
+    if corners > MOST_CORNERS:
+        raise OutOfRange(
+            Text(
+                f"The triangles would have more than {MOST_CORNERS:,} corners.",
+                f"三角網の頂点が{MOST_CORNERS:,}点を超えます。",
+            ),
+            Text("Published method", "論文の方法"),
+            Text(
+                "Take a larger grid, a smaller part, or the adaptive method, which has no limit.",
+                "格子を大きくするか、範囲を小さくするか、上限のない「自動調整」を使ってください。",
+            ),
+        )
 
 
 def _without_steep(
@@ -127,22 +204,22 @@ def _without_steep(
 
 
 def _lowest_on_slopes(
-    xyz: NDArray[np.float64], triangles: Triangles, steps: PublishedSteps, monitor: Monitor
-) -> NDArray[np.int64]:
-    """Lowest point of each fine column of each sloping triangle, as indices into ``xyz``."""
+    blocks: Blocks, triangles: Triangles, steps: PublishedSteps, monitor: Monitor
+) -> NDArray[np.float64]:
+    """Lowest point of each fine column of each sloping triangle, (m, 3) float64."""
     slopes = triangles.slopes_deg()
     is_slope = (slopes >= steps.slope_from_deg) & (slopes < steps.steep_deg)
     fine_m = steps.fine_grid_m if steps.fine_grid_m > 0.0 else steps.grid_m / 5.0
-    finite = np.flatnonzero(np.isfinite(xyz).all(axis=1))
-    monitor.check()
-    triangle = triangles.triangle_of(xyz[finite, :2])
-    on_slope = triangle >= 0
-    on_slope[on_slope] = is_slope[triangle[on_slope]]
-    chosen, owner = finite[on_slope], triangle[on_slope]
-    if len(chosen) == 0:
-        return chosen
-    columns = np.floor((xyz[chosen, :2] - triangles.origin[:2]) / fine_m).astype(np.int64)
-    order = np.lexsort((xyz[chosen, 2], columns[:, 0], columns[:, 1], owner))
-    keys = np.column_stack((owner, columns))[order]
-    is_first = np.concatenate(([True], np.any(np.diff(keys, axis=0) != 0, axis=1)))
-    return chosen[order[is_first]]
+    lowest = LowestPoints(3)
+    for xyz in blocks():
+        monitor.check()
+        kept = xyz[np.isfinite(xyz).all(axis=1)]
+        triangle = triangles.triangle_of(kept[:, :2])
+        on_slope = triangle >= 0
+        on_slope[on_slope] = is_slope[triangle[on_slope]]
+        chosen = kept[on_slope]
+        columns = np.floor((chosen[:, :2] - triangles.origin[:2]) / fine_m).astype(np.int64)
+        keys = np.column_stack((columns, triangle[on_slope]))
+        lowest.add(keys, chosen, np.zeros(len(chosen), np.int64))
+        _refuse_too_many(len(lowest.numbers))
+    return lowest.xyz

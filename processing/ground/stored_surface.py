@@ -34,7 +34,7 @@ _KEPT_TILES = 8
 
 @dataclass(frozen=True)
 class SurfaceTile:
-    """A rectangle of cells; neighbours overlap by a cell or two, so that heights go on between them.
+    """A rectangle of cells; neighbours overlap by a cell or two, so that heights go on.
 
     Attributes
     ----------
@@ -198,10 +198,41 @@ class StoredSurface:
             filled[inside] = tile.filled[row, column] | np.isnan(tile.heights[row, column])
         return filled
 
-    def tiles(self) -> Iterator[SurfaceTile]:
-        """All tiles, one at a time."""
-        for number in range(len(self._places)):
-            yield self._read(number)
+    @property
+    def extents(self) -> tuple[tuple[range, range], ...]:
+        """Rows and columns of each tile."""
+        return tuple(
+            (range(one.row, one.row + one.rows), range(one.column, one.column + one.columns))
+            for one in self._places
+        )
+
+    def window(
+        self, rows: range, columns: range
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """The cells of a rectangle: heights, and 1 where they are filled in and 0 where measured.
+
+        Returns
+        -------
+        heights, filled : (rows, columns) float32
+            Project heights, m; both NaN where there is no surface.
+        """
+        heights = np.full((len(rows), len(columns)), np.nan, np.float32)
+        filled = heights.copy()
+        for number, (own_rows, own_columns) in enumerate(self.extents):
+            shared_rows = range(max(rows.start, own_rows.start), min(rows.stop, own_rows.stop))
+            shared = range(
+                max(columns.start, own_columns.start), min(columns.stop, own_columns.stop)
+            )
+            if not shared_rows or not shared:
+                continue
+            tile = self._tile(number)
+            here = _part(shared_rows, shared, rows, columns)
+            there = _part(shared_rows, shared, own_rows, own_columns)
+            above = tile.heights[there].astype(np.float64) + float(self.grid.origin[2])
+            is_new = np.isnan(heights[here]) & ~np.isnan(above)
+            heights[here] = np.where(is_new, above, heights[here])
+            filled[here] = np.where(is_new, tile.filled[there], filled[here])
+        return heights, filled
 
     def _by_tile(self, xy: NDArray[np.float64]) -> Iterator[tuple[int, NDArray[np.int64]]]:
         """Tiles that hold places, and which places; each place is given to one tile."""
@@ -253,6 +284,16 @@ class StoredSurface:
             heights.astype(np.float32, copy=False).reshape(shape),
             filled.astype(np.bool_).reshape(shape),
         )
+
+
+def _part(
+    rows: range, columns: range, from_rows: range, from_columns: range
+) -> tuple[slice, slice]:
+    """Where some rows and columns lie in an array that begins at others."""
+    return (
+        slice(rows.start - from_rows.start, rows.stop - from_rows.start),
+        slice(columns.start - from_columns.start, columns.stop - from_columns.start),
+    )
 
 
 def ground_surface_of(drive: Drive) -> StoredSurface | None:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 _BLOCK = 1_000_000
+_ON_EDGE = 1e-9
 
 
 @dataclass(frozen=True)
@@ -44,13 +46,38 @@ class Triangles:
             return np.full(len(xy), -1, np.int64)
         places = xy - self.origin[:2]
         found = [
-            self.mesh.find_simplex(places[start : start + _BLOCK])  # type: ignore[attr-defined]  # scipy has no types
+            self._one_triangle(places[start : start + _BLOCK])
             for start in range(0, len(places), _BLOCK)
         ]
-        return np.concatenate(found).astype(np.int64) if found else np.empty(0, np.int64)
+        return np.concatenate(found) if found else np.empty(0, np.int64)
+
+    # scipy's mesh has no types.
+    def _one_triangle(self, places: NDArray[np.float64]) -> NDArray[np.int64]:
+        """The triangle that was found, or on an edge or a corner always the same of those there."""
+        mesh: Any = self.mesh
+        triangle: NDArray[np.int64] = mesh.find_simplex(places).astype(np.int64)
+        inside = np.flatnonzero(triangle >= 0)
+        of = triangle[inside]
+        shares = np.einsum(
+            "nij,nj->ni", mesh.transform[of, :2], places[inside] - mesh.transform[of, 2]
+        )
+        shares = np.column_stack((shares, 1.0 - shares.sum(axis=1)))
+        for corner in range(3):
+            beyond = mesh.neighbors[of, corner]
+            on_edge = (np.abs(shares[:, corner]) <= _ON_EDGE) & (beyond >= 0)
+            triangle[inside[on_edge]] = np.minimum(of, beyond)[on_edge]
+        for corner in range(3):
+            at_corner = np.abs(shares[:, corner] - 1.0) <= _ON_EDGE
+            vertex = mesh.simplices[of[at_corner], corner]
+            triangle[inside[at_corner]] = mesh.vertex_to_simplex[vertex]
+        return triangle
 
     def heights_at(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
         """Height on the triangles, m; outside the hull that of the nearest corner: (m,)."""
+        return self.located(xy)[0]
+
+    def located(self, xy: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
+        """Heights as :meth:`heights_at`, and which places are outside the hull: (m,) bool."""
         from scipy.spatial import cKDTree
 
         places = xy - self.origin[:2]
@@ -68,7 +95,7 @@ class Triangles:
             nearest = cKDTree(self.xyz[:, :2]).query(places[~inside])[1]
             heights[~inside] = self.xyz[nearest, 2]
         heights += float(self.origin[2])
-        return heights
+        return heights, ~inside
 
 
 def triangulated(xyz: NDArray[np.float64]) -> Triangles:

@@ -1,4 +1,4 @@
-"""Which drives are one recording of a place: stations of a site, heads of a car, never two epochs."""
+"""Which drives record one place at one time: stations of a site, heads of a car, no two epochs."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import datetime
 
@@ -22,6 +22,8 @@ from processing.tools.tool import FinishedColumns, Tool
 _CLASS = "classification"
 _FOUND = Text("{tool}: {count} points classified", "{tool}: {count}点を分類")
 _NOTHING = Text("{tool}: no point gets another class", "{tool}: クラスの変わる点はありません")
+_NO_NOTE = Text("", "")
+_NOTED = Text("{found} ({note})", "{found}（{note}）")
 _TAKEN_BACK = Text(
     "{found}, earlier ones of {count} points taken back",
     "{found}（以前の分類{count}点を取り消し）",
@@ -29,15 +31,15 @@ _TAKEN_BACK = Text(
 
 
 def found_classes(
-    result: FinishedColumns,
+    results: Sequence[tuple[Drive, FinishedColumns]],
     tool: Tool,
     parameters: object,
-    drive: Drive,
     *,
     started: datetime,
     finished: datetime,
+    note: Text = _NO_NOTE,
 ) -> FoundFeatures:
-    """Make labels of the classes in a tool's result.
+    """Make labels of the classes in a tool's results.
 
     Delivered classes stay as they are. A point gets a label where the tool gives it another class
     than it was delivered with. Labels by hand count more and stay, but for those of the tool's own
@@ -46,39 +48,46 @@ def found_classes(
 
     Parameters
     ----------
-    result : FinishedColumns
-        With the column ``classification``; it can be removed afterwards.
+    results : sequence of (Drive, FinishedColumns)
+        Of the drives that the run is about, with the column ``classification``; they can be
+        removed afterwards.
     parameters : object
         An instance of the tool's own parameter class.
     started, finished : datetime
         With their time zone.
+    note : Text, optional
+        What the data chose, for the run's summary.
     """
     labels: list[LabelChange] = []
-    given = taken_back = 0
-    for start in range(0, drive.count, MOST_POINTS):
-        stop = min(start + MOST_POINTS, drive.count)
-        found = result.read(_CLASS, start, stop)
-        after = np.where(found != _delivered(drive, start, stop), found, 0).astype(np.uint8)
-        change = _relabelled(drive, np.arange(start, stop), after, tool.gives_classes)
-        if change is not None:
-            labels.append(change)
-            codes = change.codes_after()
-            given += int((codes > 0).sum())
-            taken_back += int((codes == 0).sum())
-    summary = (_FOUND if given else _NOTHING).filled(tool=tool.name, count=f"{given:,}")
-    if taken_back:
-        summary = _TAKEN_BACK.filled(found=summary, count=f"{taken_back:,}")
+    for drive, result in results:
+        for start in range(0, drive.count, MOST_POINTS):
+            stop = min(start + MOST_POINTS, drive.count)
+            found = result.read(_CLASS, start, stop)
+            after = np.where(found != _delivered(drive, start, stop), found, 0).astype(np.uint8)
+            change = _relabelled(drive, np.arange(start, stop), after, tool.gives_classes)
+            if change is not None:
+                labels.append(change)
     run = Run(
         id=new_run_id(),
         tool=tool.id,
         version=tool.version,
         parameters=parameter_values(tool, parameters),
-        drives=(drive.id,),
+        drives=tuple(drive.id for drive, _ in results),
         started=started,
         finished=finished,
-        summary=summary,
+        summary=_summary(tool, labels, note),
     )
     return FoundFeatures(run, Change(labels=tuple(labels)))
+
+
+def _summary(tool: Tool, labels: Sequence[LabelChange], note: Text) -> Text:
+    codes_after = [one.codes_after() for one in labels]
+    given = sum(int((codes > 0).sum()) for codes in codes_after)
+    taken_back = sum(int((codes == 0).sum()) for codes in codes_after)
+    summary = (_FOUND if given else _NOTHING).filled(tool=tool.name, count=f"{given:,}")
+    if taken_back:
+        summary = _TAKEN_BACK.filled(found=summary, count=f"{taken_back:,}")
+    return _NOTED.filled(found=summary, note=note) if note.en else summary
 
 
 def classes_now(

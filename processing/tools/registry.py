@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from processing.tools.colour import COLOUR
+from processing.tools.ground import GROUND_TOOL
 from processing.tools.noise import NOISE
 from processing.tools.normals import NORMALS
 from processing.tools.segments import SEGMENTS
 from processing.tools.template import TEMPLATE
 from processing.tools.tool import Tool
 
-TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in (NOISE, NORMALS, SEGMENTS, COLOUR, TEMPLATE)}
+TOOLS: Mapping[str, Tool] = {
+    tool.id: tool for tool in (NOISE, GROUND_TOOL, NORMALS, SEGMENTS, COLOUR, TEMPLATE)
+}
 
 POINT_TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in TOOLS.values() if tool.outputs}
 """Those that say something about every point."""

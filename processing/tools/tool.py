@@ -116,6 +116,25 @@ class FinishedColumns:
 
 
 @dataclass(frozen=True)
+class TogetherResult:
+    """What a tool says about every point of drives recorded together.
+
+    Attributes
+    ----------
+    columns : tuple of FinishedColumns
+        In the order of the drives.
+    kept : tuple of Path
+        Files that each of the drives keeps beside its columns; they may be deleted at any time.
+    note : Text
+        What the data chose, for the run's summary.
+    """
+
+    columns: tuple[FinishedColumns, ...]
+    kept: tuple[Path, ...] = ()
+    note: Text = Text("", "")
+
+
+@dataclass(frozen=True)
 class Candidate:
     """One thing that a tool believes to have found; a person decides.
 
@@ -161,6 +180,9 @@ Compute = Callable[[PointBlock, Any, Monitor], PointResult]
 Find = Callable[[Drive, Any, Monitor], CandidateResult]
 # A drive, the tool's parameters, an empty folder for the columns, points to hold at a time.
 Mark = Callable[[Drive, Any, Path, int, Monitor], FinishedColumns]
+# Drives recorded together, the tool's parameters, an empty folder, points to hold at a time: the
+# columns of the first drive come to lie in it, and folders for those of the others.
+MarkTogether = Callable[[tuple[Drive, ...], Any, Path, int, Monitor], TogetherResult]
 # A drive, the other drives of its street, the tool's parameters, whom to tell what is lacking.
 ComputeOf = Callable[[Drive, tuple[Drive, ...], Any, Monitor], Compute]
 
@@ -214,6 +236,8 @@ class Tool:
         neighbours in space whenever they were measured, and so reads a drive in an order of its
         own. Its ``outputs`` don't depend on how many points it holds at a time. It reports its own
         progress.
+    mark_together : callable or None
+        The same for all drives recorded together, for a tool that needs what any of them measured.
     gives_classes : tuple of int
         The codes that a tool with the output ``classification`` may give; a new run in a project
         takes back those of an earlier one.
@@ -236,6 +260,7 @@ class Tool:
     version: int = 1
     compute_of: ComputeOf | None = None
     mark: Mark | None = None
+    mark_together: MarkTogether | None = None
     gives_classes: tuple[int, ...] = ()
     find: Find | None = None
     remark: Remark = nothing_to_remark

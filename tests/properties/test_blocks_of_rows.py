@@ -23,6 +23,7 @@ from processing.templates.fit import FitSettings, fit_along
 from processing.templates.fitted_lines import FittedLine, fitted_lines
 from processing.tools.blocks import JoinedResults, blocks_of
 from processing.tools.colour import COLOUR, ColourParameters
+from processing.tools.ground import GROUND_TOOL, GroundParameters
 from processing.tools.noise import NOISE, NoiseParameters
 from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.registry import POINT_TOOLS, TOOLS
@@ -55,6 +56,9 @@ IN_SPACE = (
     (NOISE.id, NoiseParameters(method="radius", neighbours=40)),
     (NOISE.id, NoiseParameters(method="statistical", neighbours=30)),
     (NOISE.id, NoiseParameters()),
+    (GROUND_TOOL.id, GroundParameters()),
+    (GROUND_TOOL.id, GroundParameters(method="published", grid_m=2.0)),
+    (GROUND_TOOL.id, GroundParameters(method="lowest", tolerance_m=0.1)),
 )
 """Tools that look around in space, whenever a neighbour was measured, by parts of their own."""
 STRETCHES = (TEMPLATE.id,)

@@ -1,0 +1,78 @@
+"""The published method and the lowest points on drives recorded together, block by block."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.ground.drive_points import Chunk, DrivePoints
+from processing.ground.ground_columns import GroundColumns
+from processing.ground.lowest_points import lowest_ground, require_points
+from processing.ground.published import PublishedSteps, published_surface
+from processing.monitor import Monitor, PartMonitor
+
+_FINDING = 0.5
+
+Judge = Callable[[Chunk, NDArray[np.float64]], tuple[NDArray[np.bool_], NDArray[np.float64]]]
+
+
+def published_ground_of(
+    points: DrivePoints, steps: PublishedSteps, folders: Sequence[Path], monitor: Monitor
+) -> None:
+    """Columns as :func:`processing.ground.drive_ground.adaptive_ground`, by the published method.
+
+    Raises
+    ------
+    OutOfRange
+        As :func:`processing.ground.published.published_surface`.
+    NoSpace, Cancelled
+    """
+    surface = published_surface(points.blocks, steps, PartMonitor(monitor, 0.0, _FINDING))
+
+    def judge(
+        _chunk: Chunk, xyz: NDArray[np.float64]
+    ) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+        is_ground, above, _ = surface.judged(xyz)
+        return is_ground, above
+
+    _write(points, judge, folders, monitor)
+
+
+def lowest_ground_of(
+    points: DrivePoints,
+    cell_m: float,
+    tolerance_m: float,
+    folders: Sequence[Path],
+    monitor: Monitor,
+) -> None:
+    """Columns as :func:`published_ground_of`, by the lowest point of each cell.
+
+    Raises
+    ------
+    OutOfRange
+        Fewer than three points that are no noise.
+    NoSpace, Cancelled
+    """
+    require_points(points.blocks, 3)
+    found = lowest_ground(points.blocks, cell_m, tolerance_m)
+
+    def judge(
+        chunk: Chunk, xyz: NDArray[np.float64]
+    ) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+        return found.is_ground(xyz, chunk.first), found.heights_above(xyz)
+
+    _write(points, judge, folders, monitor)
+
+
+def _write(points: DrivePoints, judge: Judge, folders: Sequence[Path], monitor: Monitor) -> None:
+    done = 0
+    with GroundColumns(points, folders, monitor) as columns:
+        for chunk in points.chunks:
+            monitor.check()
+            is_ground, above = judge(chunk, points.measured_xyz(chunk))
+            columns.put(chunk, np.ones(is_ground.shape, np.bool_), is_ground, above)
+            done += chunk.stop - chunk.start
+            monitor.report(_FINDING + (1.0 - _FINDING) * done / points.count)
