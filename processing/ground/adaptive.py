@@ -17,7 +17,7 @@ from processing.ground.regions import Shape, standing_cells
 from processing.monitor import Monitor
 from processing.text import Text
 
-_ROUNDS = 3
+_ROUNDS = 2
 _PERSON_M = 1.5
 _FEW_SHARE = 1e-3
 _GAP_CELLS = 4

@@ -81,6 +81,13 @@ def _lowest_along_diagonal(
     return lowest
 
 
+def opened_within(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
+    """The same, but beyond its border the grid goes on with its own mirror image."""
+    mirrored = np.pad(heights, radius, mode="symmetric")
+    inside = slice(radius, -radius)
+    return np.ascontiguousarray(opened(mirrored, radius)[inside, inside])
+
+
 def filled(heights: NDArray[np.float32], known: NDArray[np.bool_]) -> NDArray[np.float32]:
     """Heights everywhere: the known ones, and between them a skin without own bumps.
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.ground.morphology import nearest_known, opened
+from processing.ground.morphology import nearest_known, opened, opened_within
 from processing.kernels import kernel
 
 _WINDOWS = 14
@@ -15,6 +15,8 @@ _SMALL = 2
 _LEVEL_FACTOR = 1.5
 _CLEAR = 0.3
 _GAP = 2.0
+_HALL_M = 10.0
+_BORDER = 1.0
 _LEVEL = 0.1
 
 
@@ -74,7 +76,9 @@ def standing_cells(
     -----
     From small to large windows: what an opening takes away is a thing where its rim is steep, and
     leaves the surface before the next window; crests, heaps and terraces, which somewhere go down
-    gently, stay.
+    gently, stay. Wide windows look a second time as if the cloud went on with its mirror image,
+    for a hall that its border cuts: its steep rim must be longer than the cut, as a terrace's
+    isn't.
     """
     standing = np.zeros(heights.shape, np.bool_)
     measured = np.isfinite(heights)
@@ -83,30 +87,46 @@ def standing_cells(
     share_of = np.where(crowded, np.float32(shape.crowded), np.float32(1.0))
     radii = _radii(shape.widest_m / 2 / size_m, max(heights.shape))
     for radius in [*radii, radii[-1], radii[-1]]:
+        rise = share_of * np.float32(shape.flank * radius * size_m + shape.rise_m)
+        steep = share_of * np.float32(shape.steep if radius > _SMALL else shape.small_steep)
         lower = opened(surface, radius)
-        rise = shape.flank * radius * size_m + shape.rise_m
-        raised = surface - lower > share_of * np.float32(rise)
-        if not raised.any():
-            continue
-        steep = shape.steep if radius > _SMALL else shape.small_steep
-        steep_of = share_of * np.float32(steep)
-        free = measured & ~standing
-        things = rim_shares(raised, heights, (free, nearest), size_m, steep_of) >= shape.rim_share
-        rest = raised & ~things
-        split = rim_shares(
-            rest, heights, (free & ~things, nearest), size_m, steep_of, shape.barrier
-        )
-        things |= split >= shape.rim_share
-        unclear = rest & ~things & np.isnan(split)
-        if unclear.any():
-            free &= ~things
-            around = rim_shares(
-                unclear, heights, (free, nearest_known(free)), size_m, steep_of, shape.barrier
-            )
-            things |= around >= shape.rim_share
+        free = (measured & ~standing, nearest)
+        things = _things(surface - lower > rise, heights, free, size_m, (steep, shape))
         standing |= things
         surface[things] = lower[things]
+        if 2 * radius * size_m >= _HALL_M:
+            lower = opened_within(surface, radius)
+            raised = surface - lower > rise
+            free = (measured & ~standing, nearest)
+            shares = rim_shares(raised, heights, free, size_m, steep, shape.barrier, _BORDER)
+            things = shares >= shape.rim_share
+            standing |= things
+            surface[things] = lower[things]
     return standing
+
+
+def _things(
+    raised: NDArray[np.bool_],
+    heights: NDArray[np.float32],
+    measured: tuple[NDArray[np.bool_], NDArray[np.int32]],
+    size_m: float,
+    sides: tuple[NDArray[np.float32], Shape],
+) -> NDArray[np.bool_]:
+    """Raised regions with steep rims: whole ones, parts of others, parts beside other things."""
+    free, nearest = measured
+    steep, shape = sides
+    things = rim_shares(raised, heights, measured, size_m, steep) >= shape.rim_share
+    rest = raised & ~things
+    split = rim_shares(rest, heights, (free & ~things, nearest), size_m, steep, shape.barrier)
+    things |= split >= shape.rim_share
+    unclear = rest & ~things & np.isnan(split)
+    if unclear.any():
+        free = free & ~things
+        beside = (free, nearest_known(free))
+        around = rim_shares(unclear, heights, beside, size_m, steep, shape.barrier)
+        things |= around >= shape.rim_share
+    found: NDArray[np.bool_] = things
+    return found
 
 
 def _radii(largest: float, extent: int) -> list[int]:
@@ -121,6 +141,7 @@ def rim_shares(
     size_m: float,
     steep: NDArray[np.float32],
     barrier: float = np.inf,
+    border: float = 0.0,
 ) -> NDArray[np.float64]:
     """For each raised cell, the share of its region's rim that rises by ``steep``: 0 elsewhere.
 
@@ -130,6 +151,8 @@ def rim_shares(
         Cells to compare with, and the nearest measured cell of every cell.
     barrier : float
         Rise over run that divides regions; infinite joins all raised neighbours.
+    border : float
+        What each cell's side on the border of the grid counts as level rim.
 
     Returns
     -------
@@ -157,7 +180,7 @@ def rim_shares(
     rising = np.zeros(count)
     level = np.zeros(count)
     hidden = np.zeros(count)
-    _rim_kernel(labels, heights, free, nearest, size_m, steep, rim, rising, level, hidden)
+    _rim_kernel(labels, heights, free, nearest, size_m, border, steep, rim, rising, level, hidden)
     share: NDArray[np.float64] = rising / np.maximum(rim, 1)
     share[rising < _LEVEL_FACTOR * level] = 0.0
     share[rim < _CLEAR * (rim + hidden)] = np.nan
@@ -197,6 +220,7 @@ def _rim_kernel(
     free: NDArray[np.bool_],
     nearest: NDArray[np.int32],
     size_m: float,
+    border: float,
     steep: NDArray[np.float32],
     rim: NDArray[np.float64],
     rising: NDArray[np.float64],
@@ -213,7 +237,10 @@ def _rim_kernel(
                 down = (side == 0) - (side == 1)
                 right = (side == 2) - (side == 3)
                 r, c = row + down, column + right
-                if r < 0 or c < 0 or r >= rows or c >= columns or labels[r, c] == label:
+                if r < 0 or c < 0 or r >= rows or c >= columns:
+                    level[label] += border
+                    continue
+                if labels[r, c] == label:
                     continue
                 from_row, from_column = (
                     nearest[row, column] // columns,
@@ -225,12 +252,12 @@ def _rim_kernel(
                 )
                 if run == 0.0:
                     continue
-                if not free[to_row, to_column] or not free[from_row, from_column]:
-                    hidden[label] += 1.0
-                    continue
                 rise = heights[from_row, from_column] - heights[to_row, to_column]
                 is_level = rise < _LEVEL * run
-                if run > _GAP * size_m and not is_level and rise <= steep[row, column] * run:
+                is_shaded = (
+                    run > _GAP * size_m and not is_level and rise <= steep[row, column] * run
+                )
+                if is_shaded or not (free[to_row, to_column] and free[from_row, from_column]):
                     hidden[label] += 1.0
                     continue
                 rim[label] += 1.0

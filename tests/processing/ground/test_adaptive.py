@@ -174,3 +174,13 @@ def test_a_fence_that_ends_at_a_wall_is_no_part_of_the_wall() -> None:
     assert is_ground[: len(ground)].mean() > 0.99
     assert is_ground[len(ground) : len(ground) + len(face)].mean() > 0.9
     assert is_ground[len(ground) + len(face) :].mean() < 0.15
+
+
+def test_a_hall_cut_by_the_border_goes_and_a_terrace_along_the_border_stays() -> None:
+    xyz = _plane(80.0, 0.5)
+    hall = (np.abs(xyz[:, 0] - 40.0) < 11.0) & (xyz[:, 1] < 12.0)
+    terrace = xyz[:, 1] > 72.0
+    xyz[:, 2] += np.where(hall, 7.0, 0.0) + np.where(terrace, 3.0, 0.0)
+    is_ground = _found(xyz).is_ground(xyz)
+    assert is_ground[~hall].mean() > 0.99
+    assert is_ground[hall].mean() < 0.02
