@@ -18,7 +18,10 @@ from processing.project.export import ExportRequest
 from processing.project.importing import ImportRequest
 from processing.project.label_change import label_changes
 from processing.text import Text
+from processing.tools.ground import GroundParameters
 from tests.earthwork_site import (
+    CORNER,
+    GRADE,
     GROUND,
     LOW_NOISE,
     OTHER,
@@ -192,6 +195,7 @@ def test_a_machine_left_as_ground_is_taken_off_it_by_a_lasso_in_the_section(
     corrector, surveyor, tmp_path
 ):
     hand, document, site = corrector, corrector.document, corrector.site
+    assert (hand.classes()[site.truth == OTHER] == GROUND).all()
     before = hand.classes()
     hand.cut_at(SIZE_M[0] / 2)
     hand.do("tool-paint-lasso")
@@ -227,6 +231,31 @@ def test_a_machine_left_as_ground_is_taken_off_it_by_a_lasso_in_the_section(
     np.testing.assert_array_equal(hand.classes(), after)
     assert document.undo()
     np.testing.assert_array_equal(hand.classes(), before)
+
+
+def test_what_the_tool_ground_found_is_seen_at_once_with_its_line(corrector, surveyor):
+    hand, document, site = corrector, corrector.document, corrector.site
+    assert document.undo()
+    assert not hand.classes().any()
+    hand.shared.view_settings.change_look(attribute="intensity")
+    hand.until(lambda: hand.pane.picture is not None)
+    assert hand.pane.picture.ground == ()
+    drive = document.drives()[0]
+    surveyor.wait_for_job(lambda: document.start_run("ground", drive.id, GroundParameters()))
+    assert (hand.classes() == site.truth)[site.truth != LOW_NOISE].mean() > 0.98
+    assert hand.shared.view_settings.look.attribute == "class"
+    found = hand.classes()
+    hand.until(lambda: hand.colours_of(found == OTHER) == all_in(OTHER))
+    hand.until(lambda: hand.colours_of(found == GROUND) == all_in(GROUND))
+    hand.cut_at(2.0)
+    hand.until(lambda: bool(hand.pane.picture.ground))
+    (line, *_) = hand.pane.picture.ground
+    assert not line.is_filled
+    north = hand.pane.cut.to_space(np.insert(line.places, 2, 0.0, axis=1))
+    wanted = CORNER[2] + GRADE * (north[:, 1] - CORNER[1])
+    np.testing.assert_allclose(line.places[:, 1], wanted, atol=0.1)
+    assert document.undo()
+    assert not hand.classes().any()
 
 
 def test_noise_is_hidden_in_all_views_by_a_key_and_painted_back(corrector, tmp_path):
