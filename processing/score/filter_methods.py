@@ -1,0 +1,250 @@
+"""The filters of noise and of ground that are compared: ours as they are run, and peers'."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.formats.point_codes import read_result
+from processing.ground.adaptive import GroundHabits, find_ground
+from processing.ground.lowest_points import lowest_point_ground
+from processing.ground.published import PublishedSteps, published_ground
+from processing.monitor import SilentMonitor
+from processing.points.drive import Drive
+from processing.project.importing import ImportRequest, import_drives
+from processing.project.point_results import write_point_results
+from processing.runner import RunRequest, run
+from processing.score.filter_scenes import Scene
+from processing.score.peer_filters import (
+    Flags,
+    ground_by_cloth,
+    ground_by_pcl,
+    ground_by_smrf,
+    kept_by_open3d_radius,
+    kept_by_open3d_statistics,
+    kept_by_pcl,
+)
+from processing.score.point_classes import ClassCounts
+from processing.tools.noise import COMBINED, NOISE, RADIUS, STATISTICAL, NoiseParameters
+from processing.tools.tool import FinishedColumns
+
+Codes = NDArray[np.uint8]
+
+_GROUND, _OBJECT, _KEPT, _NOISE = (np.uint8(code) for code in (2, 1, 0, 18))
+_RADIUS_M, _NEIGHBOURS, _DEVIATIONS = 0.5, 113, 1.5
+_PUBLISHED_GRIDS_M = (1.0, 3.0, 10.0)
+_BAND_M = 0.3
+_PCL_RADIUS = ("-method", "radius", "-radius", f"{_RADIUS_M}", "-min_pts", f"{_NEIGHBOURS}")
+_PCL_STATISTICS = ("-method", "statistical", "-mean_k", f"{_NEIGHBOURS}", "-std_dev_mul", "1.5")
+
+
+@dataclass(frozen=True)
+class Method:
+    """A filter with its settings.
+
+    Attributes
+    ----------
+    name, settings : str
+    codes : callable
+        (n,) uint8 of a scene, with a folder for files of its own; None where a peer isn't
+        installed.
+    ours : bool
+    """
+
+    name: str
+    settings: str
+    codes: Callable[[Scene, Path], Codes | None]
+    ours: bool = True
+
+
+def noise_methods() -> tuple[Method, ...]:
+    """Filters of noise, at the road-surface study's values where they have any."""
+    sor = f"{_NEIGHBOURS}, {_DEVIATIONS:g} σ"
+    ror = f"{_RADIUS_M:g} m, {_NEIGHBOURS}"
+    return (
+        Method("nothing removed", "", _nothing, ours=False),
+        Method("combined", "none to set", partial(_our_noise, COMBINED)),
+        Method("radius", ror, partial(_our_noise, RADIUS)),
+        Method("statistical", sor, partial(_our_noise, STATISTICAL)),
+        Method("Open3D radius", ror, _open3d_radius, ours=False),
+        Method("Open3D statistical", sor, _open3d_statistics, ours=False),
+        Method("PCL radius", ror, partial(_pcl_noise, _PCL_RADIUS), ours=False),
+        Method("PCL statistical", sor, partial(_pcl_noise, _PCL_STATISTICS), ours=False),
+    )
+
+
+def site_methods() -> tuple[Method, ...]:
+    """Filters of ground that are compared on sites: ours without a setting, the published, peers.
+
+    A filter of a peer comes twice: as it is, and with the best of some settings.
+    """
+    lowest = [
+        Method(f"lowest points{words}", f"g = {grid:g} m", partial(_lowest, grid, band))
+        for words, band in ((", strict", 0.0), (f" and {_BAND_M:g} m above", _BAND_M))
+        for grid in _PUBLISHED_GRIDS_M
+    ]
+    published = [_published_method(grid) for grid in _PUBLISHED_GRIDS_M]
+    return (_ADAPTIVE, *published, *lowest, *_cloths(_SITE_CLOTHS), *_PEERS)
+
+
+def airborne_methods() -> tuple[Method, ...]:
+    """The same for clouds with metres between points, where small cells hold no ground."""
+    widest = _published_method(_PUBLISHED_GRIDS_M[-1])
+    return (_ADAPTIVE, widest, *_cloths(_AIRBORNE_CLOTHS), *_PEERS)
+
+
+def _cloths(settings: tuple[tuple[float, int, float], ...]) -> tuple[Method, ...]:
+    chosen = f"best of {len(settings)} by this truth"
+    return (
+        Method("CSF", "its defaults", partial(_cloth, (1.0, 3, 0.5)), ours=False),
+        Method("CSF", chosen, partial(_best, _cloth, settings), ours=False),
+    )
+
+
+def _published_method(grid_m: float) -> Method:
+    return Method("published", f"g = {grid_m:g} m", partial(_published, grid_m))
+
+
+_SITE_CLOTHS = tuple((cloth, rigid, _BAND_M) for cloth in (0.5, 1.0) for rigid in (1, 2, 3))
+_AIRBORNE_CLOTHS = tuple((cloth, rigid, 0.5) for cloth in (1.0, 2.0) for rigid in (1, 3))
+"""Mesh in m, rigidness, distance in m: what its authors tell to choose by the scene."""
+_SMRFS = tuple(
+    (cell, width, slope)
+    for cell in (0.5, 1.0)
+    for width in (5.0, 18.0)
+    for slope in (0.15, 0.3, 0.5)
+)
+_MORPHOLOGIES = tuple(
+    ("-cell_size", cell, "-slope", slope, "-max_distance", band, "-max_distnace", band)
+    for cell in ("0.5", "1.0")
+    for slope in ("0.3", "0.7")
+    for band in ("0.5", "2.0")
+)
+"""The option's name is misspelled in some versions of the program."""
+
+
+def as_delivered(scene: Scene, folder: Path) -> Path:
+    """The scene's cloud as a LAS file without its truth: its own, or one made of text."""
+    if scene.cloud is not None:
+        return scene.cloud
+    import laspy
+
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.scales, header.offsets = np.full(3, 0.001), np.floor(scene.xyz.min(axis=0))
+    las = laspy.LasData(header)
+    las.xyz = scene.xyz
+    path = folder / f"{scene.name}.las"
+    las.write(path)
+    return path
+
+
+def _our_noise(method: str, scene: Scene, folder: Path) -> Codes:
+    """What ``zuka run noise`` writes."""
+    drives = _drives(scene, folder)
+    results: list[tuple[Drive, FinishedColumns]] = []
+    for number, drive in enumerate(drives):
+        request = RunRequest(NOISE.id, drive, NoiseParameters(method=method))
+        found = run(request, SilentMonitor(), into=folder / f"run-{number}")
+        if isinstance(found, FinishedColumns):
+            results.append((drive, found))
+    (path,) = write_point_results(results, folder / "result.las", SilentMonitor())
+    return np.concatenate([block.codes for block in read_result(path).blocks()])
+
+
+def _drives(scene: Scene, folder: Path) -> list[Drive]:
+    trajectories = () if scene.trajectory is None else (scene.trajectory,)
+    request = ImportRequest((as_delivered(scene, folder),), trajectories)
+    return [Drive(path) for path in import_drives(request, folder / "drives", SilentMonitor())]
+
+
+def _open3d_radius(scene: Scene, _: Path) -> Codes | None:
+    return _noise(kept_by_open3d_radius(scene.local_xyz, _RADIUS_M, _NEIGHBOURS))
+
+
+def _open3d_statistics(scene: Scene, _: Path) -> Codes | None:
+    return _noise(kept_by_open3d_statistics(scene.local_xyz, _NEIGHBOURS, _DEVIATIONS))
+
+
+def _pcl_noise(settings: tuple[str, ...], scene: Scene, folder: Path) -> Codes | None:
+    return _noise(kept_by_pcl(scene.local_xyz, settings, folder))
+
+
+def _adaptive(scene: Scene, _: Path) -> Codes:
+    surface = find_ground(lambda: [scene.xyz], GroundHabits(), SilentMonitor())
+    return _ground(surface.is_ground(scene.xyz))
+
+
+def _published(grid_m: float, scene: Scene, _: Path) -> Codes:
+    steps = PublishedSteps(grid_m=grid_m)
+    return _ground(published_ground(scene.xyz, steps, SilentMonitor()).is_ground)
+
+
+def _lowest(grid_m: float, band_m: float, scene: Scene, _: Path) -> Codes:
+    return _ground(lowest_point_ground(scene.xyz, grid_m, band_m))
+
+
+def _cloth(settings: tuple[float, int, float], scene: Scene, _: Path) -> Codes | None:
+    found = ground_by_cloth(scene.local_xyz, *settings)
+    return None if found is None else _ground(found)
+
+
+def _smrf(settings: tuple[float, float, float], scene: Scene, _: Path) -> Codes | None:
+    found = ground_by_smrf(scene.local_xyz, *settings)
+    return None if found is None else _ground(found)
+
+
+def _pcl_ground(settings: tuple[str, ...], scene: Scene, folder: Path) -> Codes | None:
+    found = ground_by_pcl(scene.local_xyz, ("-approximate", "1", *settings), folder)
+    return None if found is None else _ground(found)
+
+
+def _best(
+    # Any tuple of settings that goes with the filter.
+    codes_of: Callable[..., Codes | None],
+    settings: tuple[tuple[object, ...], ...],
+    scene: Scene,
+    folder: Path,
+) -> Codes | None:
+    """The codes that agree best with the truth, by kappa."""
+
+    def found() -> Iterator[tuple[float, Codes]]:
+        for one in settings:
+            codes = codes_of(one, scene, folder)
+            if codes is not None:
+                counts = ClassCounts.of(scene.truth, codes).two_by_two((int(_GROUND),))
+                yield np.nan_to_num(counts.kappa), codes
+
+    return max(found(), key=lambda pair: pair[0], default=(0.0, None))[1]
+
+
+def _nothing(scene: Scene, _: Path) -> Codes:
+    return np.full(len(scene.xyz), _KEPT)
+
+
+def _ground(is_ground: Flags) -> Codes:
+    return np.where(is_ground, _GROUND, _OBJECT)
+
+
+def _noise(is_kept: Flags | None) -> Codes | None:
+    return None if is_kept is None else np.where(is_kept, _KEPT, _NOISE)
+
+
+_ADAPTIVE = Method("adaptive", "none to set", _adaptive)
+_PEERS = (
+    Method("SMRF", "its defaults", partial(_smrf, (1.0, 5.0, 0.15)), ours=False),
+    Method(
+        "SMRF", f"best of {len(_SMRFS)} by this truth", partial(_best, _smrf, _SMRFS), ours=False
+    ),
+    Method("PCL morphological", "its defaults", partial(_pcl_ground, ()), ours=False),
+    Method(
+        "PCL morphological",
+        f"best of {len(_MORPHOLOGIES)} by this truth",
+        partial(_best, _pcl_ground, _MORPHOLOGIES),
+        ours=False,
+    ),
+)
