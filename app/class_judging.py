@@ -12,7 +12,7 @@ from app.adoption import Adoption
 from app.document import Document
 from app.jobs import JobQueue, Lane
 from app.truth_work import StudyWish, judged_work, study_work, truth_by_hand_work, truth_file_work
-from processing.errors import UserError
+from processing.errors import Unsuitable, UserError
 from processing.image.clip import Clip
 from processing.monitor import Monitor
 from processing.points.drive import Drive
@@ -21,7 +21,7 @@ from processing.project.class_evaluation import ClassEvaluation, evaluate_classe
 from processing.project.project import Project
 from processing.project.study_store import KeptStudy, StudyStore, new_study_id
 from processing.project.truth_making import Checked, MadeTruth
-from processing.project.truth_store import Truth, TruthStore, new_truth_id
+from processing.project.truth_store import Truth, TruthStore, has_truth, new_truth_id
 from processing.score.parameter_study import ParameterStudy
 from processing.text import Text
 from processing.tools.tool import FinishedColumns
@@ -89,8 +89,9 @@ class ClassJudging(QObject):
         if project is None or drive is None:
             return ""
         clip = clip if checked is Checked.CLIP else None
-        runs = self._document.runs() if checked is Checked.PAINTED else None
-        work = truth_by_hand_work(drive, project.temporary_folder(), clip=clip, runs=runs)
+        is_painted = checked is Checked.PAINTED
+        into = project.temporary_folder()
+        work = truth_by_hand_work(drive, into, clip=clip, only_painted=is_painted)
         return self._start_truth(project, _NAMES[checked].filled(drive=drive.info.name), work)
 
     def load_truth(self, path: Path) -> str:
@@ -153,7 +154,11 @@ class ClassJudging(QObject):
         truth = None if project is None else TruthStore(project.settings).get(wish.truth)
         if project is None or drive is None or truth is None:
             return ""
-        title, work = study_work(wish, drive, project.temporary_folder())
+        if not has_truth(drive, truth.id):
+            self._document.refused.emit(_other_drive(drive, truth))
+            return ""
+        beside = tuple(other for other in self._document.drives() if other is not drive)
+        title, work = study_work(wish, drive, beside, project.temporary_folder())
 
         def take(study: ParameterStudy) -> None:
             kept = KeptStudy(
@@ -216,3 +221,17 @@ _NAMES = {
     Checked.CLIP: Text("{drive}: a part checked", "{drive}: 一部を確認"),
     Checked.PAINTED: Text("{drive}: painted points", "{drive}: 手動ラベル"),
 }
+
+
+def _other_drive(drive: Drive, truth: Truth) -> UserError:
+    return Unsuitable(
+        Text(
+            "The truth “{name}” is not about this drive.",
+            "正解「{name}」はこの走行データのものではありません。",
+        ).filled(name=truth.name),
+        Text.same(drive.info.name),
+        Text(
+            "Show the drive of the truth, or choose another truth.",
+            "正解のある走行データを表示するか、別の正解を選んでください。",
+        ),
+    )

@@ -19,6 +19,7 @@ from processing.project.study_store import KeptStudy
 from processing.project.truth_making import Checked
 from processing.project.truth_store import Truth
 from processing.runner import tool_of
+from processing.score.parameter_study import can_vary
 from processing.text import Text
 from processing.tools.parameters import Value
 
@@ -71,7 +72,7 @@ class _ClassWiring(QObject):
         """A tool's parameters as its form has them."""
         parameters = self._parts.processing_panel.parameters_of(tool)
         values = parameter_values(tool_of(tool), parameters)
-        return {name: value for name, value in values.items() if value is not None}
+        return {one.id: value for one in can_vary(tool) if (value := values[one.id]) is not None}
 
     def on_judging_truth_made(self, truth: Truth) -> None:
         self._parts.class_panel.truths.choose(truth.id)

@@ -55,7 +55,7 @@ class FinishedRun:
             for drive in drives:
                 said = self.kept / drive.id
                 if said.is_file():
-                    adopt_finding(drive, self.found.run.id, said)
+                    adopt_finding(drive, self.found.run.tool, self.found.run.id, said)
             surface = self.kept / SURFACE
             if surface.is_file():
                 keep_surface(surface, drives)

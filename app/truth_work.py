@@ -10,12 +10,10 @@ from processing.image.clip import Clip
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
 from processing.project.class_evaluation import ClassEvaluation, judged_columns
-from processing.project.runs import Run
 from processing.project.truth_making import MadeTruth, truth_as_it_stands
 from processing.project.truth_of_file import coded_truth, truth_of_file
 from processing.project.truth_study import study_by_truth
 from processing.runner import tool_of
-from processing.score.asked_classes import ASKED
 from processing.score.parameter_study import ParameterStudy, StudyRequest, Varied
 from processing.text import Text
 from processing.tools.parameters import Value
@@ -46,21 +44,12 @@ class StudyWish:
 
 
 def truth_by_hand_work(
-    drive: Drive, into: Path, *, clip: Clip | None, runs: Sequence[Run] | None
+    drive: Drive, into: Path, *, clip: Clip | None, only_painted: bool
 ) -> Callable[[Monitor], MadeTruth]:
-    """The classes of a drive as they stand become a truth.
-
-    Parameters
-    ----------
-    runs : sequence of Run or None
-        Of the project, where only what was painted beside them counts.
-    """
-    beside = None
-    if runs is not None:
-        beside = {run.id: ASKED[run.tool].codes for run in runs if run.tool in ASKED}
+    """The classes of a drive as they stand become a truth."""
 
     def work(monitor: Monitor) -> MadeTruth:
-        return truth_as_it_stands(drive, into, monitor, clip=clip, painted_beside=beside)
+        return truth_as_it_stands(drive, into, monitor, clip=clip, only_painted=only_painted)
 
     return work
 
@@ -95,10 +84,10 @@ def judged_work(
 
 
 def study_work(
-    wish: StudyWish, drive: Drive, into: Path
+    wish: StudyWish, drive: Drive, beside: tuple[Drive, ...], into: Path
 ) -> tuple[Text, Callable[[Monitor], ParameterStudy]]:
     """A tool is tried with many settings."""
-    request = StudyRequest(wish.tool, (drive,), dict(wish.fixed), wish.varied)
+    request = StudyRequest(wish.tool, (drive,), dict(wish.fixed), wish.varied, beside)
     title = Text("Parameter study: {tool}", "パラメータ検討: {tool}").filled(
         tool=tool_of(wish.tool).name
     )

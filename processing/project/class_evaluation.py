@@ -74,7 +74,9 @@ def evaluate_classes(
     for tool in ASKED:
         judged_runs = []
         for run in runs:
-            on = [one for one in known if one.id in run.drives and has_finding(one, run.id)]
+            on = [
+                one for one in known if one.id in run.drives and has_finding(one, run.tool, run.id)
+            ]
             if run.tool == tool and on:
                 judged_runs.append((tool, run, on))
         if judged_runs:
@@ -139,5 +141,5 @@ def _counted(drive: Drive, truth: str, tool: str, run: Run | None, monitor: Moni
 
 def _found(drive: Drive, tool: str, run: Run | None, start: int, stop: int) -> NDArray[np.bool_]:
     if run is not None:
-        return read_finding(drive, run.id, start, stop)
+        return read_finding(drive, run.tool, run.id, start, stop)
     return is_one_of(classes_as_they_stand(drive, start, stop), ASKED[tool].codes)

@@ -15,7 +15,9 @@ from processing.points.ordering import read_stretch
 from processing.project.change import Change
 from processing.project.found_features import FoundFeatures, parameter_values
 from processing.project.label_change import MOST_POINTS, LabelChange
+from processing.project.run_findings import labelled_by_runs
 from processing.project.runs import Run, new_run_id
+from processing.score.asked_classes import ASKED
 from processing.text import Text
 from processing.tools.tool import FinishedColumns, Tool
 
@@ -42,9 +44,8 @@ def found_classes(
     """Make labels of the classes in a tool's results.
 
     Delivered classes stay as they are. A point gets a label where the tool gives it another class
-    than it was delivered with. Labels by hand count more and stay, but for those of the tool's own
-    classes: these may come from an earlier run, and are taken back where the tool no longer says
-    so.
+    than it was delivered with. Labels by hand count more and stay, also those of the tool's own
+    classes; what an earlier run gave is taken back where the tool no longer says so.
 
     Parameters
     ----------
@@ -64,7 +65,7 @@ def found_classes(
             stop = min(start + MOST_POINTS, drive.count)
             found = result.read(_CLASS, start, stop)
             after = np.where(found != _delivered(drive, start, stop), found, 0).astype(np.uint8)
-            change = _relabelled(drive, np.arange(start, stop), after, tool.gives_classes)
+            change = _relabelled(drive, np.arange(start, stop), after, tool)
             if change is not None:
                 labels.append(change)
     run = Run(
@@ -95,9 +96,7 @@ def classes_now(
 ) -> FoundFeatures:
     """The same labels for points that may have been painted since the tool ran."""
     labels = [
-        _relabelled(
-            drive_of(one.drive), one.unpacked_points(), one.codes_after(), tool.gives_classes
-        )
+        _relabelled(drive_of(one.drive), one.unpacked_points(), one.codes_after(), tool)
         for one in found.change.labels
     ]
     kept = tuple(one for one in labels if one is not None)
@@ -105,11 +104,17 @@ def classes_now(
 
 
 def _relabelled(
-    drive: Drive, points: NDArray[np.int64], after: NDArray[np.uint8], own: tuple[int, ...]
+    drive: Drive, points: NDArray[np.int64], after: NDArray[np.uint8], tool: Tool
 ) -> LabelChange | None:
     """The labels of those points that get another one than they have."""
     before = labels_of(drive, points)
-    is_free = (before == 0) | np.isin(before, own)
+    # Where it isn't kept what runs said, a label of the tool's own may be an earlier run's.
+    is_own = (
+        labelled_by_runs(drive, tool, points, before)
+        if tool.id in ASKED
+        else np.isin(before, tool.gives_classes)
+    )
+    is_free = (before == 0) | is_own
     changed = is_free & (before != after)
     if not changed.any():
         return None

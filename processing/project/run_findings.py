@@ -2,7 +2,7 @@
 
 The labels that came of a run change with undo and by hand, and to run the tool again takes its
 time; a bit a point is an eighth of the smallest column. It lies in the drive's folder, in
-``runs/<run>.bits``; the runs of the project say with which parameters it was made.
+``runs/<tool>/<run>.bits``; the runs of the project say with which parameters it was made.
 """
 
 from __future__ import annotations
@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 
 from processing.errors import told_as_user_error
 from processing.points.drive import Drive
+from processing.score.asked_classes import ASKED
 from processing.score.point_classes import is_one_of
-from processing.tools.tool import FinishedColumns
+from processing.tools.tool import FinishedColumns, Tool
 
 _CLASS = "classification"
 _FOLDER, _ENDING = "runs", ".bits"
@@ -24,9 +25,9 @@ _AT_ONCE = 1 << 20
 _BYTE = 8
 
 
-def finding_path(drive: Drive, run: str) -> Path:
-    """Where what a run said about a drive is kept."""
-    return drive.folder / _FOLDER / f"{run}{_ENDING}"
+def finding_path(drive: Drive, tool: str, run: str) -> Path:
+    """Where what a run of a tool said about a drive is kept."""
+    return drive.folder / _FOLDER / tool / f"{run}{_ENDING}"
 
 
 def write_finding(result: FinishedColumns, codes: Collection[int], path: Path) -> None:
@@ -43,26 +44,25 @@ def write_finding(result: FinishedColumns, codes: Collection[int], path: Path) -
             file.write(np.packbits(found).tobytes())
 
 
-def adopt_finding(drive: Drive, run: str, file: Path) -> None:
+def adopt_finding(drive: Drive, tool: str, run: str, file: Path) -> None:
     """Let a finished file on the drive's disk be what a run said.
 
     Raises
     ------
     NoSpace, MissingInput, InUse
     """
-    path = finding_path(drive, run)
+    path = finding_path(drive, tool, run)
     with told_as_user_error(path):
-        path.parent.mkdir(exist_ok=True)
+        path.parent.mkdir(parents=True, exist_ok=True)
         file.replace(path)
 
 
-def has_finding(drive: Drive, run: str) -> bool:
+def has_finding(drive: Drive, tool: str, run: str) -> bool:
     """Whether it is kept, whole, what a run said about a drive."""
-    path = finding_path(drive, run)
-    return path.is_file() and path.stat().st_size == -(-drive.count // _BYTE)
+    return _is_whole(drive, finding_path(drive, tool, run))
 
 
-def read_finding(drive: Drive, run: str, start: int, stop: int) -> NDArray[np.bool_]:
+def read_finding(drive: Drive, tool: str, run: str, start: int, stop: int) -> NDArray[np.bool_]:
     """Whether a run said yes about the points ``start … stop − 1``: (k,) bool.
 
     Raises
@@ -70,7 +70,45 @@ def read_finding(drive: Drive, run: str, start: int, stop: int) -> NDArray[np.bo
     MissingInput
         It isn't kept.
     """
-    path = finding_path(drive, run)
+    return _read(finding_path(drive, tool, run), start, stop)
+
+
+def labelled_by_runs(
+    drive: Drive, tool: Tool, points: NDArray[np.int64], labels: NDArray[np.uint8]
+) -> NDArray[np.bool_]:
+    """Which labels a run of a tool gave, or would have given: all others were set by hand.
+
+    Parameters
+    ----------
+    tool : Tool
+        One of :data:`processing.score.asked_classes.ASKED`.
+    points : (n,) int64
+        Rising.
+    labels : (n,) uint8
+        What they have.
+
+    Returns
+    -------
+    (n,) bool
+    """
+    found = np.zeros(points.size, np.bool_)
+    if not points.size:
+        return found
+    yes, own = ASKED[tool.id].codes, frozenset(tool.gives_classes)
+    is_yes, is_no = is_one_of(labels, yes & own), is_one_of(labels, own - yes)
+    first = int(points[0])
+    for path in sorted((drive.folder / _FOLDER / tool.id).glob(f"*{_ENDING}")):
+        if _is_whole(drive, path):
+            said = _read(path, first, int(points[-1]) + 1)[points - first]
+            found |= np.where(said, is_yes, is_no)
+    return found
+
+
+def _is_whole(drive: Drive, path: Path) -> bool:
+    return path.is_file() and path.stat().st_size == -(-drive.count // _BYTE)
+
+
+def _read(path: Path, start: int, stop: int) -> NDArray[np.bool_]:
     first = start // _BYTE
     with told_as_user_error(path):
         packed = np.fromfile(path, np.uint8, count=-(-stop // _BYTE) - first, offset=first)

@@ -6,7 +6,7 @@ The column is written into a folder of its own, a stretch at a time, in a worker
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -20,10 +20,11 @@ from processing.monitor import Monitor
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
-from processing.project.run_findings import has_finding, read_finding
+from processing.project.run_findings import labelled_by_runs
 from processing.project.scratch_folder import whole_folder
 from processing.project.truth_store import TRUTH
-from processing.score.point_classes import is_one_of
+from processing.score.asked_classes import ASKED
+from processing.tools.registry import TOOLS
 
 OTHER = 1
 """The code of a point that is known to be none of the classes asked for."""
@@ -65,7 +66,7 @@ def truth_as_it_stands(
     monitor: Monitor,
     *,
     clip: Clip | None = None,
-    painted_beside: Mapping[str, Collection[int]] | None = None,
+    only_painted: bool = False,
 ) -> MadeTruth:
     """Take the classes of a drive as they stand now for the truth.
 
@@ -77,9 +78,8 @@ def truth_as_it_stands(
         A new folder on the drive's disk.
     clip : Clip or None
         Outside of it nothing is known.
-    painted_beside : mapping of str to codes, or None
-        Runs by id with the classes that they look for: only points count that have a label which
-        none of these runs gave, since that one was set by hand. None: all points count.
+    only_painted : bool
+        Only points count that have a label which no run gave, since that one was set by hand.
 
     Raises
     ------
@@ -95,8 +95,8 @@ def truth_as_it_stands(
             codes = classes_as_they_stand(drive, start, stop)
             if clip is not None:
                 codes[~clip.holds(drive.xyz(slice(start, stop)))] = 0
-            if painted_beside is not None:
-                codes[~_is_by_hand(drive, start, stop, painted_beside)] = 0
+            if only_painted:
+                codes[~_is_by_hand(drive, start, stop)] = 0
             known += int(np.count_nonzero(codes))
             writer.append({TRUTH: codes})
     return MadeTruth({drive.id: into}, {drive.id: known})
@@ -113,15 +113,12 @@ def classes_as_they_stand(drive: Drive, start: int, stop: int) -> NDArray[np.uin
     return np.maximum(codes, np.uint8(OTHER))
 
 
-def _is_by_hand(
-    drive: Drive, start: int, stop: int, runs: Mapping[str, Collection[int]]
-) -> NDArray[np.bool_]:
+def _is_by_hand(drive: Drive, start: int, stop: int) -> NDArray[np.bool_]:
     if not drive.columns.has(LABEL):
         return np.zeros(stop - start, np.bool_)
-    labels = np.asarray(drive.columns[LABEL][start:stop])
+    points, labels = np.arange(start, stop), np.asarray(drive.columns[LABEL][start:stop])
     is_by_hand = labels > 0
-    for run, codes in runs.items():
-        if has_finding(drive, run):
-            said = read_finding(drive, run, start, stop)
-            is_by_hand &= ~(said & is_one_of(labels, codes))
+    for tool in ASKED:
+        if tool in TOOLS:
+            is_by_hand &= ~labelled_by_runs(drive, TOOLS[tool], points, labels)
     return is_by_hand

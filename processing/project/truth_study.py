@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +15,8 @@ from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
 from processing.points.drive_part import write_part
 from processing.points.ordering import read_stretch
-from processing.project.truth_store import TRUTH, read_truth
+from processing.project.truth_store import TRUTH, has_truth, read_truth
+from processing.runner import RunRequest, drives_of
 from processing.score.parameter_study import ParameterStudy, StudyRequest, TruthOf, study
 
 MARGIN_M = 5.0
@@ -52,13 +53,7 @@ def study_by_truth(
     try:
         if not is_part:
             return study(request, _truth_of(truth), monitor, into)
-        cutting = PartMonitor(monitor, 0.0, _CUTTING)
-        parts = tuple(
-            _part(drive, truth, into / f"part-{number}", cutting)
-            for number, drive in enumerate(request.drives)
-        )
-        rest = PartMonitor(monitor, _CUTTING, 1.0)
-        return study(replace(request, drives=parts), _truth_of_part, rest, into)
+        return _study_of_parts(request, truth, into, monitor)
     finally:
         shutil.rmtree(into, ignore_errors=True)
 
@@ -74,9 +69,36 @@ def _truth_of_part(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:
     return np.asarray(read_stretch(drive.folder, TRUTH, start, stop))
 
 
-def _part(drive: Drive, truth: str, into: Path, monitor: Monitor) -> Drive:
-    """The surroundings of a drive's points with a known truth, and the truth beside them."""
-    low, high = _box_of_known(drive, truth, monitor)
+def _study_of_parts(
+    request: StudyRequest, truth: str, into: Path, monitor: Monitor
+) -> ParameterStudy:
+    cutting = PartMonitor(monitor, 0.0, _CUTTING)
+    low, high = _box_of_known(request.drives, truth, cutting)
+
+    def cut(drive: Drive) -> Drive:
+        return _part(drive, truth, (low, high), into / f"part-{drive.id}", cutting)
+
+    parts = tuple(map(cut, request.drives))
+    together = {one for drive in request.drives for one in drives_of(_run_on(request, drive))}
+    beside = tuple(cut(drive) for drive in request.beside if drive in together)
+    rest = PartMonitor(monitor, _CUTTING, 1.0)
+    return study(replace(request, drives=parts, beside=beside), _truth_of_part, rest, into)
+
+
+def _run_on(request: StudyRequest, drive: Drive) -> RunRequest:
+    return RunRequest(request.tool, drive, None, request.beside)
+
+
+def _part(
+    drive: Drive,
+    truth: str,
+    box: tuple[NDArray[np.float64], NDArray[np.float64]],
+    into: Path,
+    monitor: Monitor,
+) -> Drive:
+    """The points of a drive in a box, and the truth beside them."""
+    low, high = box
+    is_known = has_truth(drive, truth)
 
     def is_near(start: int, stop: int) -> NDArray[np.bool_]:
         xyz = drive.xyz(slice(start, stop))
@@ -84,22 +106,25 @@ def _part(drive: Drive, truth: str, into: Path, monitor: Monitor) -> Drive:
         return inside
 
     def beside(start: int, stop: int) -> Mapping[str, NDArray[np.uint8]]:
-        return {TRUTH: read_truth(drive, truth, start, stop)}
+        nothing = np.zeros(stop - start, np.uint8)
+        return {TRUTH: read_truth(drive, truth, start, stop) if is_known else nothing}
 
     return write_part(drive, is_near, into, monitor, beside=beside)
 
 
 def _box_of_known(
-    drive: Drive, truth: str, monitor: Monitor
+    drives: Sequence[Drive], truth: str, monitor: Monitor
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Corners of the box about all known points, with its margin; empty where none is known."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    for start in range(0, drive.count, _AT_ONCE):
-        monitor.check()
-        stop = min(start + _AT_ONCE, drive.count)
-        known = np.flatnonzero(read_truth(drive, truth, start, stop)) + start
-        if known.size:
-            xyz = drive.xyz(known)
-            low, high = np.fmin(low, xyz.min(axis=0)), np.fmax(high, xyz.max(axis=0))
+    for drive in drives:
+        for start in range(0, drive.count, _AT_ONCE):
+            monitor.check()
+            stop = min(start + _AT_ONCE, drive.count)
+            known = np.flatnonzero(read_truth(drive, truth, start, stop)) + start
+            if known.size:
+                xyz = drive.xyz(known)
+                low, high = np.fmin(low, xyz.min(axis=0)), np.fmax(high, xyz.max(axis=0))
     # A part of space in plan: what stands above and below a point belongs to its surroundings.
     low[2], high[2] = -np.inf, np.inf
     return low - MARGIN_M, high + MARGIN_M

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import shutil
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 from processing.errors import OutOfRange, Unsuitable
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
-from processing.runner import RunRequest, run, tool_of
+from processing.runner import RunRequest, drives_of, run_together, tool_of
 from processing.score.asked_classes import ASKED
 from processing.score.point_classes import TwoByTwo, is_one_of
 from processing.text import Text
@@ -78,12 +79,15 @@ class StudyRequest:
         Values of the tool's other parameters; those not named have their defaults.
     varied : tuple of Varied
         One or two.
+    beside : tuple of Drive
+        Others of the same street, which some tools look at too; not counted.
     """
 
     tool: str
     drives: tuple[Drive, ...]
     fixed: Mapping[str, Value]
     varied: tuple[Varied, ...]
+    beside: tuple[Drive, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -138,23 +142,43 @@ def study(request: StudyRequest, truth: TruthOf, monitor: Monitor, into: Path) -
         filled_in(tool.parameters, setting)
     _require_known(request, truth, monitor)
     cells = []
-    steps = max(1, len(settings) * len(request.drives))
     for number, setting in enumerate(settings):
-        counts = TwoByTwo(0, 0, 0, 0)
-        for place, drive in enumerate(request.drives):
-            done = number * len(request.drives) + place
-            part = PartMonitor(monitor, done / steps, (done + 1) / steps)
-            beside = tuple(other for other in request.drives if other is not drive)
-            wanted = RunRequest(tool.id, drive, filled_in(tool.parameters, setting), beside)
-            result = run(wanted, part, into=into / f"{number}-{place}")
-            if not isinstance(result, FinishedColumns):
-                raise _gives_no_classes(request.tool)
-            counts += _counted(result, drive, truth, ASKED[tool.id].codes, monitor)
-            result.remove()
+        part = PartMonitor(monitor, number / len(settings), (number + 1) / len(settings))
+        counts = _tried(request, setting, truth, part, into / str(number))
         cells.append(StudyCell(tuple(setting[one.parameter] for one in request.varied), counts))
     names = {one.parameter for one in request.varied}
     fixed = {name: value for name, value in request.fixed.items() if name not in names}
     return ParameterStudy(tool.id, tool.version, fixed, request.varied, tuple(cells))
+
+
+def _tried(
+    request: StudyRequest,
+    setting: Mapping[str, Value],
+    truth: TruthOf,
+    monitor: Monitor,
+    into: Path,
+) -> TwoByTwo:
+    """What one setting does to all drives of a study."""
+    tool = tool_of(request.tool)
+    parameters = filled_in(tool.parameters, setting)
+    everything = (*request.drives, *request.beside)
+    counts, left = TwoByTwo(0, 0, 0, 0), list(request.drives)
+    while left:
+        beside = tuple(other for other in everything if other is not left[0])
+        wanted = RunRequest(tool.id, left[0], parameters, beside)
+        about = drives_of(wanted)
+        done = len(request.drives) - len(left)
+        share = len([one for one in left if one in about]) / len(request.drives)
+        start = done / len(request.drives)
+        try:
+            found = run_together(wanted, PartMonitor(monitor, start, start + share), into=into)
+            for drive, columns in zip(about, found.columns, strict=True):
+                if drive in left:
+                    counts += _counted(columns, drive, truth, ASKED[tool.id].codes, monitor)
+        finally:
+            shutil.rmtree(into, ignore_errors=True)
+        left = [one for one in left if one not in about]
+    return counts
 
 
 def settings_of(request: StudyRequest) -> tuple[dict[str, Value], ...]:

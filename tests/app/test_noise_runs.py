@@ -120,6 +120,17 @@ def test_labels_by_hand_stay_and_those_of_an_earlier_run_are_taken_back(
     np.testing.assert_array_equal(all_labels(drive), by_radius)
 
 
+def test_noise_painted_by_hand_stays_whatever_a_run_says(
+    street: Document, scene: NoisyStreet, qtbot: QtBot
+) -> None:
+    (drive,) = street.drives()
+    find_noise(street, qtbot, method="radius", neighbours=2)
+    road = np.flatnonzero((scene.noise == 0) & (all_labels(drive) == 0))[1000:1040]
+    paint(street, road, 7)
+    find_noise(street, qtbot, method="radius", neighbours=1)
+    assert (all_labels(drive)[road] == 7).all()
+
+
 def test_points_painted_while_the_tool_runs_keep_what_was_painted(
     street: Document, scene: NoisyStreet, qtbot: QtBot
 ) -> None:

@@ -67,10 +67,12 @@ def label(drive: Drive, points: NDArray[np.int64], code: int) -> None:
     drive.columns.release("label")
 
 
-def keep(project: Project, truth: str, *, clip: Clip | None = None, beside=None) -> Truth:
+def keep(
+    project: Project, truth: str, *, clip: Clip | None = None, only_painted: bool = False
+) -> Truth:
     (drive,) = project.drives
     into = project.temporary_folder()
-    made = truth_as_it_stands(drive, into, SILENT, clip=clip, painted_beside=beside)
+    made = truth_as_it_stands(drive, into, SILENT, clip=clip, only_painted=only_painted)
     kept = Truth(truth, NAME, dict(made.known), NOW)
     TruthStore(project.settings).add(kept, made.folders, project.drive)
     return kept
@@ -85,7 +87,7 @@ def run_that_says(project: Project, run: str, is_noise: NDArray[np.bool_]) -> Ru
         writer.append({"classification": np.where(is_noise, HIGH, 1).astype(np.uint8)})
     result = FinishedColumns(into, ("classification",), drive.count)
     write_finding(result, {LOW, HIGH}, into / "said")
-    adopt_finding(drive, run, into / "said")
+    adopt_finding(drive, "noise", run, into / "said")
     return Run(run, "noise", 1, {"method": "radius"}, (drive.id,), NOW, NOW, NAME)
 
 
@@ -123,7 +125,7 @@ def test_painted_points_are_known_but_not_those_that_a_run_labelled(
     label(drive, np.arange(100, 200), HIGH)
     label(drive, np.arange(150, 160), SIGN)
     label(drive, np.arange(300, 310), LOW)
-    keep(project, "a", beside={"r": {LOW, HIGH}})
+    keep(project, "a", only_painted=True)
     known = np.flatnonzero(all_of(drive, "a"))
     np.testing.assert_array_equal(known, [*range(150, 160), *range(300, 310)])
 
@@ -199,10 +201,12 @@ def test_a_cancelled_truth_leaves_nothing(project: Project, drive: Drive) -> Non
 def test_what_a_run_said_is_read_back_from_any_point_on(project: Project, drive: Drive) -> None:
     said = np.random.default_rng(2).uniform(size=drive.count) < 0.4
     run_that_says(project, "r", said)
-    assert has_finding(drive, "r")
-    assert finding_path(drive, "r").stat().st_size == -(-drive.count // 8)
+    assert has_finding(drive, "noise", "r")
+    assert finding_path(drive, "noise", "r").stat().st_size == -(-drive.count // 8)
     for start, stop in ((0, 1), (3, 11), (8, 8), (777, drive.count), (0, drive.count)):
-        np.testing.assert_array_equal(read_finding(drive, "r", start, stop), said[start:stop])
+        np.testing.assert_array_equal(
+            read_finding(drive, "noise", "r", start, stop), said[start:stop]
+        )
 
 
 def test_runs_and_the_cloud_as_it_stands_are_counted_where_the_truth_is_known(
@@ -210,7 +214,7 @@ def test_runs_and_the_cloud_as_it_stands_are_counted_where_the_truth_is_known(
 ) -> None:
     label(drive, np.arange(0, 100), HIGH)
     label(drive, np.arange(100, 1000), 1)
-    keep(project, "a", beside={})
+    keep(project, "a", only_painted=True)
     said = np.zeros(drive.count, np.bool_)
     said[60:140] = True
     said[5000:6000] = True  # where nobody knows
