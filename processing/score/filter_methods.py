@@ -6,19 +6,17 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.formats.point_codes import read_result
-from processing.ground.adaptive import GroundHabits, find_ground
-from processing.ground.lowest_points import lowest_point_ground
-from processing.ground.published import PublishedSteps, published_ground
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.point_results import write_point_results
-from processing.runner import RunRequest, run
+from processing.runner import RunRequest, drives_of, run_together
 from processing.score.filter_scenes import Scene
 from processing.score.peer_filters import (
     Flags,
@@ -30,8 +28,9 @@ from processing.score.peer_filters import (
     kept_by_pcl,
 )
 from processing.score.point_classes import ClassCounts
-from processing.tools.noise import COMBINED, NOISE, RADIUS, STATISTICAL, NoiseParameters
-from processing.tools.tool import FinishedColumns
+from processing.tools.ground import GROUND_TOOL, LOWEST, PUBLISHED, GroundParameters
+from processing.tools.noise import NOISE, RADIUS, STATISTICAL, NoiseParameters
+from processing.tools.tool import FinishedColumns, Tool
 
 Codes = NDArray[np.uint8]
 
@@ -68,9 +67,9 @@ def noise_methods() -> tuple[Method, ...]:
     ror = f"{_RADIUS_M:g} m, {_NEIGHBOURS}"
     return (
         Method("nothing removed", "", _nothing, ours=False),
-        Method("combined", "none to set", partial(_our_noise, COMBINED)),
-        Method("radius", ror, partial(_our_noise, RADIUS)),
-        Method("statistical", sor, partial(_our_noise, STATISTICAL)),
+        Method("combined", "none to set", partial(_ours, NOISE, NoiseParameters())),
+        Method("radius", ror, partial(_ours, NOISE, NoiseParameters(method=RADIUS))),
+        Method("statistical", sor, partial(_ours, NOISE, NoiseParameters(method=STATISTICAL))),
         Method("Open3D radius", ror, _open3d_radius, ours=False),
         Method("Open3D statistical", sor, _open3d_statistics, ours=False),
         Method("PCL radius", ror, partial(_pcl_noise, _PCL_RADIUS), ours=False),
@@ -84,7 +83,7 @@ def site_methods() -> tuple[Method, ...]:
     A filter of a peer comes twice: as it is, and with the best of some settings.
     """
     lowest = [
-        Method(f"lowest points{words}", f"g = {grid:g} m", partial(_lowest, grid, band))
+        Method(f"lowest points{words}", f"g = {grid:g} m", _our_ground(LOWEST, grid, band))
         for words, band in ((", strict", 0.0), (f" and {_BAND_M:g} m above", _BAND_M))
         for grid in _PUBLISHED_GRIDS_M
     ]
@@ -106,8 +105,15 @@ def _cloths(settings: tuple[tuple[float, int, float], ...]) -> tuple[Method, ...
     )
 
 
+def _our_ground(
+    method: str, grid_m: float, tolerance_m: float = 0.0
+) -> Callable[[Scene, Path], Codes]:
+    parameters = GroundParameters(method=method, grid_m=grid_m, tolerance_m=tolerance_m)
+    return partial(_ours, GROUND_TOOL, parameters)
+
+
 def _published_method(grid_m: float) -> Method:
-    return Method("published", f"g = {grid_m:g} m", partial(_published, grid_m))
+    return Method("published", f"g = {grid_m:g} m", _our_ground(PUBLISHED, grid_m))
 
 
 _SITE_CLOTHS = tuple((cloth, rigid, _BAND_M) for cloth in (0.5, 1.0) for rigid in (1, 2, 3))
@@ -143,23 +149,28 @@ def as_delivered(scene: Scene, folder: Path) -> Path:
     return path
 
 
-def _our_noise(method: str, scene: Scene, folder: Path) -> Codes:
-    """What ``zuka run noise`` writes."""
-    drives = _drives(scene, folder)
-    results: list[tuple[Drive, FinishedColumns]] = []
-    for number, drive in enumerate(drives):
-        request = RunRequest(NOISE.id, drive, NoiseParameters(method=method))
-        found = run(request, SilentMonitor(), into=folder / f"run-{number}")
-        if isinstance(found, FinishedColumns):
-            results.append((drive, found))
-    (path,) = write_point_results(results, folder / "result.las", SilentMonitor())
+def _ours(tool: Tool, parameters: object, scene: Scene, folder: Path) -> Codes:
+    """What ``zuka run`` writes; the import is kept in the folder for the next method."""
+    drives, results = _drives(scene, folder), folder / uuid4().hex
+    results.mkdir()
+    columns: dict[str, FinishedColumns] = {}
+    while left := [drive for drive in drives if drive.id not in columns]:
+        beside = tuple(drive for drive in drives if drive is not left[0])
+        request = RunRequest(tool.id, left[0], parameters, beside)
+        found = run_together(request, SilentMonitor(), into=results / left[0].id).columns
+        columns |= {one.id: own for one, own in zip(drives_of(request), found, strict=True)}
+    pairs = [(drive, columns[drive.id]) for drive in drives]
+    (path,) = write_point_results(pairs, results / "result.las", SilentMonitor())
     return np.concatenate([block.codes for block in read_result(path).blocks()])
 
 
 def _drives(scene: Scene, folder: Path) -> list[Drive]:
-    trajectories = () if scene.trajectory is None else (scene.trajectory,)
-    request = ImportRequest((as_delivered(scene, folder),), trajectories)
-    return [Drive(path) for path in import_drives(request, folder / "drives", SilentMonitor())]
+    kept = folder / "drives"
+    if not kept.exists():
+        trajectories = () if scene.trajectory is None else (scene.trajectory,)
+        request = ImportRequest((as_delivered(scene, folder),), trajectories)
+        import_drives(request, kept, SilentMonitor())
+    return [Drive(path.parent) for path in sorted(kept.glob("*/drive.json"))]
 
 
 def _open3d_radius(scene: Scene, _: Path) -> Codes | None:
@@ -172,20 +183,6 @@ def _open3d_statistics(scene: Scene, _: Path) -> Codes | None:
 
 def _pcl_noise(settings: tuple[str, ...], scene: Scene, folder: Path) -> Codes | None:
     return _noise(kept_by_pcl(scene.local_xyz, settings, folder))
-
-
-def _adaptive(scene: Scene, _: Path) -> Codes:
-    surface = find_ground(lambda: [scene.xyz], GroundHabits(), SilentMonitor())
-    return _ground(surface.is_ground(scene.xyz))
-
-
-def _published(grid_m: float, scene: Scene, _: Path) -> Codes:
-    steps = PublishedSteps(grid_m=grid_m)
-    return _ground(published_ground(scene.xyz, steps, SilentMonitor()).is_ground)
-
-
-def _lowest(grid_m: float, band_m: float, scene: Scene, _: Path) -> Codes:
-    return _ground(lowest_point_ground(scene.xyz, grid_m, band_m))
 
 
 def _cloth(settings: tuple[float, int, float], scene: Scene, _: Path) -> Codes | None:
@@ -234,7 +231,7 @@ def _noise(is_kept: Flags | None) -> Codes | None:
     return None if is_kept is None else np.where(is_kept, _KEPT, _NOISE)
 
 
-_ADAPTIVE = Method("adaptive", "none to set", _adaptive)
+_ADAPTIVE = Method("adaptive", "none to set", partial(_ours, GROUND_TOOL, GroundParameters()))
 _PEERS = (
     Method("SMRF", "its defaults", partial(_smrf, (1.0, 5.0, 0.15)), ours=False),
     Method(

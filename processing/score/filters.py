@@ -102,22 +102,27 @@ def _found(
     methods: Sequence[Method],
     chosen: argparse.Namespace,
 ) -> Iterator[Found]:
-    kept = frozenset(range(256)) - scorer.codes if scorer is NOISE_SCORER else scorer.codes
     for scene in scenes:
-        for method in methods:
-            if chosen.ours and not method.ours:
-                continue
-            sys.stderr.write(f"{scene.name}: {method.name} {method.settings}\n")
-            with tempfile.TemporaryDirectory(prefix="zuka-") as folder:
-                codes = method.codes(scene, Path(folder))
-            score = None
-            if codes is not None:
-                truth = CodedPoints(scene.truth, kinds=scene.kinds)
-                score = scorer.score([Pair(truth, CodedPoints(codes))])
-                if chosen.pictures is not None and method.ours:
-                    name = f"{method.name} {method.settings}".strip()
-                    paint_errors(scene, codes, kept, chosen.pictures, name)
-            yield Found(scene.name, method.name, method.settings, method.ours, score)
+        with tempfile.TemporaryDirectory(prefix="zuka-") as folder:
+            for method in methods:
+                if method.ours or not chosen.ours:
+                    yield _scored(scene, method, scorer, Path(folder), chosen.pictures)
+
+
+def _scored(
+    scene: Scene, method: Method, scorer: PointScorer, folder: Path, pictures: Path | None
+) -> Found:
+    sys.stderr.write(f"{scene.name}: {method.name} {method.settings}\n")
+    codes = method.codes(scene, folder)
+    score = None
+    if codes is not None:
+        truth = CodedPoints(scene.truth, kinds=scene.kinds)
+        score = scorer.score([Pair(truth, CodedPoints(codes))])
+        if pictures is not None and method.ours:
+            kept = scorer.codes if scorer is GROUND_SCORER else frozenset(range(256)) - scorer.codes
+            name = f"{method.name} {method.settings}".strip()
+            paint_errors(scene, codes, kept, pictures, name)
+    return Found(scene.name, method.name, method.settings, method.ours, score)
 
 
 _ABOUT = """\

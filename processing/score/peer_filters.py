@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import sys
+import tempfile
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -24,6 +26,23 @@ _PCD = (
     "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n"
     "WIDTH {count}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {count}\nDATA binary\n"
 )
+
+
+_CLOTH = """
+import sys
+import CSF
+import numpy as np
+places, found, cloth_m, rigidness, distance_m = sys.argv[1:]
+cloth = CSF.CSF()
+cloth.params.bSloopSmooth = True
+cloth.params.cloth_resolution = float(cloth_m)
+cloth.params.rigidness = int(rigidness)
+cloth.params.class_threshold = float(distance_m)
+cloth.setPointCloud(np.load(places))
+ground, others = CSF.VecInt(), CSF.VecInt()
+cloth.do_filtering(ground, others, False)
+np.save(found, np.array(ground, np.int64))
+"""
 
 
 def kept_by_open3d_radius(local_xyz: Floats, radius_m: float, neighbours: int) -> Flags | None:
@@ -71,17 +90,18 @@ def ground_by_cloth(
     """
     if find_spec("CSF") is None:
         return None
-    import CSF
-
-    cloth = CSF.CSF()
-    cloth.params.bSloopSmooth = True
-    cloth.params.cloth_resolution = cloth_m
-    cloth.params.rigidness = rigidness
-    cloth.params.class_threshold = distance_m
-    cloth.setPointCloud(local_xyz)
-    ground, others = CSF.VecInt(), CSF.VecInt()
-    cloth.do_filtering(ground, others, False)  # noqa: FBT003 - the peer's own words: no file
-    return _flags(len(local_xyz), np.array(ground, np.int64))
+    with tempfile.TemporaryDirectory(prefix="zuka-") as folder:
+        places, found = Path(folder) / "places.npy", Path(folder) / "ground.npy"
+        np.save(places, local_xyz)
+        # A process of its own, since it talks to standard output from C++.
+        told = [str(value) for value in (places, found, cloth_m, rigidness, distance_m)]
+        subprocess.run(  # noqa: S603 - our own lines, with files of our own
+            [sys.executable, "-c", _CLOTH, *told],
+            check=True,
+            stdout=subprocess.DEVNULL,
+            timeout=_LONGEST_S,
+        )
+        return _flags(len(local_xyz), np.load(found))
 
 
 def ground_by_smrf(local_xyz: Floats, cell_m: float, width_m: float, slope: float) -> Flags | None:

@@ -71,23 +71,24 @@ def test_text_is_delivered_to_the_tools_without_its_truth(data: Path, tmp_path: 
 
 def test_the_command_replaces_its_own_section_and_paints_errors(data: Path, tmp_path: Path) -> None:
     page = tmp_path / "accuracy.md"
-    heading = HEADINGS["sites"]
+    heading = HEADINGS["airborne"]
     page.write_text(f"# Accuracy\n\nabove\n\n{heading}\n\nonce\n\n## Below\n\nstays\n", "utf-8")
     pictures = tmp_path / "pictures"
     arguments = [str(data), "--ours", "--markdown", str(page), "--pictures", str(pictures)]
-    assert main([*arguments, "--only", "sites", "--only", "airborne"]) == 0
+    assert main([*arguments, "--only", "airborne"]) == 0
     text = page.read_text("utf-8")
     assert text.startswith(f"# Accuracy\n\nabove\n\n{heading}\n")
     assert "\nonce\n" not in text
-    assert "\n\n## Below\n\nstays\n\n## Ground from the air\n" in text
-    row = next(line for line in text.splitlines() if "site, after | adaptive" in line)
-    assert row.count("|") == 14
-    assert "published: Kako River" in text
+    assert text.endswith("\n\n## Below\n\nstays\n")
+    row = next(line for line in text.splitlines() if line.startswith("| adaptive"))
+    assert row.count("|") == 7
     assert "published: PTD (Axelsson)" in text
-    plan = pictures / "site-after-adaptive-none-to-set-plan.png"
+    plan = pictures / "samp12-adaptive-none-to-set-plan.png"
     assert plan.read_bytes().startswith(b"\x89PNG")
     assert main([*arguments, "--only", "airborne"]) == 0
     assert page.read_text("utf-8") == text
+    assert main([str(data), "--markdown", str(page), "--only", "noise"]) == 0
+    assert page.read_text("utf-8").startswith(text)
 
 
 def test_a_section_that_is_not_there_yet_comes_to_the_end() -> None:
