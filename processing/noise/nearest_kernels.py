@@ -4,11 +4,13 @@
 2. The 27 cubes around a group are searched for all its points. What is found is exact for a point
    when the k-th neighbour is nearer than the outside of these cubes. For what is left the next
    larger cubes are taken.
-3. No point's k-th neighbour is farther than that of another point and the way to that one: this
-   bounds what is looked at. Mostly it is about as far as that of the point before, so that few
-   distances have to be put in order.
-4. Any other point descends the tree of cubes, nearest cube first, and leaves out the cubes that
-   are farther than its k-th neighbour so far.
+3. Mostly a point's k-th neighbour is about as far as that of the point before: what is a tenth
+   nearer is added up as it is, and only what lies between has to be put in order. No k-th
+   neighbour is farther than that of another point and the way to that one.
+
+Candidates lie in blocks of those that follow each other on the curve, the first of all blocks
+first, then the second of all: so the processor finds the least of several blocks at a time, and
+blocks that are too far are never looked at again.
 """
 
 from __future__ import annotations
@@ -26,12 +28,12 @@ _Integers = NDArray[np.int64]
 
 _X = 0x1249249249249249
 _TOP = 20
-_LEAF = 24
 _MOST_GATHERED = 16_384
-_STACK = 8 * (_TOP + 2)
 _AND_A_BIT = 1 + 1e-9  # for roundings
-_PROBABLY = 1.06  # of the square of the radius of the point before
-_BLOCK = 32
+_PROBABLY = 1.1  # of the square of the radius of the point before, or its reciprocal
+_WIDER = 1.5  # of a square, where too few were within it
+_LEAST = 1 / 64  # of the square of the reach: after a point among duplicates
+_BLOCK = 16
 _GATHERINGS = 2
 
 
@@ -41,6 +43,19 @@ class CellPoints(NamedTuple):
     codes: _Integers
     xyz: _Floats
     side: float
+
+
+class _Room(NamedTuple):
+    """Room for one thread: squares of distances.
+
+    ``squares`` of all candidates, ``least`` of each block, ``low`` those surely among the nearest,
+    ``apart`` those that are to be put in order.
+    """
+
+    squares: _Floats
+    least: _Floats
+    low: _Floats
+    apart: _Floats
 
 
 @kernel
@@ -54,13 +69,17 @@ def nearest_kernel(
 ) -> None:
     """Distances of wanted points to their nearest, of which the point itself is one.
 
-    ``found`` (n, 2): the sum of the distances and the largest of them.
+    ``found`` (n, 2): the sum of the distances and the largest of them; the sum is negative where
+    the neighbours are too far away, which is left to
+    :func:`processing.noise.descent_kernels.descent_kernel`.
     """
     near = np.empty((3, _MOST_GATHERED))
-    squares = np.empty(_MOST_GATHERED)
-    heap = np.empty(nearest)
-    stack = np.empty((_STACK, 3), np.int64)
-    bounds = np.empty(_STACK)
+    room = _Room(
+        np.empty(_MOST_GATHERED),
+        np.empty(_MOST_GATHERED // _BLOCK),
+        np.empty(_MOST_GATHERED + 1),
+        np.empty(_MOST_GATHERED + 1),
+    )
     position, before = first, -1
     while position < stop:
         level, end = _group_at(points.codes, position, nearest)
@@ -73,16 +92,8 @@ def nearest_kernel(
             if count >= nearest:
                 group = (position, end, level + wider)
                 before = _sum_group(
-                    points, is_wanted, nearest, group, before, near, count, squares, found
+                    points, is_wanted, nearest, group, before, near, count, room, found
                 )
-        for point in range(position, end):
-            if is_wanted[point] and found[point, 0] < 0.0:
-                heap[:] = math.inf
-                if before >= 0:
-                    bound = (found[before, 1] + _apart(points, before, point)) * _AND_A_BIT
-                    heap[:] = bound * bound
-                _sum_by_descent(points, point, heap, stack, bounds, found[point])
-                before = point
         position = end
 
 
@@ -104,7 +115,7 @@ def _sum_group(
     before: int,
     near: _Floats,
     count: int,
-    squares: _Floats,
+    room: _Room,
     found: _Floats,
 ) -> int:
     """Measure those points of a group that aren't yet; gives the last point that was."""
@@ -117,7 +128,7 @@ def _sum_group(
             probable = found[before, 1]
             reach = min(reach, (probable + _apart(points, before, point)) * _AND_A_BIT)
         reaches = (reach, probable)
-        _sum_within(points.xyz[point], near, count, reaches, squares, nearest, found[point])
+        _sum_within(points.xyz[point], near, count, reaches, room, nearest, found[point])
         if found[point, 0] >= 0.0:
             before = point
     return before
@@ -170,7 +181,8 @@ def _gather(points: CellPoints, position: int, level: int, near: _Floats) -> int
     codes = points.codes
     code = codes[position] >> (3 * level)
     size = 1 << max(_TOP + 1 - level, 0)
-    count = 0
+    runs = np.empty((27, 2), np.int64)
+    used, count = 0, 0
     axes = (code & _X, (code >> 1) & _X, (code >> 2) & _X)
     x, y, z = _packed(axes[0]), _packed(axes[1]), _packed(axes[2])
     for i in range(max(x - 1, 0), min(x + 2, size)):
@@ -181,13 +193,27 @@ def _gather(points: CellPoints, position: int, level: int, near: _Floats) -> int
                 if start == codes.size or codes[start] >> (3 * level) != wanted:
                     continue
                 end = _cube_end(codes, start, level)
-                if count + end - start > near.shape[1]:
+                count += end - start
+                if count > near.shape[1]:
                     return 0
-                for point in range(start, end):
-                    for axis in range(3):
-                        near[axis, count] = points.xyz[point, axis]
-                    count += 1
+                runs[used, 0], runs[used, 1] = start, end
+                used += 1
+    _copy(points.xyz, runs[:used], _width(count), near)
     return count
+
+
+@kernel
+def _copy(xyz: _Floats, runs: _Integers, width: int, near: _Floats) -> None:
+    """Lay points out so that the first of all blocks come first, then the second of all."""
+    near[:, : width * _BLOCK] = math.inf
+    count = 0
+    for run in range(runs.shape[0]):
+        for point in range(runs[run, 0], runs[run, 1]):
+            place = count % _BLOCK * width + count // _BLOCK
+            near[0, place] = xyz[point, 0]
+            near[1, place] = xyz[point, 1]
+            near[2, place] = xyz[point, 2]
+            count += 1
 
 
 @kernel
@@ -208,7 +234,7 @@ def _sum_within(
     near: _Floats,
     count: int,
     reaches: tuple[float, float],
-    squares: _Floats,
+    room: _Room,
     nearest: int,
     found: _Floats,
 ) -> None:
@@ -216,46 +242,83 @@ def _sum_within(
 
     ``reaches``: how far all points are in ``near``; how far the k-th probably is.
     """
-    x, y, z = place[0], place[1], place[2]
-    for other in range(count):
-        dx, dy, dz = near[0, other] - x, near[1, other] - y, near[2, other] - z
-        squares[other] = dx * dx + dy * dy + dz * dz
+    width = _width(count)
     limit = reaches[0] * reaches[0]
-    guess = reaches[1] * reaches[1] * _PROBABLY
-    inside = 0
-    for other in range(count):
-        inside += 1 if squares[other] <= guess else 0
-    if guess < limit and inside >= nearest:
-        limit = guess
-    used = _kept_within(squares, count, limit)
-    if used < nearest:
+    probable = reaches[1] * reaches[1]
+    guess = min(limit, probable * _PROBABLY)
+    surely = min(guess, probable / _PROBABLY)
+    _measure(place, near, width, room)
+    low, apart = _sort_out(room, width, surely, guess)
+    while low + apart < nearest and guess < limit:
+        surely, guess = guess, min(limit, max(guess * _WIDER, limit * _LEAST))
+        low, apart = _sort_out(room, width, surely, guess)
+    if low + apart < nearest:
         return
-    _select(squares, used, nearest)
-    found[1] = math.sqrt(squares[nearest - 1])
-    for k in range(nearest):
-        squares[k] = math.sqrt(squares[k])
-    total = 0.0
-    for k in range(nearest):
-        total += squares[k]
-    found[0] = total
+    if low >= nearest:
+        _select(room.low, low, nearest)
+    else:
+        _select(room.apart, apart, nearest - low)
+        room.low[low:nearest] = room.apart[: nearest - low]
+    found[1] = math.sqrt(room.low[nearest - 1])
+    found[0] = _sum_of_roots(room.low, nearest)
 
 
 @kernel
-def _kept_within(squares: _Floats, count: int, limit: float) -> int:
-    """Bring the values within a limit to the front; gives how many they are."""
-    used = 0
-    for start in range(0, count, _BLOCK):
-        end = min(start + _BLOCK, count)
-        inside = 0
-        for other in range(start, end):
-            inside += 1 if squares[other] <= limit else 0
-        if inside == 0:
+def _width(count: int) -> int:
+    """How many blocks so many candidates take, in eights."""
+    return -(-count // (_BLOCK * 8)) * 8
+
+
+@kernel
+def _measure(place: _Floats, near: _Floats, width: int, room: _Room) -> None:
+    """Squares of the distances to all candidates, and the least of each block."""
+    x, y, z = place[0], place[1], place[2]
+    count = width * _BLOCK
+    eastings, northings, heights = near[0, :count], near[1, :count], near[2, :count]
+    squares = room.squares[:count]
+    for other in range(count):
+        dx, dy, dz = eastings[other] - x, northings[other] - y, heights[other] - z
+        squares[other] = dx * dx + dy * dy + dz * dz
+    least = room.least[:width]
+    least[:] = squares[:width]
+    for start in range(width, count, width):
+        others = squares[start : start + width]
+        for block in range(width):
+            least[block] = others[block] if others[block] < least[block] else least[block]
+
+
+@kernel
+def _sort_out(room: _Room, width: int, low: float, limit: float) -> tuple[int, int]:
+    """Bring the squares that are low together, and the other ones within a limit."""
+    used, others = np.uint64(0), np.uint64(0)  # unsigned: no index counts from the end
+    for block in range(width):
+        if room.least[block] > limit:
             continue
-        for other in range(start, end):
-            square = squares[other]
-            squares[used] = square
-            used += 1 if square <= limit else 0
-    return used
+        for k in range(_BLOCK):
+            square = room.squares[k * width + block]
+            room.low[used] = square
+            room.apart[others] = square
+            is_low = np.uint64(square <= low)
+            used += is_low
+            others += np.uint64(square <= limit) - is_low
+    return int(used), int(others)
+
+
+@kernel
+def _sum_of_roots(squares: _Floats, count: int) -> float:
+    """Sum of the square roots, in four rows that the processor adds side by side."""
+    for k in range(count):
+        squares[k] = math.sqrt(squares[k])
+    sums = (0.0, 0.0, 0.0, 0.0)
+    one, two, three, four = sums
+    for k in range(0, count - 3, 4):
+        one += squares[k]
+        two += squares[k + 1]
+        three += squares[k + 2]
+        four += squares[k + 3]
+    for k in range(count - count % 4, count):
+        one += squares[k]
+    return (one + two) + (three + four)
 
 
 @kernel
@@ -280,92 +343,6 @@ def _select(values: _Floats, count: int, wanted: int) -> None:
             low = i
         else:
             return
-
-
-@kernel
-def _sum_by_descent(
-    points: CellPoints,
-    point: int,
-    heap: _Floats,
-    stack: _Integers,
-    bounds: _Floats,
-    found: _Floats,
-) -> None:
-    """Sum of the distances and the farthest; ``heap`` holds squares that none of them reaches."""
-    place = points.xyz[point]
-    stack[0, 0], stack[0, 1], stack[0, 2] = _TOP + 1, 0, points.codes.size
-    bounds[0] = 0.0
-    depth = 1
-    while depth > 0:
-        depth -= 1
-        if bounds[depth] >= heap[0]:
-            continue
-        level, start, end = stack[depth, 0], stack[depth, 1], stack[depth, 2]
-        if level == 0 or end - start <= _LEAF:
-            for other in range(start, end):
-                square = 0.0
-                for axis in range(3):
-                    square += (points.xyz[other, axis] - place[axis]) ** 2
-                if square < heap[0]:
-                    _replace_largest(heap, square)
-            continue
-        depth = _push_parts(points, place, level - 1, start, end, depth, stack, bounds)
-    total = 0.0
-    for k in range(heap.size):
-        total += math.sqrt(heap[k])
-    found[0], found[1] = total, math.sqrt(heap[0])
-
-
-@kernel
-def _push_parts(
-    points: CellPoints,
-    place: _Floats,
-    level: int,
-    start: int,
-    end: int,
-    depth: int,
-    stack: _Integers,
-    bounds: _Floats,
-) -> int:
-    """Put the smaller cubes of a cube on the stack, the nearest on top; gives the new depth."""
-    base = depth
-    side = points.side * 2.0**level
-    while start < end:
-        code = points.codes[start] >> (3 * level)
-        stop = min(end, _cube_end(points.codes, start, level))
-        square = 0.0
-        for axis in range(3):
-            low = _packed((code >> axis) & _X) * side
-            gap = max(low - place[axis], place[axis] - low - side, 0.0)
-            square += gap * gap
-        square *= 1 - 1e-9
-        at = depth
-        while at > base and bounds[at - 1] < square:
-            bounds[at] = bounds[at - 1]
-            stack[at] = stack[at - 1]
-            at -= 1
-        bounds[at] = square
-        stack[at, 0], stack[at, 1], stack[at, 2] = level, start, stop
-        depth += 1
-        start = stop
-    return depth
-
-
-@kernel
-def _replace_largest(heap: _Floats, value: float) -> None:
-    """Put a value in the place of the largest, which is first, and bring the largest there."""
-    at = 0
-    while True:
-        child = 2 * at + 1
-        if child >= heap.size:
-            break
-        if child + 1 < heap.size and heap[child + 1] > heap[child]:
-            child += 1
-        if heap[child] <= value:
-            break
-        heap[at] = heap[child]
-        at = child
-    heap[at] = value
 
 
 @kernel

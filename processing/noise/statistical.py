@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import Monitor, SilentMonitor
+from processing.noise.descent_kernels import descent_kernel
 from processing.noise.morton import nested_cells
 from processing.noise.nearest_kernels import CellPoints, nearest_kernel
 from processing.noise.sharing import shared_out
@@ -22,7 +23,6 @@ NEIGHBOURS = 113
 DEVIATIONS = 1.5
 
 _POINTS_AT_ONCE = 8_192
-_FINEST = 2**20
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def mean_distances(
     (n,) float64
         m. In a cloud of fewer points all of them are the neighbours.
     """
-    wanted = np.flatnonzero(np.isfinite(xyz).all(axis=1))
+    wanted = np.flatnonzero(np.isfinite(xyz[:, 0] + xyz[:, 1] + xyz[:, 2]))
     means = np.full(xyz.shape[0], np.nan)
     means[wanted] = distances_of(
         xyz, wanted, neighbours, counts_itself=counts_itself, monitor=monitor
@@ -100,27 +100,25 @@ def distances_of(
     means, farthest : (k,) float64
         m: the mean over the nearest, and the farthest of them; infinite where there are too few.
     """
-    finite = np.flatnonzero(np.isfinite(xyz).all(axis=1))
     if not wanted.size:
         return np.zeros(0), np.zeros(0)
-    extent = float(np.ptp(xyz[finite], axis=0).max())
-    cells = nested_cells(xyz[finite], extent / _FINEST)
+    cells = nested_cells(xyz, 0.0)
     points = CellPoints(cells.codes, cells.local_xyz, cells.cell_m)
     asked = neighbours if counts_itself else neighbours + 1
-    nearest = min(finite.size, asked)
+    nearest = min(cells.order.size, asked)
     divisor = max(1, nearest if counts_itself else nearest - 1)
     is_wanted = np.zeros(xyz.shape[0], np.bool_)
     is_wanted[wanted] = True
-    numbers = finite[cells.order]
-    is_wanted = is_wanted[numbers]
-    found = np.full((finite.size, 2), np.inf)
+    is_wanted = is_wanted[cells.order]
+    found = np.full((cells.order.size, 2), np.inf)
 
     def measure(start: int, stop: int) -> None:
         nearest_kernel(points, is_wanted, nearest, start, stop, found)
+        descent_kernel(points, is_wanted, nearest, start, stop, found)
 
-    shared_out(measure, finite.size, _POINTS_AT_ONCE, monitor or SilentMonitor())
+    shared_out(measure, cells.order.size, _POINTS_AT_ONCE, monitor or SilentMonitor())
     by_point = np.empty((xyz.shape[0], 2))
-    by_point[numbers] = found
+    by_point[cells.order] = found
     farthest = by_point[wanted, 1] if nearest == asked else np.full(wanted.size, np.inf)
     return by_point[wanted, 0] / divisor, farthest
 

@@ -74,6 +74,13 @@ def test_mean_distances_agree_with_a_tree() -> None:
     np.testing.assert_allclose(mean_distances(xyz, counts_itself=False), others)
 
 
+def test_many_points_at_one_place_among_others_hold_nothing_up() -> None:
+    chance = np.random.default_rng(3)
+    xyz = np.vstack([np.full((300, 3), 0.5), chance.random((900, 3)), [[1e4, 0, 0]]])
+    expected = cKDTree(xyz).query(xyz, 113)[0].mean(axis=1)
+    np.testing.assert_allclose(mean_distances(xyz), expected, atol=1e-9)
+
+
 def test_the_limit_is_the_mean_and_so_many_deviations() -> None:
     means = np.array([1.0, 2.0, 6.0, np.nan])
     parts = DistanceSums.of(means[:1]) + DistanceSums.of(means[1:])
