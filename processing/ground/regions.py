@@ -10,12 +10,13 @@ from numpy.typing import NDArray
 from processing.ground.morphology import nearest_known, opened, opened_within
 from processing.kernels import kernel
 
-_WINDOWS = 14
+_WINDOWS = 8
 _SMALL = 2
-_LEVEL_FACTOR = 1.5
+_LEVEL_FACTOR = 1.0
 _CLEAR = 0.3
 _GAP = 2.0
 _HALL_M = 10.0
+_STOREY_M = 3.0
 _BORDER = 1.0
 _LEVEL = 0.1
 
@@ -77,8 +78,8 @@ def standing_cells(
     From small to large windows: what an opening takes away is a thing where its rim is steep, and
     leaves the surface before the next window; crests, heaps and terraces, which somewhere go down
     gently, stay. Wide windows look a second time as if the cloud went on with its mirror image,
-    for a hall that its border cuts: its steep rim must be longer than the cut, as a terrace's
-    isn't.
+    for a hall that its border cuts: it is a storey high, and its steep rim is longer than the cut,
+    as a terrace's isn't.
     """
     standing = np.zeros(heights.shape, np.bool_)
     measured = np.isfinite(heights)
@@ -96,7 +97,7 @@ def standing_cells(
         surface[things] = lower[things]
         if 2 * radius * size_m >= _HALL_M:
             lower = opened_within(surface, radius)
-            raised = surface - lower > rise
+            raised = surface - lower > np.maximum(rise, np.float32(_STOREY_M))
             free = (measured & ~standing, nearest)
             shares = rim_shares(raised, heights, free, size_m, steep, shape.barrier, _BORDER)
             things = shares >= shape.rim_share
