@@ -253,7 +253,8 @@ def _lowest_kernel(
         z = xyz[point, 2] - origin[2]
         if np.isfinite(z) and 0.0 <= x < lowest.shape[1] and 0.0 <= y < lowest.shape[0]:
             row, column = int(y), int(x)
-            if z >= floor[row, column]:
+            # Lower than the grid begins are only spikes, which stretched no extent.
+            if z >= max(floor[row, column], np.float32(0.0)):
                 lowest[row, column] = min(lowest[row, column], np.float32(z))
 
 

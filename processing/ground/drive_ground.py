@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from processing.ground.stored_surface import SurfaceTile, SurfaceWriter
 from processing.monitor import Monitor, PartMonitor
 from processing.text import Text
 
-_AROUND = 1.3
+_AROUND = 1.05
 _WORKERS = 2
 _CHOOSING = 0.1
 _LOOKING = Text("Looking for the ground", "地面を探しています")
@@ -80,7 +81,7 @@ def _found(
         yield search.search(tiles[0], monitor)
         return
     quiet = _OnlyChecks(monitor)
-    with ThreadPoolExecutor(max_workers=_WORKERS) as pool:
+    with _one_thread_of_opencv(), ThreadPoolExecutor(max_workers=_WORKERS) as pool:
         coming: list[Future[SurfaceTile]] = []
         for tile in tiles:
             coming.append(pool.submit(search.search, tile, quiet))
@@ -88,6 +89,19 @@ def _found(
                 yield coming.pop(0).result()
         for future in coming:
             yield future.result()
+
+
+@contextmanager
+def _one_thread_of_opencv() -> Iterator[None]:
+    """Keep OpenCV from waiting for its own threads where each core has a tile to work on."""
+    import cv2
+
+    before = cv2.getNumThreads()
+    cv2.setNumThreads(1)
+    try:
+        yield
+    finally:
+        cv2.setNumThreads(before)
 
 
 class _OnlyChecks:

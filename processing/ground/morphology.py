@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 from processing.kernels import kernel
 
 _SWEEPS = 24
-_FEW_STEPS = 8
 _RELAXED_CELLS = 16
 
 
@@ -21,64 +20,17 @@ def opened(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
     ----------
     Soille 2003: an octagon is the sum of squares and crosses; the shares here make it regular.
     """
+    import cv2
+
     side = round(0.414 * radius)
     square = np.ones((2 * side + 1, 2 * side + 1), np.uint8)
-    if radius - side <= _FEW_STEPS:
-        padded = np.pad(heights, radius, mode="edge")
-        lowest = _eroded_by_cross(_eroded(padded, square), radius - side)
-        highest = -_eroded_by_cross(_eroded(-lowest, square), radius - side)
-        return np.ascontiguousarray(highest[radius:-radius, radius:-radius])
-    # Twice the radius, so that no sum of lines is cut off where the inside looks.
-    padded = np.pad(heights, 2 * radius, mode="edge")
-    lowest = _eroded_by_diamond(_eroded(padded, square), radius - side)
-    highest = -_eroded_by_diamond(_eroded(-lowest, square), radius - side)
-    return np.ascontiguousarray(highest[2 * radius : -2 * radius, 2 * radius : -2 * radius])
-
-
-def _eroded(
-    heights: NDArray[np.float32], element: NDArray[np.uint8], times: int = 1
-) -> NDArray[np.float32]:
-    import cv2
-
-    return cv2.erode(heights, element, iterations=times).astype(np.float32, copy=False)
-
-
-def _eroded_by_cross(heights: NDArray[np.float32], steps: int) -> NDArray[np.float32]:
-    import cv2
-
     cross = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-    return _eroded(heights, np.asarray(cross, np.uint8), steps)
-
-
-def _eroded_by_diamond(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
-    """Lowest height within so many steps along rows and columns.
-
-    A diamond is the sum of two diagonal lines and a cross; a line's lowest height is found by
-    doubling its length, which takes few steps where crosses alone would take one for each cell.
-    """
-    lowest = _eroded_by_cross(heights, 1)
-    for slope in (1, -1):
-        lowest = _lowest_along_diagonal(lowest, radius - 1, slope)
-    # Both lines went down from the cell; the diamond lies about it.
-    lowest[radius - 1 :] = lowest[: lowest.shape[0] - radius + 1].copy()
-    return lowest
-
-
-def _lowest_along_diagonal(
-    heights: NDArray[np.float32], steps: int, slope: int
-) -> NDArray[np.float32]:
-    """Lowest height of each cell and the next cells down a diagonal."""
-    reached = 0
-    lowest = heights
-    while reached < steps:
-        step = min(reached + 1, steps - reached)
-        longer = lowest.copy()
-        right = slice(None, -step) if slope > 0 else slice(step, None)
-        farther = slice(step, None) if slope > 0 else slice(None, -step)
-        np.minimum(lowest[:-step, right], lowest[step:, farther], out=longer[:-step, right])
-        lowest = longer
-        reached += step
-    return lowest
+    surface = np.pad(heights, radius, mode="edge")
+    for turn in (cv2.erode, cv2.dilate):
+        surface = turn(surface, square).astype(np.float32, copy=False)
+        surface = turn(surface, cross, iterations=radius - side).astype(np.float32, copy=False)
+    inside = slice(radius, -radius)
+    return np.ascontiguousarray(surface[inside, inside])
 
 
 def opened_within(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:

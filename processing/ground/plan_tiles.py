@@ -20,6 +20,7 @@ MOST_CELLS = 2_000_000
 """In a tile with its margin: some 0.4 GiB while its ground is looked for."""
 _MOST_PARTS = 4096
 _SMALLEST_M = 60.0
+_LINED_UP = 32
 
 
 @dataclass(frozen=True)
@@ -62,7 +63,7 @@ def plan_tiles(blocks: Blocks, grid: CellGrid, margin_m: float) -> tuple[PlanTil
     occupied = np.zeros((-(-grid.rows // part), -(-grid.columns // part)), np.uint8)
     for xyz in blocks():
         _occupied_kernel(xyz, grid.origin, grid.size_m, part, occupied)
-    most = max(int(np.sqrt(MOST_CELLS)) - 2 * margin, margin)
+    most = max(int(np.sqrt(MOST_CELLS)) - 2 * margin - _LINED_UP, margin)
     smallest = max(part, int(_SMALLEST_M / grid.size_m))
     sides = [max(part, most // part * part)]
     while sides[-1] // 2 >= smallest:
@@ -119,7 +120,8 @@ def _inside(cells: range, held: NDArray[np.int64], part: int) -> range:
 
 
 def _tile(grid: CellGrid, rows: range, columns: range, seen: tuple[range, range]) -> PlanTile:
-    first_row, first_column = seen[0].start, seen[1].start
+    # Lined up, so that coarser grids of neighbours halve the same cells.
+    first_row, first_column = (cells.start // _LINED_UP * _LINED_UP for cells in seen)
     end_row, end_column = min(seen[0].stop, grid.rows), min(seen[1].stop, grid.columns)
     origin = grid.origin + grid.size_m * np.array([first_column, first_row, 0.0])
     looked_at = CellGrid(origin, grid.size_m, end_row - first_row, end_column - first_column)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import cv2
 import numpy as np
-import pytest
 
 from processing.ground import band, cells, morphology, walls
 
@@ -26,20 +24,6 @@ def test_an_opening_takes_away_what_is_narrower_and_leaves_a_slope() -> None:
     peak[15, 15] += 5.0
     opened = morphology.opened(peak, 3)
     np.testing.assert_allclose(opened[5:25, 5:25], surface[5:25, 5:25])
-
-
-@pytest.mark.parametrize("radius", [1, 4, 16, 17, 30])
-def test_an_opening_by_lines_is_that_by_squares_and_crosses(radius: int) -> None:
-    rng = np.random.default_rng(3)
-    heights = np.cumsum(rng.normal(size=(70, 90)), axis=1).astype(np.float32)
-    side = round(0.414 * radius)
-    expected = np.pad(heights, radius, mode="edge")
-    for turn in (cv2.erode, cv2.dilate):
-        expected = turn(expected, np.ones((2 * side + 1, 2 * side + 1), np.uint8))
-        cross = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-        expected = turn(expected, cross, iterations=radius - side)
-    inside = slice(radius, -radius)
-    np.testing.assert_array_equal(morphology.opened(heights, radius), expected[inside, inside])
 
 
 def test_a_filled_hole_is_between_its_borders_and_known_cells_stay() -> None:

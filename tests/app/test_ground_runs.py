@@ -1,0 +1,120 @@
+"""Ground in a project: one click treats all drives recorded together, as one step of undo."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Iterator
+from pathlib import Path
+
+import laspy
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.cli.run import command
+from app.document import Document
+from app.jobs import JobQueue
+from processing.errors import InUse
+from processing.ground.stored_surface import ground_surface_of
+from processing.labels.label_column import labels_of
+from processing.project.importing import ImportRequest
+from processing.text import Text
+from processing.tools.ground import GroundParameters
+from tests.builders import SimulatedDrive, simulated_drive, write_laz, write_trajectory_csv
+
+WAIT_MS = 30_000
+
+
+@pytest.fixture(scope="module")
+def heads() -> tuple[SimulatedDrive, SimulatedDrive]:
+    return simulated_drive(1, length_m=6.0), simulated_drive(2, length_m=6.0, head="right")
+
+
+@pytest.fixture
+def delivery(heads: tuple[SimulatedDrive, SimulatedDrive], tmp_path: Path) -> ImportRequest:
+    clouds = tuple(
+        write_laz(one, tmp_path / f"{name}.laz") for one, name in zip(heads, "lr", strict=True)
+    )
+    return ImportRequest(clouds, (write_trajectory_csv(heads[0], tmp_path / "t.csv"),))
+
+
+@pytest.fixture
+def street(
+    qapp: QApplication, delivery: ImportRequest, tmp_path: Path, qtbot: QtBot
+) -> Iterator[Document]:
+    jobs = JobQueue()
+    document = Document(jobs)
+    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
+        document.create(tmp_path / "p.zuka", "EPSG:6677")
+    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
+        document.import_files(delivery)
+    yield document
+    jobs.close()
+    document.close()
+    document.tiles.close()
+
+
+def test_one_run_labels_both_heads_and_one_undo_takes_it_back(
+    street: Document, tmp_path: Path, qtbot: QtBot
+) -> None:
+    told: list[Text] = []
+    street.told.connect(told.append)
+    first, second = street.drives()
+    wish = GroundParameters(surface=str(tmp_path / "地表面.tif"))
+    with qtbot.waitSignal(street.told, timeout=WAIT_MS):
+        street.start_run("ground", second.id, wish)
+    for drive in (first, second):
+        labels = labels_of(drive, np.arange(drive.count))
+        assert set(np.unique(labels)) == {1, 2}
+        surface = ground_surface_of(drive)
+        assert surface is not None
+        ground = drive.xyz(labels == 2)
+        np.testing.assert_allclose(surface.heights_at(ground[:, :2]), ground[:, 2], atol=0.3)
+    assert "cells of 0." in told[-1].en
+    (run,) = street.runs()
+    assert set(run.drives) == {first.id, second.id}
+    assert (tmp_path / "地表面.tif").is_file()
+    assert street.undo()
+    assert not any(labels_of(one, np.arange(one.count)).any() for one in street.drives())
+
+
+def _wish(delivery: ImportRequest, output: Path, *settings: str) -> Namespace:
+    return Namespace(
+        tool="ground",
+        inputs=list(delivery.inputs),
+        trajectory=list(delivery.trajectories),
+        images=[],
+        crs="",
+        set=list(settings),
+        output=output,
+    )
+
+
+def test_the_command_line_gives_classes_heights_and_the_surface(
+    heads: tuple[SimulatedDrive, SimulatedDrive], delivery: ImportRequest, tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    assert command(_wish(delivery, out / "g.laz", f"surface={out / 's.tif'}")) == 0
+    assert {path.name for path in out.iterdir()} == {"g-l.laz", "g-r.laz", "s.tif"}
+    for head, name in zip(heads, "lr", strict=True):
+        cloud = laspy.read(out / f"g-{name}.laz")
+        said = np.asarray(cloud.classification)
+        is_road = head.surface == 0
+        assert (said[is_road] == 2).mean() > 0.98
+        assert (said[head.surface == 3] == 1).mean() > 0.9
+        above = np.asarray(cloud["height_above_ground"])
+        assert above.dtype == np.float32
+        assert np.abs(above[is_road]).max() < 0.2
+        np.testing.assert_array_equal(cloud.X, head.columns["xyz"][:, 0])
+
+
+def test_a_surface_never_overwrites_a_delivered_file(
+    delivery: ImportRequest, tmp_path: Path
+) -> None:
+    taken = delivery.inputs[0].rename(tmp_path / "l.tif")
+    request = ImportRequest((taken, delivery.inputs[1]), delivery.trajectories)
+    before = taken.read_bytes()
+    with pytest.raises(InUse):
+        command(_wish(request, tmp_path / "out" / "g.laz", f"surface={taken}"))
+    assert taken.read_bytes() == before
