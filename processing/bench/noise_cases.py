@@ -1,4 +1,4 @@
-"""Benchmarks of noise removal: the two methods of the study beside Open3D's, and the combined."""
+"""Benchmarks of noise removal: the study's methods beside Open3D and PCL, and the combined."""
 
 from __future__ import annotations
 
@@ -11,7 +11,13 @@ from numpy.typing import NDArray
 
 from processing.bench.case import BenchWish, Measurement
 from processing.bench.large_street import write_large_street
-from processing.bench.peers import remove_radius, remove_statistical
+from processing.bench.peers import (
+    OUTLIER_DEVIATIONS,
+    OUTLIER_NEIGHBOURS,
+    OUTLIER_RADIUS_M,
+    remove_radius,
+    remove_statistical,
+)
 from processing.bench.timing import alternating, median_seconds, seconds_of
 from processing.monitor import SilentMonitor
 from processing.noise.radius import radius_outliers
@@ -19,10 +25,16 @@ from processing.noise.statistical import statistical_outliers
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from processing.runner import RunRequest, run
+from processing.score.peer_filters import (
+    kept_by_open3d_radius,
+    kept_by_open3d_statistics,
+    kept_by_pcl,
+)
 from processing.text import Text
 from processing.tools.noise import COMBINED, NOISE, RADIUS, STATISTICAL, NoiseParameters
 
 _POINTS = 3_000_000
+_POINTS_BESIDE_PCL = 200_000
 _REPEATS = 3
 _JUDGED_POINTS = 10_000_000
 _MOST_S = 10.0
@@ -39,6 +51,10 @@ _WHAT = {
         "{points}点の統計法ノイズ判定（113点・1.5σ、Open3Dに対する速さの比）",
     ),
 }
+_SAME = Text(
+    "Outliers of {points} points: points that Open3D or PCL judges otherwise",
+    "{points}点の半径法・統計法ノイズ判定（Open3D・PCLと判定が異なる点の数）",
+)
 _COMBINED = Text(
     "Combined noise of {points} points, as for 10,000,000",
     "{points}点の複合ノイズ判定（1,000万点に換算）",
@@ -62,9 +78,11 @@ def measure_noise(wish: BenchWish) -> tuple[Measurement, ...]:
             _beside_the_peer(method, local_xyz, _tool_s(drive, method, into), repeats)
             for method in (RADIUS, STATISTICAL)
         ]
+        same = _same_points(local_xyz, folder)
         _tool_s(drive, COMBINED, into)
         seconds = median_seconds(lambda: _tool_s(drive, COMBINED, into), repeats)
-    rows.append(
+    rows += [
+        same,
         Measurement(
             "noise-combined",
             _COMBINED.filled(points=f"{points:,}"),
@@ -74,8 +92,8 @@ def measure_noise(wish: BenchWish) -> tuple[Measurement, ...]:
             is_at_most=True,
             detail=f"{seconds:.2f} s from the drive's columns to a new one",
             figures={"points": points, "zuka_s": seconds},
-        )
-    )
+        ),
+    ]
     return tuple(rows)
 
 
@@ -97,6 +115,48 @@ def _beside_the_peer(
             f"{tool_s:.2f} s"
         ),
         figures={"points": len(local_xyz), "zuka_s": ours, "open3d_s": theirs, "tool_s": tool_s},
+    )
+
+
+def _same_points(local_xyz: NDArray[np.float64], folder: Path) -> Measurement:
+    """How many points are judged otherwise, of as many as PCL takes in bearable time.
+
+    PCL knows single precision only, so all get coordinates rounded to it; in its statistics a
+    point isn't one of its own neighbours.
+    """
+    rounded = local_xyz[:_POINTS_BESIDE_PCL].astype(np.float32).astype(np.float64)
+    radius, count, deviations = OUTLIER_RADIUS_M, OUTLIER_NEIGHBOURS, OUTLIER_DEVIATIONS
+    by_radius = ("-method", "radius", "-radius", str(radius), "-min_pts", str(count))
+    by_statistics = ("-method", "statistical", "-mean_k", str(count), "-std_dev_mul")
+    ours = radius_outliers(rounded)
+    pairs = {
+        "open3d_radius": (ours, kept_by_open3d_radius(rounded, radius, count)),
+        "pcl_radius": (ours, kept_by_pcl(rounded, by_radius, folder)),
+        "open3d_statistical": (
+            statistical_outliers(rounded),
+            kept_by_open3d_statistics(rounded, count, deviations),
+        ),
+        "pcl_statistical": (
+            statistical_outliers(rounded, counts_itself=False),
+            kept_by_pcl(rounded, (*by_statistics, str(deviations)), folder),
+        ),
+    }
+    differing = {
+        name: int((outliers == kept).sum())
+        for name, (outliers, kept) in pairs.items()
+        if kept is not None
+    }
+    return Measurement(
+        "noise-same",
+        _SAME.filled(points=f"{len(rounded):,}"),
+        float(sum(differing.values())) if differing else None,
+        "points",
+        0.0,
+        is_at_most=True,
+        detail=", ".join(
+            f"{name.replace('_', ' ')}: {differing.get(name, 'is not installed')}" for name in pairs
+        ),
+        figures={"points": len(rounded), **differing},
     )
 
 

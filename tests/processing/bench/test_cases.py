@@ -41,8 +41,12 @@ def test_normals_are_compared_with_each_peer_or_it_says_that_one_is_missing() ->
 
 def test_noise_is_compared_with_a_peer_and_the_combined_has_a_time() -> None:
     rows = measure_noise(LITTLE)
-    assert [row.name for row in rows] == ["noise-radius", "noise-statistical", "noise-combined"]
-    for row in rows:
+    radius, statistical, same, combined = rows
+    assert [row.name for row in rows] == [
+        f"noise-{name}" for name in ("radius", "statistical", "same", "combined")
+    ]
+    assert same.value == 0, same.detail
+    for row in (radius, statistical, combined):
         assert row.value is not None
         assert row.value > 0
         assert row.target is not None
