@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import Any
 from uuid import uuid4
 
 import numpy as np
@@ -33,11 +34,13 @@ from processing.tools.noise import NOISE, RADIUS, STATISTICAL, NoiseParameters
 from processing.tools.tool import FinishedColumns, Tool
 
 Codes = NDArray[np.uint8]
+Settings = tuple[tuple[Any, ...], ...]  # a filter's own, of any types
 
 _GROUND, _OBJECT, _KEPT, _NOISE = (np.uint8(code) for code in (2, 1, 0, 18))
 _RADIUS_M, _NEIGHBOURS, _DEVIATIONS = 0.5, 113, 1.5
 _PUBLISHED_GRIDS_M = (1.0, 3.0, 10.0)
 _BAND_M = 0.3
+_FARTHEST_M = 2.0
 _PCL_RADIUS = ("-method", "radius", "-radius", f"{_RADIUS_M}", "-min_pts", f"{_NEIGHBOURS}")
 _PCL_STATISTICS = ("-method", "statistical", "-mean_k", f"{_NEIGHBOURS}", "-std_dev_mul", "1.5")
 
@@ -88,21 +91,35 @@ def site_methods() -> tuple[Method, ...]:
         for grid in _PUBLISHED_GRIDS_M
     ]
     published = [_published_method(grid) for grid in _PUBLISHED_GRIDS_M]
-    return (_ADAPTIVE, *published, *lowest, *_cloths(_SITE_CLOTHS), *_PEERS)
+    peers = _peers(_SITE_CLOTHS, _SITE_SMRFS, _SITE_MORPHOLOGIES)
+    return (_ADAPTIVE, *published, *lowest, *peers)
 
 
 def airborne_methods() -> tuple[Method, ...]:
     """The same for clouds with metres between points, where small cells hold no ground."""
     widest = _published_method(_PUBLISHED_GRIDS_M[-1])
-    return (_ADAPTIVE, widest, *_cloths(_AIRBORNE_CLOTHS), *_PEERS)
+    peers = _peers(_AIRBORNE_CLOTHS, _AIRBORNE_SMRFS, _AIRBORNE_MORPHOLOGIES)
+    return (_ADAPTIVE, widest, *peers)
 
 
-def _cloths(settings: tuple[tuple[float, int, float], ...]) -> tuple[Method, ...]:
-    chosen = f"best of {len(settings)} by this truth"
-    return (
-        Method("CSF", "its defaults", partial(_cloth, (1.0, 3, 0.5)), ours=False),
-        Method("CSF", chosen, partial(_best, _cloth, settings), ours=False),
+def _peers(cloths: Settings, smrfs: Settings, morphologies: Settings) -> Iterator[Method]:
+    """Each as it is, and with the best of some settings."""
+    known: tuple[tuple[str, Callable[..., Codes | None], tuple[Any, ...], Settings], ...] = (
+        ("CSF", _cloth, (1.0, 3, 0.5), cloths),
+        ("SMRF", _smrf, (1.0, 5.0, 0.15), smrfs),
+        ("PCL morphological", _pcl_ground, (), morphologies),
     )
+    for name, codes_of, usual, settings in known:
+        chosen = f"best of {len(settings)} by this truth"
+        yield Method(name, "its defaults", partial(codes_of, usual), ours=False)
+        yield Method(name, chosen, partial(_best, codes_of, settings), ours=False)
+
+
+def _morphology(cell_m: float, slope: float, distance_m: float) -> tuple[str, ...]:
+    """Options as typed; the name of one is misspelled in some versions of the program."""
+    said = {"-cell_size": cell_m, "-slope": slope, "-initial_distance": distance_m}
+    said |= {"-max_distance": _FARTHEST_M, "-max_distnace": _FARTHEST_M}
+    return tuple(word for name, value in said.items() for word in (name, f"{value:g}"))
 
 
 def _our_ground(
@@ -119,19 +136,16 @@ def _published_method(grid_m: float) -> Method:
 _SITE_CLOTHS = tuple((cloth, rigid, _BAND_M) for cloth in (0.5, 1.0) for rigid in (1, 2, 3))
 _AIRBORNE_CLOTHS = tuple((cloth, rigid, 0.5) for cloth in (1.0, 2.0) for rigid in (1, 3))
 """Mesh in m, rigidness, distance in m: what its authors tell to choose by the scene."""
-_SMRFS = tuple(
-    (cell, width, slope)
-    for cell in (0.5, 1.0)
-    for width in (5.0, 18.0)
-    for slope in (0.15, 0.3, 0.5)
+_SLOPES = (0.15, 0.3, 0.5)
+_SITE_SMRFS = tuple((cell, 5.0, slope) for cell in (0.25, 0.5) for slope in _SLOPES)
+_AIRBORNE_SMRFS = tuple((cell, 18.0, slope) for cell in (1.0, 2.0) for slope in _SLOPES)
+"""Cell and widest radius in m, slope."""
+_SITE_MORPHOLOGIES = tuple(
+    _morphology(cell, slope, 0.3) for cell in (0.1, 0.25, 0.5) for slope in (1.0, 2.0)
 )
-_MORPHOLOGIES = tuple(
-    ("-cell_size", cell, "-slope", slope, "-max_distance", band, "-max_distnace", band)
-    for cell in ("0.5", "1.0")
-    for slope in ("0.3", "0.7")
-    for band in ("0.5", "2.0")
+_AIRBORNE_MORPHOLOGIES = tuple(
+    _morphology(cell, slope, 0.5) for cell in (1.0, 2.0) for slope in (0.3, 0.7, 1.0)
 )
-"""The option's name is misspelled in some versions of the program."""
 
 
 def as_delivered(scene: Scene, folder: Path) -> Path:
@@ -201,11 +215,7 @@ def _pcl_ground(settings: tuple[str, ...], scene: Scene, folder: Path) -> Codes 
 
 
 def _best(
-    # Any tuple of settings that goes with the filter.
-    codes_of: Callable[..., Codes | None],
-    settings: tuple[tuple[object, ...], ...],
-    scene: Scene,
-    folder: Path,
+    codes_of: Callable[..., Codes | None], settings: Settings, scene: Scene, folder: Path
 ) -> Codes | None:
     """The codes that agree best with the truth, by kappa."""
 
@@ -232,16 +242,3 @@ def _noise(is_kept: Flags | None) -> Codes | None:
 
 
 _ADAPTIVE = Method("adaptive", "none to set", partial(_ours, GROUND_TOOL, GroundParameters()))
-_PEERS = (
-    Method("SMRF", "its defaults", partial(_smrf, (1.0, 5.0, 0.15)), ours=False),
-    Method(
-        "SMRF", f"best of {len(_SMRFS)} by this truth", partial(_best, _smrf, _SMRFS), ours=False
-    ),
-    Method("PCL morphological", "its defaults", partial(_pcl_ground, ()), ours=False),
-    Method(
-        "PCL morphological",
-        f"best of {len(_MORPHOLOGIES)} by this truth",
-        partial(_best, _pcl_ground, _MORPHOLOGIES),
-        ours=False,
-    ),
-)

@@ -91,9 +91,9 @@ def noise_scenes(data: Path) -> Iterator[Scene]:
     UserError
         A file can't be read.
     """
-    for truth in sorted(data.glob("*/truth/truth.npz")):
-        folder = truth.parents[1]
-        cloud, trajectory = folder / "in" / "scan.laz", folder / "in" / "trajectory.csv"
+    for cloud in sorted(data.glob("*/in/scan.laz")):
+        folder = cloud.parents[1]
+        truth, trajectory = folder / "truth" / "truth.npz", cloud.with_name("trajectory.csv")
         true = read_truth(
             truth,
             if_false=NOISE_SCORER.if_false,

@@ -166,4 +166,4 @@ def _percent(share: float, decimals: int) -> str:
 
 
 def _figure(share: float) -> str:
-    return "–" if math.isnan(share) else f"{share:.3f}"
+    return "–" if math.isnan(share) else f"{share:.3f}".replace("-0.000", "0.000")
