@@ -18,6 +18,7 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 BEAM_FEATURES = 22
+NEAR_FEATURES = 14
 SURE, SQUARE = 1, 2
 
 
@@ -158,11 +159,26 @@ def beam_features_kernel(
     behind, and how many of those in front or behind are sure.
     """
     for i in range(points.size):
-        found[i, :] = 0
-        _window(beams, is_sure, points[i], rows[i], 2, 1, 3, 1, found[i, 0:7])
-        _window(beams, is_sure, points[i], rows[i], 4, 2, 12, 1, found[i, 7:14])
+        _near_windows(beams, is_sure, points[i], rows[i], found[i, 0:NEAR_FEATURES])
         _window(beams, is_sure, points[i], rows[i], 10, 5, 64, 2, found[i, 14:21])
         found[i, 21] = math.log2(max(beams.ranges[points[i]], 0.1))
+
+
+@kernel
+def near_beams_kernel(
+    beams: Beams, is_sure: NDArray[np.bool_], points: _Integers, rows: _Integers, found: _Floats
+) -> None:
+    """The near and the middle window alone; ``found`` (k, NEAR_FEATURES)."""
+    for i in range(points.size):
+        _near_windows(beams, is_sure, points[i], rows[i], found[i])
+
+
+@kernel
+def _near_windows(
+    beams: Beams, is_sure: NDArray[np.bool_], point: int, row: int, found: _Floats
+) -> None:
+    _window(beams, is_sure, point, row, 2, 1, 3, 1, found[0:7])
+    _window(beams, is_sure, point, row, 4, 2, 12, 1, found[7:14])
 
 
 @kernel
@@ -218,3 +234,5 @@ def warm_up() -> None:
     surface_kernel(beams, np.ones(4), 0, 4, np.empty(4, np.uint8))
     found = np.empty((4, BEAM_FEATURES))
     beam_features_kernel(beams, np.zeros(4, np.bool_), np.arange(4), np.arange(4), found)
+    found = np.empty((4, NEAR_FEATURES))
+    near_beams_kernel(beams, np.zeros(4, np.bool_), np.arange(4), np.arange(4), found)

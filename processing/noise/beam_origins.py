@@ -12,7 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.kinds import ImageKind
 from processing.points.drive import Drive
+from processing.points.trajectory import Trajectory
 
 _Floats = NDArray[np.float64]
 
@@ -23,6 +25,7 @@ _FEWEST_RADIANS = 0.7
 _FARTHEST_M = 8.0  # of a scanner from the vehicle's reference point
 _MOST_MISFIT_M = 0.5
 _TURNS = 2.0
+_KNOT_POINTS = 64
 
 
 @dataclass(frozen=True)
@@ -49,15 +52,30 @@ class BeamOrigins:
         if self.in_vehicle is not None and trajectory is not None:
             times = np.asarray(self.drive.columns["time"][points], np.float64)
             times = np.clip(times, trajectory.time[0], trajectory.time[-1])
-            turned = trajectory.rotations_at(times) @ self.in_vehicle
-            return np.asarray(trajectory.positions_at(times) + turned)
+            if times.size <= _KNOT_POINTS or (np.diff(times) < 0).any():
+                return _carried(trajectory, times, self.in_vehicle)
+            knots = np.append(times[::_KNOT_POINTS], times[-1])  # a fraction of a turn apart
+            carried = _carried(trajectory, knots, self.in_vehicle)
+            return np.column_stack([np.interp(times, knots, axis) for axis in carried.T])
         return np.column_stack(
             [np.interp(points, self.points, self.places[:, axis]) for axis in range(3)]
         )
 
 
+def _carried(trajectory: Trajectory, times: _Floats, in_vehicle: _Floats) -> _Floats:
+    """(n, 3): where a place of the vehicle was at some times."""
+    turned = trajectory.rotations_at(times) @ in_vehicle
+    return np.asarray(trajectory.positions_at(times) + turned)
+
+
 def beam_origins(drive: Drive) -> BeamOrigins | None:
-    """Find the origins; None where there are no turns or the points don't tell."""
+    """Find the origins; None where there are no turns or the points don't tell.
+
+    A standing scanner's own grid has rows, too, and its file says where it stood.
+    """
+    place = drive.info.scanner_place
+    if place is not None and ImageKind.SCAN in drive.image_kinds and drive.count:
+        return BeamOrigins(drive, None, np.zeros(1, np.int64), np.array([place]))
     if drive.turns is None or drive.count < _FEWEST_POINTS:
         return None
     fits = [_fit(drive, drive.turns.pulses_per_turn, middle) for middle in _middles(drive.count)]

@@ -2,10 +2,12 @@
 
 1. Points from which a surface goes on to all sides, and that hang together with most of the
    recording, are kept at once.
-2. Every other point is described by numbers relative to the spacing that the scanner should have
-   there (:mod:`processing.noise.features`).
-3. Boosted trees weigh them. They learned from simulated scenes with other shapes and shares of
-   noise than any sample, and from real recordings as examples of what must be kept.
+2. Where beams are known, a few trees look at what costs little: what the beams beside a point met,
+   what it hangs together with, its height. They keep what next to nothing speaks against.
+3. Every other point is described by numbers relative to the spacing that the scanner should have
+   there (:mod:`processing.noise.features`), and more trees weigh them. All trees learned from
+   simulated scenes with other shapes and shares of noise than any sample, and from real
+   recordings as examples of what must be kept (:mod:`processing.noise.training`).
 """
 
 from __future__ import annotations
@@ -18,13 +20,14 @@ from numpy.typing import NDArray
 from processing.monitor import Monitor, SilentMonitor
 from processing.noise.beam_kernels import Beams
 from processing.noise.far_points import heights_of_far, is_far
-from processing.noise.features import Candidates, candidates_in_space, candidates_with_beams
+from processing.noise.features import Candidates, candidates_in_space, search_with_beams
 from processing.noise.noise_codes import HIGH_NOISE, codes_by_height
-from processing.noise.sharing import shared_out
-from processing.noise.trees import Trees, log_odds_kernel, read_trees
+from processing.noise.tree_files import read_trees
+from processing.noise.trees import Trees, log_odds
 from resources import path_of
 
-_AT_ONCE = 16_384
+MODELS = "models/noise"
+FIRST_LOOK, WITH_BEAMS, IN_SPACE = "first_look.onnx", "noise_with_beams.onnx", "noise_in_space.onnx"
 _FEWEST = 20
 
 
@@ -57,8 +60,10 @@ def noise_codes_with_beams(
         codes[far] = codes_by_height(heights_of_far(beams.xyz[far], beams.xyz[~far]))
         beams, intensity = _without(beams, far), intensity[~far]
     if beams.xyz.shape[0] >= _FEWEST:
-        candidates = candidates_with_beams(beams, intensity, monitor)
-        codes[~far] = _codes(candidates, _trees("noise_with_beams.npz"), strictness, monitor)
+        search = search_with_beams(beams, monitor)
+        is_doubtful = log_odds(_trees(FIRST_LOOK), search.cheap_features(monitor), monitor) > 0
+        candidates = search.candidates(is_doubtful, intensity, monitor)
+        codes[~far] = _codes(candidates, _trees(WITH_BEAMS), strictness, monitor)
     return codes
 
 
@@ -89,7 +94,7 @@ def noise_codes_in_space(
     if finite.size < _FEWEST or not np.ptp(xyz[finite], axis=0).any():
         return codes
     candidates = candidates_in_space(xyz[finite], monitor)
-    codes[finite] = _codes(candidates, _trees("noise_in_space.npz"), strictness, monitor)
+    codes[finite] = _codes(candidates, _trees(IN_SPACE), strictness, monitor)
     return codes
 
 
@@ -97,12 +102,7 @@ def _codes(
     candidates: Candidates, trees: Trees, strictness: float, monitor: Monitor
 ) -> NDArray[np.uint8]:
     """(n,) codes of all points that the candidates were taken from."""
-    odds = np.empty(candidates.points.size)
-
-    def weigh(start: int, stop: int) -> None:
-        log_odds_kernel(trees, candidates.features, start, stop, odds)
-
-    shared_out(weigh, odds.size, _AT_ONCE, monitor)
+    odds = log_odds(trees, candidates.features, monitor)
     share = min(max(strictness, 1e-6), 1 - 1e-6)
     noise = candidates.points[odds > np.log((1 - share) / share)]
     codes = np.zeros(candidates.heights.size, np.uint8)
@@ -124,4 +124,4 @@ def _without(beams: Beams, left_out: NDArray[np.bool_]) -> Beams:
 
 @cache
 def _trees(name: str) -> Trees:
-    return read_trees(path_of(f"models/noise/{name}"))
+    return read_trees(path_of(f"{MODELS}/{name}"))

@@ -1,118 +1,71 @@
-"""How much hangs together: cubes that touch, joined."""
+"""How much hangs together: cubes that touch, joined, and what such a part looks like."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.kernels import kernel
-from processing.noise.morton import nested_cells
+from processing.noise.cell_kernels import CellLevel, join_kernel, largest_kernel, spread_kernel
 
-_X = 0x1249249249249249
+PART_FEATURES = 5
 
 
-def connected_counts(
-    xyz: NDArray[np.float64], is_counted: NDArray[np.bool_], cell_m: float
-) -> NDArray[np.float64]:
-    """How many counted points there are in the part of the cloud to which a point belongs.
+@dataclass(frozen=True)
+class Parts:
+    """The parts of a cloud whose cubes of one size touch by a face, an edge or a corner.
 
-    Parameters
+    Attributes
     ----------
-    xyz : (n, 3) float64
-        m.
-    is_counted : (n,) bool
-        Cubes join only through cubes that hold such points.
-    cell_m : float
-        Cubes that share a face, an edge or a corner belong together.
+    numbers : (c,) int64
+        Each cube's part.
+    features : (p, PART_FEATURES) float64
+        Of each part: log2 of its points and of its sure points, log2 of its length in cubes, and
+        how much it is a line and a plane, 0 to 1.
+    """
+
+    numbers: NDArray[np.int64]
+    features: NDArray[np.float64]
+
+
+def sure_counts(level: CellLevel) -> NDArray[np.float64]:
+    """How many sure points there are in the part to which each cube belongs.
+
+    Cubes join only through cubes that hold such points. Others take the largest part beside them,
+    0 where there is none.
 
     Returns
     -------
-    (n,) float64
-        Of the part in a point's own cube or in the largest beside it; 0 where there is none.
+    (c,) float64
     """
-    cells = nested_cells(xyz, cell_m)
-    if not cells.codes.size:
-        return np.zeros(0)
-    is_first = np.r_[True, cells.codes[1:] != cells.codes[:-1]]
-    firsts = np.flatnonzero(is_first)
-    counts = np.add.reduceat(is_counted[cells.order].astype(np.int64), firsts)
-    codes = cells.codes[firsts]
-    parents = np.arange(codes.size)
-    join_kernel(codes, counts, parents)
-    totals = np.bincount(parents, weights=counts, minlength=codes.size).astype(np.float64)
-    found = np.zeros(codes.size)
-    largest_kernel(codes, counts, totals[parents], found)
-    result = np.empty(xyz.shape[0])
-    result[cells.order] = found[np.cumsum(is_first) - 1]
-    return result
+    joins = level.sums[:, 1] > 0
+    parents = np.arange(level.codes.size)
+    join_kernel(level, joins, parents)
+    totals = np.bincount(parents, weights=level.sums[:, 1], minlength=parents.size)
+    found = np.empty(parents.size)
+    largest_kernel(level, joins, totals[parents].astype(np.float64), found)
+    return found
 
 
-@kernel
-def join_kernel(
-    codes: NDArray[np.int64], counts: NDArray[np.int64], parents: NDArray[np.int64]
-) -> None:
-    """Give every cube the number of the first cube of its part."""
-    for cell in range(codes.size):
-        if counts[cell] == 0:
-            continue
-        for side in range(27):
-            other = _beside(codes, cell, side)
-            if 0 <= other < cell and counts[other] > 0:
-                a, b = _root(parents, cell), _root(parents, other)
-                if a < b:
-                    parents[b] = a
-                else:
-                    parents[a] = b
-    for cell in range(codes.size):
-        parents[cell] = _root(parents, cell)
-
-
-@kernel
-def largest_kernel(
-    codes: NDArray[np.int64],
-    counts: NDArray[np.int64],
-    totals: NDArray[np.float64],
-    found: NDArray[np.float64],
-) -> None:
-    """Each cube's part, or the largest part beside it where the cube counts nothing."""
-    for cell in range(codes.size):
-        found[cell] = totals[cell] if counts[cell] > 0 else 0.0
-        if counts[cell] > 0:
-            continue
-        for side in range(27):
-            other = _beside(codes, cell, side)
-            if other >= 0 and counts[other] > 0:
-                found[cell] = max(found[cell], totals[other])
-
-
-@kernel
-def _root(parents: NDArray[np.int64], cell: int) -> int:
-    while parents[cell] != cell:
-        parents[cell] = parents[parents[cell]]
-        cell = parents[cell]
-    return cell
-
-
-@kernel
-def _beside(codes: NDArray[np.int64], cell: int, side: int) -> int:
-    """The cube beside one, or −1."""
-    code = 0
-    for axis in range(3):
-        mask = _X << axis
-        value = codes[cell] & mask
-        step = side % 3 - 1
-        side //= 3
-        if step < 0:
-            if value == 0:
-                return -1
-            value = (value - (1 << axis)) & mask
-        elif step > 0:
-            value = ((value | ~mask) + (1 << axis)) & mask
-        code |= value
-    place = int(np.searchsorted(codes, code))
-    return place if place < codes.size and codes[place] == code else -1
-
-
-def warm_up() -> None:
-    """Compile the kernels."""
-    connected_counts(np.eye(3), np.ones(3, np.bool_), 1.0)
+def parts_of(level: CellLevel) -> Parts:
+    """The parts of everything that was measured."""
+    parents = np.arange(level.codes.size)
+    join_kernel(level, np.ones(parents.size, np.bool_), parents)
+    roots, numbers = np.unique(parents, return_inverse=True)
+    sums = np.column_stack(
+        [np.bincount(numbers, weights=one, minlength=roots.size) for one in level.sums.T]
+    )
+    spreads = np.empty((roots.size, 3))
+    spread_kernel(np.ascontiguousarray(sums), spreads)
+    length = np.maximum(spreads[:, 0], 1e-9)
+    features = np.column_stack(
+        [
+            np.log2(1 + sums[:, 0]),
+            np.log2(1 + sums[:, 1]),
+            np.log2(0.1 + spreads[:, 0] / level.side),
+            (spreads[:, 0] - spreads[:, 1]) / length,
+            (spreads[:, 1] - spreads[:, 2]) / length,
+        ]
+    )
+    return Parts(numbers, features)

@@ -12,13 +12,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.point_image import PointCloudImage
 from processing.monitor import Monitor, PartMonitor
-from processing.noise.beam_kernels import Beams
-from processing.noise.beam_origins import BeamOrigins, beam_origins
+from processing.noise.beam_origins import beam_origins
+from processing.noise.beams_of_drives import along_rows, beams_of
 from processing.noise.combined import noise_codes_in_space, noise_codes_with_beams
 from processing.noise.noise_codes import part_noise_by_ground
-from processing.noise.stretches import POINTS, Stretch, stretches_of
+from processing.noise.stretches import POINTS, stretches_of
 from processing.noise.tiles_of_space import TiledCloud
 from processing.noise.whole_clouds import radius_outliers_by_parts, statistical_outliers_by_parts
 from processing.points.drive import Drive
@@ -29,7 +28,6 @@ _SORTING, _FINDING = 0.1, 0.9
 _REACH_SPACINGS = 40.0
 _LEAST_REACH_M, _MOST_REACH_M = 1.0, 10.0
 _POINTS_IN_SPACE = 2_000_000
-_NEAREST_M = 1e-3
 
 
 @dataclass(frozen=True)
@@ -91,10 +89,10 @@ class NoiseSearch:
         drive = self.drive
         image = drive.image(drive.pixel_kind)
         starts = image.row_starts
-        for stretch in stretches_of(starts, _along(origins, starts), self.points_per_stretch):
+        for stretch in stretches_of(starts, along_rows(origins, starts), self.points_per_stretch):
             monitor.report(int(starts[stretch.rows.start]) / drive.count)
             drive.columns.give_back()
-            beams, points = _beams_of(drive, image, stretch, origins)
+            beams, points = beams_of(drive, image, stretch.with_overlap, origins)
             intensity = read_stretch(drive.folder, "intensity", points.start, points.stop)
             codes = noise_codes_with_beams(beams, intensity, strictness, monitor=monitor)
             first, end = int(starts[stretch.rows.start]), int(starts[stretch.rows.stop])
@@ -128,32 +126,3 @@ class NoiseSearch:
         part_noise_by_ground(
             cloud, self.codes, monitor=monitor, points_per_part=self.points_at_once
         )
-
-
-def _along(origins: BeamOrigins, row_starts: NDArray[np.int64]) -> NDArray[np.float64]:
-    """(rows,) m: how far the scanner had come at the first point of each row."""
-    firsts = np.minimum(row_starts[:-1], row_starts[-1] - 1)
-    places = origins.of(firsts)
-    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
-def _beams_of(
-    drive: Drive, image: PointCloudImage, stretch: Stretch, origins: BeamOrigins
-) -> tuple[Beams, slice]:
-    """The beams of a stretch, and which points of the drive they are."""
-    grid, points = image.grid(stretch.with_overlap)
-    xyz, places = drive.xyz(points), origins.of(np.arange(points.start, points.stop))
-    middle = np.median(xyz, axis=0)
-    turns = drive.turns
-    per_turn = turns.pulses_per_turn if turns is not None else float(grid.width)
-    beams = Beams(
-        np.ascontiguousarray(xyz - middle),
-        np.ascontiguousarray(places - middle),
-        np.maximum(np.linalg.norm(xyz - places, axis=1), _NEAREST_M),
-        np.ascontiguousarray(grid.columns),
-        np.ascontiguousarray(grid.row_starts),
-        np.ascontiguousarray(grid.segments),
-        2 * np.pi / per_turn,
-    )
-    return beams, points

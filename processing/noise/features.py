@@ -6,7 +6,7 @@ neighbouring beams at the point's range, or, where no beams are known, between t
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,35 +14,32 @@ from numpy.typing import NDArray
 from processing.monitor import Monitor
 from processing.noise.beam_kernels import (
     BEAM_FEATURES,
+    NEAR_FEATURES,
     SQUARE,
     SURE,
     Beams,
     beam_features_kernel,
+    near_beams_kernel,
     spacing_kernel,
     surface_kernel,
 )
-from processing.noise.cell_levels import AROUND, CellLevel, around_kernel, cell_levels
-from processing.noise.connected import connected_counts
-from processing.noise.ground_heights import heights_above_ground
 from processing.noise.local_spacing import local_spacings
-from processing.noise.morton import NestedCells, nested_cells
+from processing.noise.morton import nested_cells
 from processing.noise.sharing import shared_out
+from processing.noise.surroundings import PART_SIZES, Surroundings
 
 _Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
 
-SCALES = 5
-PER_SCALE = 8
-LEVELS = 12
-SPACE_FEATURES = SCALES * PER_SCALE + 7
 _FINEST_M = 0.02
 _ROWS_AT_ONCE = 64
-_CELLS_AT_ONCE = 4_096
-_MAIN_SHARE = 0.1
+_POINTS_AT_ONCE = 4_096
 _GROUND_BAND_M = 0.3
 _FLAT_BAND_M = 0.1
 _PLANE_POINTS = 24
 _PLANE_SHARE = 0.4
 _PLANE_THICKNESS = 0.12  # in cells of two spacings
+_INTENSITY_SAMPLE = 20_000
 
 
 @dataclass(frozen=True)
@@ -58,18 +55,79 @@ class Candidates:
         m above the local ground, of every point; NaN where none is known.
     """
 
-    points: NDArray[np.int64]
+    points: _Integers
     features: NDArray[np.float32]
     heights: _Floats
 
 
-def candidates_with_beams(
-    beams: Beams, intensity: NDArray[np.uint16], monitor: Monitor
-) -> Candidates:
-    """Candidates of a recording whose beams are known."""
-    count = beams.xyz.shape[0]
+@dataclass(frozen=True)
+class BeamSearch:
+    """Points of a recording that no smooth surface explains, before anything dear is asked.
+
+    Attributes
+    ----------
+    beams : Beams
+    is_sure : (n,) bool
+    around : Surroundings
+    points, rows : (k,) int64
+        Points that may be noise, and their rows.
+    """
+
+    beams: Beams
+    is_sure: NDArray[np.bool_]
+    around: Surroundings
+    points: _Integers
+    rows: _Integers
+
+    def cheap_features(self, monitor: Monitor) -> NDArray[np.float32]:
+        """(k, f): what the beams beside each met, what it hangs together with, its height."""
+        found = np.empty((self.points.size, NEAR_FEATURES))
+
+        def look(start: int, stop: int) -> None:
+            part = slice(start, stop)
+            near_beams_kernel(
+                self.beams, self.is_sure, self.points[part], self.rows[part], found[part]
+            )
+
+        shared_out(look, self.points.size, _POINTS_AT_ONCE, monitor)
+        places = self.around.place_features(self.points)
+        ways = self._ways(self.points)
+        return np.column_stack([found, places, ways[:, 2]]).astype(np.float32)
+
+    def candidates(
+        self, is_doubtful: NDArray[np.bool_], intensity: NDArray[np.uint16], monitor: Monitor
+    ) -> Candidates:
+        """Everything about those of the points that remain doubtful, (k,) bool."""
+        points, rows = self.points[is_doubtful], self.rows[is_doubtful]
+        found = np.empty((points.size, BEAM_FEATURES))
+
+        def look(start: int, stop: int) -> None:
+            part = slice(start, stop)
+            beam_features_kernel(self.beams, self.is_sure, points[part], rows[part], found[part])
+
+        shared_out(look, points.size, _POINTS_AT_ONCE, monitor)
+        ways = self._ways(points)
+        blocks = [
+            self.around.scale_features(points, ways, monitor),
+            self.around.place_features(points),
+            self.around.part_features(points, self.around.link),
+            ways[:, 2:],
+            found,
+            _light(self.beams.ranges, intensity, self.is_sure, points)[:, None],
+        ]
+        features = np.column_stack(blocks).astype(np.float32)
+        return Candidates(points, features, self.around.heights)
+
+    def _ways(self, points: _Integers) -> _Floats:
+        away = self.beams.xyz[points] - self.beams.origins[points]
+        ways: _Floats = away / np.maximum(self.beams.ranges[points], 1e-6)[:, None]
+        return ways
+
+
+def search_with_beams(beams: Beams, monitor: Monitor) -> BeamSearch:
+    """Set aside what a surface explains that goes on to all sides of a beam."""
+    count, rows = beams.xyz.shape[0], beams.segments.size
     spacings, goes_on = np.zeros(count), np.zeros(count, np.uint8)
-    rows = beams.segments.size
 
     def space(start: int, stop: int) -> None:
         spacing_kernel(beams, start, stop, spacings)
@@ -83,24 +141,11 @@ def candidates_with_beams(
     spacings[~known] = beams.ranges[~known] * max(middle, beams.turn)
     shared_out(surfaces, rows, _ROWS_AT_ONCE, monitor)
     is_sure = goes_on == SURE
-    cloud = _Cloud.of(beams.xyz, spacings, is_sure)
-    is_ground = (goes_on == SQUARE) & (np.abs(cloud.heights) < _FLAT_BAND_M)
-    points = np.flatnonzero(~((is_sure | is_ground) & cloud.is_main))
-    row_of_point = np.repeat(np.arange(rows), np.diff(beams.row_starts))
-    found = np.empty((points.size, BEAM_FEATURES))
-    rows_of = row_of_point[points]
-
-    def look(start: int, stop: int) -> None:
-        part = slice(start, stop)
-        beam_features_kernel(beams, is_sure, points[part], rows_of[part], found[part])
-
-    shared_out(look, points.size, _CELLS_AT_ONCE, monitor)
-    away = beams.xyz[points] - beams.origins[points]
-    ways = away / np.maximum(beams.ranges[points], 1e-6)[:, None]
-    space_features = cloud.features(points, ways, monitor)
-    light = _light(beams.ranges, intensity, is_sure, points)
-    features = np.column_stack([space_features, found, light]).astype(np.float32)
-    return Candidates(points, features, cloud.heights)
+    around = Surroundings.of(beams.xyz, spacings, is_sure)
+    is_ground = (goes_on == SQUARE) & (np.abs(around.heights) < _FLAT_BAND_M)
+    points = np.flatnonzero(~((is_sure | is_ground) & around.is_main))
+    rows_of = np.searchsorted(beams.row_starts, points, "right") - 1
+    return BeamSearch(beams, is_sure, around, points, rows_of)
 
 
 def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
@@ -115,30 +160,30 @@ def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
     spacings = np.empty(xyz.shape[0])
     spacings[fine.order] = np.clip(local_spacings(fine), _FINEST_M, None)
     is_sure = _planar_points(xyz, spacings, monitor)
-    cloud = _Cloud.of(xyz, spacings, is_sure)
-    is_ground = np.abs(cloud.heights) < _GROUND_BAND_M
-    points = np.flatnonzero(~(is_sure & cloud.is_main & is_ground))
-    features = cloud.features(points, None, monitor).astype(np.float32)
-    return Candidates(points, features, cloud.heights)
+    around = Surroundings.of(xyz, spacings, is_sure)
+    is_ground = np.abs(around.heights) < _GROUND_BAND_M
+    points = np.flatnonzero(~(is_sure & around.is_main & is_ground))
+    middle = float(np.median(spacings))
+    blocks = [
+        around.scale_features(points, None, monitor),
+        around.place_features(points),
+        around.column_features(points),
+        *(around.part_features(points, around.level_of(size * middle)) for size in PART_SIZES),
+    ]
+    return Candidates(points, np.column_stack(blocks).astype(np.float32), around.heights)
 
 
 def _planar_points(xyz: _Floats, spacings: _Floats, monitor: Monitor) -> NDArray[np.bool_]:
     """Points in the middle of a densely measured plane, eight spacings wide."""
     count = xyz.shape[0]
-    bare = _Cloud.bare(xyz, spacings, np.zeros(count, np.bool_))
-    found = np.zeros(count, np.bool_)
-    wanted = np.clip(
-        np.rint(np.log2(spacings / bare.cells.cell_m)).astype(np.int64) + 1, 0, LEVELS - 1
+    bare = Surroundings.bare(xyz, spacings, np.zeros(count, np.bool_))
+    around = bare.scale_of(1, np.arange(count), monitor)
+    found: NDArray[np.bool_] = (
+        (around[:, 0] > np.log2(1 + _PLANE_POINTS))
+        & (around[:, 3] > _PLANE_SHARE)
+        & (around[:, 4] < _PLANE_THICKNESS)
+        & (around[:, 5] < 2 * _PLANE_THICKNESS)
     )
-    for level in np.unique(wanted):
-        chosen = np.flatnonzero(wanted == level)
-        around = bare.around(int(level), bare.place[chosen], None, monitor)
-        found[chosen] = (
-            (around[:, 0] > np.log2(1 + _PLANE_POINTS))
-            & (around[:, 3] > _PLANE_SHARE)
-            & (around[:, 4] < _PLANE_THICKNESS)
-            & (around[:, 5] < 2 * _PLANE_THICKNESS)
-        )
     return found
 
 
@@ -146,102 +191,24 @@ def _light(
     ranges: _Floats,
     intensity: NDArray[np.uint16],
     is_sure: NDArray[np.bool_],
-    points: NDArray[np.int64],
+    points: _Integers,
 ) -> _Floats:
     """(k,) log2 of intensity over the median of sure points at about the same range."""
-    bins = np.clip(np.log2(np.maximum(ranges, 0.5)) * 3, 0, 30).astype(np.int64)
-    values = np.log2(intensity.astype(np.float64) + 1)
+    sure = np.flatnonzero(is_sure)
+    sure = sure[:: max(1, sure.size // (10 * _INTENSITY_SAMPLE))]
+    bins, values = _range_bins(ranges[sure]), np.log2(intensity[sure].astype(np.float64) + 1)
     medians = np.full(31, np.nan)
-    for number in np.unique(bins[is_sure]):
-        medians[number] = np.median(values[is_sure & (bins == number)][:20_000])
+    for number in np.unique(bins):
+        medians[number] = np.median(values[bins == number][:_INTENSITY_SAMPLE])
     known = np.flatnonzero(~np.isnan(medians))
     if not known.size:
         return np.zeros(points.size)
     medians = np.interp(np.arange(31), known, medians[known])
-    light: _Floats = values[points] - medians[bins[points]]
+    mine = np.log2(intensity[points].astype(np.float64) + 1)
+    light: _Floats = mine - medians[_range_bins(ranges[points])]
     return light
 
 
-@dataclass(frozen=True)
-class _Cloud:
-    cells: NestedCells
-    place: NDArray[np.int64]  # of every point along the curve
-    spacings: _Floats
-    levels: list[CellLevel]
-    connected: _Floats
-    is_main: NDArray[np.bool_]
-    heights: _Floats
-
-    @classmethod
-    def bare(cls, xyz: _Floats, spacings: _Floats, is_sure: NDArray[np.bool_]) -> _Cloud:
-        """Without what hangs together and without heights."""
-        finest = max(_FINEST_M, float(np.percentile(spacings, 2))) / 2
-        cells = nested_cells(xyz, finest)
-        place = np.empty(cells.order.size, np.int64)
-        place[cells.order] = np.arange(cells.order.size)
-        levels = cell_levels(cells, is_sure[cells.order], LEVELS)
-        none = np.zeros(0)
-        return cls(cells, place, spacings, levels, none, none.astype(bool), none)
-
-    @classmethod
-    def of(cls, xyz: _Floats, spacings: _Floats, is_sure: NDArray[np.bool_]) -> _Cloud:
-        """With everything."""
-        bare = cls.bare(xyz, spacings, is_sure)
-        link = max(0.4, 3 * float(np.median(spacings)))
-        connected = np.column_stack(
-            [connected_counts(xyz, is_sure, link), connected_counts(xyz, is_sure, 3 * link)]
-        )
-        is_main = connected[:, 0] >= _MAIN_SHARE * max(1, int(is_sure.sum()))
-        heights = heights_above_ground(xyz, is_sure, max(1.0, 4 * float(np.median(spacings))))
-        return replace(bare, connected=connected, is_main=is_main, heights=heights)
-
-    def features(
-        self, points: NDArray[np.int64], ways: _Floats | None, monitor: Monitor
-    ) -> _Floats:
-        """(k, SPACE_FEATURES) features of chosen points; ``ways`` (k, 3) are their beams."""
-        found = np.zeros((points.size, SPACE_FEATURES))
-        wanted = np.rint(np.log2(self.spacings[points] / self.cells.cell_m)).astype(np.int64)
-        place = self.place[points]
-        for level in range(LEVELS):
-            for scale in range(SCALES):
-                chosen = np.flatnonzero(np.clip(wanted + scale, 0, LEVELS - 1) == level)
-                if chosen.size:
-                    block = slice(scale * PER_SCALE, (scale + 1) * PER_SCALE)
-                    found[chosen, block] = self.around(
-                        level, place[chosen], None if ways is None else ways[chosen], monitor
-                    )
-        rest = SCALES * PER_SCALE
-        found[:, rest] = np.log2(self.spacings[points])
-        found[:, rest + 1 : rest + 3] = np.log2(1 + self.connected[points])
-        height = np.nan_to_num(self.heights[points])  # 0 where no ground is known
-        found[:, rest + 3] = np.sign(height) * np.log2(1 + np.abs(height) / 0.05)
-        if ways is not None:
-            found[:, rest + 4] = ways[:, 2]
-        return found
-
-    def around(
-        self, level: int, place: NDArray[np.int64], ways: _Floats | None, monitor: Monitor
-    ) -> _Floats:
-        cells = self.levels[level]
-        along = np.argsort(place)
-        mine_codes = self.cells.codes[place[along]] >> (3 * level)
-        is_first = np.r_[True, mine_codes[1:] != mine_codes[:-1]]
-        codes = mine_codes[is_first]
-        back = np.empty(place.size, np.int64)
-        back[along] = np.cumsum(is_first) - 1
-        around = np.empty((codes.size, AROUND))
-
-        def add_up(start: int, stop: int) -> None:
-            around_kernel(cells, codes[start:stop], around[start:stop])
-
-        shared_out(add_up, codes.size, _CELLS_AT_ONCE, monitor)
-        mine = around[back]
-        normals = mine[:, 5:8]
-        found = np.empty((place.size, PER_SCALE))
-        found[:, 0:2] = np.log2(1 + mine[:, 0:2])
-        found[:, 2:5] = mine[:, 2:5]
-        offsets = (normals * self.cells.local_xyz[place]).sum(axis=1) - mine[:, 8]
-        found[:, 5] = np.abs(offsets) / cells.side
-        found[:, 6] = np.abs(normals[:, 2])
-        found[:, 7] = 0.0 if ways is None else np.abs((normals * ways).sum(axis=1))
-        return found
+def _range_bins(ranges: _Floats) -> _Integers:
+    bins: _Integers = np.clip(np.log2(np.maximum(ranges, 0.5)) * 3, 0, 30).astype(np.int64)
+    return bins

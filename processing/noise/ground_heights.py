@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 _LOW_SHARE = 0.1
 _FEWEST = 3
+_SAMPLE = 400_000
 _PASSES = 3
 _ASIDE = 2
 _ROWS_AT_ONCE = 128
@@ -40,6 +41,7 @@ def heights_above_ground(
     used = np.flatnonzero(is_sure)
     if used.size < _FEWEST:
         used = np.arange(xyz.shape[0])
+    used = used[:: max(1, used.size // _SAMPLE)]
     lowest = np.percentile(xyz[used, :2], 0.5, axis=0) - 30 * cell_m
     highest = np.percentile(xyz[used, :2], 99.5, axis=0) + 30 * cell_m
     shape = np.minimum(np.ceil((highest - lowest) / cell_m).astype(np.int64) + 1, _MOST_CELLS)

@@ -1,16 +1,18 @@
-"""Boosted decision trees as plain arrays: read, and asked about many rows at once."""
+"""Boosted decision trees as plain arrays, asked about many rows at once."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.kernels import kernel
+from processing.monitor import Monitor
+from processing.noise.sharing import shared_out
 
 _HOPELESS = -4.0
+_AT_ONCE = 16_384
 
 
 class Trees(NamedTuple):
@@ -29,30 +31,16 @@ class Trees(NamedTuple):
     base: float
 
 
-def read_trees(path: Path) -> Trees:
-    """Trees from a file written by :func:`write_trees`."""
-    with np.load(path, allow_pickle=False) as kept:
-        return Trees(
-            kept["features"].astype(np.int32),
-            kept["thresholds"].astype(np.float64),
-            kept["lefts"].astype(np.int32),
-            kept["rights"].astype(np.int32),
-            kept["roots"].astype(np.int32),
-            float(kept["base"]),
-        )
+def log_odds(trees: Trees, rows: NDArray[np.float32], monitor: Monitor) -> NDArray[np.float64]:
+    """(n,) log-odds of the claim for rows of features, (n, f)."""
+    found = np.empty(rows.shape[0])
+    rows = np.ascontiguousarray(rows)
 
+    def weigh(start: int, stop: int) -> None:
+        log_odds_kernel(trees, rows, start, stop, found)
 
-def write_trees(trees: Trees, path: Path) -> None:
-    """Keep trees in a compressed file."""
-    np.savez_compressed(
-        path,
-        features=trees.features,
-        thresholds=trees.thresholds.astype(np.float32),
-        lefts=trees.lefts,
-        rights=trees.rights,
-        roots=trees.roots,
-        base=np.float32(trees.base),
-    )
+    shared_out(weigh, found.size, _AT_ONCE, monitor)
+    return found
 
 
 @kernel

@@ -1,0 +1,98 @@
+"""What the trees learn from: scenes that hold what they claim to hold."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from processing.noise.training.examples import beam_examples, space_examples
+from processing.noise.training.noise_kinds import NOISE_KINDS
+from processing.noise.training.rays import BOX, CAPSULE, NOWHERE, PANE, STRIP, met_by, thing
+from processing.noise.training.scanners import AIRBORNE, MOBILE, STANDING
+from processing.noise.training.scenes import Scene, scene_of, thinned
+from processing.noise.training.scores import f_measure, score_line
+from processing.noise.training.streets import KINDS, ROAD
+
+
+@pytest.fixture(scope="module")
+def scene() -> Scene:
+    return scene_of(2, MOBILE, 40_000)[0]
+
+
+@pytest.mark.parametrize(
+    ("row", "reach"),
+    [
+        (thing(STRIP, 0, 0.5, -9.0, -2.0, 9.0, -2.0), NOWHERE),
+        (thing(BOX, 0, 0.5, 5.0, 0.0, 0.0, 1.0, 1.0, 1.0, 0.0), 4.0),
+        (thing(CAPSULE, 0, 0.5, 3.0, 0.0, -1.0, 3.0, 0.0, 1.0, 0.1), 2.9),
+        (thing(PANE, 0, 0.5, 6.0, 0.0, 0.0, 0.0, 1.0, 1.0), 6.0),
+        (thing(PANE, 0, 0.5, 6.0, 1.5, 0.0, 0.0, 1.0, 1.0), NOWHERE),
+    ],
+)
+def test_a_level_beam_meets_what_stands_ahead(row: list[float], reach: float) -> None:
+    met = met_by(np.zeros((1, 3)), np.eye(3)[:1], np.array([row]), 0.0, np.ones((1, 2)))
+    assert met.ranges[0] == pytest.approx(reach)
+    assert met.things[0] == (0 if reach < NOWHERE else -1)
+
+
+def test_a_seed_gives_the_same_scene_again(scene: Scene) -> None:
+    again = scene_of(2, MOBILE, 40_000)[0]
+    np.testing.assert_array_equal(again.xyz, scene.xyz)
+    np.testing.assert_array_equal(again.noise, scene.noise)
+
+
+@pytest.mark.parametrize("how", [MOBILE, STANDING, AIRBORNE])
+def test_a_scene_holds_noise_and_true_things_and_its_points_lie_on_their_beams(how: str) -> None:
+    scene, turn = scene_of(2, how, 40_000)
+    is_noise = scene.noise > 0
+    assert 0.0005 < is_noise.mean() < 0.6
+    assert ((scene.kinds < 0) == is_noise).all()
+    assert (scene.kinds == ROAD).mean() > 0.2
+    lengths = np.linalg.norm(scene.xyz - scene.origins, axis=1)
+    np.testing.assert_allclose(lengths, scene.ranges, atol=1e-6)
+    beams = scene.beams(turn)
+    assert beams.row_starts[0] == 0
+    assert beams.row_starts[-1] == scene.ranges.size
+
+
+def test_a_thinned_cloud_is_a_part_of_the_scene(scene: Scene) -> None:
+    sizes = {thinned(scene, seed).noise.size for seed in range(6)}
+    assert max(sizes) <= scene.noise.size
+    assert len(sizes) > 2
+
+
+def test_examples_are_rows_of_one_width_that_say_what_they_are(scene: Scene) -> None:
+    random = np.random.default_rng(0)
+    widths = set()
+    for examples in (
+        beam_examples(scene, 0.002, random),
+        beam_examples(scene_of(1, STANDING, 30_000)[0], 0.01, random),
+    ):
+        widths.add((examples.cheap.shape[1], examples.whole.shape[1]))
+        assert examples.is_noise.any()
+        assert not examples.is_noise.all()
+        assert np.isfinite(examples.whole).all()
+    assert len(widths) == 1
+    assert space_examples(scene, random).cheap.shape[1] == 0
+
+
+def test_a_score_names_every_kind_that_is_there(scene: Scene) -> None:
+    line = score_line("scene", scene.noise > 0, scene)
+    assert "F 1.000" in line
+    assert f"{NOISE_KINDS[1]} 1.000" in line
+    assert f"{KINDS[ROAD]} 1.000" in line
+    assert f_measure(scene.noise > 99, scene.noise > 0) == 0.0
+
+
+def test_trees_are_fitted_to_examples_and_a_first_look_keeps_the_noise(scene: Scene) -> None:
+    pytest.importorskip("sklearn")
+    from processing.monitor import SilentMonitor
+    from processing.noise.training.fitting import Shape, fitted, shifted_to_keep
+    from processing.noise.trees import log_odds
+
+    examples = beam_examples(scene, 0.002, np.random.default_rng(0))
+    trees = fitted(examples.cheap, examples.is_noise, examples.weights, Shape(5, 8, 0.3))
+    first = shifted_to_keep(trees, examples.cheap, examples.is_noise, 0.01)
+    is_left = log_odds(first, examples.cheap, SilentMonitor()) > 0
+    assert is_left[examples.is_noise].mean() >= 0.985
+    assert is_left.mean() < 1.0
