@@ -1,18 +1,32 @@
-"""A change of labels told to the views tile by tile, so that it is seen at once."""
+"""A change of labels told to the views, tile by tile or drive by drive, so that it is seen."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from processing.image.tile_cache import TileCache
 from processing.points.drive import Drive
 from processing.project.label_change import LabelChange
 from widgets.shared.map_changes import MapChanges
 
+_MANY_POINTS = 4_000_000
+"""More than so many of a drive are most of its tiles: all are made anew, without looking which."""
+
 
 def tell_labels(
     labels: tuple[tuple[Drive, LabelChange], ...], tiles: TileCache, map_changes: MapChanges
 ) -> None:
     """Drop the tiles whose points have other labels now, and tell the views."""
+    counts: dict[str, int] = {}
     for drive, label in labels:
-        points = label.unpacked_points()
-        tiles.drop_relabelled(drive, points)
-        map_changes.labels_changed.emit(drive.id, points)
+        counts[drive.id] = counts.get(drive.id, 0) + label.count
+    for id_, count in counts.items():
+        if count > _MANY_POINTS:
+            tiles.drop(id_)
+            map_changes.drive_columns_changed.emit(id_)
+            map_changes.labels_changed.emit(id_, np.empty(0, np.int64))
+    for drive, label in labels:
+        if counts[drive.id] <= _MANY_POINTS:
+            points = label.unpacked_points()
+            tiles.drop_relabelled(drive, points)
+            map_changes.labels_changed.emit(drive.id, points)

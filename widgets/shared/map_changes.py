@@ -11,4 +11,6 @@ class MapChanges(QObject):
     features_changed = Signal(object)  # tuple[str, ...]: ids added, replaced or removed
     drives_changed = Signal()  # drives added, or a project opened or closed
     drive_columns_changed = Signal(str)  # drive id: a tool's result columns were added
-    labels_changed = Signal(str, object)  # drive id; (n,) int64: points whose labels changed
+    labels_changed = Signal(
+        str, object
+    )  # drive id; (n,) int64: points with other labels, none: many
