@@ -55,6 +55,8 @@ class Corrector:
         self.shared.view_settings.change_look(attribute="class")
         self.parts.view_docks.show_view("section")
         self.parts.view_docks.show_view("map")
+        self.until(lambda: self.parts.map_view._pictures.newest is not None)
+        self.until(lambda: self.parts.scene_view.cloud is not None)
         self.parts.view_docks.show_view("section")
 
     @property

@@ -66,19 +66,15 @@ class SectionBar(QWidget):
             [f"{factor:g}×" for factor in EXAGGERATIONS],
             self.tr("How many times heights are drawn larger"),
         )
-        self._live = IconButton(
+        self._live = self._switch(
             "mdi6.cursor-default-click-outline",
             self.tr("Live"),
             self.tr("Follow the mouse over lines in any view"),
-            self,
-            is_switch=True,
         )
-        self._pin = IconButton(
+        self._pin = self._switch(
             "mdi6.pin-outline",
             self.tr("Pin"),
             self.tr("Hold the place as two windows, across and along"),
-            self,
-            is_switch=True,
         )
         self._template = IconButton(
             "mdi6.content-duplicate",
@@ -92,12 +88,10 @@ class SectionBar(QWidget):
             self.tr("Write the ground line with heights, and what crosses it"),
             self,
         )
-        self._ground = IconButton(
+        self._ground = self._switch(
             "mdi6.terrain",
             self.tr("Ground"),
             self.tr("Draw the ground that was found: dashed where it is filled in"),
-            self,
-            is_switch=True,
         )
         self._lay_out()
         for box in (self._lying, self._heights):
@@ -237,6 +231,9 @@ class SectionBar(QWidget):
         for part in parts:
             layout.addWidget(part)
         return together
+
+    def _switch(self, sign: str, name: str, tip: str) -> IconButton:
+        return IconButton(sign, name, tip, self, is_switch=True)
 
     def _choice(self, names: list[str], tip: str) -> QComboBox:
         box = QComboBox(self)
