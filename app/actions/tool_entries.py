@@ -232,8 +232,8 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
         "Ctrl+U",
         "mdi6.lasso",
         Text(
-            "Draw round the points to label, in the image, the section or 3D.",
-            "画像・断面・3Dで、ラベルを付ける点を囲みます。",
+            "Draw round the points to label, in the image, the section, 3D or on the map.",
+            "画像・断面・3D・地図で、ラベルを付ける点を囲みます。",
         ),
         toolbar=0,
         menu="draw/labels",

@@ -22,7 +22,7 @@ _COLOUR = QColor("#f0e442")
 _EDGE = QColor(16, 18, 22, 150)
 _PLATE = QColor(16, 18, 22, 205)
 _WORDS = QColor("#eef2f6")
-_LINE_PX, _EDGE_PX = 2.0, 4.0
+_LINE_PX, _EDGE_PX = 1.5, 3.0
 _DASHES = [4.0, 3.0]
 _SAMPLE_PX, _GAP_PX, _MARGIN_PX = 26.0, 8.0, 6.0
 
