@@ -48,7 +48,7 @@ ASKED: Mapping[str, AskedClass] = {
     "noise": AskedClass(
         NOISE_CODES,
         Text("noise point", "ノイズ点"),
-        Text("kept point", "残す点"),
+        Text("true point", "ノイズでない点"),
         removes=True,
     ),
     "ground": AskedClass(

@@ -26,7 +26,9 @@ from tests.house_rules.sources import python_files, text_of
 MODIFIERS = {"Shift", "Ctrl", "Alt"}
 _MARKS = re.compile(r"\(&\w\)|&(?=\w)")
 _LEAST_WORDS = {"en": 20, "ja": 12}
-COMMANDS = ("open", "demo", "info", "import", "image", "tools", "run", "score", "export", "bench")
+COMMANDS = (
+    "open", "demo", "info", "import", "image", "tools", "run", "score", "study", "export", "bench",
+)  # fmt: skip
 
 
 @pytest.fixture(scope="module")

@@ -130,7 +130,7 @@ class StudyForm(QWidget):
         )
         self._note = QLabel(self)
         self._note.setEnabled(False)
-        self._note.setWordWrap(True)
+        self._note.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
         self._button = QPushButton(self.tr("Study"), self)
         self._lay_out()
         self._tool.currentIndexChanged.connect(self._on_tool_changed)
@@ -223,3 +223,4 @@ class StudyForm(QWidget):
                 count=count, settings=self._settings or "–"
             )
         self._note.setText(words)
+        self._note.setToolTip(words)

@@ -33,7 +33,7 @@ from widgets.panels.class_evaluation.study_plot import StudyPlot, StudyWords
 from widgets.panels.reliability_plot import PlotColours
 from widgets.panels.run_words import name_of_tool
 
-_FORM_PX, _BESIDE_PX = 440, 240
+_FORM_PX, _BESIDE_PX = 440, 200
 _REMOVED, _KEPT = "removed", "kept"
 
 ValuesOf = Callable[[str], Mapping[str, Value]]
@@ -187,10 +187,9 @@ class StudyPanel(QWidget):
         beside.addStretch(1)
         beside.addWidget(self._use)
         beside.addLayout(buttons)
-        self._facts.setWordWrap(True)
         self.form.setMaximumWidth(_FORM_PX)
-        self._choice.setMaximumWidth(_BESIDE_PX)
-        self._facts.setMaximumWidth(_BESIDE_PX)
+        self._choice.setFixedWidth(_BESIDE_PX)
+        self._facts.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         layout = QHBoxLayout(self)
         layout.setContentsMargins(8, 8, 8, 8)
         layout.setSpacing(12)
@@ -216,7 +215,8 @@ class StudyPanel(QWidget):
             for one, value in zip(plot.study.varied, cell.values, strict=True)
         ]
         counts = plot.counts_of(cell)
-        self._facts.setText(f"{', '.join(words)}: F {100 * counts.f_measure:.2f} %")
+        words.append(f"F {100 * counts.f_measure:.2f} %")
+        self._facts.setText("\n".join(words))
 
     def _on_choice_activated(self) -> None:
         self._chosen = -1
