@@ -33,7 +33,7 @@ from widgets.panels.class_evaluation.study_plot import StudyPlot, StudyWords
 from widgets.panels.reliability_plot import PlotColours
 from widgets.panels.run_words import name_of_tool
 
-_FORM_PX, _BESIDE_PX = 440, 200
+_FORM_PX, _BESIDE_PX = 440, 220
 _REMOVED, _KEPT = "removed", "kept"
 
 ValuesOf = Callable[[str], Mapping[str, Value]]
@@ -176,17 +176,22 @@ class StudyPanel(QWidget):
         menu.addAction(self.tr("Plot (PNG)"), lambda: self.export_requested.emit("png"))
         menu.addAction(self.tr("Plot (PDF)"), lambda: self.export_requested.emit("pdf"))
         self._export.setMenu(menu)
-        buttons = QHBoxLayout()
-        buttons.setSpacing(8)
-        buttons.addWidget(self._export, 1)
-        buttons.addWidget(self._remove)
+        above, below = QHBoxLayout(), QHBoxLayout()
+        for row, widgets in (
+            (above, (self._side, self._remove)),
+            (below, (self._use, self._export)),
+        ):
+            row.setSpacing(8)
+            for widget in widgets:
+                row.addWidget(widget)
+        above.setStretch(0, 1)
         beside = QVBoxLayout()
         beside.setSpacing(4)
-        for widget in (self._choice, self._side, self._facts):
-            beside.addWidget(widget)
+        beside.addWidget(self._choice)
+        beside.addLayout(above)
+        beside.addWidget(self._facts)
         beside.addStretch(1)
-        beside.addWidget(self._use)
-        beside.addLayout(buttons)
+        beside.addLayout(below)
         self.form.setMaximumWidth(_FORM_PX)
         self._choice.setFixedWidth(_BESIDE_PX)
         self._facts.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
