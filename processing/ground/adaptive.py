@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from processing.ground.band import Band, Tolerances, classify, ground_band, heights_at
 from processing.ground.below import ghosts, sunk_points
 from processing.ground.cells import Blocks, CellGrid, Levels, choose_cells, levels_above
-from processing.ground.morphology import filled
+from processing.ground.morphology import filled, steepness_of
 from processing.ground.neighbours import off_neighbours
 from processing.ground.regions import Shape, standing_cells
 from processing.monitor import Monitor
@@ -21,6 +21,8 @@ _ROUNDS = 2
 _PERSON_M = 1.5
 _FEW_SHARE = 1e-3
 _GAP_CELLS = 4
+_COARSE_CELL_M = 0.5
+_OTHER_SIZES = (0.92, 1.09)
 _MARGIN_SHARE = 0.12
 _MARGIN_M = 0.025
 
@@ -95,7 +97,7 @@ class GroundSurface:
 def find_ground(
     blocks: Blocks, habits: GroundHabits, monitor: Monitor, grid: CellGrid | None = None
 ) -> GroundSurface:
-    """The ground of a whole cloud, in about a dozen passes over its blocks.
+    """The ground of a whole cloud, in a dozen passes over its blocks.
 
     Parameters
     ----------
@@ -112,11 +114,24 @@ def find_ground(
 
     Notes
     -----
+    Of a sparse cloud, with about one point in a cell, three cell sizes are asked.
+
     Memory: some 80 bytes a cell, whatever the number of points; cells are larger where a cloud's
     extent would need more than ``cells.MOST_CELLS``.
     """
     passes = _Passes(blocks, monitor)
     grid = choose_cells(passes, habits.grid_m) if grid is None else grid
+    levels, ground = _ground_cells(passes, grid, habits)
+    if grid.size_m > _COARSE_CELL_M:
+        ground = _agreed(passes, grid, habits, levels.lowest, ground)
+    surface = filled(levels.lowest, ground)
+    band = ground_band(passes, grid, surface, ground, habits.tolerances)
+    return GroundSurface(grid, band, _without_small_gaps(ground))
+
+
+def _ground_cells(
+    blocks: Blocks, grid: CellGrid, habits: GroundHabits
+) -> tuple[Levels, NDArray[np.bool_]]:
     shape = Shape(
         widest_m=habits.widest_m,
         rise_m=habits.rise_m + habits.rise_share * grid.size_m,
@@ -125,15 +140,43 @@ def find_ground(
         rim_share=habits.rim_share,
         small_steep=habits.steep_small,
     )
-    levels, standing = _lowest_ground(passes, grid, shape)
+    levels, standing = _lowest_ground(blocks, grid, shape)
     ground = np.isfinite(levels.lowest) & ~standing
     if not ground.any():
         ground = np.isfinite(levels.lowest)
     crowded = levels.second < levels.lowest + _PERSON_M
     ground &= ~off_neighbours(levels.lowest, ground, crowded, grid.size_m)
-    surface = filled(levels.lowest, ground)
-    band = ground_band(passes, grid, surface, ground, habits.tolerances)
-    return GroundSurface(grid, band, _without_small_gaps(ground))
+    return levels, ground
+
+
+def _agreed(
+    blocks: Blocks,
+    grid: CellGrid,
+    habits: GroundHabits,
+    lowest: NDArray[np.float32],
+    ground: NDArray[np.bool_],
+) -> NDArray[np.bool_]:
+    """Cells that are ground for two of three cell sizes.
+
+    With about one point in a cell, where its borders fall decides whether a courtyard is joined
+    to the street or a roof to a bank beside it.
+    """
+    votes = ground.astype(np.uint8)
+    row, column = np.nonzero(np.isfinite(lowest))
+    places = grid.origin[:2] + grid.size_m * (np.column_stack([column, row]) + 0.5)
+    for share in _OTHER_SIZES:
+        size_m = grid.size_m * share
+        rows = int(np.ceil(grid.rows / share)) + 1
+        columns = int(np.ceil(grid.columns / share)) + 1
+        other = CellGrid(grid.origin, size_m, rows, columns)
+        levels, is_ground = _ground_cells(blocks, other, habits)
+        surface = filled(levels.lowest, is_ground)
+        slope = heights_at(places, other, steepness_of(surface, size_m)) - grid.origin[2]
+        off = heights_at(places, other, surface) - grid.origin[2] - lowest[row, column]
+        reach = habits.rise_m + grid.size_m * (habits.rise_share + 0.5 * slope)
+        votes[row, column] += np.abs(off) <= reach
+    agreed: NDArray[np.bool_] = votes >= 2
+    return agreed if agreed.any() else ground
 
 
 def _without_small_gaps(ground: NDArray[np.bool_]) -> NDArray[np.bool_]:
