@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from app.cli.output import print_json, print_lines
 from app.language import system_language
 from processing.bench.case import BenchWish, Case, Measurement
+from processing.bench.ground_cases import measure_ground
 from processing.bench.growth import measure_growth
 from processing.bench.image_cases import measure_image, measure_switch
 from processing.bench.import_cases import measure_import, measure_import_memory
@@ -31,6 +32,7 @@ CASES: Mapping[str, Case] = {
     "labels": measure_labels,
     "normals": measure_normals,
     "noise": measure_noise,
+    "ground": measure_ground,
     "memory": measure_import_memory,
     "growth": measure_growth,
     "large": measure_large,

@@ -7,6 +7,7 @@ import math
 import pytest
 
 from processing.bench.case import BenchWish, Measurement
+from processing.bench.ground_cases import measure_ground
 from processing.bench.growth import exponent_of, measure_growth
 from processing.bench.image_cases import measure_image, measure_switch
 from processing.bench.import_cases import measure_import, measure_import_memory
@@ -37,6 +38,14 @@ def test_normals_are_compared_with_each_peer_or_it_says_that_one_is_missing() ->
     for row in rows:
         assert row.is_met is None
         assert (row.value is None) == ("is not installed" in row.detail)
+
+
+def test_ground_has_a_time_and_says_which_peers_there_are() -> None:
+    (row,) = measure_ground(LITTLE)
+    assert row.value is not None
+    assert row.target == 15.0
+    assert "csf" in row.detail
+    assert "pcl" in row.detail
 
 
 def test_noise_is_compared_with_a_peer_and_the_combined_has_a_time() -> None:
