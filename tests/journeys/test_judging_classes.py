@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QComboBox, QMessageBox, QPushButton, QTableWidget, QTabWidget
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QComboBox,
+    QMessageBox,
+    QPushButton,
+    QTableWidget,
+    QTabWidget,
+)
 
 from app.jobs import JobState
 from processing.labels.label_column import labels_of
@@ -99,9 +106,10 @@ class Judge:
             self.bot.mouseClick(button, LEFT)
 
     def click(self, words: str, within):
-        button = next(one for one in within.findChildren(QPushButton) if one.text() == words)
+        buttons = within.findChildren(QAbstractButton)
+        button = next(one for one in buttons if one.text() == words)
         assert button.isEnabled()
-        self.bot.mouseClick(button, LEFT)
+        self.bot.mouseClick(button, LEFT, pos=QPoint(8, button.height() // 2))
 
     def rows(self):
         table = self.panel.findChild(QTableWidget)

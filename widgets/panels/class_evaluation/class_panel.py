@@ -9,6 +9,7 @@ from PySide6.QtCore import QSignalBlocker, Qt, QTimer, Signal
 from PySide6.QtGui import QShowEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
+    QCheckBox,
     QHBoxLayout,
     QHeaderView,
     QLabel,
@@ -72,8 +73,7 @@ class ClassPanel(QWidget):
         self._refresh.timeout.connect(self._ask_if_seen)
         self.truths = TruthBar(language, self)
         self._table = self._new_table()
-        self._show_points = QPushButton(self.tr("Show right and wrong"), self)
-        self._show_points.setCheckable(True)
+        self._show_points = QCheckBox(self.tr("Show right and wrong"), self)
         self._show_points.setToolTip(
             self.tr("Colours the points in all views by what the chosen run did with them")
         )
