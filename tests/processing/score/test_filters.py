@@ -123,7 +123,7 @@ def test_tables_have_the_figures_of_the_scores() -> None:
         [Found("road", "m", "s", True, noise_score(ClassCounts.of(truth, result)))]
     ).splitlines()[2]
     cells = [cell.strip() for cell in row.split("|")[1:-1]]
-    assert cells[:9] == ["road", "m", "s", *["98.89 %"] * 3, "0.900", "0.900", "0.900"]
+    assert cells[:9] == ["road", "m", "s", *["98.889 %"] * 3, "0.900", "0.900", "0.900"]
     truth = np.where(truth == 0, 2, 1).astype(np.uint8)
     result = np.where(result == 0, 2, 1).astype(np.uint8)
     score = ground_score(ClassCounts.of(truth, result))
