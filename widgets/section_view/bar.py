@@ -94,6 +94,10 @@ class SectionBar(QWidget):
             self.tr("Draw the ground that was found: dashed where it is filled in"),
         )
         self._lay_out()
+        self._connect_fields()
+        self.show_settings(self._settings)
+
+    def _connect_fields(self) -> None:
         for box in (self._lying, self._heights):
             box.activated.connect(self._on_settings_edited)
         for field in (self._width, self._step):
@@ -104,7 +108,6 @@ class SectionBar(QWidget):
         self._pin.toggled.connect(self.pin_toggled)
         self._template.clicked.connect(self.template_requested)
         self._export.clicked.connect(self.profile_export_requested)
-        self.show_settings(self._settings)
 
     def _lay_out(self) -> None:
         self._which = self._group(self._lying, self._line)
