@@ -149,6 +149,193 @@
         </message>
     </context>
     <context>
+        <name>ClassChips</name>
+        <message>
+            <source>Paint this class</source>
+            <translation>このクラスで塗ります</translation>
+        </message>
+    </context>
+    <context>
+        <name>ClassPanel</name>
+        <message>
+            <source>Show right and wrong</source>
+            <translation>正誤を表示</translation>
+        </message>
+        <message>
+            <source>Colours the points in all views by what the chosen run did with them</source>
+            <translation>選択した実行結果の正誤を、すべてのビューで点の色で表示します</translation>
+        </message>
+        <message>
+            <source>Export</source>
+            <translation>書き出し</translation>
+        </message>
+        <message>
+            <source>Table (CSV)</source>
+            <translation>表（CSV）</translation>
+        </message>
+        <message>
+            <source>{tool}: as it stands now</source>
+            <translation>{tool}: 現在の状態</translation>
+        </message>
+        <message>
+            <source>{tool}: if nothing were removed</source>
+            <translation>{tool}: 何も除去しない場合</translation>
+        </message>
+        <message>
+            <source>{tool}: if everything were kept</source>
+            <translation>{tool}: すべて残す場合</translation>
+        </message>
+        <message>
+            <source>Positive is the point that is kept: no noise; ground</source>
+            <translation>正例は残す点です（ノイズでない点・地面）</translation>
+        </message>
+        <message>
+            <source>Positive is the point that is removed: noise; an object on the ground</source>
+            <translation>正例は取り除く点です（ノイズ・地物）</translation>
+        </message>
+        <message>
+            <source>Of the points called so, the share that is</source>
+            <translation>そう判定した点のうち、実際にそうである点の割合</translation>
+        </message>
+        <message>
+            <source>Of the points that are so, the share that is called so</source>
+            <translation>実際にそうである点のうち、そう判定した点の割合</translation>
+        </message>
+        <message>
+            <source>Harmonic mean of precision and recall</source>
+            <translation>適合率と再現率の調和平均</translation>
+        </message>
+        <message>
+            <source>Tool and run</source>
+            <translation>ツールと実行</translation>
+        </message>
+        <message>
+            <source>Kept:
+precision</source>
+            <translation>残す点
+適合率</translation>
+        </message>
+        <message>
+            <source>Kept:
+recall</source>
+            <translation>残す点
+再現率</translation>
+        </message>
+        <message>
+            <source>Kept:
+F</source>
+            <translation>残す点
+F値</translation>
+        </message>
+        <message>
+            <source>Removed:
+precision</source>
+            <translation>除去点
+適合率</translation>
+        </message>
+        <message>
+            <source>Removed:
+recall</source>
+            <translation>除去点
+再現率</translation>
+        </message>
+        <message>
+            <source>Removed:
+F</source>
+            <translation>除去点
+F値</translation>
+        </message>
+        <message>
+            <source>Kappa</source>
+            <translation>κ係数</translation>
+        </message>
+        <message>
+            <source>Agreement beyond chance</source>
+            <translation>偶然の一致を除いた一致度</translation>
+        </message>
+        <message>
+            <source>Wrongly
+removed</source>
+            <translation>誤除去</translation>
+        </message>
+        <message>
+            <source>Points that should have been kept</source>
+            <translation>残すべきなのに除去した点数</translation>
+        </message>
+        <message>
+            <source>Wrongly
+kept</source>
+            <translation>取り残し</translation>
+        </message>
+        <message>
+            <source>Points that should have been removed</source>
+            <translation>除去すべきなのに残した点数</translation>
+        </message>
+        <message>
+            <source>Points</source>
+            <translation>点数</translation>
+        </message>
+        <message>
+            <source>Points whose truth is known</source>
+            <translation>正解の分かっている点数</translation>
+        </message>
+        <message>
+            <source>rightly kept</source>
+            <translation>正しく残した点</translation>
+        </message>
+        <message>
+            <source>rightly removed</source>
+            <translation>正しく除去した点</translation>
+        </message>
+        <message>
+            <source>wrongly removed</source>
+            <translation>誤って除去した点</translation>
+        </message>
+        <message>
+            <source>wrongly kept</source>
+            <translation>取り残した点</translation>
+        </message>
+        <message>
+            <source>Say first what is true: paint, check, then “New truth”.</source>
+            <translation>先に正解を登録してください（ラベルを付けて確認し、「正解を登録」）。</translation>
+        </message>
+        <message>
+            <source>kept: {kept}; removed: {removed}</source>
+            <translation>残す点: {kept}、除去点: {removed}</translation>
+        </message>
+        <message>
+            <source>Run a tool that gives classes on the drive of this truth.</source>
+            <translation>この正解の走行データで、点を分類する処理を実行してください。</translation>
+        </message>
+    </context>
+    <context>
+        <name>ClassWiring</name>
+        <message>
+            <source>Make a truth on the page of point classes first.</source>
+            <translation>先に「点のクラス」のページで正解を登録してください。</translation>
+        </message>
+        <message>
+            <source>Take the truth from a file</source>
+            <translation>ファイルから正解を登録</translation>
+        </message>
+        <message>
+            <source>Classes of points (*.las *.laz *.npy *.npz *.txt);;All files (*)</source>
+            <translation>点のクラス (*.las *.laz *.npy *.npz *.txt);;すべてのファイル (*)</translation>
+        </message>
+        <message>
+            <source>Forget a truth</source>
+            <translation>正解の削除</translation>
+        </message>
+        <message>
+            <source>The truth is removed from the project for good. Forget it?</source>
+            <translation>正解をプロジェクトから完全に削除します。よろしいですか？</translation>
+        </message>
+        <message>
+            <source>Forget it</source>
+            <translation>削除する</translation>
+        </message>
+    </context>
+    <context>
         <name>CommandPalette</name>
         <message>
             <source>Commands</source>
@@ -1279,6 +1466,14 @@
             <translation>高さ方向の拡大倍率</translation>
         </message>
         <message>
+            <source>Ground</source>
+            <translation>地面</translation>
+        </message>
+        <message>
+            <source>Draw the ground that was found: dashed where it is filled in</source>
+            <translation>抽出した地面の線を描きます（補間した区間は破線）</translation>
+        </message>
+        <message>
             <source>Width</source>
             <translation>幅</translation>
         </message>
@@ -1328,6 +1523,10 @@
         <message>
             <source>Colour by distance from the plane</source>
             <translation>断面からの距離で色分け</translation>
+        </message>
+        <message>
+            <source>Line of the found ground</source>
+            <translation>抽出した地面の線</translation>
         </message>
         <message>
             <source>Heights</source>
@@ -1494,6 +1693,128 @@
         </message>
     </context>
     <context>
+        <name>StudyForm</name>
+        <message>
+            <source>Around the points of the truth</source>
+            <translation>正解のある点の周辺</translation>
+        </message>
+        <message>
+            <source>On the whole drive</source>
+            <translation>走行データ全体</translation>
+        </message>
+        <message>
+            <source>Around few points it is quick; some methods look at the whole cloud, though.</source>
+            <translation>点が少ないほど短時間で終わります。ただし、点群全体の統計を使う方法では結果が異なることがあります。</translation>
+        </message>
+        <message>
+            <source>Study</source>
+            <translation>検討を実行</translation>
+        </message>
+        <message>
+            <source>Tool</source>
+            <translation>ツール</translation>
+        </message>
+        <message>
+            <source>from</source>
+            <translation>開始</translation>
+        </message>
+        <message>
+            <source>to</source>
+            <translation>終了</translation>
+        </message>
+        <message>
+            <source>values</source>
+            <translation>個数</translation>
+        </message>
+        <message>
+            <source>Parameter</source>
+            <translation>パラメータ</translation>
+        </message>
+        <message>
+            <source>and</source>
+            <translation>もう1つ</translation>
+        </message>
+        <message>
+            <source>Where</source>
+            <translation>範囲</translation>
+        </message>
+        <message>
+            <source>no other</source>
+            <translation>なし</translation>
+        </message>
+        <message>
+            <source>Choose two different parameters.</source>
+            <translation>異なる2つのパラメータを選んでください。</translation>
+        </message>
+        <message>
+            <source>Choose fewer values: at most {most} runs.</source>
+            <translation>値を減らしてください（最大{most}回）。</translation>
+        </message>
+        <message>
+            <source>{count} runs; otherwise as in Processing: {settings}</source>
+            <translation>{count}回実行。ほかの値は「処理」パネルの設定: {settings}</translation>
+        </message>
+    </context>
+    <context>
+        <name>StudyPanel</name>
+        <message>
+            <source>Use these values</source>
+            <translation>この値を使う</translation>
+        </message>
+        <message>
+            <source>Sets them in the tool's form; click on the plot for others</source>
+            <translation>ツールの設定に反映します。グラフをクリックすると別の値を選べます</translation>
+        </message>
+        <message>
+            <source>Export</source>
+            <translation>書き出し</translation>
+        </message>
+        <message>
+            <source>Forget this study</source>
+            <translation>この検討結果を削除</translation>
+        </message>
+        <message>
+            <source>No study yet</source>
+            <translation>検討結果なし</translation>
+        </message>
+        <message>
+            <source>A study shows here how good each setting is.</source>
+            <translation>検討を実行すると、設定ごとの精度がここに表示されます。</translation>
+        </message>
+        <message>
+            <source>a part of {drive}</source>
+            <translation>{drive}の一部</translation>
+        </message>
+        <message>
+            <source>precision</source>
+            <translation>適合率</translation>
+        </message>
+        <message>
+            <source>recall</source>
+            <translation>再現率</translation>
+        </message>
+        <message>
+            <source>now</source>
+            <translation>現在</translation>
+        </message>
+        <message>
+            <source>best</source>
+            <translation>最良</translation>
+        </message>
+        <message>
+            <source>Table (CSV)</source>
+            <translation>表（CSV）</translation>
+        </message>
+        <message>
+            <source>Plot (PNG)</source>
+            <translation>グラフ（PNG）</translation>
+        </message>
+        <message>
+            <source>Plot (PDF)</source>
+            <translation>グラフ（PDF）</translation>
+        </message>
+    </context>
+    <context>
         <name>TemplateForm</name>
         <message>
             <source>The line that is made at the marked vertex</source>
@@ -1603,6 +1924,61 @@
         <message>
             <source>Click a vertex to say which line is made there</source>
             <translation>頂点をクリックすると、そこに作成する線を選べます</translation>
+        </message>
+    </context>
+    <context>
+        <name>TruthBar</name>
+        <message>
+            <source>What points really are, as somebody said</source>
+            <translation>点の本来のクラス（人が確認した正解）</translation>
+        </message>
+        <message>
+            <source>New truth</source>
+            <translation>正解を登録</translation>
+        </message>
+        <message>
+            <source>Forget this truth</source>
+            <translation>この正解を削除</translation>
+        </message>
+        <message>
+            <source>Truth</source>
+            <translation>正解</translation>
+        </message>
+        <message>
+            <source>None yet</source>
+            <translation>未登録</translation>
+        </message>
+        <message>
+            <source>All of the drive as it stands now</source>
+            <translation>走行データ全体を現在のクラスで</translation>
+        </message>
+        <message>
+            <source>You have checked the drive shown: every class is right</source>
+            <translation>表示中の走行データを確認済みで、すべてのクラスが正しい場合に使います</translation>
+        </message>
+        <message>
+            <source>The part shown in 3D as it stands now</source>
+            <translation>3Dビューの表示範囲を現在のクラスで</translation>
+        </message>
+        <message>
+            <source>You have checked what the 3D view is clipped to, on the drive shown</source>
+            <translation>表示中の走行データのうち、3Dビューで切り出した範囲を確認済みの場合に使います</translation>
+        </message>
+        <message>
+            <source>Points painted by hand, no others</source>
+            <translation>手動でラベルを付けた点だけ</translation>
+        </message>
+        <message>
+            <source>Labels that a run gave don't count unless you painted over them</source>
+            <translation>処理の実行で付いたラベルは、手動で塗り直した点を除いて対象外です</translation>
+        </message>
+        <message>
+            <source>From a file…</source>
+            <translation>ファイルから…</translation>
+        </message>
+        <message>
+            <source>{count} points</source>
+            <translation>{count} 点</translation>
         </message>
     </context>
     <context>
