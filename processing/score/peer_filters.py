@@ -6,6 +6,7 @@ package ``cloth-simulation-filter``, SMRF the package ``pysmrf``.
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -93,13 +94,15 @@ def ground_by_cloth(
     with tempfile.TemporaryDirectory(prefix="zuka-") as folder:
         places, found = Path(folder) / "places.npy", Path(folder) / "ground.npy"
         np.save(places, local_xyz)
-        # A process of its own, since it talks to standard output from C++.
+        # A process of its own, since it talks to standard output from C++; of one thread, since
+        # with several its result changes from run to run.
         told = [str(value) for value in (places, found, cloth_m, rigidness, distance_m)]
         subprocess.run(  # noqa: S603 - our own lines, with files of our own
             [sys.executable, "-c", _CLOTH, *told],
             check=True,
             stdout=subprocess.DEVNULL,
             timeout=_LONGEST_S,
+            env={**os.environ, "OMP_NUM_THREADS": "1"},
         )
         return _flags(len(local_xyz), np.load(found))
 
