@@ -117,7 +117,8 @@ def _spacing(
     # On a long street a share of its extent says little: parts are some metres wide there.
     most = int(np.clip(extent.max() / _COARSE_M, _MOST_COARSE, _MOST_PARTS))
     parts = int(np.clip(np.sqrt(count / _POINTS_OF_COARSE), 1, most))
-    coarse_m = max(float(extent.max()) / parts, 1e-3)
+    # A little more, so that the farthest point doesn't count as a thin part of its own.
+    coarse_m = max(float(extent.max()) / parts * (1.0 + 1e-9), 1e-3)
     counts = np.zeros((parts + 1, parts + 1), np.int64)
     for xyz in blocks():
         _count_kernel(np.ascontiguousarray(xyz), low, coarse_m, counts)

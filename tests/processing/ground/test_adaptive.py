@@ -184,3 +184,8 @@ def test_a_hall_cut_by_the_border_goes_and_a_terrace_along_the_border_stays() ->
     is_ground = _found(xyz).is_ground(xyz)
     assert is_ground[~hall].mean() > 0.99
     assert is_ground[hall].mean() < 0.02
+
+
+def test_the_farthest_point_does_not_make_the_cells_of_a_small_cloud_large() -> None:
+    xyz = np.random.default_rng(11).uniform(0.0, 8.0, (150, 3)) * [1.0, 1.0, 0.0]
+    assert _found(xyz).grid.size_m < 1.5
