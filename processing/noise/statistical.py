@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from processing.monitor import Monitor, SilentMonitor
 from processing.noise.descent_kernels import descent_kernel
+from processing.noise.far_points import is_far
 from processing.noise.morton import nested_cells
 from processing.noise.nearest_kernels import CellPoints, nearest_kernel
 from processing.noise.sharing import shared_out
@@ -23,6 +24,7 @@ NEIGHBOURS = 113
 DEVIATIONS = 1.5
 
 _POINTS_AT_ONCE = 8_192
+_COARSE_M = 0.01  # of the smallest cubes: an extent of some 10 km
 
 
 @dataclass(frozen=True)
@@ -103,6 +105,12 @@ def distances_of(
     if not wanted.size:
         return np.zeros(0), np.zeros(0)
     cells = nested_cells(xyz, 0.0)
+    if cells.cell_m > _COARSE_M:
+        finite = np.sort(cells.order)
+        far = finite[is_far(xyz[finite])]
+        if far.size:
+            wish = (neighbours, counts_itself)
+            return _distances_beside_far(xyz, wanted, far, wish, monitor or SilentMonitor())
     points = CellPoints(cells.codes, cells.local_xyz, cells.cell_m)
     asked = neighbours if counts_itself else neighbours + 1
     nearest = min(cells.order.size, asked)
@@ -121,6 +129,44 @@ def distances_of(
     by_point[cells.order] = found
     farthest = by_point[wanted, 1] if nearest == asked else np.full(wanted.size, np.inf)
     return by_point[wanted, 0] / divisor, farthest
+
+
+def _distances_beside_far(
+    xyz: NDArray[np.float64],
+    wanted: NDArray[np.int64],
+    far: NDArray[np.int64],
+    wish: tuple[int, bool],
+    monitor: Monitor,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """As :func:`distances_of`, where far points would make the cells too coarse for the others.
+
+    The others are measured without the far ones, and again with all where a far one may be nearer
+    than what was found.
+    """
+    from scipy.spatial import cKDTree
+
+    neighbours, counts_itself = wish
+    others = xyz.copy()
+    others[far] = np.nan
+    is_open = np.isin(wanted, far)
+    means, farthest = np.full(wanted.size, np.inf), np.full(wanted.size, np.inf)
+    near = np.flatnonzero(~is_open)
+    means[near], farthest[near] = distances_of(
+        others, wanted[near], neighbours, counts_itself=counts_itself, monitor=monitor
+    )
+    is_open[near] = farthest[near] > cKDTree(xyz[far]).query(xyz[wanted[near]])[0]
+    tree = cKDTree(xyz[np.isfinite(xyz).all(axis=1)])
+    asked = neighbours if counts_itself else neighbours + 1
+    nearest = min(tree.n, asked)
+    left = np.flatnonzero(is_open)
+    for start in range(0, left.size, _POINTS_AT_ONCE):
+        monitor.check()
+        some = left[start : start + _POINTS_AT_ONCE]
+        # A list keeps two axes where one neighbour is asked for.
+        lengths = np.asarray(tree.query(xyz[wanted[some]], list(range(1, nearest + 1)))[0])
+        means[some] = lengths.sum(axis=1) / max(1, nearest if counts_itself else nearest - 1)
+        farthest[some] = lengths[:, -1] if nearest == asked else np.inf
+    return means, farthest
 
 
 def statistical_outliers(

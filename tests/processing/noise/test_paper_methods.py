@@ -81,6 +81,15 @@ def test_many_points_at_one_place_among_others_hold_nothing_up() -> None:
     np.testing.assert_allclose(mean_distances(xyz), expected, atol=1e-9)
 
 
+@pytest.mark.parametrize("counts_itself", [True, False])
+def test_spikes_of_thousands_of_kilometres_change_no_other_point(counts_itself: bool) -> None:
+    xyz = np.vstack([street() - START, [[2e6, 0, 0], [0, -2e6, 0], [0, 0, 2e6], [2e6, 0, 1]]])
+    asked = 113 if counts_itself else 114
+    expected = cKDTree(xyz).query(xyz, asked)[0].sum(axis=1) / 113
+    found = mean_distances(xyz, counts_itself=counts_itself)
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
 def test_the_limit_is_the_mean_and_so_many_deviations() -> None:
     means = np.array([1.0, 2.0, 6.0, np.nan])
     parts = DistanceSums.of(means[:1]) + DistanceSums.of(means[1:])
