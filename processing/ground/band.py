@@ -113,14 +113,7 @@ def ground_band(
     thick: NDArray[np.float32] = (
         spread + tolerances.side_share * size_m + tolerances.slope_share * rise
     ).astype(np.float32)
-    bins = np.zeros(surface.shape, np.uint64)
-    feet = np.zeros(surface.shape, np.uint16)
-    for xyz in blocks():
-        _columns_kernel(
-            np.ascontiguousarray(xyz), grid.origin, size_m, surface, thick, (bins, feet)
-        )
-    if size_m > _FINE_CELL_M:
-        feet[:] = 0
+    bins, feet = _what_stands(blocks, grid, surface, thick)
     foot = tolerances.foot_deviations * roughness + tolerances.slope_share * rise
     above = np.where(_stands(bins, thick) | ~ground, np.minimum(thick, foot), thick)
     lowest = cv2.erode(surface, np.ones((3, 3), np.uint8))
@@ -139,6 +132,21 @@ def ground_band(
         feet,
         typical,
     )
+
+
+def _what_stands(
+    blocks: Blocks, grid: CellGrid, surface: NDArray[np.float32], thick: NDArray[np.float32]
+) -> tuple[NDArray[np.uint64], NDArray[np.uint16]]:
+    """Columns of points by tenths of a metre, and the parts of cells over which things stand."""
+    bins = np.zeros(surface.shape, np.uint64)
+    feet = np.zeros(surface.shape, np.uint16)
+    for xyz in blocks():
+        _columns_kernel(
+            np.ascontiguousarray(xyz), grid.origin, grid.size_m, surface, thick, (bins, feet)
+        )
+    if grid.size_m > _FINE_CELL_M:
+        feet[:] = 0
+    return bins, feet
 
 
 def classify(xyz: NDArray[np.float64], grid: CellGrid, band: Band) -> NDArray[np.bool_]:

@@ -99,7 +99,9 @@ def standing_cells(
             lower = opened_within(surface, radius)
             raised = surface - lower > np.maximum(rise, np.float32(_STOREY_M))
             free = (measured & ~standing, nearest)
-            shares = rim_shares(raised, heights, free, size_m, steep, shape.barrier, _BORDER)
+            shares = rim_shares(
+                raised, heights, free, size_m, steep, barrier=shape.barrier, border=_BORDER
+            )
             things = shares >= shape.rim_share
             standing |= things
             surface[things] = lower[things]
@@ -118,13 +120,15 @@ def _things(
     steep, shape = sides
     things = rim_shares(raised, heights, measured, size_m, steep) >= shape.rim_share
     rest = raised & ~things
-    split = rim_shares(rest, heights, (free & ~things, nearest), size_m, steep, shape.barrier)
+    split = rim_shares(
+        rest, heights, (free & ~things, nearest), size_m, steep, barrier=shape.barrier
+    )
     things |= split >= shape.rim_share
     unclear = rest & ~things & np.isnan(split)
     if unclear.any():
         free = free & ~things
         beside = (free, nearest_known(free))
-        around = rim_shares(unclear, heights, beside, size_m, steep, shape.barrier)
+        around = rim_shares(unclear, heights, beside, size_m, steep, barrier=shape.barrier)
         things |= around >= shape.rim_share
     found: NDArray[np.bool_] = things
     return found
@@ -141,6 +145,7 @@ def rim_shares(
     measured: tuple[NDArray[np.bool_], NDArray[np.int32]],
     size_m: float,
     steep: NDArray[np.float32],
+    *,
     barrier: float = np.inf,
     border: float = 0.0,
 ) -> NDArray[np.float64]:
