@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 from typing_extensions import override
 
 from app.actions.action import Action
+from app.panel_room import hide_stray_tabs
 from app.settings import WindowLayout
 from app.view_area import ViewArea
 from app.window_actions import WindowActions
@@ -291,10 +292,9 @@ class MainWindow(QMainWindow):
         self._when_laid_out.start()
 
     def _on_laid_out(self) -> None:
-        if not self._is_open:
-            return
-        if self._docks_when_open is not None:
+        if self._is_open and self._docks_when_open is not None:
             self.restoreState(self._docks_when_open)
-            return
-        for dock in self._in_front:
-            dock.raise_()
+        elif self._is_open:
+            for dock in self._in_front:
+                dock.raise_()
+        hide_stray_tabs(self)

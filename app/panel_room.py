@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QDockWidget, QMainWindow
+from PySide6.QtWidgets import QDockWidget, QMainWindow, QTabBar
 
 _LEAST_PX = 1
 """Qt makes it as high as the panel needs."""
@@ -36,3 +36,12 @@ def make_room(window: QMainWindow, panel: str, high_px: int) -> None:
     left_px = (window.height() - high_px) // max(len(others), 1)
     heights = [high_px, *([max(left_px, _LEAST_PX)] * len(others))]
     window.resizeDocks([dock, *others], heights, Qt.Orientation.Vertical)
+
+
+def hide_stray_tabs(window: QMainWindow) -> None:
+    """Hide the bars of tabs that Qt forgot when a panel joined others; each has another's tabs."""
+    bars = window.findChildren(QTabBar, options=Qt.FindChildOption.FindDirectChildrenOnly)
+    tabs = {bar: {bar.tabText(at) for at in range(bar.count())} for bar in bars}
+    for bar in bars:
+        if any(tabs[bar] < tabs[other] for other in bars):
+            bar.hide()
