@@ -190,18 +190,18 @@ def _refined(
     rate_hz, start = begin
     centre, velocity, rate = start.astype(np.float64), np.zeros(2), 2 * np.pi * rate_hz
     phases = np.zeros(windows)
-    member = points.window[:, None] == np.arange(windows)
+    member = (points.window[:, None] == np.arange(windows)).astype(np.float64)
     for turn in range(rounds + 1):
         rays = points.place - centre - points.time[:, None] * velocity
         distance = np.maximum(np.hypot(rays[:, 0], rays[:, 1]), 0.3)
         waves = np.exp(1j * (_angles(rays) - rate * points.time))
-        phases = np.angle(member.T @ waves)
+        phases = np.angle(_sums_by_window(waves, points))
         clock = phases[points.window] + rate * points.time
         miss = np.angle(waves * np.exp(-1j * phases[points.window]))
         if turn == rounds:
             break
         across = np.column_stack([-np.sin(clock), np.cos(clock)]) / distance[:, None]
-        parts = [member.astype(np.float64), points.time[:, None], across]
+        parts = [member, points.time[:, None], across]
         if moves:
             parts.append(across * points.time[:, None])
         design = np.hstack(parts)
@@ -211,8 +211,11 @@ def _refined(
         # A trace of ridge keeps what the points don't determine where it is.
         ridge = np.full(design.shape[1], 1e-9 * points.time.size)
         ridge[windows + 1 :] = 1e-6 * points.time.size
-        normal = (design * weight[:, None]).T @ design + np.diag(ridge)
-        change = np.linalg.solve(normal, (design * weight[:, None]).T @ miss)
+        weighted = design * weight[:, None]
+        # Libraries of linear algebra let other cores wait for such small products, which are
+        # reading points meanwhile.
+        normal = np.einsum("ni,nj->ij", weighted, design) + np.diag(ridge)
+        change = np.linalg.solve(normal, np.einsum("ni,n->i", weighted, miss))
         rate += change[windows]
         shift = change[windows + 1 : windows + 3]
         centre = centre + shift * min(1.0, 1.5 / max(float(np.hypot(*shift)), 1e-9))
@@ -220,3 +223,11 @@ def _refined(
             velocity = velocity + change[windows + 3 :]
     coherence = float(np.mean(np.cos(miss)))
     return RotationFit(rate / (2 * np.pi), centre, velocity, phases, max(coherence, 0.0))
+
+
+def _sums_by_window(waves: NDArray[np.complex128], points: PlanePoints) -> NDArray[np.complex128]:
+    real, imaginary = (
+        np.bincount(points.window, weights=part, minlength=points.windows)
+        for part in (waves.real, waves.imag)
+    )
+    return real + 1j * imaginary
