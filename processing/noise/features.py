@@ -39,6 +39,7 @@ _FLAT_BAND_M = 0.1
 _PLANE_POINTS = 24
 _PLANE_SHARE = 0.4
 _PLANE_THICKNESS = 0.12  # in cells of two spacings
+_SURFACE_SHARE = 0.3
 _INTENSITY_SAMPLE = 20_000
 
 
@@ -151,6 +152,9 @@ def search_with_beams(beams: Beams, monitor: Monitor) -> BeamSearch:
 def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
     """Candidates of a cloud of which only places are known.
 
+    Where few points lie on surfaces, as in woods seen from the air or a single tree, places alone
+    don't tell leaves from noise: nothing is a candidate then.
+
     Parameters
     ----------
     xyz : (n, 3) float64
@@ -160,9 +164,10 @@ def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
     spacings = np.empty(xyz.shape[0])
     spacings[fine.order] = np.clip(local_spacings(fine), _FINEST_M, None)
     is_sure = _planar_points(xyz, spacings, monitor)
+    has_surfaces = is_sure.mean() >= _SURFACE_SHARE
     around = Surroundings.of(xyz, spacings, is_sure)
     is_ground = np.abs(around.heights) < _GROUND_BAND_M
-    points = np.flatnonzero(~(is_sure & around.is_main & is_ground))
+    points = np.flatnonzero(~(is_sure & around.is_main & is_ground) & has_surfaces)
     middle = float(np.median(spacings))
     blocks = [
         around.scale_features(points, None, monitor),

@@ -137,6 +137,13 @@ def test_strange_clouds_lose_nothing(xyz: NDArray[np.float64]) -> None:
     assert not noise_codes_in_space(xyz).any()
 
 
+def test_a_crown_without_surfaces_keeps_its_leaves() -> None:
+    random = np.random.default_rng(4)
+    leaves = random.normal(0, 1, (4_000, 3)) * [3.0, 3.0, 2.0]
+    ground = np.column_stack([random.uniform(-5, 5, (300, 2)), random.normal(-6, 0.1, 300)])
+    assert not noise_codes_in_space(np.vstack([leaves, ground])).any()
+
+
 def test_points_without_a_place_are_noise() -> None:
     assert (noise_codes_in_space(np.full((30, 3), np.nan)) == 18).all()
 
