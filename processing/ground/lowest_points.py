@@ -138,34 +138,6 @@ def _cells(
     return np.floor((xyz[:, :2] - start) / cell_m).astype(np.int64)
 
 
-def lowest_points(xyz: NDArray[np.float64], cell_m: float) -> NDArray[np.int64]:
-    """Indices of the lowest point of each occupied cell, by cell; the first of equal ones.
-
-    Parameters
-    ----------
-    xyz : (n, 3) float64
-        m; rows that are not finite are passed over.
-    """
-    return lowest_ground(lambda: [xyz], cell_m).lowest.numbers
-
-
-def lowest_point_ground(
-    xyz: NDArray[np.float64], cell_m: float, tolerance_m: float = 0.0
-) -> NDArray[np.bool_]:
-    """Ground as each cell's lowest point, and what lies no more than ``tolerance_m`` above it.
-
-    Parameters
-    ----------
-    tolerance_m : float
-        0 keeps one point per cell, as the method is described; more keeps a band.
-
-    Returns
-    -------
-    (n,) bool
-    """
-    return lowest_ground(lambda: [xyz], cell_m, tolerance_m).is_ground(xyz, 0)
-
-
 def require_points(blocks: Blocks, least: int) -> None:
     """Raise when there are too few points with finite coordinates.
 

@@ -11,12 +11,10 @@ from processing.errors import OutOfRange
 from processing.ground.cells import Blocks
 from processing.ground.lowest_points import LowestPoints, lowest_ground, require_points
 from processing.ground.triangles import Triangles, triangulated
-from processing.monitor import Monitor, PartMonitor
+from processing.monitor import Monitor
 from processing.text import Text
 
 MOST_CORNERS = 1_000_000
-_BLOCK = 1_000_000
-_FINDING = 0.6
 
 
 @dataclass(frozen=True)
@@ -86,57 +84,6 @@ class PublishedSurface:
         with np.errstate(invalid="ignore"):
             is_ground = np.abs(above) <= self.distance_m
         return is_ground, above, int(is_outside.sum())
-
-
-@dataclass(frozen=True)
-class PublishedGround:
-    """What the method found.
-
-    Attributes
-    ----------
-    is_ground : (n,) bool
-    triangles : Triangles
-    outside_hull : int
-        Points beyond the triangles, judged by the nearest corner.
-    removals : int
-        How often corners were removed.
-    """
-
-    is_ground: NDArray[np.bool_]
-    triangles: Triangles
-    outside_hull: int
-    removals: int
-
-
-def published_ground(
-    xyz: NDArray[np.float64], steps: PublishedSteps, monitor: Monitor
-) -> PublishedGround:
-    """Ground by lowest points, triangles, slopes divided and a vertical band.
-
-    Parameters
-    ----------
-    xyz : (n, 3) float64
-        m; rows that are not finite are not ground.
-
-    Raises
-    ------
-    OutOfRange
-        Fewer than three finite points, or too many corners, as :func:`published_surface`.
-
-    References
-    ----------
-    Specification noise_ground.md, B3.1 to B3.3.
-    """
-    surface = published_surface(lambda: [xyz], steps, PartMonitor(monitor, 0.0, _FINDING))
-    is_ground = np.zeros(len(xyz), np.bool_)
-    outside = 0
-    for start in range(0, len(xyz), _BLOCK):
-        monitor.check()
-        block = xyz[start : start + _BLOCK]
-        is_ground[start : start + _BLOCK], _, beyond = surface.judged(block)
-        outside += beyond
-        monitor.report(_FINDING + (1.0 - _FINDING) * (start + len(block)) / len(xyz))
-    return PublishedGround(is_ground, surface.triangles, outside, surface.removals)
 
 
 def published_surface(blocks: Blocks, steps: PublishedSteps, monitor: Monitor) -> PublishedSurface:

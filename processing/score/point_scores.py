@@ -146,8 +146,6 @@ NOISE_CODES = frozenset({7, 18})
 GROUND_CODES = frozenset({2, 11})
 """A road's surface is ground too, where a classification has it apart."""
 
-_OTHERS_THAN_NOISE = frozenset(range(256)) - NOISE_CODES
-
 
 def noise_score(counts: ClassCounts) -> PointScore:
     """Noise: both classes, what doing nothing would score, and what went wrong.

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Iterator
 from pathlib import Path
 
 import laspy
 import numpy as np
 import pytest
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.cli.run import command
 from app.document import Document
-from app.jobs import JobQueue
 from processing.errors import InUse
 from processing.ground.stored_surface import ground_surface_of
 from processing.labels.label_column import labels_of
@@ -37,22 +34,6 @@ def delivery(heads: tuple[SimulatedDrive, SimulatedDrive], tmp_path: Path) -> Im
         write_laz(one, tmp_path / f"{name}.laz") for one, name in zip(heads, "lr", strict=True)
     )
     return ImportRequest(clouds, (write_trajectory_csv(heads[0], tmp_path / "t.csv"),))
-
-
-@pytest.fixture
-def street(
-    qapp: QApplication, delivery: ImportRequest, tmp_path: Path, qtbot: QtBot
-) -> Iterator[Document]:
-    jobs = JobQueue()
-    document = Document(jobs)
-    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
-        document.create(tmp_path / "p.zuka", "EPSG:6677")
-    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
-        document.import_files(delivery)
-    yield document
-    jobs.close()
-    document.close()
-    document.tiles.close()
 
 
 def test_one_run_labels_both_heads_and_one_undo_takes_it_back(

@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 from argparse import Namespace
-from collections.abc import Iterator
 from pathlib import Path
 
 import laspy
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.cli.run import command
 from app.document import Document
-from app.jobs import JobQueue
 from processing.labels.label_column import labels_of
 from processing.points.drive import Drive
 from processing.project.change import Change
@@ -42,22 +39,6 @@ def scene() -> NoisyStreet:
 def delivery(scene: NoisyStreet, tmp_path: Path) -> ImportRequest:
     cloud = write_laz(scene.drive, tmp_path / "左.laz")
     return ImportRequest((cloud,), (write_trajectory_csv(scene.drive, tmp_path / "軌跡.csv"),))
-
-
-@pytest.fixture
-def street(
-    qapp: QApplication, delivery: ImportRequest, tmp_path: Path, qtbot: QtBot
-) -> Iterator[Document]:
-    jobs = JobQueue()
-    document = Document(jobs)
-    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
-        document.create(tmp_path / "p.zuka", "EPSG:6677")
-    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
-        document.import_files(delivery)
-    yield document
-    jobs.close()
-    document.close()
-    document.tiles.close()
 
 
 def find_noise(document: Document, qtbot: QtBot, **parameters: float | str) -> Text:

@@ -2,16 +2,31 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 
 from processing.errors import OutOfRange
-from processing.ground.lowest_points import lowest_point_ground, lowest_points
-from processing.ground.published import PublishedSteps, published_ground
+from processing.ground.lowest_points import lowest_ground
+from processing.ground.published import PublishedSteps, published_surface
 from processing.ground.triangles import triangulated
 from processing.monitor import SilentMonitor
 
 _SHIFT = np.array([-12_400.0, -36_700.0, 50.0])
+
+
+class _Found(NamedTuple):
+    is_ground: np.ndarray
+    outside_hull: int
+    removals: int
+
+
+def _ground(xyz: np.ndarray, steps: PublishedSteps) -> _Found:
+    """The method on a cloud in one block."""
+    surface = published_surface(lambda: [xyz], steps, SilentMonitor())
+    is_ground, _, outside_hull = surface.judged(xyz)
+    return _Found(is_ground, outside_hull, surface.removals)
 
 
 def _slope() -> np.ndarray:
@@ -33,7 +48,7 @@ def _with_machine() -> tuple[np.ndarray, int]:
 
 def test_a_slope_is_ground_and_a_machine_of_two_metres_is_not() -> None:
     xyz, count = _with_machine()
-    found = published_ground(xyz, PublishedSteps(), SilentMonitor())
+    found = _ground(xyz, PublishedSteps())
     inside = _inside(xyz[:count])
     assert found.is_ground[:count][inside].mean() > 0.99
     assert not found.is_ground[count:].any()
@@ -43,7 +58,7 @@ def test_a_point_at_the_distance_itself_is_ground() -> None:
     flat = np.array([[0.0, 0.0, 0.0], [8.0, 0.0, 0.0], [0.0, 8.0, 0.0], [8.0, 8.0, 0.0]])
     xyz = np.vstack([flat, [[1.0, 1.0, 0.25], [1.0, 2.0, 0.26]]])
     steps = PublishedSteps(distance_m=0.25)
-    found = published_ground(xyz, steps, SilentMonitor())
+    found = _ground(xyz, steps)
     assert found.is_ground.tolist() == [True, True, True, True, True, False]
 
 
@@ -52,8 +67,8 @@ def test_the_highest_corner_of_a_steep_triangle_goes_once_or_until_none_is_left(
     xyz = np.column_stack([x.ravel(), y.ravel(), np.zeros(25)])
     xyz[12, 2] = 40.0
     xyz[13, 2] = 20.0
-    once = published_ground(xyz, PublishedSteps(grid_m=1.0), SilentMonitor())
-    often = published_ground(xyz, PublishedSteps(grid_m=1.0, most_removals=9), SilentMonitor())
+    once = _ground(xyz, PublishedSteps(grid_m=1.0))
+    often = _ground(xyz, PublishedSteps(grid_m=1.0, most_removals=9))
     assert once.removals == 1
     assert not often.is_ground[12:14].any()
     assert often.is_ground.sum() == 23
@@ -67,25 +82,24 @@ def test_slopes_of_triangles_are_angles_from_the_horizontal() -> None:
 def test_large_coordinates_and_duplicates_do_not_change_the_ground() -> None:
     xyz, _ = _with_machine()
     doubled = np.vstack([xyz, xyz])
-    found = published_ground(doubled, PublishedSteps(), SilentMonitor()).is_ground
-    moved = published_ground(
-        xyz + np.array([3e6, 5e6, 0.0]), PublishedSteps(), SilentMonitor()
-    ).is_ground
-    alone = published_ground(xyz, PublishedSteps(), SilentMonitor()).is_ground
+    found = _ground(doubled, PublishedSteps()).is_ground
+    moved = _ground(xyz + np.array([3e6, 5e6, 0.0]), PublishedSteps()).is_ground
+    alone = _ground(xyz, PublishedSteps()).is_ground
     assert np.array_equal(found[: len(xyz)], alone)
     assert np.array_equal(moved, alone)
 
 
 def test_the_lowest_points_are_one_per_cell_and_a_tolerance_keeps_a_band() -> None:
     xyz = np.array([[0.1, 0.1, 2.0], [0.2, 0.2, 1.0], [0.3, 0.1, 1.2], [1.5, 0.1, 7.0]])
-    assert lowest_points(xyz, 1.0).tolist() == [1, 3]
-    assert lowest_point_ground(xyz, 1.0).tolist() == [False, True, False, True]
-    assert lowest_point_ground(xyz, 1.0, 0.3).tolist() == [False, True, True, True]
+    strict, with_band = (lowest_ground(lambda: [xyz], 1.0, band) for band in (0.0, 0.3))
+    assert strict.lowest.numbers.tolist() == [1, 3]
+    assert strict.is_ground(xyz, 0).tolist() == [False, True, False, True]
+    assert with_band.is_ground(xyz, 0).tolist() == [False, True, True, True]
 
 
 def test_points_on_one_line_and_coplanar_points_have_ground() -> None:
     line = np.column_stack([np.arange(10.0), np.zeros(10), np.zeros(10)])
-    found = published_ground(line, PublishedSteps(grid_m=1.0), SilentMonitor())
+    found = _ground(line, PublishedSteps(grid_m=1.0))
     assert found.is_ground.all()
     assert found.outside_hull == 10
 
@@ -93,11 +107,11 @@ def test_points_on_one_line_and_coplanar_points_have_ground() -> None:
 def test_points_without_coordinates_are_not_ground() -> None:
     xyz, count = _with_machine()
     xyz[5] = np.nan
-    found = published_ground(xyz, PublishedSteps(), SilentMonitor())
+    found = _ground(xyz, PublishedSteps())
     assert not found.is_ground[5]
     assert found.is_ground[:count].mean() > 0.94
 
 
 def test_two_points_are_refused_in_a_sentence() -> None:
     with pytest.raises(OutOfRange, match="at least 3 points"):
-        published_ground(np.zeros((2, 3)), PublishedSteps(), SilentMonitor())
+        _ground(np.zeros((2, 3)), PublishedSteps())

@@ -8,7 +8,6 @@ from PySide6.QtCore import QDateTime, QLocale
 
 from processing.project.runs import Run
 from processing.project.truth_store import Truth
-from processing.score.asked_classes import ASKED
 from processing.text import Language, Text
 from processing.tools.parameters import Parameter, Value, parameters_of
 from processing.tools.registry import TOOLS
@@ -70,12 +69,6 @@ def name_of_truth(truth: Truth, language: Language) -> str:
     """What a truth is called, and when it was made."""
     moment = _moment(truth.made.timestamp(), language)
     return _NAMED_TRUTH.filled(name=truth.name, moment=moment).spoken(language)
-
-
-def sides_words(tool: str, language: Language) -> str:
-    """Which points are kept and removed, for a tool: ``kept point · noise point``."""
-    asked = ASKED[tool]
-    return f"{asked.kept.spoken(language)} · {asked.removed.spoken(language)}"
 
 
 def _moment(seconds: float, language: Language) -> str:

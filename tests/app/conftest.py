@@ -1,0 +1,33 @@
+"""What several tests of the document begin with."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.document import Document
+from app.jobs import JobQueue
+from processing.project.importing import ImportRequest
+
+WAIT_MS = 30_000
+
+
+@pytest.fixture
+def street(
+    qapp: QApplication, delivery: ImportRequest, tmp_path: Path, qtbot: QtBot
+) -> Iterator[Document]:
+    """A document with what the module's ``delivery`` gives, imported."""
+    jobs = JobQueue()
+    document = Document(jobs)
+    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
+        document.create(tmp_path / "p.zuka", "EPSG:6677")
+    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
+        document.import_files(delivery)
+    yield document
+    jobs.close()
+    document.close()
+    document.tiles.close()
