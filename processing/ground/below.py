@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.ground.cells import Levels
-from processing.ground.morphology import filled, nearest_known, opened
+from processing.ground.morphology import filled, nearest_known
+from processing.ground.openings import opened
 from processing.ground.regions import rim_shares
 
 _SUNK_FLANK = 0.3
@@ -44,7 +45,7 @@ def ghosts(
     ghost[0] = False
     fall = np.full(ground.shape, _FALL, np.float32)
     falls = rim_shares(sunk, -heights, (ground, nearest_known(ground)), size_m, fall)
-    found: NDArray[np.bool_] = ghost[labels] & ground & (falls >= _FALL_SHARE)
+    found: NDArray[np.bool_] = ghost[labels] & ground & falls.at_least(_FALL_SHARE)
     return found
 
 

@@ -10,6 +10,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.kernels import kernel
 from processing.labels.label_column import LABEL
 from processing.monitor import Monitor
 from processing.points.drive import Drive
@@ -109,8 +110,8 @@ class DrivePoints:
         """Coordinates of a chunk's points, (n, 3) float64, m; noise too."""
         drive = self.drives[chunk.drive]
         integers = read_stretch(drive.folder, "xyz", chunk.start, chunk.stop)
-        xyz: NDArray[np.float64] = np.multiply(integers, np.array(drive.info.scale))
-        xyz += np.array(drive.info.offset)
+        xyz = np.empty(integers.shape)
+        _metres_kernel(integers, np.array(drive.info.scale), np.array(drive.info.offset), xyz)
         return xyz
 
     def codes(self, chunk: Chunk) -> NDArray[np.uint8]:
@@ -153,3 +154,20 @@ def read_ahead(read: Callable[[ChunkT], ReadT], chunks: Iterable[ChunkT]) -> Ite
             coming = following
         if coming is not None:
             yield coming.result()
+
+
+@kernel
+def _metres_kernel(
+    integers: NDArray[np.int32],
+    scale: NDArray[np.float64],
+    offset: NDArray[np.float64],
+    xyz: NDArray[np.float64],
+) -> None:
+    for point in range(integers.shape[0]):
+        for axis in range(3):
+            xyz[point, axis] = integers[point, axis] * scale[axis] + offset[axis]
+
+
+def warm_up() -> None:
+    """Compile the kernel of this file."""
+    _metres_kernel(np.zeros((1, 3), np.int32), np.ones(3), np.zeros(3), np.empty((1, 3)))

@@ -1,4 +1,4 @@
-"""Openings of a height grid with an octagon, and holes of a grid filled as a stretched skin."""
+"""Holes of a height grid filled as a stretched skin, and what lies nearest to them."""
 
 from __future__ import annotations
 
@@ -9,35 +9,6 @@ from processing.kernels import kernel
 
 _SWEEPS = 24
 _RELAXED_CELLS = 16
-
-
-def opened(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
-    """The highest surface below ``heights`` that an octagon of ``radius`` cells can touch.
-
-    Beyond its border the grid goes on with the border's heights.
-
-    References
-    ----------
-    Soille 2003: an octagon is the sum of squares and crosses; the shares here make it regular.
-    """
-    import cv2
-
-    side = round(0.414 * radius)
-    square = np.ones((2 * side + 1, 2 * side + 1), np.uint8)
-    cross = cv2.getStructuringElement(cv2.MORPH_CROSS, (3, 3))
-    surface = np.pad(heights, radius, mode="edge")
-    for turn in (cv2.erode, cv2.dilate):
-        surface = turn(surface, square).astype(np.float32, copy=False)
-        surface = turn(surface, cross, iterations=radius - side).astype(np.float32, copy=False)
-    inside = slice(radius, -radius)
-    return np.ascontiguousarray(surface[inside, inside])
-
-
-def opened_within(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
-    """The same, but beyond its border the grid goes on with its own mirror image."""
-    mirrored = np.pad(heights, radius, mode="symmetric")
-    inside = slice(radius, -radius)
-    return np.ascontiguousarray(opened(mirrored, radius)[inside, inside])
 
 
 def filled(heights: NDArray[np.float32], known: NDArray[np.bool_]) -> NDArray[np.float32]:
@@ -61,23 +32,22 @@ def filled(heights: NDArray[np.float32], known: NDArray[np.bool_]) -> NDArray[np
         coarse_heights, coarse_known = _halved(surface, known)
         coarse = filled(coarse_heights, coarse_known)
         _prolong_kernel(coarse, known, surface)
-        there, back = _near_known(known)
-        _relax_kernel(there, back, _SWEEPS, surface)
+        _relax_kernel(_near_known(known), _SWEEPS, surface)
     return surface
 
 
-def _near_known(known: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Cells to relax, counted along the rows, and the same with each row from its end.
+def _near_known(known: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Runs of cells to relax: row, first column, end; (runs, 3) int32, along the rows.
 
     Far from what is known the coarser skin is as smooth as relaxing would make it.
     """
     import cv2
 
     element = np.ones((2 * _RELAXED_CELLS + 1, 2 * _RELAXED_CELLS + 1), np.uint8)
-    near = (cv2.dilate(known.view(np.uint8), element) > 0) & ~known
-    columns = known.shape[1]
-    turned = np.flatnonzero(near[:, ::-1])
-    return np.flatnonzero(near), turned + (columns - 1 - 2 * (turned % columns))
+    near = np.asarray(cv2.dilate(known.view(np.uint8), element), np.uint8)
+    runs = np.empty((_runs_kernel(near, known, np.empty((0, 3), np.int32)), 3), np.int32)
+    _runs_kernel(near, known, runs)
+    return runs
 
 
 def nearest_known(known: NDArray[np.bool_]) -> NDArray[np.int32]:
@@ -158,32 +128,66 @@ def _prolong_kernel(
 
 
 @kernel
-def _relax_kernel(
-    there: NDArray[np.int64],
-    back: NDArray[np.int64],
-    sweeps: int,
-    surface: NDArray[np.float32],
-) -> None:
+def _runs_kernel(near: NDArray[np.uint8], known: NDArray[np.bool_], runs: NDArray[np.int32]) -> int:
+    """Count runs of near cells that are not known, and note as many as there is room for."""
+    rows, columns = known.shape
+    count = 0
+    for row in range(rows):
+        first = -1
+        for column in range(columns + 1):
+            inside = column < columns and near[row, column] and not known[row, column]
+            if inside and first < 0:
+                first = column
+            elif not inside and first >= 0:
+                if count < runs.shape[0]:
+                    runs[count, 0], runs[count, 1], runs[count, 2] = row, first, column
+                count += 1
+                first = -1
+    return count
+
+
+@kernel
+def _relax_kernel(runs: NDArray[np.int32], sweeps: int, surface: NDArray[np.float32]) -> None:
+    """Give cells the mean of their neighbours; each time first every second one, then the others.
+
+    So no cell waits for the one before it.
+    """
     rows, columns = surface.shape
-    for sweep in range(sweeps):
-        cells = there if sweep % 2 == 0 else back
-        for place in range(cells.shape[0]):
-            row, column = cells[place] // columns, cells[place] % columns
-            total = np.float32(0.0)
-            count = 0
-            if row > 0:
-                total += surface[row - 1, column]
-                count += 1
-            if row < rows - 1:
-                total += surface[row + 1, column]
-                count += 1
-            if column > 0:
-                total += surface[row, column - 1]
-                count += 1
-            if column < columns - 1:
-                total += surface[row, column + 1]
-                count += 1
-            surface[row, column] = total / np.float32(count)
+    for turn in range(2 * sweeps):
+        for run in range(runs.shape[0]):
+            row, first, end = runs[run, 0], runs[run, 1], runs[run, 2]
+            first += (row + first + turn) % 2
+            if first == 0:
+                _relax_at_border(row, 0, surface)
+                first = 2
+            if end == columns and first < end and (end - 1 - first) % 2 == 0:
+                end -= 1
+                _relax_at_border(row, end, surface)
+            if row == 0 or row == rows - 1:
+                for column in range(first, end, 2):
+                    _relax_at_border(row, column, surface)
+            elif first < end:
+                own = surface[row, first - 1 : end + 1]
+                south = surface[row - 1, first:end]
+                north = surface[row + 1, first:end]
+                for place in range(0, end - first, 2):
+                    beside = own[place] + own[place + 2]
+                    own[place + 1] = np.float32(0.25) * (beside + (south[place] + north[place]))
+
+
+@kernel
+def _relax_at_border(row: int, column: int, surface: NDArray[np.float32]) -> None:
+    rows, columns = surface.shape
+    total = np.float32(0.0)
+    count = 0
+    for side in range(4):
+        r = row - (side == 0) + (side == 1)
+        c = column - (side == 2) + (side == 3)
+        if 0 <= r < rows and 0 <= c < columns:
+            total += surface[r, c]
+            count += 1
+    if count:
+        surface[row, column] = total / np.float32(count)
 
 
 def warm_up() -> None:

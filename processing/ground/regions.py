@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.ground.morphology import nearest_known, opened, opened_within
+from processing.ground.morphology import nearest_known
+from processing.ground.openings import opened, opened_within
 from processing.kernels import kernel
 
 _WINDOWS = 8
@@ -87,14 +88,17 @@ def standing_cells(
     nearest = nearest_known(measured)
     share_of = np.where(crowded, np.float32(shape.crowded), np.float32(1.0))
     radii = _radii(shape.widest_m / 2 / size_m, max(heights.shape))
-    for radius in [*radii, radii[-1], radii[-1]]:
+    found = np.zeros(heights.shape, np.bool_)
+    for turn, radius in enumerate([*radii, radii[-1], radii[-1]]):
+        if turn >= len(radii) and not found.any():
+            break
         rise = share_of * np.float32(shape.flank * radius * size_m + shape.rise_m)
         steep = share_of * np.float32(shape.steep if radius > _SMALL else shape.small_steep)
         lower = opened(surface, radius)
         free = (measured & ~standing, nearest)
-        things = _things(surface - lower > rise, heights, free, size_m, (steep, shape))
-        standing |= things
-        surface[things] = lower[things]
+        found = _things(surface - lower > rise, heights, free, size_m, (steep, shape))
+        standing |= found
+        surface[found] = lower[found]
         if 2 * radius * size_m >= _HALL_M:
             lower = opened_within(surface, radius)
             raised = surface - lower > np.maximum(rise, np.float32(_STOREY_M))
@@ -102,9 +106,10 @@ def standing_cells(
             shares = rim_shares(
                 raised, heights, free, size_m, steep, barrier=shape.barrier, border=_BORDER
             )
-            things = shares >= shape.rim_share
+            things = shares.at_least(shape.rim_share)
             standing |= things
             surface[things] = lower[things]
+            found |= things
     return standing
 
 
@@ -118,20 +123,49 @@ def _things(
     """Raised regions with steep rims: whole ones, parts of others, parts beside other things."""
     free, nearest = measured
     steep, shape = sides
-    things = rim_shares(raised, heights, measured, size_m, steep) >= shape.rim_share
+    things = rim_shares(raised, heights, measured, size_m, steep).at_least(shape.rim_share)
     rest = raised & ~things
     split = rim_shares(
         rest, heights, (free & ~things, nearest), size_m, steep, barrier=shape.barrier
     )
-    things |= split >= shape.rim_share
-    unclear = rest & ~things & np.isnan(split)
+    things |= split.at_least(shape.rim_share)
+    unclear = rest & ~things & split.unclear()
     if unclear.any():
         free = free & ~things
         beside = (free, nearest_known(free))
         around = rim_shares(unclear, heights, beside, size_m, steep, barrier=shape.barrier)
-        things |= around >= shape.rim_share
-    found: NDArray[np.bool_] = things
-    return found
+        things |= around.at_least(shape.rim_share)
+    return things
+
+
+@dataclass(frozen=True)
+class RimShares:
+    """How much of the rim of each raised region rises steeply.
+
+    Attributes
+    ----------
+    labels : (rows, columns) int32
+        Number of the region that a cell belongs to, 0 outside all.
+    shares : (regions,) float64
+        0 outside all; NaN where most of a rim borders on cells that are not to compare with.
+    """
+
+    labels: NDArray[np.int32]
+    shares: NDArray[np.float64]
+
+    def at_least(self, share: float) -> NDArray[np.bool_]:
+        """Cells of regions with such a share, which is more than 0: (rows, columns) bool."""
+        return self._cells_of(self.shares >= share)
+
+    def unclear(self) -> NDArray[np.bool_]:
+        """Cells of regions whose rim can't be judged: (rows, columns) bool."""
+        return self._cells_of(np.isnan(self.shares))
+
+    def _cells_of(self, regions: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        if not regions.any():
+            return np.zeros(self.labels.shape, np.bool_)
+        cells: NDArray[np.bool_] = regions[self.labels]
+        return cells
 
 
 def _radii(largest: float, extent: int) -> list[int]:
@@ -148,8 +182,8 @@ def rim_shares(
     *,
     barrier: float = np.inf,
     border: float = 0.0,
-) -> NDArray[np.float64]:
-    """For each raised cell, the share of its region's rim that rises by ``steep``: 0 elsewhere.
+) -> RimShares:
+    """For each raised region, the share of its rim that rises by ``steep``.
 
     Parameters
     ----------
@@ -160,11 +194,6 @@ def rim_shares(
     border : float
         What each cell's side on the border of the grid counts as level rim.
 
-    Returns
-    -------
-    (rows, columns) float64
-        NaN where most of a rim borders on cells that are not to compare with.
-
     Notes
     -----
     The rise is taken between measured cells over their true distance. Across a gap a fall that is
@@ -172,11 +201,12 @@ def rim_shares(
     """
     free, nearest = measured
     if not raised.any() or not (free & ~raised).any():
-        return np.zeros(raised.shape)
+        return RimShares(np.zeros(raised.shape, np.int32), np.zeros(1))
     labels: NDArray[np.int32] = np.zeros(raised.shape, np.int32)
     if np.isfinite(barrier):
-        stack = np.empty(int(raised.sum()), np.int64)
-        count = _label_kernel(raised, heights, nearest, size_m, barrier, stack, labels) + 1
+        cells = np.flatnonzero(raised)
+        stack = np.empty(cells.size, np.int64)
+        count = _label_kernel(cells, heights, nearest, size_m, barrier, stack, labels) + 1
     else:
         import cv2
 
@@ -191,7 +221,7 @@ def rim_shares(
     share[rising < _LEVEL_FACTOR * level] = 0.0
     share[rim < _CLEAR * (rim + hidden)] = np.nan
     share[0] = 0.0
-    return share[labels]
+    return RimShares(labels, share)
 
 
 @kernel
@@ -276,7 +306,7 @@ def _rim_kernel(
 
 @kernel
 def _label_kernel(
-    raised: NDArray[np.bool_],
+    cells: NDArray[np.int64],
     heights: NDArray[np.float32],
     nearest: NDArray[np.int32],
     size_m: float,
@@ -284,13 +314,13 @@ def _label_kernel(
     stack: NDArray[np.int64],
     labels: NDArray[np.int32],
 ) -> int:
-    rows, columns = raised.shape
+    """Number the regions of raised cells; between two cells of one is no barrier."""
+    rows, columns = labels.shape
+    for first in cells:
+        labels[first // columns, first % columns] = -1
     count = 0
-    for first in range(rows * columns):
-        if (
-            not raised[first // columns, first % columns]
-            or labels[first // columns, first % columns]
-        ):
+    for first in cells:
+        if labels[first // columns, first % columns] >= 0:
             continue
         count += 1
         labels[first // columns, first % columns] = count
@@ -305,7 +335,7 @@ def _label_kernel(
                 c = column + (side == 2) - (side == 3)
                 if r < 0 or c < 0 or r >= rows or c >= columns:
                     continue
-                if not raised[r, c] or labels[r, c]:
+                if labels[r, c] >= 0:
                     continue
                 to_row, to_column = nearest[r, c] // columns, nearest[r, c] % columns
                 run = size_m * np.sqrt(
