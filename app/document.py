@@ -13,11 +13,13 @@ from app.adoption import Adoption
 from app.first_look import FirstLook
 from app.jobs import JobQueue, Lane
 from app.label_news import tell_labels
-from app.long_work import export_work, import_work, imported_words, run_work
+from app.label_steps import LabelSteps
+from app.long_work import export_work, import_work, imported_words
 from app.preparation import Preparation
-from app.run_storing import FinishedRun
+from app.refusals import changed_meanwhile
+from app.run_taking import RunTaking
 from app.undo import UndoStack
-from processing.errors import OutOfRange, UserError
+from processing.errors import UserError
 from processing.image.tile_cache import TileCache
 from processing.monitor import Monitor
 from processing.points.drive import Drive
@@ -28,6 +30,7 @@ from processing.project.feature import Feature
 from processing.project.found_classes import classes_now
 from processing.project.found_features import FoundFeatures
 from processing.project.importing import ImportRequest
+from processing.project.label_filing import are_many
 from processing.project.project import Project
 from processing.project.runs import Run
 from processing.project.template_store import TemplateStore
@@ -83,6 +86,11 @@ class Document(QObject):
         self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
         self._adoption = Adoption(jobs, self)
         self._adoption.refused.connect(self.refused)
+        self._label_steps = LabelSteps(self._adoption, self.undo_stack, self._changed, self)
+        self._runs = RunTaking(self._adoption, self._label_steps, self.store_run)
+        self._label_steps.told.connect(self.told)
+        self._label_steps.refused.connect(self.refused)
+        self._label_steps.cancelled.connect(jobs.cancel)
         self._preparation = Preparation(self._prepare, jobs, self)
         self._first_look = FirstLook(self.shared.view_settings)
 
@@ -150,6 +158,7 @@ class Document(QObject):
         if self._project is None:
             return
         self.about_to_close.emit()
+        self._label_steps.finish()
         self._preparation.give_up()
         self._adoption.give_up()
         self.shared.sketch.show(None)
@@ -171,10 +180,14 @@ class Document(QObject):
         """Do a change as one undoable step; says whether it could.
 
         A change of something that has become something else meanwhile is refused: another window
-        part or a job was quicker, and its work must not be lost.
+        part or a job was quicker, and its work must not be lost. Labels of many points are
+        seen when a job has stored them.
         """
+        if self._project is not None and are_many(change.labels):
+            self._label_steps.paint(self._project, label, change)
+            return True
         if self._project is not None and not self._project.features.fits(change):
-            self.refused.emit(_changed_meanwhile())
+            self.refused.emit(changed_meanwhile())
             return False
 
         def push() -> Change:
@@ -185,11 +198,11 @@ class Document(QObject):
 
     def undo(self) -> bool:
         """Take the last step back; says whether there was one."""
-        return self._changed(self.undo_stack.undo)
+        return self._project is not None and self._label_steps.move(self._project, -1)
 
     def redo(self) -> bool:
         """Do the step again that was undone; says whether there was one."""
-        return self._changed(self.undo_stack.redo)
+        return self._project is not None and self._label_steps.move(self._project, 1)
 
     def set_reference_system(self, crs: str) -> bool:
         """Say what reference system the coordinates are in; says whether it could."""
@@ -258,16 +271,11 @@ class Document(QObject):
         beside = tuple(other for other in self.drives() if other is not drive)
         project = self._needed()
         request = RunRequest(tool, drive, parameters, beside)
-        title, work = run_work(request, project.temporary_folder())
 
-        def take(done: FinishedRun) -> None:
-            if done.columns is not None:
-                self._store_columns(drive, done.columns, replaces=lane is not Lane.PREPARED)
-            if done.found is not None:
-                done.keep_with(self.drive)
-                self.store_run(done.found)
+        def store_columns(found: FinishedColumns) -> None:
+            self._store_columns(drive, found, replaces=lane is not Lane.PREPARED)
 
-        return self._adoption.start(project, title, work, take, lane=lane)
+        return self._runs.start(project, request, store_columns, lane)
 
     def store_run(self, found: FoundFeatures) -> bool:
         """Put a run with what it found on the map as one undoable step; says whether it could."""
@@ -283,7 +291,7 @@ class Document(QObject):
             return found.change
 
         is_stored = self._changed(push)
-        if found.change.labels:
+        if found.change.labels or found.change.filed:
             self._first_look.show_classes()
         return is_stored
 
@@ -367,7 +375,9 @@ class Document(QObject):
         if change.feature_ids:
             self.shared.map_changes.features_changed.emit(change.feature_ids)
         labels = tuple((self.drive(one.drive), one) for one in change.labels)
-        tell_labels(labels, self.tiles, self.shared.map_changes)
+        filed = () if change.filed is None else change.filed.counts
+        tell_labels(labels, filed, self.tiles, self.shared.map_changes)
+        self._label_steps.note(change)
         return True
 
     def _replace_by(self, make: Callable[[], Project]) -> bool:
@@ -385,14 +395,3 @@ class Document(QObject):
         self.shared.map_changes.features_changed.emit(tuple(f.id for f in self.features()))
         self._prepare_drives()
         return True
-
-
-def _changed_meanwhile() -> UserError:
-    return OutOfRange(
-        Text(
-            "The feature was changed while you edited it; it stays as it is now.",
-            "編集中に地物が変更されたため、現在の状態のままにしました。",
-        ),
-        Text("the map", "地図"),
-        Text("Do your edit again.", "もう一度編集してください。"),
-    )

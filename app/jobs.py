@@ -27,11 +27,13 @@ class Lane(Enum):
     """What the user asked for, one after the other."""
     PREPARED = "prepared"
     """What nobody waits for: it pauses while there is something to do in the other lanes."""
+    STEPS = "steps"
+    """What takes its time of what the user did to the map: labels of many points, and undo."""
     AT_HAND = "at hand"
     """What the mouse waits for: a moment's work, told to nobody unless it fails."""
 
 
-_GO_FIRST = Lane.ASKED, Lane.AT_HAND
+_GO_FIRST = Lane.ASKED, Lane.STEPS, Lane.AT_HAND
 _PAUSE_S = 0.05
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from processing.image.tile_cache import TileCache
@@ -14,10 +16,19 @@ _MANY_POINTS = 4_000_000
 
 
 def tell_labels(
-    labels: tuple[tuple[Drive, LabelChange], ...], tiles: TileCache, map_changes: MapChanges
+    labels: tuple[tuple[Drive, LabelChange], ...],
+    filed: Iterable[str],
+    tiles: TileCache,
+    map_changes: MapChanges,
 ) -> None:
-    """Drop the tiles whose points have other labels now, and tell the views."""
-    counts: dict[str, int] = {}
+    """Drop the tiles whose points have other labels now, and tell the views.
+
+    Parameters
+    ----------
+    filed : iterable of str
+        Drives in which so many points have other labels that they were filed.
+    """
+    counts: dict[str, int] = dict.fromkeys(filed, _MANY_POINTS + 1)
     for drive, label in labels:
         counts[drive.id] = counts.get(drive.id, 0) + label.count
     for id_, count in counts.items():

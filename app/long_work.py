@@ -41,12 +41,22 @@ def import_work(
     return Text("Import {names}", "{names} のインポート").filled(names=names), work
 
 
-def run_work(request: RunRequest, into: Path) -> tuple[Text, Callable[[Monitor], FinishedRun]]:
-    """A tool is run on a drive; what it says about points comes to lie in ``into``."""
+def run_work(
+    request: RunRequest, into: Path, labels_into: Path, begin: Callable[[], None]
+) -> tuple[Text, Callable[[Monitor], FinishedRun]]:
+    """A tool is run on a drive; what it says about points comes to lie in ``into``.
+
+    Parameters
+    ----------
+    labels_into, begin
+        As of :func:`app.run_storing.finished_run`.
+    """
     title = Text("{tool}: {name}", "{tool}: {name}").filled(
         tool=tool_of(request.tool).name, name=request.drive.info.name
     )
-    return title, lambda monitor: finished_run(request, into, monitor)
+    return title, lambda monitor: finished_run(
+        request, into, monitor, labels_into=labels_into, begin=begin
+    )
 
 
 def export_work(

@@ -63,13 +63,24 @@ class FinishedRun:
             shutil.rmtree(self.kept, ignore_errors=True)
 
 
-def finished_run(request: RunRequest, into: Path, monitor: Monitor) -> FinishedRun:
+def finished_run(
+    request: RunRequest,
+    into: Path,
+    monitor: Monitor,
+    *,
+    labels_into: Path,
+    begin: Callable[[], None],
+) -> FinishedRun:
     """Run a tool and make of what it gives what the project stores; for a worker's thread.
 
     Parameters
     ----------
     into : Path
         A new folder on the drive's disk, for columns.
+    labels_into : Path
+        A new folder of the project, for labels of many points.
+    begin : callable
+        Called when labels are looked at first: what is painted later counts more than the run.
 
     Raises
     ------
@@ -79,7 +90,7 @@ def finished_run(request: RunRequest, into: Path, monitor: Monitor) -> FinishedR
     started = datetime.now(UTC)
     tool, parameters, drive = tool_of(request.tool), request.parameters, request.drive
     if tool.gives_classes:
-        return _classes(request, into, monitor, started)
+        return _classes(request, into, monitor, started, _Labels(labels_into, begin))
     result = run(request, monitor, into=into)
     if isinstance(result, CandidateResult):
         times = {"started": started, "finished": datetime.now(UTC)}
@@ -87,7 +98,15 @@ def finished_run(request: RunRequest, into: Path, monitor: Monitor) -> FinishedR
     return FinishedRun(columns=result)
 
 
-def _classes(request: RunRequest, into: Path, monitor: Monitor, started: datetime) -> FinishedRun:
+@dataclass(frozen=True)
+class _Labels:
+    into: Path
+    begin: Callable[[], None]
+
+
+def _classes(
+    request: RunRequest, into: Path, monitor: Monitor, started: datetime, labels: _Labels
+) -> FinishedRun:
     """Labels for the points of all drives that the run is about."""
     tool, drives = tool_of(request.tool), drives_of(request)
     surface_file = surface_file_of(request.parameters)
@@ -108,10 +127,13 @@ def _classes(request: RunRequest, into: Path, monitor: Monitor, started: datetim
             write_surface(
                 StoredSurface(kept / SURFACE), surface_file, delivered_files(drives), monitor
             )
+        labels.begin()
         found = found_classes(
             results,
             tool,
             request.parameters,
+            labels.into,
+            monitor,
             started=started,
             finished=datetime.now(UTC),
             note=together.note,

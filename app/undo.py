@@ -44,13 +44,23 @@ class UndoStack(QObject):
             self._project.features.apply(label, change, run=run)
             self.changed.emit()
 
-    def undo(self) -> Change | None:
-        """Take the last change back; gives what was applied to do so."""
-        return self._moved(None if self._project is None else self._project.features.undo())
+    def undo(self, *, are_columns_made: bool = False) -> Change | None:
+        """Take the last change back; gives what was applied to do so.
 
-    def redo(self) -> Change | None:
-        """Do again what was undone; gives what was applied."""
-        return self._moved(None if self._project is None else self._project.features.redo())
+        Parameters
+        ----------
+        are_columns_made : bool
+            As of :meth:`processing.project.feature_store.FeatureStore.undo`.
+        """
+        if self._project is None:
+            return None
+        return self._moved(self._project.features.undo(are_columns_made=are_columns_made))
+
+    def redo(self, *, are_columns_made: bool = False) -> Change | None:
+        """Do again what was undone; gives what was applied; parameters as :meth:`undo`."""
+        if self._project is None:
+            return None
+        return self._moved(self._project.features.redo(are_columns_made=are_columns_made))
 
     def _moved(self, change: Change | None) -> Change | None:
         if change is not None:

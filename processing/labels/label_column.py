@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,7 +63,17 @@ def write_labels(drive: Drive, points: NDArray[np.int64], codes: NDArray[np.uint
     MissingInput, NoSpace
         The file can't be written; some of the points may have been.
     """
-    path = column_path(drive.folder, LABEL)
+    write_codes(column_path(drive.folder, LABEL), points, codes)
+
+
+def write_codes(path: Path, points: NDArray[np.int64], codes: NDArray[np.uint8]) -> None:
+    """Write labels of points into the file of a column, as :func:`write_labels`.
+
+    Raises
+    ------
+    MissingInput, NoSpace
+        The file can't be written; some of the points may have been.
+    """
     with told_as_user_error(path), path.open("rb+", buffering=0) as file:
         for start, part in _by_block(points):
             file.seek(start)

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from processing.project.feature import Feature
+from processing.project.filed_labels import FiledLabels
 from processing.project.label_change import LabelChange
 
 
@@ -24,17 +25,24 @@ class Change:
     """Features added, replaced and removed, and points labelled, in one step.
 
     A feature is named at most once in a change, and a point too.
+
+    Attributes
+    ----------
+    filed : FiledLabels or None
+        Labels of many points, in place of ``labels``.
     """
 
     added: tuple[Feature, ...] = ()
     replaced: tuple[Replacement, ...] = ()
     removed: tuple[Feature, ...] = ()
     labels: tuple[LabelChange, ...] = ()
+    filed: FiledLabels | None = None
 
     @property
     def is_empty(self) -> bool:
         """Whether nothing changes."""
-        return not (self.added or self.replaced or self.removed or self.labels)
+        is_labelling = self.labels or (self.filed is not None and self.filed.parts)
+        return not (self.added or self.replaced or self.removed or is_labelling)
 
     @property
     def feature_ids(self) -> tuple[str, ...]:
@@ -52,4 +60,5 @@ class Change:
             replaced=tuple(Replacement(pair.after, pair.before) for pair in self.replaced),
             removed=self.added,
             labels=tuple(one.inverse() for one in self.labels),
+            filed=None if self.filed is None else self.filed.inverse(),
         )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 from processing.project.catalogue import Geometry
@@ -16,6 +17,7 @@ from processing.project.feature import (
     Status,
     Vertex,
 )
+from processing.project.filed_labels import filed_of_plain, filed_to_plain
 from processing.project.geometry_blob import blob_of, places_of
 
 COLUMNS = (
@@ -83,12 +85,18 @@ def change_to_json(change: Change) -> str:
             "added": [_plain(feature) for feature in change.added],
             "replaced": [[_plain(r.before), _plain(r.after)] for r in change.replaced],
             "removed": [_plain(feature) for feature in change.removed],
+            **({} if change.filed is None else {"filed": filed_to_plain(change.filed)}),
         }
     )
 
 
-def change_from_json(text: str) -> Change:
+def change_from_json(text: str, label_steps: Path) -> Change:
     """The change of :func:`change_to_json`.
+
+    Parameters
+    ----------
+    label_steps : Path
+        Where the project keeps labels of many points.
 
     Raises
     ------
@@ -100,6 +108,7 @@ def change_from_json(text: str) -> Change:
         added=tuple(_from_plain(one) for one in stored["added"]),
         replaced=tuple(Replacement(_from_plain(b), _from_plain(a)) for b, a in stored["replaced"]),
         removed=tuple(_from_plain(one) for one in stored["removed"]),
+        filed=filed_of_plain(stored["filed"], label_steps) if "filed" in stored else None,
     )
 
 

@@ -14,6 +14,7 @@ from processing.project.database import Database
 from processing.project.database_errors import changed_elsewhere, damaged
 from processing.project.feature import Feature
 from processing.project.feature_rows import COLUMNS, feature_of, row_of
+from processing.project.filed_labels import FiledLabels
 from processing.project.history import History, Standing
 from processing.project.label_layer import LabelLayer
 from processing.project.map_extent import Bounds, extent_after, extent_of
@@ -110,8 +111,28 @@ class FeatureStore:
         self._follow(change, standing, 1)
         return change.inverse()
 
-    def undo(self) -> Change | None:
+    def coming_labels(self, by: int) -> FiledLabels | None:
+        """What `undo` (−1) or `redo` (1) would do to labels of many points; None: to none.
+
+        Raises
+        ------
+        BadFile
+            The history is damaged.
+        """
+        if not self._history.has_filed(by):
+            return None
+        change = self._history.last() if by < 0 else self._history.coming()
+        if change is None or change.filed is None:
+            return None
+        return change.filed.inverse() if by < 0 else change.filed
+
+    def undo(self, *, are_columns_made: bool = False) -> Change | None:
         """Take the last change back; gives the change that did it, None when there is none.
+
+        Parameters
+        ----------
+        are_columns_made : bool
+            Whether the columns of :meth:`coming_labels` were made just now, in a worker's thread.
 
         Raises
         ------
@@ -119,10 +140,15 @@ class FeatureStore:
             Nothing was changed. ``BadFile`` too where another program has changed the features.
         """
         last = self._history.last()
-        return None if last is None else self._step(last.inverse(), -1)
+        return None if last is None else self._step(last.inverse(), -1, are_columns_made)
 
-    def redo(self) -> Change | None:
+    def redo(self, *, are_columns_made: bool = False) -> Change | None:
         """Do the next change again; gives it, None when there is none.
+
+        Parameters
+        ----------
+        are_columns_made : bool
+            As :meth:`undo`.
 
         Raises
         ------
@@ -130,7 +156,7 @@ class FeatureStore:
             As :meth:`undo`.
         """
         coming = self._history.coming()
-        return None if coming is None else self._step(coming, 1)
+        return None if coming is None else self._step(coming, 1, are_columns_made)
 
     def rewrite_srs(self, connection: sqlite3.Connection, srs_id: int) -> None:
         """Write all geometries with another reference system's number, in a transaction."""
@@ -170,8 +196,10 @@ class FeatureStore:
         """The transaction of :meth:`rewrite_layers` is through."""
         self._catalogue = catalogue
 
-    def _step(self, change: Change, by: int) -> Change:
+    def _step(self, change: Change, by: int, are_columns_made: bool) -> Change:  # noqa: FBT001 - passed on
         misfits = self._misfits(change)
+        if change.filed is not None and not are_columns_made:
+            misfits += self._labels.make(change.filed)
         if misfits:
             # The history was made from what was stored then; only somebody else can differ.
             raise changed_elsewhere(self._database.path, ", ".join(misfits[:_MOST_IDS_TOLD]))
@@ -185,6 +213,8 @@ class FeatureStore:
         self._history.stands(standing)
         try:
             self._labels.write(change.labels)
+            if change.filed is not None:
+                self._labels.adopt(change.filed)
         except UserError:
             with self._written(change.inverse()) as connection:
                 standing = self._history.step(connection, -by)

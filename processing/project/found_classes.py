@@ -5,16 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import datetime
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.labels.label_column import labels_of
+from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
-from processing.project.change import Change
 from processing.project.found_features import FoundFeatures, parameter_values
 from processing.project.label_change import MOST_POINTS, LabelChange
+from processing.project.label_filing import labels_as_change
 from processing.project.run_findings import labelled_by_runs
 from processing.project.runs import Run, new_run_id
 from processing.score.asked_classes import ASKED
@@ -36,6 +38,8 @@ def found_classes(
     results: Sequence[tuple[Drive, FinishedColumns]],
     tool: Tool,
     parameters: object,
+    into: Path,
+    monitor: Monitor,
     *,
     started: datetime,
     finished: datetime,
@@ -54,20 +58,27 @@ def found_classes(
         removed afterwards.
     parameters : object
         An instance of the tool's own parameter class.
+    into : Path
+        A new folder of the project, for labels of many points.
     started, finished : datetime
         With their time zone.
     note : Text, optional
         What the data chose, for the run's summary.
+
+    Raises
+    ------
+    NoSpace, MissingInput, BadFile, Cancelled
+        ``into`` is gone again.
     """
-    labels: list[LabelChange] = []
-    for drive, result in results:
-        for start in range(0, drive.count, MOST_POINTS):
-            stop = min(start + MOST_POINTS, drive.count)
-            found = result.read(_CLASS, start, stop)
-            after = np.where(found != _delivered(drive, start, stop), found, 0).astype(np.uint8)
-            change = _relabelled(drive, np.arange(start, stop), after, tool)
-            if change is not None:
-                labels.append(change)
+    tally = _Tally()
+    drives = {drive.id: drive for drive, _ in results}
+    labels = (
+        tally.counted(one)
+        for drive, result in results
+        for start in range(0, drive.count, MOST_POINTS)
+        if (one := _labels_within(drive, result, start, tool)) is not None
+    )
+    change = labels_as_change(labels, into, drives.__getitem__, monitor)
     run = Run(
         id=new_run_id(),
         tool=tool.id,
@@ -76,18 +87,38 @@ def found_classes(
         drives=tuple(drive.id for drive, _ in results),
         started=started,
         finished=finished,
-        summary=_summary(tool, labels, note),
+        summary=_summary(tool, tally, note),
     )
-    return FoundFeatures(run, Change(labels=tuple(labels)))
+    return FoundFeatures(run, change)
 
 
-def _summary(tool: Tool, labels: Sequence[LabelChange], note: Text) -> Text:
-    codes_after = [one.codes_after() for one in labels]
-    given = sum(int((codes > 0).sum()) for codes in codes_after)
-    taken_back = sum(int((codes == 0).sum()) for codes in codes_after)
-    summary = (_FOUND if given else _NOTHING).filled(tool=tool.name, count=f"{given:,}")
-    if taken_back:
-        summary = _TAKEN_BACK.filled(found=summary, count=f"{taken_back:,}")
+class _Tally:
+    """How many points get a label, and how many lose it."""
+
+    def __init__(self) -> None:
+        self.given = self.taken_back = 0
+
+    def counted(self, change: LabelChange) -> LabelChange:
+        given = int(np.count_nonzero(change.codes_after()))
+        self.given += given
+        self.taken_back += change.count - given
+        return change
+
+
+def _labels_within(
+    drive: Drive, result: FinishedColumns, start: int, tool: Tool
+) -> LabelChange | None:
+    """The labels of a stretch."""
+    stop = min(start + MOST_POINTS, drive.count)
+    found = result.read(_CLASS, start, stop)
+    after = np.where(found != _delivered(drive, start, stop), found, 0).astype(np.uint8)
+    return relabelled(drive, np.arange(start, stop), after, tool)
+
+
+def _summary(tool: Tool, tally: _Tally, note: Text) -> Text:
+    summary = (_FOUND if tally.given else _NOTHING).filled(tool=tool.name, count=f"{tally.given:,}")
+    if tally.taken_back:
+        summary = _TAKEN_BACK.filled(found=summary, count=f"{tally.taken_back:,}")
     return _NOTED.filled(found=summary, note=note) if note.en else summary
 
 
@@ -96,17 +127,25 @@ def classes_now(
 ) -> FoundFeatures:
     """The same labels for points that may have been painted since the tool ran."""
     labels = [
-        _relabelled(drive_of(one.drive), one.unpacked_points(), one.codes_after(), tool)
+        relabelled(drive_of(one.drive), one.unpacked_points(), one.codes_after(), tool)
         for one in found.change.labels
     ]
     kept = tuple(one for one in labels if one is not None)
     return replace(found, change=replace(found.change, labels=kept))
 
 
-def _relabelled(
+def relabelled(
     drive: Drive, points: NDArray[np.int64], after: NDArray[np.uint8], tool: Tool
 ) -> LabelChange | None:
-    """The labels of those points that get another one than they have."""
+    """What a tool's codes change of the labels of points as they are now: see `found_classes`.
+
+    Parameters
+    ----------
+    points : (n,) int64
+        Rising.
+    after : (n,) uint8
+        0 where the tool says what was delivered.
+    """
     before = labels_of(drive, points)
     # Where it isn't kept what runs said, a label of the tool's own may be an earlier run's.
     is_own = (

@@ -10,13 +10,14 @@ from processing.project.database import Database
 from processing.project.database_errors import damaged
 from processing.project.feature import Feature
 from processing.project.feature_rows import change_from_json, change_to_json
-from processing.project.label_change import LabelChange
+from processing.project.filed_labels import LABEL_STEPS
 from processing.project.label_rows import PENDING, labels_at, write_labels, write_pending
 from processing.project.project_settings import ProjectSettings, write_setting
 from processing.text import Text
 
 _POSITION = "history_position"
 _FIRST_WITH = "SELECT place FROM zuka_history WHERE instr(change, ?) > 0 ORDER BY place LIMIT 1"
+_FILED = "SELECT place FROM zuka_history WHERE instr(change, '\"filed\":') > 0"
 _LABEL = "SELECT label_en, label_ja FROM zuka_history WHERE place = ?"
 
 
@@ -42,6 +43,7 @@ class History:
 
     def __init__(self, database: Database, settings: ProjectSettings) -> None:
         self._database = database
+        self._label_steps = database.path.parent / LABEL_STEPS
         position = settings.whole(_POSITION)
         self._pending = settings.whole(PENDING)
         with database.snapshot() as connection:
@@ -92,8 +94,13 @@ class History:
         """
         return self._change(self.position + 1)
 
-    def pending_labels(self) -> tuple[LabelChange, ...]:
-        """What points had to get by the step that was done last before the project was opened.
+    def has_filed(self, by: int) -> bool:
+        """Whether the change that undo (−1) or redo (1) is about labels many points; at once."""
+        place = self.position + (0 if by < 0 else 1)
+        return bool(self._database.rows(f"{_FILED} AND place = ?", (place,)))
+
+    def pending(self) -> Change:
+        """The step that was done last before the project was opened, where it was about labels.
 
         Raises
         ------
@@ -102,8 +109,24 @@ class History:
         """
         change = self._change(self._pending)
         if change is None:
-            return ()
-        return (change if self._pending <= self.position else change.inverse()).labels
+            return Change()
+        return change if self._pending <= self.position else change.inverse()
+
+    def label_folders(self) -> frozenset[str]:
+        """Names of the folders in which labels of many points lie.
+
+        Raises
+        ------
+        BadFile
+            An entry is damaged.
+        """
+        rows = self._database.rows(_FILED)
+        return frozenset(
+            filed.folder.name
+            for (place,) in rows
+            if (change := self._change(int(str(place)))) is not None
+            and (filed := change.filed) is not None
+        )
 
     def additions_of(self, run: str) -> tuple[Feature, ...]:
         """The candidates of a run as the tool gave them; none where the history lacks them.
@@ -161,7 +184,7 @@ class History:
             if not rows:
                 return None
             labels = labels_at(self._database, place)
-            return replace(change_from_json(str(rows[0][0])), labels=labels)
+            return replace(change_from_json(str(rows[0][0]), self._label_steps), labels=labels)
         except (ValueError, KeyError, TypeError, IndexError) as error:
             raise damaged(self._database.path, f"zuka_history.place {place}: {error}") from error
 

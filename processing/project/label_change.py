@@ -14,7 +14,7 @@ from processing.labels.packing import (
     unpacked_points,
 )
 
-MOST_POINTS = 4_000_000
+MOST_POINTS = 1_000_000
 """Points of one change; of more several are made, so that never all are in memory at once."""
 
 

@@ -9,8 +9,12 @@ import numpy as np
 
 from processing.errors import BadFile, UserError
 from processing.labels.label_column import LABEL, flush, labels_of, make_column, write_labels
+from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
+from processing.project.change import Change
+from processing.project.filed_labels import FiledLabels
 from processing.project.label_change import LabelChange
+from processing.project.label_filing import make_columns
 
 DriveOf = Callable[[str], Drive]
 
@@ -66,6 +70,26 @@ class LabelLayer:
                 self._write([one.inverse() for one in labels])
             raise
 
+    def make(self, filed: FiledLabels) -> list[str]:
+        """Make the columns of labels of many points; gives the drives that have other labels.
+
+        Raises
+        ------
+        NoSpace, MissingInput, BadFile
+            Nothing was changed.
+        """
+        if all(self._is_there(id_) for id_ in filed.counts) and make_columns(
+            filed, self._drive_of, SilentMonitor()
+        ):
+            return []
+        return sorted(filed.counts)
+
+    def follow(self, change: Change, *, writing: bool) -> None:
+        """Let points have what a change gives them, where a killed program left that undone."""
+        self.correct(change.labels, writing=writing)
+        if change.filed is not None:
+            self.complete(change.filed, writing=writing)
+
     def correct(self, labels: Sequence[LabelChange], *, writing: bool) -> None:
         """Let points have what a change gives them, where a killed program left that undone.
 
@@ -91,11 +115,56 @@ class LabelLayer:
                     corrected[points] = codes
                     drive.columns.hold(LABEL, corrected)
 
+    def adopt(self, filed: FiledLabels) -> None:
+        """Let the columns that were made beside those that count take their places.
+
+        Raises
+        ------
+        MissingInput, InUse, NoSpace
+            The labels are as they were, as far as the disk still takes anything.
+        """
+        adopted: list[str] = []
+        try:
+            for id_ in filed.counts:
+                self._drive_of(id_).columns.take_over(LABEL, filed.column_file(id_))
+                adopted.append(id_)
+        except UserError:
+            with suppress(UserError):
+                for id_ in adopted:
+                    self._write(list(filed.inverse().changes(id_)))
+            raise
+
+    def complete(self, filed: FiledLabels, *, writing: bool) -> None:
+        """Let columns take their places where a killed program left that undone.
+
+        Parameters
+        ----------
+        writing : bool
+            False: in memory only.
+        """
+        for id_ in filed.counts:
+            file = filed.column_file(id_)
+            with suppress(UserError, KeyError):
+                columns = self._drive_of(id_).columns
+                if not file.is_file():
+                    continue
+                if writing:
+                    columns.take_over(LABEL, file)
+                else:
+                    columns.hold(LABEL, np.fromfile(file, np.uint8))
+
     def _write(self, labels: Sequence[LabelChange]) -> None:
         for one in labels:
             drive = self._drive_of(one.drive)
             write_labels(drive, one.unpacked_points(), one.codes_after())
             self._unflushed[one.drive] = drive
+
+    def _is_there(self, drive: str) -> bool:
+        try:
+            self._drive_of(drive)
+        except KeyError:
+            return False
+        return True
 
     def _fits(self, label: LabelChange) -> bool:
         try:

@@ -7,6 +7,7 @@ import shutil
 import sqlite3
 from contextlib import ExitStack, suppress
 from pathlib import Path
+from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +23,9 @@ from processing.project.database import Database
 from processing.project.database_errors import damaged
 from processing.project.drive_folders import DRIVES, DriveFolders
 from processing.project.feature_store import FeatureStore
+from processing.project.filed_labels import LABEL_STEPS
 from processing.project.history import History
+from processing.project.label_filing import remove_unlisted
 from processing.project.label_layer import LabelLayer
 from processing.project.new_folder import UNFINISHED, database_files, refuse_occupied
 from processing.project.project_lock import LOCK_FILES, ProjectLock
@@ -85,8 +88,9 @@ class Project:
             }
             self.sources = SourceFiles(folder, self.settings, writing=writing)
             self.sources.use_known(self.drives)
-            labels.correct(self.history.pending_labels(), writing=writing)
+            labels.follow(self.history.pending(), writing=writing)
             if writing:
+                remove_unlisted(folder / LABEL_STEPS, self.history.label_folders())
                 self._folders.remove_leftovers()
                 self._catalogue.correct_layers(self.features, self._database)
             self._closing = stack.pop_all()
@@ -157,7 +161,7 @@ class Project:
 
         Only what the program makes is removed; the folder too when nothing else is in it.
         """
-        for name in (DRIVES, TEMPORARY):
+        for name in (DRIVES, TEMPORARY, LABEL_STEPS):
             shutil.rmtree(folder / name, ignore_errors=True)
         for name in (*database_files(_DATABASE), *database_files(UNFINISHED), *LOCK_FILES):
             with suppress(OSError):
@@ -207,6 +211,10 @@ class Project:
         moves = self.sources.survey(self.drives).moves_found(lambda: None)
         for drive in self.drives:
             drive.use_moves(moves)
+
+    def label_folder(self) -> Path:
+        """A new name for a folder in which labels of many points are filed."""
+        return self.folder / LABEL_STEPS / uuid4().hex
 
     def temporary_folder(self) -> Path:
         """A new name for a folder of an import; what is left there goes at the next opening."""

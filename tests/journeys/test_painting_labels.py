@@ -172,4 +172,5 @@ def test_a_lasso_in_3d_labels_every_measured_point_inside_it(painter, surveyor):
         found += int(inside[0].sum())
     assert found > sum(one.tile.points.size for one in scene._hits.drawn) / 100
     assert document.undo()
-    assert not any(labels_of(d, np.arange(d.count)).any() for d in document.drives())
+    every = [(drive, np.arange(drive.count)) for drive in document.drives()]
+    bot.waitUntil(lambda: not any(labels_of(*one).any() for one in every), timeout=WAIT_MS)

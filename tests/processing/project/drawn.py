@@ -55,7 +55,7 @@ def replayed_history(folder: Path) -> dict[str, Feature]:
     assert [place for place, _ in stored] == list(range(1, position + 1))
     features: dict[str, Feature] = {}
     for _, text in stored:
-        change = change_from_json(text)
+        change = change_from_json(text, folder)
         for feature in change.removed:
             assert features.pop(feature.id) == feature
         for pair in change.replaced:
