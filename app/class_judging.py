@@ -11,12 +11,12 @@ from PySide6.QtCore import QObject, Signal
 from app.adoption import Adoption
 from app.document import Document
 from app.jobs import JobQueue, Lane
-from app.truth_work import StudyWish, judged_work, study_work, truth_by_hand_work, truth_file_work
+from app.judged_picture import JudgedPicture
+from app.truth_work import StudyWish, study_work, truth_by_hand_work, truth_file_work
 from processing.errors import Unsuitable, UserError
 from processing.image.clip import Clip
 from processing.monitor import Monitor
 from processing.points.drive import Drive
-from processing.points.judgement import JUDGED
 from processing.project.class_evaluation import ClassEvaluation, evaluate_classes
 from processing.project.project import Project
 from processing.project.study_store import KeptStudy, StudyStore, new_study_id
@@ -24,7 +24,6 @@ from processing.project.truth_making import Checked, MadeTruth
 from processing.project.truth_store import Truth, TruthStore, has_truth, new_truth_id
 from processing.score.parameter_study import ParameterStudy
 from processing.text import Text
-from processing.tools.tool import FinishedColumns
 
 _MADE = Text("Truth of {points} points: {name}", "{points}点の正解を登録しました: {name}")
 _JUDGING = Text("Evaluation", "評価")
@@ -57,8 +56,12 @@ class ClassJudging(QObject):
     def __init__(self, document: Document, jobs: JobQueue, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._document = document
+        self._jobs = jobs
         self._adoption = Adoption(jobs, self)
         self._adoption.refused.connect(document.refused)
+        self._picture = JudgedPicture(document, self._adoption, self)
+        self._counted: tuple[str, tuple[ClassEvaluation, ...]] = ("", ())
+        self._judging = ""
         document.about_to_close.connect(self._adoption.give_up)
         document.opened.connect(self._on_document_opened)
         document.closed.connect(self._tell_all)
@@ -121,32 +124,26 @@ class ClassJudging(QObject):
             self.judged.emit(truth, ())
             return
         runs, drives = self._document.runs(), self._document.drives()
+        counted = self._counted[1] if self._counted[0] == truth else ()
 
         def work(monitor: Monitor) -> tuple[ClassEvaluation, ...]:
-            return evaluate_classes(runs, drives, truth, monitor)
+            return evaluate_classes(runs, drives, truth, monitor, counted=counted)
 
         def take(found: tuple[ClassEvaluation, ...]) -> None:
+            self._counted = truth, found
             self.judged.emit(truth, found)
 
+        # What was asked for before would be out of date.
+        self._jobs.cancel(self._judging)
         # Nobody waits for it, but for the numbers: it is no entry in the list of jobs.
-        self._adoption.start(project, _JUDGING, work, take, lane=Lane.AT_HAND)
+        self._judging = self._adoption.start(project, _JUDGING, work, take, lane=Lane.AT_HAND)
 
     def show_points(self, truth: str, evaluation: ClassEvaluation) -> str:
         """Colour the points by what was right and wrong, in all views; gives the job's id."""
         project = self._open()
         if project is None:
             return ""
-        drives = [self._document.drive(id_) for id_ in evaluation.drives]
-        work = judged_work(drives, truth, evaluation, project.temporary_folder())
-
-        def take(found: tuple[tuple[Drive, FinishedColumns], ...]) -> None:
-            for drive, columns in found:
-                columns.hand_over(drive.columns)
-                self._document.tiles.drop(drive.id)
-                self._document.shared.map_changes.drive_columns_changed.emit(drive.id)
-            self._document.shared.view_settings.change_look(attribute=JUDGED)
-
-        return self._adoption.start(project, _JUDGING, work, take)
+        return self._picture.show(project, truth, evaluation)
 
     def study(self, wish: StudyWish) -> str:
         """Go through values of parameters on the drive shown; gives the job's id."""

@@ -97,7 +97,7 @@ ATTRIBUTES: Mapping[str, Attribute] = {
 }
 """By id, those of the thesis first, in its order."""
 
-SHOWS_LABELS = frozenset({"label", "class"})
+SHOWS_LABELS = frozenset({"label", "class", JUDGED})
 """Attributes that show what was painted, or found by a tool that classifies."""
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -48,7 +48,12 @@ class ClassEvaluation:
 
 
 def evaluate_classes(
-    runs: Sequence[Run], drives: Sequence[Drive], truth: str, monitor: Monitor
+    runs: Sequence[Run],
+    drives: Sequence[Drive],
+    truth: str,
+    monitor: Monitor,
+    *,
+    counted: Iterable[ClassEvaluation] = (),
 ) -> tuple[ClassEvaluation, ...]:
     """Count every run that is kept, and for each tool the classes as they stand now.
 
@@ -59,6 +64,8 @@ def evaluate_classes(
         Those of the project.
     truth : str
         Its id.
+    counted : iterable of ClassEvaluation
+        By the same truth, before: what a run said doesn't change, so it isn't counted again.
 
     Returns
     -------
@@ -82,13 +89,18 @@ def evaluate_classes(
         if judged_runs:
             wanted += judged_runs
             wanted.append((tool, None, [one for one in known if _is_on(one, judged_runs)]))
+    known_counts = {(one.run.id, one.drives): one.counts for one in counted if one.run is not None}
     found = []
     for number, (tool, which, on) in enumerate(wanted):
+        ids = tuple(one.id for one in on)
+        if which is not None and (which.id, ids) in known_counts:
+            found.append(ClassEvaluation(tool, which, ids, known_counts[which.id, ids]))
+            continue
         part = PartMonitor(monitor, number / len(wanted), (number + 1) / len(wanted))
         counts = TwoByTwo(0, 0, 0, 0)
         for drive in on:
             counts += _counted(drive, truth, tool, which, part)
-        found.append(ClassEvaluation(tool, which, tuple(one.id for one in on), counts))
+        found.append(ClassEvaluation(tool, which, ids, counts))
     return tuple(found)
 
 
@@ -106,19 +118,32 @@ def judged_columns(
     ------
     MissingInput, NoSpace, Cancelled
     """
-    tool, run, asked = evaluation.tool, evaluation.run, ASKED[evaluation.tool]
     with whole_folder(into), ColumnWriter(into) as writer:
         writer.append({JUDGED: np.empty(0, np.uint8)})
         for start in range(0, drive.count, _AT_ONCE):
             monitor.check()
             monitor.report(start / drive.count)
             stop = min(start + _AT_ONCE, drive.count)
-            codes = read_truth(drive, truth, start, stop)
-            is_true, is_found = is_one_of(codes, asked.codes), _found(drive, tool, run, start, stop)
-            if not asked.removes:
-                is_true, is_found = ~is_true, ~is_found
-            writer.append({JUDGED: judged(codes > 0, is_true, is_found)})
+            writer.append({JUDGED: judgements_of(drive, truth, evaluation, start, stop)})
     return FinishedColumns(into, (JUDGED,), drive.count)
+
+
+def judgements_of(
+    drive: Drive, truth: str, evaluation: ClassEvaluation, start: int, stop: int
+) -> NDArray[np.uint8]:
+    """What is thought of the points ``start … stop − 1``: (k,) uint8 of `Judgement`.
+
+    Raises
+    ------
+    MissingInput
+        What the run said isn't kept, or the truth is gone.
+    """
+    tool, run, asked = evaluation.tool, evaluation.run, ASKED[evaluation.tool]
+    codes = read_truth(drive, truth, start, stop)
+    is_true, is_found = is_one_of(codes, asked.codes), _found(drive, tool, run, start, stop)
+    if not asked.removes:
+        is_true, is_found = ~is_true, ~is_found
+    return judged(codes > 0, is_true, is_found)
 
 
 def _is_on(drive: Drive, wanted: Sequence[tuple[str, Run | None, list[Drive]]]) -> bool:

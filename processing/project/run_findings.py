@@ -73,6 +73,34 @@ def read_finding(drive: Drive, tool: str, run: str, start: int, stop: int) -> ND
     return _read(finding_path(drive, tool, run), start, stop)
 
 
+def newest_run(drive: Drive, tool: str) -> str:
+    """The run of a tool that was kept last with a drive; empty where there is none."""
+    found = [
+        (path.stat().st_mtime_ns, path.stem)
+        for path in (drive.folder / _FOLDER / tool).glob(f"*{_ENDING}")
+        if _is_whole(drive, path)
+    ]
+    return max(found, default=(0, ""))[1]
+
+
+def finding_of(drive: Drive, tool: str, run: str, points: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether a run said yes about some points: (n,) bool.
+
+    Raises
+    ------
+    MissingInput
+        It isn't kept.
+    """
+    path = finding_path(drive, tool, run)
+    if not points.size:
+        return np.zeros(0, np.bool_)
+    with told_as_user_error(path):
+        packed = np.memmap(path, np.uint8, "r")
+        bits = packed[points // _BYTE] >> (_BYTE - 1 - points % _BYTE).astype(np.uint8)
+    said: NDArray[np.bool_] = (bits & 1).astype(np.bool_)
+    return said
+
+
 def labelled_by_runs(
     drive: Drive, tool: Tool, points: NDArray[np.int64], labels: NDArray[np.uint8]
 ) -> NDArray[np.bool_]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
+from PySide6.QtGui import QImage
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -16,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.jobs import JobState
+from processing.image.colour_maps import JUDGEMENT_COLOURS
 from processing.labels.label_column import labels_of
 from processing.monitor import SilentMonitor
 from processing.points.judgement import Judgement
@@ -162,6 +164,43 @@ def test_right_and_wrong_are_colours_in_the_views_until_the_button_is_up_again(j
     assert seen[Judgement.UNKNOWN] == 0
     judge.click("Show right and wrong", judge.panel)
     assert settings.look.attribute == before
+
+
+def test_right_and_wrong_follow_what_is_painted_and_undone(judge, tmp_path):
+    judge.load_truth(tmp_path / "truth.npz")
+    judge.show_page(judge.panel)
+    judge.run_noise()
+    judge.bot.waitUntil(lambda: len(judge.rows()) == 3, timeout=WAIT_MS)
+    assert judge.panel.chosen.run is None
+    document, drive = judge.parts.document, judge.surveyor.drive
+    with judge.bot.waitSignal(document.shared.view_settings.look_changed, timeout=WAIT_MS):
+        judge.click("Show right and wrong", judge.panel)
+    counted, before = judge.rows()[2], np.array(drive.columns["judged"])
+    judged = document.shared.map_changes.judgements_changed
+    with judge.bot.waitSignal(judged, timeout=WAIT_MS):
+        painted = judge.paint("7", 0.3)
+    was = before[painted]
+    expected = before.copy()
+    expected[painted[was == Judgement.RIGHTLY_KEPT]] = Judgement.WRONGLY_REMOVED
+    expected[painted[was == Judgement.WRONGLY_KEPT]] = Judgement.RIGHTLY_REMOVED
+    assert (expected != before).any()
+    np.testing.assert_array_equal(drive.columns["judged"], expected)
+    view = judge.parts.image_view
+    wrong = np.array(list(bytes.fromhex(JUDGEMENT_COLOURS[Judgement.WRONGLY_REMOVED][1:])))
+
+    def seen_wrong():
+        image = view.grab().toImage().convertToFormat(QImage.Format.Format_RGBA8888)
+        pixels = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), -1, 4)
+        return int((pixels[:, :, :3] == wrong).all(axis=2).sum())
+
+    judge.bot.waitUntil(lambda: seen_wrong() > 100, timeout=5000)
+    judge.bot.waitUntil(lambda: judge.rows()[2] != counted, timeout=WAIT_MS)
+    seen = seen_wrong()
+    with judge.bot.waitSignal(judged, timeout=WAIT_MS):
+        judge.bot.keyClick(view, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    np.testing.assert_array_equal(drive.columns["judged"], before)
+    judge.bot.waitUntil(lambda: judge.rows()[2] == counted, timeout=WAIT_MS)
+    judge.bot.waitUntil(lambda: seen_wrong() < seen, timeout=WAIT_MS)
 
 
 def test_a_study_of_two_values_gives_a_plot_and_its_setting_goes_into_the_form(judge, tmp_path):

@@ -126,7 +126,7 @@ class ImageView(QWidget):
         shared.map_changes.features_changed.connect(self._on_map_features_changed)
         shared.map_changes.drives_changed.connect(self._on_map_drives_changed)
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
-        shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
+        shared.map_changes.follow_labels(self._on_map_labels_changed)
         shared.view_settings.look_changed.connect(self._on_settings_look_changed)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
         shared.view_settings.image_lay_changed.connect(self._on_settings_image_lay_changed)

@@ -143,7 +143,9 @@ class SectionFeed(QObject):
                 parts.append(section_points(drive, wish.cut, most, hides_noise=hides_noise))
             except UserError:  # the image view says why; here its points are just not there
                 parts.append(SectionPoints(drive.id, np.empty(0, np.int64), np.empty((0, 3))))
-        ground = self._ground.lines(wish.drives, wish.cut) if wish.settings.shows_ground else ()
+        ground: tuple[SurfaceLine, ...] = ()
+        if wish.settings.shows_ground:
+            ground = self._ground.lines_now(wish.drives, wish.cut, parts)
         is_slow = not wish.settings.is_by_distance and wish.look.attribute not in _AT_ONCE
         if is_slow:
             plain = picture_of(wish, parts, _PLAIN)

@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
+
+import numpy as np
 
 from processing.errors import UserError
 from processing.ground.stored_surface import FILE_NAME, StoredSurface, ground_surface_of
+from processing.points.counted_classes import class_columns
 from processing.points.drive import Drive
+from processing.project.run_findings import finding_of, newest_run
+from processing.score.asked_classes import ASKED
+from processing.score.point_classes import is_one_of
 from processing.section.cut import Cut
+from processing.section.edited_ground import edited_lines
+from processing.section.points_in_cut import SectionPoints
 from processing.section.surface_line import SurfaceLine, surface_lines, without_doubles
 
 _Stamp = tuple[int, int]
+_GROUND = "ground"
+_NONE = np.empty(0, np.bool_)
 
 
 class FoundGround:
@@ -30,6 +41,33 @@ class FoundGround:
             except UserError:  # who makes volumes of it is told; here it is just not there
                 self._opened.pop(drive.id, None)
         return without_doubles(one for one in found if one)
+
+    def lines_now(
+        self, drives: Sequence[Drive], cut: Cut, parts: Sequence[SectionPoints]
+    ) -> tuple[SurfaceLine, ...]:
+        """The same, but for stretches where points were made ground since, or are it no longer.
+
+        Parameters
+        ----------
+        parts : sequence of SectionPoints
+            The points of the slab, drive by drive.
+        """
+        lines = self.lines(drives, cut)
+        if not lines:
+            return lines
+        sections, is_ground, was_ground = [np.empty((0, 3))], [_NONE], [_NONE]
+        for drive, part in zip(drives, parts, strict=True):
+            with suppress(UserError):  # what isn't known of a drive changes nothing
+                run = newest_run(drive, _GROUND)
+                if run and drive.id in self._opened:
+                    said = finding_of(drive, _GROUND, run, part.points)
+                    codes = class_columns(drive.columns).codes_of(part.points)
+                    sections.append(part.section)
+                    is_ground.append(is_one_of(codes, ASKED[_GROUND].codes))
+                    was_ground.append(said)
+        return edited_lines(
+            lines, np.concatenate(sections), np.concatenate(is_ground), np.concatenate(was_ground)
+        )
 
     def _surface_of(self, drive: Drive) -> StoredSurface | None:
         stamp = _stamp_of(drive.folder / FILE_NAME)

@@ -97,7 +97,7 @@ class SectionPane(PlaneView):
         shared.view_settings.look_changed.connect(self._ask)
         shared.view_settings.hidden_drives_changed.connect(self._ask)
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
-        shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
+        shared.map_changes.follow_labels(self._on_map_labels_changed)
 
     # What others ask.
 

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 
@@ -14,3 +18,11 @@ class MapChanges(QObject):
     labels_changed = Signal(
         str, object
     )  # drive id; (n,) int64: points with other labels, none: many
+    judgements_changed = Signal(
+        str, object
+    )  # drive id; (n,) int64: points that are judged anew, where the picture shows it
+
+    def follow_labels(self, show: Callable[[str, NDArray[np.int64]], None]) -> None:
+        """Have a view show points whose labels changed, or what is thought of these."""
+        self.labels_changed.connect(show)
+        self.judgements_changed.connect(show)

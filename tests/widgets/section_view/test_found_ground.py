@@ -12,9 +12,13 @@ from pytestqt.qtbot import QtBot
 
 from processing.ground.cells import CellGrid
 from processing.ground.stored_surface import FILE_NAME, SurfaceTile, SurfaceWriter, keep_surface
+from processing.labels.label_column import make_column, write_labels
+from processing.points.counted_classes import class_columns
+from processing.project.run_findings import finding_path
 from tests.widgets.builders import OpenMap, imported_drive
 from tests.widgets.section_view.conftest import Hand, shown
 
+GROUND = 2
 YELLOW = np.array([0xF0, 0xE4, 0x42])
 
 
@@ -79,4 +83,38 @@ def test_a_damaged_surface_is_just_not_there(qtbot: QtBot, tmp_path: Path) -> No
     assert picture is not None
     assert picture.points.size
     assert picture.ground == ()
+    hand.view.close()
+
+
+def test_the_line_follows_what_is_made_ground_since_and_goes_back_with_undo(
+    qtbot: QtBot, tmp_path: Path
+) -> None:
+    hand = shown(qtbot, OpenMap((imported_drive(tmp_path / "street"),)))
+    (drive,) = hand.map.drives()
+    delivered = class_columns(drive.columns).codes_of(np.arange(drive.count))
+    said = finding_path(drive, "ground", "run")
+    said.parent.mkdir(parents=True)
+    said.write_bytes(np.packbits(delivered == GROUND).tobytes())
+    ground_in(hand, tmp_path, -1000.0)
+    picture = hand.pane.picture
+    assert picture is not None
+    found = picture.ground
+    near = picture.points[np.abs(picture.section[:, 0]) < 1.0]
+    heights = picture.section[np.abs(picture.section[:, 0]) < 1.0, 1]
+    assert near.size > 10
+    make_column(drive)
+    for code, is_ground in ((GROUND, True), (0, False)):
+        write_labels(drive, np.sort(near), np.full(near.size, code, np.uint8))
+        hand.do(lambda: hand.map.shared.map_changes.labels_changed.emit(drive.id, near))
+        picture = hand.pane.picture
+        assert picture is not None
+        middle = [line.places[np.abs(line.places[:, 0]) < 0.5, 1] for line in picture.ground]
+        inside = np.concatenate(middle)
+        assert inside.size
+        if is_ground:
+            assert heights.min() - 0.01 <= inside.min() <= inside.max() <= heights.max() + 0.01
+        else:
+            assert len(picture.ground) == len(found)
+            for line, before in zip(picture.ground, found, strict=True):
+                np.testing.assert_array_equal(line.places, before.places)
     hand.view.close()

@@ -116,7 +116,7 @@ class ClassPanel(QWidget):
         """Show what came of a judgement; that of another truth than the chosen one is dropped."""
         if truth != self.truths.truth:
             return
-        row = self._table.currentRow()
+        chosen = self.chosen
         self._evaluations = tuple(evaluations)
         self._rows = []
         rows: list[tuple[str, TwoByTwo]] = []
@@ -132,8 +132,15 @@ class ClassPanel(QWidget):
             for number, (name, counts) in enumerate(rows):
                 self._fill(number, name, counts, is_run=self._rows[number] is not None)
             if rows:
-                self._table.setCurrentCell(row if 0 < row < len(rows) else 1, 0)
+                self._table.setCurrentCell(self._row_like(chosen), 0)
         self._show_state()
+
+    def _row_like(self, chosen: ClassEvaluation | None) -> int:
+        """Where what was chosen is now; at first the classes as they stand."""
+        keys = [None if one is None else (one.tool, one.run) for one in self._rows]
+        if chosen is not None and (chosen.tool, chosen.run) in keys:
+            return keys.index((chosen.tool, chosen.run))
+        return next(number for number, key in enumerate(keys) if key is not None and not key[1])
 
     def _name_of(self, one: ClassEvaluation, tool: str) -> str:
         if one.run is None:
