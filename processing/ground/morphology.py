@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from processing.kernels import kernel
 
+_Lists = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int32]]
+
 _SWEEPS = 24
 _RELAXED_CELLS = 16
 
@@ -36,8 +38,8 @@ def filled(heights: NDArray[np.float32], known: NDArray[np.bool_]) -> NDArray[np
     return surface
 
 
-def _near_known(known: NDArray[np.bool_]) -> NDArray[np.int32]:
-    """Runs of cells to relax: row, first column, end; (runs, 3) int32, along the rows.
+def _near_known(known: NDArray[np.bool_]) -> _Lists:
+    """Cells to relax, counted along the rows: the two colours of a chessboard, and the border.
 
     Far from what is known the coarser skin is as smooth as relaxing would make it.
     """
@@ -45,9 +47,10 @@ def _near_known(known: NDArray[np.bool_]) -> NDArray[np.int32]:
 
     element = np.ones((2 * _RELAXED_CELLS + 1, 2 * _RELAXED_CELLS + 1), np.uint8)
     near = np.asarray(cv2.dilate(known.view(np.uint8), element), np.uint8)
-    runs = np.empty((_runs_kernel(near, known, np.empty((0, 3), np.int32)), 3), np.int32)
-    _runs_kernel(near, known, runs)
-    return runs
+    cells = np.empty((3, _list_kernel(near, known, np.empty((3, 0), np.int32))), np.int32)
+    _list_kernel(near, known, cells)
+    even, odd, border = cells
+    return even[even >= 0], odd[odd >= 0], border[border >= 0]
 
 
 def nearest_known(known: NDArray[np.bool_]) -> NDArray[np.int32]:
@@ -57,9 +60,9 @@ def nearest_known(known: NDArray[np.bool_]) -> NDArray[np.int32]:
     _, labels = cv2.distanceTransformWithLabels(
         (~known).view(np.uint8), cv2.DIST_L2, 5, labelType=cv2.DIST_LABEL_PIXEL
     )
-    flat = np.flatnonzero(known)
-    cell_of_label = np.zeros(int(labels.max()) + 1, np.int32)
-    cell_of_label[labels.ravel()[flat]] = flat
+    # Known cells are numbered from 1 along the rows.
+    cell_of_label = np.zeros(int(np.count_nonzero(known)) + 1, np.int32)
+    cell_of_label[1:] = np.flatnonzero(known)
     nearest: NDArray[np.int32] = cell_of_label[labels]
     return nearest
 
@@ -128,51 +131,47 @@ def _prolong_kernel(
 
 
 @kernel
-def _runs_kernel(near: NDArray[np.uint8], known: NDArray[np.bool_], runs: NDArray[np.int32]) -> int:
-    """Count runs of near cells that are not known, and note as many as there is room for."""
+def _list_kernel(
+    near: NDArray[np.uint8], known: NDArray[np.bool_], lists: NDArray[np.int32]
+) -> int:
+    """Number of cells in the longest list; lists with room for them are filled, and up with −1."""
     rows, columns = known.shape
-    count = 0
+    counts = np.zeros(3, np.int64)
     for row in range(rows):
-        first = -1
-        for column in range(columns + 1):
-            inside = column < columns and near[row, column] and not known[row, column]
-            if inside and first < 0:
-                first = column
-            elif not inside and first >= 0:
-                if count < runs.shape[0]:
-                    runs[count, 0], runs[count, 1], runs[count, 2] = row, first, column
-                count += 1
-                first = -1
-    return count
+        for column in range(columns):
+            if not near[row, column] or known[row, column]:
+                continue
+            own = (row + column) % 2
+            if row == 0 or column == 0 or row == rows - 1 or column == columns - 1:
+                own = 2
+            if counts[own] < lists.shape[1]:
+                lists[own, counts[own]] = row * columns + column
+            counts[own] += 1
+    for own in range(3):
+        lists[own, counts[own] :] = -1
+    return int(counts.max())
 
 
 @kernel
-def _relax_kernel(runs: NDArray[np.int32], sweeps: int, surface: NDArray[np.float32]) -> None:
-    """Give cells the mean of their neighbours; each time first every second one, then the others.
+def _relax_kernel(lists: _Lists, sweeps: int, surface: NDArray[np.float32]) -> None:
+    """Give cells the mean of their neighbours; none waits for another of its colour."""
+    columns = surface.shape[1]
+    heights = surface.reshape(-1)
+    even, odd, border = lists
+    for _ in range(sweeps):
+        _relax_inside(even, columns, heights)
+        _relax_inside(odd, columns, heights)
+        for place in range(border.shape[0]):
+            _relax_at_border(border[place] // columns, border[place] % columns, surface)
 
-    So no cell waits for the one before it.
-    """
-    rows, columns = surface.shape
-    for turn in range(2 * sweeps):
-        for run in range(runs.shape[0]):
-            row, first, end = runs[run, 0], runs[run, 1], runs[run, 2]
-            first += (row + first + turn) % 2
-            if first == 0:
-                _relax_at_border(row, 0, surface)
-                first = 2
-            if end == columns and first < end and (end - 1 - first) % 2 == 0:
-                end -= 1
-                _relax_at_border(row, end, surface)
-            if row == 0 or row == rows - 1:
-                for column in range(first, end, 2):
-                    _relax_at_border(row, column, surface)
-            elif first < end:
-                own = surface[row, first - 1 : end + 1]
-                south = surface[row - 1, first:end]
-                north = surface[row + 1, first:end]
-                for place in range(0, end - first, 2):
-                    beside = own[place] + own[place + 2]
-                    own[place + 1] = np.float32(0.25) * (beside + (south[place] + north[place]))
+
+@kernel
+def _relax_inside(cells: NDArray[np.int32], columns: int, heights: NDArray[np.float32]) -> None:
+    for place in range(cells.shape[0]):
+        cell = cells[place]
+        beside = heights[cell - 1] + heights[cell + 1]
+        beyond = heights[cell - columns] + heights[cell + columns]
+        heights[cell] = np.float32(0.25) * (beside + beyond)
 
 
 @kernel
@@ -186,8 +185,7 @@ def _relax_at_border(row: int, column: int, surface: NDArray[np.float32]) -> Non
         if 0 <= r < rows and 0 <= c < columns:
             total += surface[r, c]
             count += 1
-    if count:
-        surface[row, column] = total / np.float32(count)
+    surface[row, column] = total / np.float32(count)
 
 
 def warm_up() -> None:

@@ -225,6 +225,16 @@ def rim_shares(
 
 
 @kernel
+def _place_of(nearest: NDArray[np.int32], row: int, column: int) -> tuple[int, int]:
+    """Row and column of the measured cell that is nearest to a cell; mostly the cell itself."""
+    columns = nearest.shape[1]
+    cell = nearest[row, column]
+    if cell == row * columns + column:
+        return row, column
+    return cell // columns, cell % columns
+
+
+@kernel
 def _fall_beyond(
     labels: NDArray[np.int32],
     heights: NDArray[np.float32],
@@ -241,8 +251,8 @@ def _fall_beyond(
         return 0.0
     if labels[far_row, far_column] != 0:
         return 0.0
-    a, b = nearest[r, c] // columns, nearest[r, c] % columns
-    d, e = nearest[far_row, far_column] // columns, nearest[far_row, far_column] % columns
+    a, b = _place_of(nearest, r, c)
+    d, e = _place_of(nearest, far_row, far_column)
     run = np.sqrt((a - d) ** 2.0 + (b - e) ** 2.0)
     if run == 0.0:
         return 0.0
@@ -278,11 +288,8 @@ def _rim_kernel(
                     continue
                 if labels[r, c] == label:
                     continue
-                from_row, from_column = (
-                    nearest[row, column] // columns,
-                    nearest[row, column] % columns,
-                )
-                to_row, to_column = nearest[r, c] // columns, nearest[r, c] % columns
+                from_row, from_column = _place_of(nearest, row, column)
+                to_row, to_column = _place_of(nearest, r, c)
                 run = size_m * np.sqrt(
                     (from_row - to_row) ** 2.0 + (from_column - to_column) ** 2.0
                 )
@@ -329,7 +336,7 @@ def _label_kernel(
         while held:
             held -= 1
             row, column = stack[held] // columns, stack[held] % columns
-            from_row, from_column = nearest[row, column] // columns, nearest[row, column] % columns
+            from_row, from_column = _place_of(nearest, row, column)
             for side in range(4):
                 r = row + (side == 0) - (side == 1)
                 c = column + (side == 2) - (side == 3)
@@ -337,7 +344,7 @@ def _label_kernel(
                     continue
                 if labels[r, c] >= 0:
                     continue
-                to_row, to_column = nearest[r, c] // columns, nearest[r, c] % columns
+                to_row, to_column = _place_of(nearest, r, c)
                 run = size_m * np.sqrt(
                     (from_row - to_row) ** 2.0 + (from_column - to_column) ** 2.0
                 )
