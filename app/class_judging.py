@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from processing.errors import Unsuitable, UserError
 from processing.image.clip import Clip
 from processing.monitor import Monitor
 from processing.points.drive import Drive
+from processing.points.recorded_together import recorded_together
 from processing.project.class_evaluation import ClassEvaluation, evaluate_classes
 from processing.project.project import Project
 from processing.project.study_store import KeptStudy, StudyStore, new_study_id
@@ -81,21 +82,23 @@ class ClassJudging(QObject):
     # Truths.
 
     def make_truth(self, checked: Checked, clip: Clip | None) -> str:
-        """Let the classes of the drive shown, as they stand now, be a truth; gives the job's id.
+        """Let the classes as they stand now be a truth; gives the job's id.
+
+        It is about the drive shown and those recorded together with it, as a run is.
 
         Parameters
         ----------
         clip : Clip or None
             What the 3D view shows, for ``Checked.CLIP``.
         """
-        project, drive = self._open(), self._shown()
-        if project is None or drive is None:
+        project, drives = self._open(), self._shown()
+        if project is None or not drives:
             return ""
         clip = clip if checked is Checked.CLIP else None
         is_painted = checked is Checked.PAINTED
         into = project.temporary_folder()
-        work = truth_by_hand_work(drive, into, clip=clip, only_painted=is_painted)
-        return self._start_truth(project, _NAMES[checked].filled(drive=drive.info.name), work)
+        work = truth_by_hand_work(drives, into, clip=clip, only_painted=is_painted)
+        return self._start_truth(project, _NAMES[checked].filled(drive=_name_of(drives)), work)
 
     def load_truth(self, path: Path) -> str:
         """Take the truth of a delivered file from a file; gives the job's id."""
@@ -146,20 +149,26 @@ class ClassJudging(QObject):
         return self._picture.show(project, truth, evaluation)
 
     def study(self, wish: StudyWish) -> str:
-        """Go through values of parameters on the drive shown; gives the job's id."""
-        project, drive = self._open(), self._shown()
+        """Go through values of parameters where a truth is about what is shown; the job's id."""
+        project, shown = self._open(), self._shown()
         truth = None if project is None else TruthStore(project.settings).get(wish.truth)
-        if project is None or drive is None or truth is None:
+        if project is None or not shown or truth is None:
             return ""
-        if not has_truth(drive, truth.id):
-            self._document.refused.emit(_other_drive(drive, truth))
+        drives = tuple(drive for drive in shown if has_truth(drive, truth.id))
+        if not drives:
+            self._document.refused.emit(_other_drive(shown[0], truth))
             return ""
-        beside = tuple(other for other in self._document.drives() if other is not drive)
-        title, work = study_work(wish, drive, beside, project.temporary_folder())
+        beside = tuple(other for other in self._document.drives() if other not in drives)
+        title, work = study_work(wish, drives, beside, project.temporary_folder())
 
         def take(study: ParameterStudy) -> None:
             kept = KeptStudy(
-                new_study_id(), study, truth.name, drive.info.name, wish.is_part, datetime.now(UTC)
+                new_study_id(),
+                study,
+                truth.name,
+                _name_of(drives).en,
+                wish.is_part,
+                datetime.now(UTC),
             )
             StudyStore(project.settings).add(kept)
             self.studies_changed.emit()
@@ -198,9 +207,14 @@ class ClassJudging(QObject):
     def _open(self) -> Project | None:
         return self._document.project
 
-    def _shown(self) -> Drive | None:
-        shown = self._document.shared.view_settings.drive_id
-        return self._document.drive(shown) if shown else None
+    def _shown(self) -> tuple[Drive, ...]:
+        """The drive shown, and those recorded together with it."""
+        id_ = self._document.shared.view_settings.drive_id
+        if not id_:
+            return ()
+        shown = self._document.drive(id_)
+        beside = [other for other in self._document.drives() if other is not shown]
+        return recorded_together(shown, beside)
 
     def _on_document_opened(self) -> None:
         project = self._open()
@@ -220,6 +234,13 @@ _NAMES = {
 }
 
 
+def _name_of(drives: Sequence[Drive]) -> Text:
+    first, more = drives[0].info.name, len(drives) - 1
+    if not more:
+        return Text.same(first)
+    return Text("{first} and {more} more", "{first} ほか{more}件").filled(first=first, more=more)
+
+
 def _other_drive(drive: Drive, truth: Truth) -> UserError:
     return Unsuitable(
         Text(
@@ -228,7 +249,7 @@ def _other_drive(drive: Drive, truth: Truth) -> UserError:
         ).filled(name=truth.name),
         Text.same(drive.info.name),
         Text(
-            "Show the drive of the truth, or choose another truth.",
+            "Show a drive of the truth, or choose another truth.",
             "正解のある走行データを表示するか、別の正解を選んでください。",
         ),
     )

@@ -44,12 +44,12 @@ class StudyWish:
 
 
 def truth_by_hand_work(
-    drive: Drive, into: Path, *, clip: Clip | None, only_painted: bool
+    drives: Sequence[Drive], into: Path, *, clip: Clip | None, only_painted: bool
 ) -> Callable[[Monitor], MadeTruth]:
-    """The classes of a drive as they stand become a truth."""
+    """The classes of drives as they stand become a truth."""
 
     def work(monitor: Monitor) -> MadeTruth:
-        return truth_as_it_stands(drive, into, monitor, clip=clip, only_painted=only_painted)
+        return truth_as_it_stands(drives, into, monitor, clip=clip, only_painted=only_painted)
 
     return work
 
@@ -84,10 +84,10 @@ def judged_work(
 
 
 def study_work(
-    wish: StudyWish, drive: Drive, beside: tuple[Drive, ...], into: Path
+    wish: StudyWish, drives: tuple[Drive, ...], beside: tuple[Drive, ...], into: Path
 ) -> tuple[Text, Callable[[Monitor], ParameterStudy]]:
     """A tool is tried with many settings."""
-    request = StudyRequest(wish.tool, (drive,), dict(wish.fixed), wish.varied, beside)
+    request = StudyRequest(wish.tool, drives, dict(wish.fixed), wish.varied, beside)
     title = Text("Parameter study: {tool}", "パラメータ検討: {tool}").filled(
         tool=tool_of(wish.tool).name
     )

@@ -6,7 +6,8 @@ The column is written into a folder of its own, a stretch at a time, in a worker
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import shutil
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
@@ -14,9 +15,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.errors import Unsuitable, told_as_user_error
 from processing.image.clip import Clip
 from processing.labels.label_column import LABEL
-from processing.monitor import Monitor
+from processing.monitor import Monitor, PartMonitor
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
@@ -24,6 +26,7 @@ from processing.project.run_findings import labelled_by_runs
 from processing.project.scratch_folder import whole_folder
 from processing.project.truth_store import TRUTH
 from processing.score.asked_classes import ASKED
+from processing.text import Text
 from processing.tools.registry import TOOLS
 
 OTHER = 1
@@ -37,7 +40,7 @@ class Checked(Enum):
     """Which points a person vouches for."""
 
     WHOLE = "whole"
-    """All of the drive: every class is right as it stands."""
+    """All points: every class is right as it stands."""
     CLIP = "clip"
     """All within the part that the 3D view shows."""
     PAINTED = "painted"
@@ -61,21 +64,24 @@ class MadeTruth:
 
 
 def truth_as_it_stands(
-    drive: Drive,
+    drives: Sequence[Drive],
     into: Path,
     monitor: Monitor,
     *,
     clip: Clip | None = None,
     only_painted: bool = False,
 ) -> MadeTruth:
-    """Take the classes of a drive as they stand now for the truth.
+    """Take the classes of drives as they stand now for the truth.
 
-    A label counts before the delivered class; a point without either is `OTHER`.
+    A label counts before the delivered class; a point without either is `OTHER`. A drive of which
+    nothing is known has no part in the truth.
 
     Parameters
     ----------
+    drives : sequence of Drive
+        Those recorded together, as a run takes them.
     into : Path
-        A new folder on the drive's disk.
+        A new folder on the drives' disk.
     clip : Clip or None
         Outside of it nothing is known.
     only_painted : bool
@@ -83,10 +89,33 @@ def truth_as_it_stands(
 
     Raises
     ------
+    Unsuitable
+        Nothing is known of any point.
     NoSpace, Cancelled
     """
+    folders, known = {}, {}
+    with whole_folder(into):
+        for number, drive in enumerate(drives):
+            part = PartMonitor(monitor, number / len(drives), (number + 1) / len(drives))
+            folder = into / drive.id
+            count = _write(drive, folder, part, clip=clip, only_painted=only_painted)
+            if count:
+                folders[drive.id], known[drive.id] = folder, count
+            else:
+                shutil.rmtree(folder, ignore_errors=True)
+        if not known:
+            raise _nothing_known(drives, only_painted=only_painted)
+    return MadeTruth(folders, known)
+
+
+def _write(
+    drive: Drive, folder: Path, monitor: Monitor, *, clip: Clip | None, only_painted: bool
+) -> int:
+    """The truth of one drive; gives how many points are known."""
     known = 0
-    with whole_folder(into), ColumnWriter(into) as writer:
+    with told_as_user_error(folder):
+        folder.mkdir()
+    with ColumnWriter(folder) as writer:
         writer.append({TRUTH: np.empty(0, np.uint8)})
         for start in range(0, drive.count, _AT_ONCE):
             monitor.check()
@@ -99,7 +128,28 @@ def truth_as_it_stands(
                 codes[~_is_by_hand(drive, start, stop)] = 0
             known += int(np.count_nonzero(codes))
             writer.append({TRUTH: codes})
-    return MadeTruth({drive.id: into}, {drive.id: known})
+    return known
+
+
+def _nothing_known(drives: Sequence[Drive], *, only_painted: bool) -> Unsuitable:
+    where = Text.same(", ".join(drive.info.name for drive in drives))
+    if only_painted:
+        return Unsuitable(
+            Text("No point was painted by hand.", "手動で塗られた点がありません。"),
+            where,
+            Text(
+                "Paint points whose class is certain, then make the truth.",
+                "クラスが確実な点を塗ってから、正解を作成してください。",
+            ),
+        )
+    return Unsuitable(
+        Text("No point lies in the part shown in 3D.", "3Dビューの表示範囲に点がありません。"),
+        where,
+        Text(
+            "Clip the 3D view to the part that was checked.",
+            "確認した範囲を3Dビューで切り出してください。",
+        ),
+    )
 
 
 def classes_as_they_stand(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:

@@ -17,11 +17,16 @@ WAIT_MS = 30_000
 
 
 @pytest.fixture
+def jobs(qapp: QApplication) -> JobQueue:
+    """What works for the document; closed with it."""
+    return JobQueue()
+
+
+@pytest.fixture
 def street(
-    qapp: QApplication, delivery: ImportRequest, tmp_path: Path, qtbot: QtBot
+    jobs: JobQueue, delivery: ImportRequest, tmp_path: Path, qtbot: QtBot
 ) -> Iterator[Document]:
     """A document with what the module's ``delivery`` gives, imported."""
-    jobs = JobQueue()
     document = Document(jobs)
     with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
         document.create(tmp_path / "p.zuka", "EPSG:6677")

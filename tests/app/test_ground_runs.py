@@ -10,12 +10,18 @@ import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.class_judging import ClassJudging
 from app.cli.run import command
 from app.document import Document
-from processing.errors import InUse
+from app.jobs import JobQueue
+from processing.errors import InUse, UserError
 from processing.ground.stored_surface import ground_surface_of
 from processing.labels.label_column import labels_of
+from processing.project.change import Change
 from processing.project.importing import ImportRequest
+from processing.project.label_change import label_changes
+from processing.project.truth_making import Checked
+from processing.project.truth_store import has_truth
 from processing.text import Text
 from processing.tools.ground import GroundParameters
 from tests.builders import SimulatedDrive, simulated_drive, write_laz, write_trajectory_csv
@@ -60,6 +66,31 @@ def test_one_run_labels_both_heads_and_one_undo_takes_it_back(
     assert (tmp_path / "地表面.tif").is_file()
     assert street.undo()
     assert not any(labels_of(one, np.arange(one.count)).any() for one in street.drives())
+
+
+def test_a_truth_made_by_hand_is_about_all_that_was_recorded_together(
+    street: Document, jobs: JobQueue, qtbot: QtBot
+) -> None:
+    judging = ClassJudging(street, jobs)
+    first, second = street.drives()
+    street.shared.view_settings.show_image(second.id, second.image_kinds[0])
+    with qtbot.waitSignal(judging.truth_made, timeout=WAIT_MS):
+        judging.make_truth(Checked.WHOLE, None)
+    (whole,) = judging.truths()
+    assert whole.known == {first.id: first.count, second.id: second.count}
+    assert whole.name.en == f"{second.info.name} and 1 more: all checked"
+    refused: list[UserError] = []
+    street.refused.connect(refused.append)
+    with qtbot.waitSignal(street.refused, timeout=WAIT_MS):
+        judging.make_truth(Checked.PAINTED, None)
+    assert refused[0].what.en == "No point was painted by hand."
+    points = np.arange(10, 30)
+    none = labels_of(first, points)
+    assert street.apply(Text.same("p"), Change(labels=label_changes(first.id, points, none, 2)))
+    with qtbot.waitSignal(judging.truth_made, timeout=WAIT_MS):
+        judging.make_truth(Checked.PAINTED, None)
+    assert judging.truths()[-1].known == {first.id: 20}
+    assert not has_truth(second, judging.truths()[-1].id)
 
 
 def _wish(delivery: ImportRequest, output: Path, *settings: str) -> Namespace:

@@ -72,7 +72,7 @@ def keep(
 ) -> Truth:
     (drive,) = project.drives
     into = project.temporary_folder()
-    made = truth_as_it_stands(drive, into, SILENT, clip=clip, only_painted=only_painted)
+    made = truth_as_it_stands((drive,), into, SILENT, clip=clip, only_painted=only_painted)
     kept = Truth(truth, NAME, dict(made.known), NOW)
     TruthStore(project.settings).add(kept, made.folders, project.drive)
     return kept
@@ -194,7 +194,7 @@ class Impatient:
 def test_a_cancelled_truth_leaves_nothing(project: Project, drive: Drive) -> None:
     into = project.temporary_folder()
     with pytest.raises(Cancelled):
-        truth_as_it_stands(drive, into, Impatient())
+        truth_as_it_stands((drive,), into, Impatient())
     assert not into.exists()
 
 

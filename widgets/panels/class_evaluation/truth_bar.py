@@ -111,13 +111,13 @@ class TruthBar(QWidget):
         for checked, words, tip in (
             (
                 Checked.WHOLE,
-                self.tr("All of the drive as it stands now"),
-                self.tr("You have checked the drive shown: every class is right"),
+                self.tr("All points as they stand now"),
+                self.tr("You have checked all that was recorded together: every class is right"),
             ),
             (
                 Checked.CLIP,
                 self.tr("The part shown in 3D as it stands now"),
-                self.tr("You have checked what the 3D view is clipped to, on the drive shown"),
+                self.tr("You have checked what the 3D view is clipped to"),
             ),
             (
                 Checked.PAINTED,
