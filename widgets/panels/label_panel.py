@@ -1,8 +1,9 @@
-"""LabelPanel: the classes that points can be given by hand, and what the brush does with them."""
+"""LabelPanel: the classes that points have and can be given, and what the brush does with them."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QSignalBlocker, Qt
+from PySide6.QtGui import QHideEvent, QShowEvent
 from PySide6.QtWidgets import (
     QComboBox,
     QFormLayout,
@@ -13,6 +14,7 @@ from PySide6.QtWidgets import (
     QVBoxLayout,
     QWidget,
 )
+from typing_extensions import override
 
 from processing.labels.rules import PaintOver, PaintRule
 from processing.points.classes import class_key, point_classes
@@ -118,19 +120,22 @@ class LabelPanel(QWidget):
         )
 
     def _show_classes(self) -> None:
-        counts = self.tally.by_code
+        counts, labelled = self.tally.by_class, self.tally.by_code
         known = {one.code: one.colour for one in point_classes()}
-        # What another table's labels are called is not known, but they are there.
+        # What another table's classes are called is not known, but they are there.
         codes = sorted({*known, *counts.nonzero()[0].tolist()} - {0})
         with QSignalBlocker(self._list):
             self._list.clear()
-            self._add(0, "", self.tr("No label (erase)"), 0)
+            self._add(0, "", self.tr("No label (erase)"), (0, 0))
             for code in codes:
                 name = class_name(code).spoken(self._language)
-                self._add(code, known.get(code, _UNKNOWN_COLOUR), name, int(counts[code]))
+                both = int(counts[code]), int(labelled[code])
+                self._add(code, known.get(code, _UNKNOWN_COLOUR), name, both)
         self._mark()
 
-    def _add(self, code: int, colour: str, name: str, count: int) -> None:
+    def _add(self, code: int, colour: str, name: str, counts: tuple[int, int]) -> None:
+        """A class with the number of its points, and of those that have it by a label."""
+        count, labelled = counts
         key = class_key(code)
         item = QTreeWidgetItem(self._list, [name, f"{count:,}" if count else "", key])
         item.setData(_NAME, _CODE, code)
@@ -141,7 +146,11 @@ class LabelPanel(QWidget):
         if code:
             other = class_name(code).spoken("en" if self._language == "ja" else "ja")
             item.setToolTip(_NAME, f"{name}\n{other}\n{code}")
-        item.setToolTip(_COUNT, self.tr("Points with this label"))
+        if count:
+            words = self.tr("Points of this class: {labelled} by labels, {delivered} as delivered")
+            item.setToolTip(
+                _COUNT, words.format(labelled=f"{labelled:,}", delivered=f"{count - labelled:,}")
+            )
         if key:
             item.setToolTip(_KEY, self.tr("Key that takes this class, with a paint tool in hand"))
 
@@ -154,6 +163,16 @@ class LabelPanel(QWidget):
                 item.setFont(_NAME, font)
                 if is_chosen:
                     self._list.setCurrentItem(item)
+
+    @override
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self.tally.go_on()
+
+    @override
+    def hideEvent(self, event: QHideEvent) -> None:
+        super().hideEvent(event)
+        self.tally.rest()
 
     def _show_radius(self) -> None:
         with QSignalBlocker(self._radius):

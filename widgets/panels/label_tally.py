@@ -1,4 +1,4 @@
-"""LabelTally: how many points have which label, counted while the window has nothing to do."""
+"""LabelTally: how many points have which class, counted while the window has nothing to do."""
 
 from __future__ import annotations
 
@@ -7,15 +7,22 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from processing.errors import UserError
-from processing.labels.label_column import CODES, LABEL
+from processing.labels.label_column import CODES
+from processing.points.counted_classes import class_columns
+from processing.points.drive import Drive
 from widgets.shared.map_changes import MapChanges
 from widgets.shared.map_source import MapSource
 
 _POINTS_AT_ONCE = 1_000_000
+_LABELS, _CLASSES = range(2)
+
+_Counts = NDArray[np.int64]
 
 
 class LabelTally(QObject):
-    """Counts the labels of all drives, in pieces that hold nothing up.
+    """Counts the labels of all drives and the classes that count, in pieces that hold nothing up.
+
+    It rests until :meth:`go_on`.
 
     Signals
     -------
@@ -30,11 +37,12 @@ class LabelTally(QObject):
     ) -> None:
         super().__init__(parent)
         self._source = source
-        self._counts: dict[str, NDArray[np.int64]] = {}
-        self._told = np.zeros(CODES, np.int64)
+        self._counts: dict[str, _Counts] = {}
+        self._told = _nothing()
         self._waiting: list[str] = []
         self._place = 0
-        self._sum = np.zeros(CODES, np.int64)
+        self._sum = _nothing()
+        self._is_resting = True
         self._next = QTimer(self, singleShot=True, interval=0)
         self._next.timeout.connect(self._on_next_timeout)
         map_changes.labels_changed.connect(self._on_map_labels_changed)
@@ -42,14 +50,29 @@ class LabelTally(QObject):
         self._on_map_drives_changed()
 
     @property
-    def by_code(self) -> NDArray[np.int64]:
+    def by_code(self) -> _Counts:
         """(256,) points with each label, as counted last; a copy."""
-        return self._told.copy()
+        return np.array(self._told[_LABELS])
+
+    @property
+    def by_class(self) -> _Counts:
+        """(256,) points of each class, a label before what was delivered; a copy."""
+        return np.array(self._told[_CLASSES])
 
     @property
     def is_counting(self) -> bool:
         """Whether a drive is being counted."""
-        return bool(self._waiting)
+        return bool(self._waiting) and not self._is_resting
+
+    def go_on(self) -> None:
+        """Somebody sees the numbers: count what isn't counted."""
+        self._is_resting = False
+        self._next.start()
+
+    def rest(self) -> None:
+        """Nobody sees the numbers."""
+        self._is_resting = True
+        self._next.stop()
 
     def _on_map_drives_changed(self) -> None:
         self._counts.clear()
@@ -62,18 +85,14 @@ class LabelTally(QObject):
         self._begin()
 
     def _begin(self) -> None:
-        self._place, self._sum = 0, np.zeros(CODES, np.int64)
-        self._next.start()
+        self._place, self._sum = 0, _nothing()
+        if not self._is_resting:
+            self._next.start()
 
     def _on_next_timeout(self) -> None:
         drive = next((d for d in self._source.drives() if d.id in self._waiting[:1]), None)
-        if drive is not None and drive.columns.has(LABEL) and self._place < drive.count:
-            try:
-                labels = drive.columns[LABEL][self._place : self._place + _POINTS_AT_ONCE]
-            except UserError:
-                labels = np.empty(0, np.uint8)  # who paints on it is told
-                self._place = drive.count
-            self._sum += np.bincount(labels, minlength=CODES)
+        if drive is not None and self._place < drive.count:
+            self._count(drive)
             self._place += _POINTS_AT_ONCE
             self._next.start()
             return
@@ -85,8 +104,28 @@ class LabelTally(QObject):
         else:
             self._tell()
 
+    def _count(self, drive: Drive) -> None:
+        """Count a piece, or all at once where there is nothing to count."""
+        part = slice(self._place, self._place + _POINTS_AT_ONCE)
+        try:
+            columns = class_columns(drive.columns)
+        except UserError:  # who paints on it is told
+            self._place = drive.count
+            return
+        labels, delivered = columns.labels[part], columns.delivered[part]
+        if not (labels.size or delivered.size):
+            self._place = drive.count
+            return
+        codes = np.where(labels > 0, labels, delivered) if labels.size == delivered.size else labels
+        self._sum[_LABELS] += np.bincount(labels, minlength=CODES)
+        self._sum[_CLASSES] += np.bincount(codes if labels.size else delivered, minlength=CODES)
+
     def _tell(self) -> None:
-        counted = sum(self._counts.values(), np.zeros(CODES, np.int64))
+        counted = sum(self._counts.values(), _nothing())
         if not np.array_equal(counted, self._told):
             self._told = counted
             self.changed.emit()
+
+
+def _nothing() -> _Counts:
+    return np.zeros((2, CODES), np.int64)

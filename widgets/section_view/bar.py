@@ -197,8 +197,15 @@ class SectionBar(QWidget):
         for one in blocked:
             one.unblock()
 
-    def show_line(self, *, is_drawn: bool) -> None:
-        """Show which line the section stands on."""
+    def show_line(self, *, is_drawn: bool, has_axis: bool) -> None:
+        """Show which line the section stands on.
+
+        Parameters
+        ----------
+        has_axis : bool
+            Whether it is a site's own axis where none is drawn, since nobody drove there.
+        """
+        self._line.setItemText(0, self.tr("Site axis") if has_axis else self.tr("Trajectory"))
         self._line.setCurrentIndex(int(is_drawn))
 
     def show_pinned(self, *, is_pinned: bool) -> None:

@@ -329,7 +329,7 @@ class SectionView(QWidget):
         line = self._lines.at_hand() if is_drawn else ""
         if is_drawn and not line:
             self.told.emit(NO_LINE)
-            self._bar.show_line(is_drawn=False)
+            self._show_line(self._standing)
         else:
             self.follow(line)
 
@@ -365,10 +365,14 @@ class SectionView(QWidget):
         else:
             self._panes.show_two(self._pinned)
         self._bar.show_pinned(is_pinned=self.is_pinned)
-        self._bar.show_line(is_drawn=standing is not None and bool(standing.line.feature))
+        self._show_line(standing)
         if self.cut != self._told_cut:
             self._told_cut = self.cut
             self.cut_changed.emit(self._told_cut)
+
+    def _show_line(self, standing: Standing | None) -> None:
+        is_drawn = standing is not None and bool(standing.line.feature)
+        self._bar.show_line(is_drawn=is_drawn, has_axis=self._lines.axis is not None)
 
     def _release(self) -> None:
         if self._pinned is not None:

@@ -57,6 +57,32 @@ def test_the_panel_counts_the_points_of_each_label_as_they_change(qtbot, street,
     assert panel.tally.by_code[0] == drive.count
 
 
+def test_a_delivered_class_counts_where_no_label_lies_over_it(qtbot, street, panel):
+    (drive,) = street.drives()
+    delivered = np.full(drive.count, 2, np.uint8)
+    delivered[:100] = 6
+    drive.columns.add("classification", delivered)
+    make_column(drive)
+    points = np.arange(60)
+    write_labels(drive, points, np.full(60, 2, np.uint8))
+    with qtbot.waitSignal(panel.tally.changed, timeout=30_000):
+        street.shared.map_changes.labels_changed.emit(drive.id, points)
+    assert rows(panel)["Building"][0] == "40"
+    assert rows(panel)["Ground"][0] == f"{drive.count - 40:,}"
+    (ground,) = (
+        item for item in children_of(panel.findChild(QTreeWidget)) if item.text(0) == "Ground"
+    )
+    words = f"Points of this class: 60 by labels, {drive.count - 100:,} as delivered"
+    assert ground.toolTip(1) == words
+    panel.hide()
+    write_labels(drive, points, np.full(60, 0, np.uint8))
+    street.shared.map_changes.labels_changed.emit(drive.id, points)
+    assert not panel.tally.is_counting
+    with qtbot.waitSignal(panel.tally.changed, timeout=30_000):
+        panel.show()
+    assert rows(panel)["Building"][0] == "100"
+
+
 def test_a_click_on_a_class_takes_it_on_the_brush_and_the_palette_is_shown(qtbot, street, panel):
     tree = panel.findChild(QTreeWidget)
     building = next(item for item in children_of(tree) if item.text(0) == "Building")

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QComboBox
 from pytestqt.qtbot import QtBot
 
 from processing.monitor import SilentMonitor
@@ -89,6 +90,7 @@ def test_without_a_trajectory_a_drawn_line_is_cut_across(qtbot: QtBot, tmp_path:
     across_site = hand.view.standing
     assert across_site is not None
     assert across_site.line.is_axis
+    assert "Site axis" in {box.currentText() for box in hand.view.findChildren(QComboBox)}
     line = curb_line(hand)
     hand.do(lambda: hand.map.shared.selection.choose_features(frozenset({line.id})))
     assert hand.view.followed == line.id
