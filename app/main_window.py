@@ -246,6 +246,7 @@ class MainWindow(QMainWindow):
 
     def _adopt_toggle(self, panel: Panel, dock: QDockWidget) -> None:
         toggle = dock.toggleViewAction()
+        toggle.triggered.connect(dock.raise_)
         action = Action(
             f"panel-{panel.id}",
             Text("Panel: {title}", "パネル: {title}").filled(title=panel.title),
@@ -273,8 +274,7 @@ class MainWindow(QMainWindow):
         own = [self._docks[panel.id] for panel in placed]
         widths = [_COLUMN_PX if is_narrow else panel.width for panel in placed]
         self.resizeDocks(own, widths, Qt.Orientation.Horizontal)
-        heights = [panel.height for panel in placed]
-        self.resizeDocks(own, heights, Qt.Orientation.Vertical)
+        self.resizeDocks(own, [panel.height for panel in placed], Qt.Orientation.Vertical)
 
     def _remember_docks(self) -> None:
         """Keep how the docks stand, for the next time that a project is open."""

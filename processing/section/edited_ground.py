@@ -14,6 +14,9 @@ Floats = NDArray[np.float64]
 _BIN_M = 0.25
 """Of the offsets within which points give one height; about what the surface is made on."""
 
+_LOW_PERCENT, _LAYER_M = 10, 0.3
+"""Heights of a bin this near to its low ones are of one surface, roughness and slope included."""
+
 _NEAR_BINS = 2
 """Heights farther apart than these have nothing measured between them."""
 
@@ -26,8 +29,8 @@ def edited_lines(
 ) -> tuple[SurfaceLine, ...]:
     """The lines with new stretches where points of the slab are ground now, or are it no longer.
 
-    A new stretch goes through the middle heights of the ground's points within each bin of
-    offsets, and joins the old line at its ends; where no ground is left it is filled in.
+    A new stretch goes through the middle of the lowest of the ground's points within each
+    bin of offsets, and joins the old line at its ends; where no ground is left it is filled in.
 
     Parameters
     ----------
@@ -71,13 +74,19 @@ def _stretches(offsets: Floats) -> Iterable[tuple[float, float]]:
 
 
 def _middle_heights(grounds: Floats) -> Floats:
-    """(k, 2): mean offset and median height of the points in each bin."""
+    """(k, 2): mean offset and height of the points in each bin."""
     bins = np.floor(grounds[:, 0] / _BIN_M).astype(np.int64)
     order = np.argsort(bins, kind="stable")
     starts = np.flatnonzero(np.diff(bins[order], prepend=bins.min(initial=0) - 1))
     parts = np.split(grounds[order], starts[1:]) if grounds.size else []
-    found = [(part[:, 0].mean(), np.median(part[:, 1])) for part in parts]
+    found = [(part[:, 0].mean(), _ground_height(part[:, 1])) for part in parts]
     return np.array(found, dtype=np.float64).reshape(-1, 2)
+
+
+def _ground_height(heights: Floats) -> float:
+    """The middle of the lowest layer: of two surfaces above each other the lower is the ground."""
+    low = np.percentile(heights, _LOW_PERCENT)
+    return float(np.median(heights[heights <= low + _LAYER_M]))
 
 
 def _height_at(lines: Iterable[SurfaceLine], offset_m: float) -> float | None:

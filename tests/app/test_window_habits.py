@@ -199,6 +199,16 @@ def test_a_panel_that_was_closed_stays_closed_at_the_next_start(
     assert parts.window.actions_by_id["side-by-side"].isChecked()
 
 
+def test_a_panel_that_is_opened_stands_before_those_that_share_its_place(
+    start: Start, tmp_path: Path, qtbot: QtBot
+) -> None:
+    parts = start()
+    assert parts.document.create(tmp_path / "p.zuka", "EPSG:6677")
+    qtbot.waitUntil(lambda: not parts.layers_panel.visibleRegion().isEmpty(), timeout=30_000)
+    parts.window.actions_by_id["panel-labels"].trigger()
+    qtbot.waitUntil(lambda: not parts.label_panel.visibleRegion().isEmpty(), timeout=30_000)
+
+
 def test_a_window_left_without_a_project_shows_its_panels_the_next_time(
     qtbot: QtBot, start: Start, parts: WindowParts, tmp_path: Path
 ) -> None:

@@ -70,3 +70,12 @@ def test_ground_beyond_the_end_of_the_line_makes_it_longer():
     at = np.array([-5.0, 5.0])
     np.testing.assert_allclose(heights(lines, at), 0.0, atol=1e-9)
     assert max(line.places[-1, 0] for line in lines) == pytest.approx(10.0, abs=0.3)
+
+
+def test_of_two_surfaces_above_each_other_the_lower_one_is_the_ground():
+    ground, roof = slab(np.zeros_like), slab(lambda x: np.full_like(x, 2.5))
+    section = np.concatenate([ground, roof[np.abs(roof[:, 0]) < 2]])
+    was = section[:, 1] == 0
+    lines = edited_lines(FOUND, section, np.ones(len(section), np.bool_), was)
+    at = np.linspace(-9.0, 9.0, 50)
+    np.testing.assert_allclose(heights(lines, at), 0.0, atol=1e-9)

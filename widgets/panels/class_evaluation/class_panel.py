@@ -133,6 +133,7 @@ class ClassPanel(QWidget):
                 self._fill(number, name, counts, is_run=self._rows[number] is not None)
             if rows:
                 self._table.setCurrentCell(self._row_like(chosen), 0)
+                self._table.scrollTo(self._table.currentIndex())
         self._show_state()
 
     def _row_like(self, chosen: ClassEvaluation | None) -> int:
