@@ -115,6 +115,9 @@ class LabelSteps(QObject):
 
     def arrive(self, step: LabelStep, change: Change, take: Callable[[Change], object]) -> None:
         """What a step's job made goes on the map once it has caught up with what was painted."""
+        if not any(one is step for one in self._steps):
+            self.drop(step, change)  # it was taken back while its end was on its way
+            return
         filed = change.filed
         if filed is None or not step.missed:
             self.drop(step)
@@ -165,6 +168,7 @@ class LabelSteps(QObject):
         """Undo (−1) or redo (1); says whether there is something."""
         painted = [one for one in self._steps if one.wish is not None]
         if by < 0 and painted:
+            self.drop(painted[-1])
             self.cancelled.emit(painted[-1].job)
             self.told.emit(_TAKEN_BACK.filled(label=painted[-1].label))
             return True

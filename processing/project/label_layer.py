@@ -7,10 +7,11 @@ from contextlib import suppress
 
 import numpy as np
 
-from processing.errors import BadFile, UserError
+from processing.errors import BadFile, UserError, told_as_user_error
 from processing.labels.label_column import LABEL, flush, labels_of, make_column, write_labels
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
+from processing.points.replacing import flush_names
 from processing.project.change import Change
 from processing.project.filed_labels import FiledLabels
 from processing.project.label_change import LabelChange
@@ -128,6 +129,9 @@ class LabelLayer:
             for id_ in filed.counts:
                 self._drive_of(id_).columns.take_over(LABEL, filed.column_file(id_))
                 adopted.append(id_)
+                # The next step's note replaces this one's: by then the new name must be safe.
+                with told_as_user_error(filed.folder):
+                    flush_names(self._drive_of(id_).folder)
         except UserError:
             with suppress(UserError):
                 for id_ in adopted:

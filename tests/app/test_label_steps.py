@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
@@ -169,13 +170,31 @@ def test_undo_while_many_labels_are_stored_takes_these_back_and_leaves_nothing(d
     gate = desk.hold(Lane.STEPS)
     desk.paint(range(20, 2000), ROAD)
     assert desk.document.undo()
+    label = desk.document.undo_stack.undo_label
     gate.set()
     desk.rest()
+    assert desk.document.undo_stack.undo_label == label == Text.same(f"paint {SIGN}")
     assert (desk.labels > 0).sum() == 50
     assert desk.told[-1] == f"Taken back: paint {ROAD}"
     assert desk.step_files == []
     assert desk.document.undo()
     assert not desk.labels.any()
+
+
+def test_undo_after_the_job_has_ended_but_before_its_end_is_heard_takes_it_back_too(
+    desk: Desk,
+) -> None:
+    desk.paint(range(20, 2000), ROAD)
+    steps = desk.folder / "label_steps"
+    until = time.monotonic() + 20
+    # The window's thread hears nothing here, so the job's end waits for it.
+    while not any(steps.rglob("after-*")) and time.monotonic() < until:
+        pass
+    assert desk.document.undo()
+    desk.rest()
+    assert not desk.labels.any()
+    assert desk.step_files == []
+    assert desk.document.undo_stack.undo_label is None
 
 
 def test_an_undo_is_given_up_where_something_is_painted_meanwhile(desk: Desk) -> None:
