@@ -123,6 +123,8 @@ class PaintTool(MouseTool):
         self._shared = shared
         self._at_hand = at_hand
         self._stroke: Stroke | None = None
+        self._edits = 0
+        shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
 
     @property
     @override
@@ -190,15 +192,22 @@ class PaintTool(MouseTool):
         if stroke is None:
             return
         stroke.is_whole = True
+        self._work_out(stroke, lambda: Painted(points_of(), rule, hides_noise))
+
+    def _work_out(self, stroke: Stroke, painted_of: Callable[[], Painted]) -> None:
+        """Make the change of a stroke; again where labels changed while it was made."""
+        edits = self._edits
 
         def work() -> tuple[Painted, tuple[LabelChange, ...]]:
-            painted = Painted(points_of(), rule, hides_noise)
+            painted = painted_of()
             return painted, painted.changes(self._source)
 
         def take(result: object) -> None:
             if isinstance(result, tuple) and not stroke.is_dropped:
-                painted, changes = result
-                self._ask_for(painted, self._as_of_now(painted, changes))
+                if self._edits != edits:
+                    self._work_out(stroke, painted_of)
+                    return
+                self._ask_for(*result)
             if self._stroke is stroke:
                 self._show_chosen()
 
@@ -208,16 +217,8 @@ class PaintTool(MouseTool):
     def _hides_noise(self) -> bool:
         return self._shared.view_settings.look.hides_noise
 
-    def _as_of_now(
-        self, painted: Painted, changes: tuple[LabelChange, ...]
-    ) -> tuple[LabelChange, ...]:
-        """The changes, made again where other work came between."""
-        drives = {drive.id: drive for drive in self._source.drives()}
-        for one in changes:
-            labels = labels_of(drives[one.drive], one.unpacked_points())
-            if not np.array_equal(labels, one.codes_before()):
-                return painted.changes(self._source)
-        return changes
+    def _on_map_labels_changed(self) -> None:
+        self._edits += 1
 
     def _ask_for(self, painted: Painted, changes: tuple[LabelChange, ...]) -> None:
         code = painted.rule.code

@@ -73,6 +73,7 @@ class Easel:
             make_column(drive)
             assert (labels_of(drive, one.unpacked_points()) == one.codes_before()).all()
             write_labels(drive, one.unpacked_points(), one.codes_after())
+            self.map.shared.map_changes.labels_changed.emit(drive.id, one.unpacked_points())
 
     def hit(self, point: int) -> Hit:
         return Hit(place_on(self.drive, point))
@@ -222,8 +223,13 @@ def test_a_long_stroke_is_made_anew_where_an_undo_came_between(easel):
     tool.choose_box(Boxed(frozenset(), {}, find_every=lambda: {name: np.arange(50)}))
     work, take = later.waiting.pop()
     result = work()
-    write_labels(easel.drive, np.arange(10, 20), np.full(10, 2, np.uint8))
+    undone = np.arange(10, 20)
+    write_labels(easel.drive, undone, np.full(10, 2, np.uint8))
+    easel.map.shared.map_changes.labels_changed.emit(name, undone)
     take(result)
+    assert tool.is_busy
+    later.do_all()
+    assert not tool.is_busy
     assert (easel.labels[:50] == 6).all()
     ((_, change),) = easel.changes
     assert change.labels[0].codes_before()[10:20].tolist() == [2] * 10
