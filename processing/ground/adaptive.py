@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from processing.ground.band import Band, Tolerances, classify, ground_band, heights_at
 from processing.ground.below import ghosts, sunk_points
-from processing.ground.cells import Blocks, CellGrid, Levels, choose_cells, levels_above
+from processing.ground.cells import CellGrid, Levels, choose_cells, levels_above
 from processing.ground.morphology import filled, steepness_of
 from processing.ground.neighbours import off_neighbours
+from processing.ground.places import Blocks
 from processing.ground.regions import Shape, standing_cells
 from processing.monitor import Monitor
 from processing.text import Text
@@ -110,7 +111,7 @@ def find_ground(
     Raises
     ------
     OutOfRange
-        Without a grid: fewer than three points, or all at one place.
+        Without a grid: points at fewer than three places.
 
     Notes
     -----

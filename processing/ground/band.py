@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.ground.cells import Blocks, CellGrid
+from processing.ground.cells import CellGrid
 from processing.ground.morphology import steepness_of
+from processing.ground.places import Blocks
 from processing.ground.walls import column_tops, faces
 from processing.kernels import kernel
 

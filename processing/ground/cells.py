@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import OutOfRange
+from processing.ground.places import Blocks, require_three_places
 from processing.kernels import kernel
-from processing.text import Text
-
-Blocks = Callable[[], Iterable[NDArray[np.float64]]]
 
 MOST_CELLS = 48_000_000
 _MOST_COARSE = 256
@@ -88,19 +84,11 @@ def choose_cells(
     Raises
     ------
     OutOfRange
-        Fewer than three points, or all at one place.
+        Points at fewer than three places.
     """
+    require_three_places(blocks)
     low, high, count = _extent(blocks)
     low, high = _without_far_points(blocks, low, high, count)
-    if count < 3 or not np.any(high[:2] > low[:2]):
-        raise OutOfRange(
-            Text(
-                f"Ground needs at least three points at different places; there are {count}.",
-                f"地面の抽出には位置の異なる3点以上が必要です（有効な点：{count}）。",
-            ),
-            Text("The whole cloud", "点群全体"),
-            Text("Choose a cloud with more points.", "点数の多い点群を選んでください。"),
-        )
     extent = high[:2] - low[:2]
     # Whole centimetres, so that what was chosen can be said and set.
     size_m = grid_m if grid_m > 0.0 else round(_spacing(blocks, low, extent, count), 2)
@@ -287,6 +275,6 @@ def _second_kernel(
 
 def warm_up() -> None:
     """Compile the kernels of this file."""
-    xyz = np.array([[0.0, 0.0, 0.0], [0.5, 0.5, 1.0]])
-    grid = choose_cells(lambda: [np.vstack([xyz, xyz])])
+    xyz = np.array([[0.0, 0.0, 0.0], [0.5, 0.5, 1.0], [0.5, 0.0, 1.0]])
+    grid = choose_cells(lambda: [xyz])
     levels_above(lambda: [xyz], grid, np.full((grid.rows, grid.columns), -np.inf, np.float32), 0.1)

@@ -53,7 +53,7 @@ def adaptive_ground(
     Raises
     ------
     OutOfRange
-        Fewer than three points that are no noise, or all at one place.
+        Points that are no noise at fewer than three places.
     NoSpace, Cancelled
     """
     monitor.report(0.0, _LOOKING)

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from processing.ground.drive_points import Chunk, DrivePoints
 from processing.ground.ground_columns import GroundColumns
-from processing.ground.lowest_points import lowest_ground, require_points
+from processing.ground.lowest_points import lowest_ground
+from processing.ground.places import require_three_places
 from processing.ground.published import PublishedSteps, published_surface
 from processing.monitor import Monitor, PartMonitor
 
@@ -53,10 +54,10 @@ def lowest_ground_of(
     Raises
     ------
     OutOfRange
-        Fewer than three points that are no noise.
+        Points that are no noise at fewer than three places.
     NoSpace, Cancelled
     """
-    require_points(points.blocks, 3)
+    require_three_places(points.blocks)
     found = lowest_ground(points.blocks, cell_m, tolerance_m)
 
     def judge(

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import OutOfRange
-from processing.ground.cells import Blocks
-from processing.text import Text
+from processing.ground.places import Blocks
+
+_Some = tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.int64]]
+
+_MOST_WAITING = 1_000_000
 
 
 class LowestPoints:
@@ -20,30 +23,51 @@ class LowestPoints:
     parts : int
         Whole numbers that make a key.
 
-    Attributes
-    ----------
-    keys : (m, parts) int64
-        Each once, in rising order, the last number changing slowest.
-    xyz : (m, 3) float64
-    numbers : (m,) int64
-        As they were given.
     """
 
     def __init__(self, parts: int) -> None:
-        self.keys = np.empty((0, parts), np.int64)
-        self.xyz = np.empty((0, 3))
-        self.numbers = np.empty(0, np.int64)
+        self._held = (np.empty((0, parts), np.int64), np.empty((0, 3)), np.empty(0, np.int64))
+        self._waiting: list[_Some] = []
+
+    @property
+    def keys(self) -> NDArray[np.int64]:
+        """Each once, in rising order, the last number changing slowest: (m, parts)."""
+        return self._taken_in()[0]
+
+    @property
+    def xyz(self) -> NDArray[np.float64]:
+        """The points in the order of their keys: (m, 3)."""
+        return self._taken_in()[1]
+
+    @property
+    def numbers(self) -> NDArray[np.int64]:
+        """Their numbers as they were given: (m,)."""
+        return self._taken_in()[2]
+
+    @property
+    def count_so_far(self) -> int:
+        """How many there are at least; asking costs nothing."""
+        return len(self._held[0])
 
     def add(
         self, keys: NDArray[np.int64], xyz: NDArray[np.float64], numbers: NDArray[np.int64]
     ) -> None:
         """Take in a block; how points are cut into blocks changes nothing."""
         chosen = _lowest_of(keys, xyz[:, 2])
-        keys = np.concatenate([self.keys, keys[chosen]])
-        xyz = np.concatenate([self.xyz, xyz[chosen]])
-        numbers = np.concatenate([self.numbers, numbers[chosen]])
-        chosen = _lowest_of(keys, xyz[:, 2])
-        self.keys, self.xyz, self.numbers = keys[chosen], xyz[chosen], numbers[chosen]
+        self._waiting.append((keys[chosen], xyz[chosen], numbers[chosen]))
+        # Sorting all that is held for every block would take longer the more is held.
+        if sum(len(own) for own, _, _ in self._waiting) > max(_MOST_WAITING, len(self._held[0])):
+            self._taken_in()
+
+    def _taken_in(self) -> _Some:
+        if self._waiting:
+            keys, xyz, numbers = (
+                np.concatenate(parts) for parts in zip(self._held, *self._waiting, strict=True)
+            )
+            self._waiting.clear()
+            chosen = _lowest_of(keys, xyz[:, 2])
+            self._held = keys[chosen], xyz[chosen], numbers[chosen]
+        return self._held
 
 
 def _lowest_of(keys: NDArray[np.int64], heights: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -95,15 +119,20 @@ class LowestGround:
         finite = np.flatnonzero(np.isfinite(xyz).all(axis=1))
         if not len(self.lowest.numbers):
             return above
-        width = int(self.lowest.keys[:, 0].max()) + 1
+        width, held = self._held_cells
         cells = _cells(xyz[finite], self.start, self.cell_m)
-        held = self.lowest.keys[:, 1] * width + self.lowest.keys[:, 0]
         wanted = cells[:, 1] * width + cells[:, 0]
         place = np.minimum(np.searchsorted(held, wanted), len(held) - 1)
         known = np.all(self.lowest.keys[place] == cells, axis=1)
         kept, place = finite[known], place[known]
         above[kept] = xyz[kept, 2] - self.lowest.xyz[place, 2]
         return above
+
+    @cached_property
+    def _held_cells(self) -> tuple[int, NDArray[np.int64]]:
+        """How many columns there are, and the cells with points, counted along the rows."""
+        width = int(self.lowest.keys[:, 0].max()) + 1
+        return width, self.lowest.keys[:, 1] * width + self.lowest.keys[:, 0]
 
 
 def lowest_ground(blocks: Blocks, cell_m: float, tolerance_m: float = 0.0) -> LowestGround:
@@ -136,22 +165,3 @@ def _cells(
     xyz: NDArray[np.float64], start: NDArray[np.float64], cell_m: float
 ) -> NDArray[np.int64]:
     return np.floor((xyz[:, :2] - start) / cell_m).astype(np.int64)
-
-
-def require_points(blocks: Blocks, least: int) -> None:
-    """Raise when there are too few points with finite coordinates.
-
-    Raises
-    ------
-    OutOfRange
-    """
-    count = sum(int(np.isfinite(xyz).all(axis=1).sum()) for xyz in blocks())
-    if count < least:
-        raise OutOfRange(
-            Text(
-                f"Ground needs at least {least} points at different places; there are {count}.",
-                f"地面の抽出には位置の異なる{least}点以上が必要です（有効な点：{count}）。",
-            ),
-            Text("The whole cloud", "点群全体"),
-            Text("Choose a cloud with more points.", "点数の多い点群を選んでください。"),
-        )

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import OutOfRange
-from processing.ground.cells import Blocks
-from processing.ground.lowest_points import LowestPoints, lowest_ground, require_points
+from processing.ground.lowest_points import LowestPoints, lowest_ground
+from processing.ground.places import Blocks, require_three_places
 from processing.ground.triangles import Triangles, triangulated
 from processing.monitor import Monitor
 from processing.text import Text
@@ -97,13 +97,13 @@ def published_surface(blocks: Blocks, steps: PublishedSteps, monitor: Monitor) -
     Raises
     ------
     OutOfRange
-        Fewer than three finite points; more corners than can be joined in memory.
+        Finite points at fewer than three places; more corners than can be joined in memory.
 
     References
     ----------
     Specification noise_ground.md, B3.1 and B3.2.
     """
-    require_points(blocks, 3)
+    require_three_places(blocks)
     monitor.report(0.0, Text("Looking for the ground", "地面を探しています"))
     corners = lowest_ground(blocks, steps.grid_m).lowest.xyz
     _refuse_too_many(len(corners))
@@ -168,5 +168,6 @@ def _lowest_on_slopes(
         columns = np.floor((chosen[:, :2] - triangles.origin[:2]) / fine_m).astype(np.int64)
         keys = np.column_stack((columns, triangle[on_slope]))
         lowest.add(keys, chosen, np.zeros(len(chosen), np.int64))
-        _refuse_too_many(len(lowest.numbers))
+        _refuse_too_many(lowest.count_so_far)
+    _refuse_too_many(len(lowest.numbers))
     return lowest.xyz

@@ -7,6 +7,7 @@ import pytest
 
 from processing.errors import OutOfRange
 from processing.ground.adaptive import GroundHabits, GroundSurface, find_ground
+from processing.ground.published import PublishedSteps, published_surface
 from processing.monitor import SilentMonitor
 
 
@@ -121,8 +122,29 @@ def test_a_handful_of_level_points_is_ground(count: int) -> None:
 
 @pytest.mark.parametrize("xyz", [np.zeros((0, 3)), np.full((9, 3), np.nan), np.ones((10, 3))])
 def test_a_cloud_without_extent_is_refused_in_a_sentence(xyz: np.ndarray) -> None:
-    with pytest.raises(OutOfRange, match="at least three points"):
+    with pytest.raises(OutOfRange, match="three or more places"):
         _found(xyz)
+
+
+@pytest.mark.parametrize(
+    ("xyz", "places"),
+    [
+        (np.ones((500, 3)), 1),
+        (np.column_stack([np.ones((500, 2)), np.arange(500.0)]), 1),
+        (np.tile([[0.0, 0.0, 1.0], [4.0, 0.0, 1.0]], (250, 1)), 2),
+    ],
+    ids=["copies", "one above the other", "copies at two places"],
+)
+def test_a_refused_cloud_is_told_how_many_places_it_has_not_how_many_points(
+    xyz: np.ndarray, places: int
+) -> None:
+    blocks = [xyz[:100], xyz[100:]]
+    for method in (
+        lambda: find_ground(lambda: blocks, GroundHabits(), SilentMonitor()),
+        lambda: published_surface(lambda: blocks, PublishedSteps(), SilentMonitor()),
+    ):
+        with pytest.raises(OutOfRange, match=f"the cloud has {places}\\."):
+            method()
 
 
 def test_the_foot_of_a_fence_goes_with_the_fence() -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from processing.errors import OutOfRange
+from processing.ground import lowest_points
 from processing.ground.lowest_points import lowest_ground
 from processing.ground.published import PublishedSteps, published_surface
 from processing.ground.triangles import triangulated
@@ -97,6 +98,26 @@ def test_the_lowest_points_are_one_per_cell_and_a_tolerance_keeps_a_band() -> No
     assert with_band.is_ground(xyz, 0).tolist() == [False, True, True, True]
 
 
+def test_lowest_points_are_the_same_however_often_they_are_sorted(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    rng = np.random.default_rng(5)
+    keys, xyz = rng.integers(0, 9, (400, 2)), np.round(rng.random((400, 3)), 1)
+    found = []
+    for waiting in (0, 30, 1_000):
+        monkeypatch.setattr(lowest_points, "_MOST_WAITING", waiting)
+        lowest = lowest_points.LowestPoints(2)
+        for start in range(0, 400, 25):
+            part = slice(start, start + 25)
+            lowest.add(keys[part], xyz[part], np.arange(start, start + 25))
+            assert lowest.count_so_far <= len(np.unique(keys[: start + 25], axis=0))
+        found.append(lowest.numbers.tolist())
+    assert found[0] == found[1] == found[2]
+    order = np.lexsort((np.arange(400), xyz[:, 2], keys[:, 0], keys[:, 1]))
+    first = np.unique(keys[order][:, ::-1], axis=0, return_index=True)[1]
+    assert found[0] == order[first].tolist()
+
+
 def test_points_on_one_line_and_coplanar_points_have_ground() -> None:
     line = np.column_stack([np.arange(10.0), np.zeros(10), np.zeros(10)])
     found = _ground(line, PublishedSteps(grid_m=1.0))
@@ -113,5 +134,5 @@ def test_points_without_coordinates_are_not_ground() -> None:
 
 
 def test_two_points_are_refused_in_a_sentence() -> None:
-    with pytest.raises(OutOfRange, match="at least 3 points"):
+    with pytest.raises(OutOfRange, match="three or more places"):
         _ground(np.zeros((2, 3)), PublishedSteps())
