@@ -9,7 +9,6 @@ from PySide6.QtWidgets import (
     QFrame,
     QGridLayout,
     QLabel,
-    QProgressBar,
     QScrollArea,
     QToolButton,
     QVBoxLayout,
@@ -17,6 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from processing.text import Language
+from widgets.parts.progress_bar import ProgressBar
 
 _STEPS = 1000
 _MOST_ENDED = 50
@@ -136,7 +136,7 @@ class _JobRow(QFrame):
         self.setFrameShape(QFrame.Shape.StyledPanel)
         self._title = QLabel(self)
         self._state = QLabel(self)
-        self._bar = QProgressBar(self)
+        self._bar = ProgressBar(self)
         self._bar.setRange(0, _STEPS)
         self._bar.setTextVisible(False)
         self._bar.setFixedHeight(8)
@@ -162,7 +162,7 @@ class _JobRow(QFrame):
         self.job = job
         self._title.setText(job.title)
         self._state.setText(self._state_words(job))
-        self._bar.setValue(round(job.fraction * _STEPS))
+        self._bar.show_value(round(job.fraction * _STEPS))
         self._bar.setVisible(not job.is_over)
         self._cancel.setVisible(not job.is_over)
         words = "\n".join(job.error.split(" | ")) if job.error else job.text

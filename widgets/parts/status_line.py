@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QFont
-from PySide6.QtWidgets import QLabel, QProgressBar, QStatusBar, QWidget
+from PySide6.QtWidgets import QLabel, QStatusBar, QWidget
 
 from processing.text import Language, Text
 from widgets.panels.jobs_panel import JobView, time_left
 from widgets.parts.number_field import coordinate
+from widgets.parts.progress_bar import ProgressBar
 from widgets.shared.cursor import Place
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
@@ -39,7 +40,7 @@ class StatusLine(QStatusBar):
         self._cursor = shared.cursor
         self._language = language
         self._job: JobView | None = None
-        self._progress = QProgressBar(self)
+        self._progress = ProgressBar(self)
         self._progress.setRange(0, _STEPS)
         self._progress.setTextVisible(False)
         self._progress.setFixedSize(88, 8)
@@ -80,7 +81,7 @@ class StatusLine(QStatusBar):
         if job is None:
             self._job_words.clear()
             return
-        self._progress.setValue(round(job.fraction * _STEPS))
+        self._progress.show_value(round(job.fraction * _STEPS))
         left = time_left(job.seconds_left)
         words = (
             self.tr("{title} {percent} %, {left} left") if left else self.tr("{title} {percent} %")
