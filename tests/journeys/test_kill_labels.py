@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from processing.labels.label_column import write_labels
-from processing.project.label_rows import labels_at
 from processing.project.project import Project
 from tests.journeys.test_kill_moments import killed
 from tests.processing.project.drawn import tree_of
@@ -22,9 +21,13 @@ PAINTING = """
 import random, sys
 from pathlib import Path
 import numpy as np
+from processing.monitor import SilentMonitor
+from processing.project import label_filing
 from processing.project.project import Project
-from tests.processing.project.labelled import paint
+from tests.processing.project.labelled import PAINT, painting
+label_filing.MANY_POINTS = 1500
 project = Project.open(Path(sys.argv[1]))
+drives = {drive.id: drive for drive in project.drives}
 choice = random.Random(sys.argv[2])
 count = project.drives[0].count
 while True:
@@ -38,7 +41,12 @@ while True:
         last = min(count, first + choice.randrange(1, 4000))
         points = np.arange(first, last, choice.randint(1, 3))
         try:
-            paint(project, points, code)
+            wish = painting(project.drives[0], points, code).labels
+            into = project.label_folder()
+            change = label_filing.labels_as_change(
+                wish, into, drives.__getitem__, SilentMonitor()
+            )
+            project.features.apply(PAINT, change)
         except ValueError:
             raise SystemExit("the labels are not those of the history")
     print("step", flush=True)
@@ -54,7 +62,9 @@ def replayed(project: Project) -> np.ndarray:
     """The labels that the stored changes make, one after the other, from none."""
     labels = np.zeros(project.drives[0].count, np.uint8)
     for place in range(1, project.history.position + 1):
-        for change in labels_at(project._database, place):
+        step = project.history._change(place)
+        filed = () if step.filed is None else step.filed.changes()
+        for change in (*step.labels, *filed):
             points = change.unpacked_points()
             np.testing.assert_array_equal(labels[points], change.codes_before())
             labels[points] = change.codes_after()
