@@ -3,13 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.kernels import kernel
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
+
 _BLOCK = 1_000_000
 _ON_EDGE = 1e-9
+_OUTSIDE = -1e-12
+_STRIP_TRIANGLES = 3.0
 
 
 @dataclass(frozen=True)
@@ -55,13 +63,12 @@ class Triangles:
     def _one_triangle(self, places: NDArray[np.float64]) -> NDArray[np.int64]:
         """The triangle that was found, or on an edge or a corner always the same of those there."""
         mesh: Any = self.mesh
-        triangle: NDArray[np.int64] = mesh.find_simplex(places).astype(np.int64)
+        triangle = np.empty(len(places), np.int64)
+        shares = np.zeros((len(places), 3))
+        order = self._along_the_plan(places)
+        _walk_kernel(self.xyz, mesh.simplices, mesh.neighbors, (places, order), (triangle, shares))
         inside = np.flatnonzero(triangle >= 0)
-        of = triangle[inside]
-        shares = np.einsum(
-            "nij,nj->ni", mesh.transform[of, :2], places[inside] - mesh.transform[of, 2]
-        )
-        shares = np.column_stack((shares, 1.0 - shares.sum(axis=1)))
+        of, shares = triangle[inside], shares[inside]
         for corner in range(3):
             beyond = mesh.neighbors[of, corner]
             on_edge = (np.abs(shares[:, corner]) <= _ON_EDGE) & (beyond >= 0)
@@ -72,14 +79,29 @@ class Triangles:
             triangle[inside[at_corner]] = mesh.vertex_to_simplex[vertex]
         return triangle
 
+    def _along_the_plan(self, places: NDArray[np.float64]) -> NDArray[np.int64]:
+        """An order in which each place is near the one before it: a short walk from triangle to it.
+
+        Strips of a few triangles' width, every second one backwards.
+        """
+        size = self.xyz[:, :2].max(axis=0)
+        wide = _STRIP_TRIANGLES * float(np.sqrt(size.prod() / len(self.corners)))
+        strip = np.floor(places[:, 1] / max(wide, 1e-6))
+        along = np.where(strip % 2 == 0, places[:, 0], -places[:, 0])
+        return np.lexsort((along, strip))
+
+    @cached_property
+    def _corner_tree(self) -> cKDTree:
+        from scipy.spatial import cKDTree
+
+        return cKDTree(self.xyz[:, :2])
+
     def heights_at(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
         """Height on the triangles, m; outside the hull that of the nearest corner: (m,)."""
         return self.located(xy)[0]
 
     def located(self, xy: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """Heights as :meth:`heights_at`, and which places are outside the hull: (m,) bool."""
-        from scipy.spatial import cKDTree
-
         places = xy - self.origin[:2]
         triangle = self.triangle_of(xy)
         heights = np.empty(len(xy))
@@ -92,7 +114,7 @@ class Triangles:
         share_c = (u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]) / area
         heights[inside] = a[:, 2] + share_b * (b[:, 2] - a[:, 2]) + share_c * (c[:, 2] - a[:, 2])
         if not inside.all():
-            nearest = cKDTree(self.xyz[:, :2]).query(places[~inside])[1]
+            nearest = self._corner_tree.query(places[~inside])[1]
             heights[~inside] = self.xyz[nearest, 2]
         heights += float(self.origin[2])
         return heights, ~inside
@@ -121,3 +143,60 @@ def triangulated(xyz: NDArray[np.float64]) -> Triangles:
     except QhullError:  # all on one line: there is no triangle, the nearest corner serves
         return Triangles(local, origin, np.empty((0, 3), np.int64), None)
     return Triangles(local, origin, mesh.simplices.astype(np.int64), mesh)
+
+
+@kernel
+def _walk_kernel(
+    corners: NDArray[np.float64],
+    triangles: NDArray[np.int32],
+    neighbours: NDArray[np.int32],
+    asked: tuple[NDArray[np.float64], NDArray[np.int64]],
+    found: tuple[NDArray[np.int64], NDArray[np.float64]],
+) -> None:
+    """The triangle of each place, from that of the last one over edges that it lies beyond.
+
+    Such a walk ends in a Delaunay mesh; it never turns back, which rounding could make it do.
+
+    References
+    ----------
+    Devillers, Pion & Teillaud 2002, the remembering walk.
+    """
+    places, order = asked
+    held, shares = found
+    now = 0
+    most = triangles.shape[0] + 3
+    for number in order:
+        x, y = places[number, 0], places[number, 1]
+        before = -2
+        is_outside = False
+        for _ in range(most):
+            ends = triangles[now]
+            area = _turn(
+                corners[ends[0]], corners[ends[1]], corners[ends[2], 0], corners[ends[2], 1]
+            )
+            following = -1
+            for side in range(3):
+                turn = _turn(corners[ends[(side + 1) % 3]], corners[ends[(side + 2) % 3]], x, y)
+                shares[number, side] = turn / area if area != 0.0 else 0.0
+                beyond = neighbours[now, side]
+                if turn < 0.0 and beyond != before and following < 0:
+                    if beyond >= 0:
+                        following = beyond
+                    elif turn < _OUTSIDE * area:
+                        is_outside = True
+            if following < 0 or is_outside:
+                break
+            before, now = now, following
+        held[number] = -1 if is_outside else now
+
+
+@kernel
+def _turn(start: NDArray[np.float64], end: NDArray[np.float64], x: float, y: float) -> float:
+    """Twice the area of a triangle; positive where the place lies to the left of the edge."""
+    return float((end[0] - start[0]) * (y - start[1]) - (end[1] - start[1]) * (x - start[0]))
+
+
+def warm_up() -> None:
+    """Compile the kernels of this file."""
+    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    triangulated(corners).triangle_of(np.array([[0.2, 0.2]]))

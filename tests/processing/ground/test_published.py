@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from processing.errors import OutOfRange
-from processing.ground import lowest_points
+from processing.ground import lowest_points, triangles
 from processing.ground.lowest_points import lowest_ground
 from processing.ground.published import PublishedSteps, published_surface
 from processing.ground.triangles import triangulated
@@ -78,6 +78,44 @@ def test_the_highest_corner_of_a_steep_triangle_goes_once_or_until_none_is_left(
 def test_slopes_of_triangles_are_angles_from_the_horizontal() -> None:
     corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 1.0, 0.0]]) + _SHIFT
     assert triangulated(corners).slopes_deg() == pytest.approx([45.0])
+
+
+@pytest.mark.parametrize("is_lattice", [False, True], ids=["scattered", "lattice"])
+def test_the_triangle_of_a_place_holds_it_and_only_places_outside_the_hull_have_none(
+    is_lattice: bool,
+) -> None:
+    rng = np.random.default_rng(3)
+    corners = rng.uniform(0.0, 20.0, (300, 3))
+    if is_lattice:
+        corners = np.column_stack([np.mgrid[:21:2, :21:2].reshape(2, -1).T, np.zeros(121)])
+    found = triangulated(corners + _SHIFT)
+    places = np.vstack([rng.uniform(-3.0, 23.0, (900, 2)), corners[:50, :2]])
+    triangle = found.triangle_of(places + _SHIFT[:2])
+    # scipy is the peer; on edges and corners any of the triangles there will do.
+    expected = found.mesh.find_simplex(places + _SHIFT[:2] - found.origin[:2])
+    assert np.array_equal(triangle[:900] < 0, expected[:900] < 0)
+    assert (triangle[900:] >= 0).all()
+    inside = triangle >= 0
+    a, b, c = (found.xyz[found.corners[triangle[inside], k], :2] for k in range(3))
+    of = places[inside] + _SHIFT[:2] - found.origin[:2]
+    for start, end in ((a, b), (b, c), (c, a)):
+        edge, way = end - start, of - start
+        assert (edge[:, 0] * way[:, 1] - edge[:, 1] * way[:, 0] > -1e-9).all()
+    again = found.triangle_of(places[::-1] + _SHIFT[:2])
+    assert np.array_equal(again[::-1], triangle)
+
+
+def test_walking_uncompiled_finds_what_the_kernel_finds() -> None:
+    whole = triangulated(np.random.default_rng(4).uniform(0.0, 9.0, (20, 3)))
+    corners, mesh = whole.xyz, whole.mesh
+    places = np.random.default_rng(5).uniform(-1.0, 10.0, (40, 2))
+    results = []
+    for walk in (triangles._walk_kernel, triangles._walk_kernel.py_func):
+        found = np.empty(40, np.int64), np.zeros((40, 3))
+        walk(corners, mesh.simplices, mesh.neighbors, (places, np.arange(40)), found)
+        results.append(found)
+    assert np.array_equal(results[0][0], results[1][0])
+    np.testing.assert_allclose(results[0][1], results[1][1])
 
 
 def test_large_coordinates_and_duplicates_do_not_change_the_ground() -> None:
