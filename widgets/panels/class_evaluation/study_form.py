@@ -51,7 +51,7 @@ class RangeRow:
         self._parameters: dict[str, Parameter] = {}
         self.choice = QComboBox(form)
         self.choice.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self.choice.setMinimumContentsLength(8)
+        self.choice.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
         self.low = NumberField(0.0, 1.0, parent=form)
         self.high = NumberField(0.0, 1.0, parent=form)
         for field in (self.low, self.high):

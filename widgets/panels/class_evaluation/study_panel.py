@@ -33,7 +33,7 @@ from widgets.panels.class_evaluation.study_plot import StudyPlot, StudyWords
 from widgets.panels.reliability_plot import PlotColours
 from widgets.panels.run_words import name_of_tool
 
-_FORM_PX, _BESIDE_PX = 440, 220
+_FORM_PX, _BESIDE_PX = 520, 220
 _REMOVED, _KEPT = "removed", "kept"
 
 ValuesOf = Callable[[str], Mapping[str, Value]]
