@@ -15,6 +15,7 @@ from processing.monitor import Monitor
 from processing.text import Text
 
 MOST_CORNERS = 1_000_000
+_FEWEST_CORNERS = 3
 
 
 @dataclass(frozen=True)
@@ -107,10 +108,11 @@ def published_surface(blocks: Blocks, steps: PublishedSteps, monitor: Monitor) -
     monitor.report(0.0, Text("Looking for the ground", "地面を探しています"))
     corners = lowest_ground(blocks, steps.grid_m).lowest.xyz
     _refuse_too_many(len(corners))
-    kept, removals = _without_steep(corners, steps, monitor)
+    triangles, removals = _without_steep(corners, steps, monitor)
     monitor.report(0.5)
-    fine = _lowest_on_slopes(blocks, triangulated(kept), steps, monitor)
-    triangles = triangulated(np.concatenate((kept, fine)))
+    fine = _lowest_on_slopes(blocks, triangles, steps, monitor)
+    if len(fine):
+        triangles = triangulated(np.concatenate((triangles.xyz + triangles.origin, fine)))
     monitor.report(1.0)
     return PublishedSurface(triangles, steps.distance_m, removals)
 
@@ -132,22 +134,19 @@ def _refuse_too_many(corners: int) -> None:
 
 def _without_steep(
     xyz: NDArray[np.float64], steps: PublishedSteps, monitor: Monitor
-) -> tuple[NDArray[np.float64], int]:
+) -> tuple[Triangles, int]:
     """Take the highest corner from steep triangles, from all of them at once."""
+    triangles = triangulated(xyz)
     for removals in range(steps.most_removals):
         monitor.check()
-        triangles = triangulated(xyz)
         steep = triangles.corners[triangles.slopes_deg() >= steps.steep_deg]
-        corners = triangles.xyz + triangles.origin
-        if len(steep) == 0:
-            return corners, removals
         highest = steep[np.arange(len(steep)), np.argmax(triangles.xyz[steep, 2], axis=1)]
-        is_kept = np.ones(len(corners), np.bool_)
+        is_kept = np.ones(len(triangles.xyz), np.bool_)
         is_kept[highest] = False
-        if is_kept.sum() < 3:
-            return corners, removals
-        xyz = corners[is_kept]
-    return xyz, steps.most_removals
+        if len(steep) == 0 or is_kept.sum() < _FEWEST_CORNERS:
+            return triangles, removals
+        triangles = triangulated((triangles.xyz + triangles.origin)[is_kept])
+    return triangles, steps.most_removals
 
 
 def _lowest_on_slopes(
