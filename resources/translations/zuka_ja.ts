@@ -909,8 +909,8 @@ kept</source>
             <translation>ラベルなし（消去）</translation>
         </message>
         <message>
-            <source>Points with this label</source>
-            <translation>このラベルの点数</translation>
+            <source>Points of this class: {labelled} by labels, {delivered} as delivered</source>
+            <translation>このクラスの点数（ラベル {labelled}、納品時のまま {delivered}）</translation>
         </message>
         <message>
             <source>Key that takes this class, with a paint tool in hand</source>
@@ -1486,6 +1486,10 @@ kept</source>
             <translation>高さ</translation>
         </message>
         <message>
+            <source>Site axis</source>
+            <translation>現場の軸線</translation>
+        </message>
+        <message>
             <source>Live</source>
             <translation>追従</translation>
         </message>
@@ -1949,20 +1953,20 @@ kept</source>
             <translation>未登録</translation>
         </message>
         <message>
-            <source>All of the drive as it stands now</source>
-            <translation>走行データ全体を現在のクラスで</translation>
+            <source>All points as they stand now</source>
+            <translation>すべての点を現在のクラスで</translation>
         </message>
         <message>
-            <source>You have checked the drive shown: every class is right</source>
-            <translation>表示中の走行データを確認済みで、すべてのクラスが正しい場合に使います</translation>
+            <source>You have checked all that was recorded together: every class is right</source>
+            <translation>同時に計測したデータをすべて確認済みで、すべてのクラスが正しい場合に使います</translation>
+        </message>
+        <message>
+            <source>You have checked what the 3D view is clipped to</source>
+            <translation>3Dビューで切り出した範囲を確認済みの場合に使います</translation>
         </message>
         <message>
             <source>The part shown in 3D as it stands now</source>
             <translation>3Dビューの表示範囲を現在のクラスで</translation>
-        </message>
-        <message>
-            <source>You have checked what the 3D view is clipped to, on the drive shown</source>
-            <translation>表示中の走行データのうち、3Dビューで切り出した範囲を確認済みの場合に使います</translation>
         </message>
         <message>
             <source>Points painted by hand, no others</source>
