@@ -62,14 +62,14 @@ def earthwork_site(seed: int = 0) -> EarthworkSite:
     return EarthworkSite(xyz[order], truth[order], station)
 
 
-def write_site(site: EarthworkSite, path: Path) -> Path:
-    """Write the cloud as it is delivered, unclassified."""
+def write_site(site: EarthworkSite, path: Path, *, start_s: float = 1_000.0) -> Path:
+    """Write the cloud as it is delivered, unclassified, measured from a time on."""
     header = laspy.LasHeader(point_format=6, version="1.4")
     header.scales, header.offsets = np.full(3, 0.001), np.array([-12_000.0, -36_000.0, 0.0])
     header.add_crs(CRS.from_user_input("EPSG:6677"))
     cloud = laspy.LasData(header)
     cloud.xyz = site.xyz
-    cloud.gps_time = 1_000.0 + np.arange(len(site.xyz)) * 1e-4
+    cloud.gps_time = start_s + np.arange(len(site.xyz)) * 1e-4
     cloud.point_source_id = site.station
     cloud.intensity = np.full(len(site.xyz), 20_000, np.uint16)
     cloud.return_number = cloud.number_of_returns = np.ones(len(site.xyz), np.uint8)

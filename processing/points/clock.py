@@ -78,6 +78,31 @@ def kind_of(times: ArrayLike, *, is_adjusted_standard: bool | None = None) -> Cl
     return ClockKind.UNKNOWN
 
 
+def is_of_week(first_s: float, last_s: float) -> bool:
+    """Whether times may be seconds of a week, which don't tell one week from the next."""
+    return first_s >= 0.0 and last_s <= WEEK_S
+
+
+def are_within_a_day(one: tuple[float, float], other: tuple[float, float]) -> bool:
+    """Whether no more than a day lies between two recordings, as far as their times tell.
+
+    Parameters
+    ----------
+    one, other : (float, float)
+        First and last time, s, on one clock.
+
+    Notes
+    -----
+    Seconds of a week are compared round its end, Saturday with Sunday. Where more than a day lies
+    between them that way, it does in whichever weeks they were; where not, nothing tells.
+    """
+    first, last = min(one[0], other[0]), max(one[1], other[1])
+    apart = max(one[0], other[0]) - min(one[1], other[1])
+    if is_of_week(first, last):
+        apart = min(apart, WEEK_S - (last - first))
+    return apart <= DAY_S
+
+
 def match_clock(
     point_times: ArrayLike,
     trajectory: Trajectory,

@@ -7,10 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from processing.points.clock import are_within_a_day, is_of_week
 from processing.points.drive import SCAN, Drive
 
-_DAY_S = 86_400.0
-_WEEK_S = 7 * _DAY_S
 _TIMES = 1000
 
 
@@ -49,10 +48,8 @@ def _is_together(one: Drive, other: Drive) -> bool:
     if span is None or other_span is None:
         both_stand = one.info.rows_by == SCAN and other.info.rows_by == SCAN
         return span is None and other_span is None and both_stand and is_side_by_side
-    apart = max(span[0], other_span[0]) - min(span[1], other_span[1])
-    # Seconds of a week don't tell one week from the next.
-    is_dated = min(span[0], other_span[0]) < 0.0 or max(span[1], other_span[1]) > _WEEK_S
-    return apart <= _DAY_S and (is_dated or is_side_by_side)
+    is_dated = not is_of_week(min(span[0], other_span[0]), max(span[1], other_span[1]))
+    return are_within_a_day(span, other_span) and (is_dated or is_side_by_side)
 
 
 def _files(drive: Drive) -> set[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from processing.errors import UNCHANGED, MissingInput, OutOfRange
 from processing.formats.point_files import PointFileInfo, read_info, read_sample
 from processing.monitor import Monitor
+from processing.points.clock import are_within_a_day
 from processing.project.file_recorder import empty_points
 from processing.project.reference_system import reference_system
 from processing.text import Text
@@ -69,12 +71,16 @@ class Delivery:
     Attributes
     ----------
     recordings : tuple of tuple of DeliveredFile
-        Files that follow one another; a scanner number within one group is one scanner.
+        Files that follow one another within a day; a scanner number within one group is one
+        scanner.
+    dates : tuple of int
+        For each of these, which date it is of, in their order: groups more than a day apart.
     crs : str
         ``EPSG:n``, or empty when neither the files nor the user know it.
     """
 
     recordings: tuple[tuple[DeliveredFile, ...], ...]
+    dates: tuple[int, ...]
     crs: str
 
 
@@ -104,7 +110,9 @@ def read_delivery(inputs: tuple[Path, ...], crs: str, monitor: Monitor) -> Deliv
     for path in inputs:
         monitor.check()
         files.append(_looked_at(path))
-    return Delivery(_grouped(files), _plane_system(crs or _common_crs(files), files))
+    groups = _grouped(files)
+    recordings = tuple(tuple(group.files) for group in groups)
+    return Delivery(recordings, _dates_of(groups), _plane_system(crs or _common_crs(files), files))
 
 
 def _looked_at(path: Path) -> DeliveredFile:
@@ -200,11 +208,15 @@ class _Group:
 
     files: list[DeliveredFile]
     reaching: list[DeliveredFile]
+    span: tuple[float, float]
 
     def takes(self, file: DeliveredFile) -> bool:
         """Whether a file, which does not begin before any of these, goes on where they end."""
         first = self.files[0]
         if (file.scanner_column, file.has_origins) != (first.scanner_column, first.has_origins):
+            return False
+        # Numbers that come again on another date are other scanners, or other stations.
+        if not are_within_a_day(self.span, _span(file)):
             return False
         self.reaching = [one for one in self.reaching if one.last_time > file.first_time]
         return not any(
@@ -215,20 +227,40 @@ class _Group:
         """Take a file."""
         self.files.append(file)
         self.reaching.append(file)
+        self.span = self.span[0], max(self.span[1], file.last_time)
 
 
-def _grouped(files: list[DeliveredFile]) -> tuple[tuple[DeliveredFile, ...], ...]:
-    """Files of the same scanners that overlap in time are different scanners' files."""
-    timeless = [_Group([file], []) for file in files if not file.has_times]
+def _grouped(files: list[DeliveredFile]) -> list[_Group]:
+    """Files of the same scanners that overlap in time, or are days apart, are other scanners'."""
+    timeless = [_Group([file], [], _span(file)) for file in files if not file.has_times]
     groups: list[_Group] = []
     for file in sorted((file for file in files if file.has_times), key=_by_time):
         group = next((group for group in groups if group.takes(file)), None)
         if group is None:
-            group = _Group([], [])
+            group = _Group([], [], _span(file))
             groups.append(group)
         group.add(file)
     timeless.sort(key=lambda group: str(group.files[0].info.path))
-    return tuple(tuple(group.files) for group in (*groups, *timeless))
+    return [*groups, *timeless]
+
+
+def _dates_of(groups: Sequence[_Group]) -> tuple[int, ...]:
+    """The date of each group, which are in the order of time; no times come with the first."""
+    dates: list[int] = []
+    date, reached = 0, groups[0].span
+    for group in groups:
+        first, last = group.span
+        if not np.isfinite(first):
+            dates.append(0)
+            continue
+        date += not are_within_a_day(reached, group.span)
+        reached = reached[0], max(reached[1], last)
+        dates.append(date)
+    return tuple(dates)
+
+
+def _span(file: DeliveredFile) -> tuple[float, float]:
+    return file.first_time, file.last_time
 
 
 def _by_time(file: DeliveredFile) -> tuple[float, str]:

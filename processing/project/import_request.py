@@ -12,6 +12,9 @@ from processing.errors import told_as_user_error
 
 Labels = Literal["label", "classification"]
 
+_GROUPING = 2
+"""Counted up when files are dealt to recordings in another way: no import goes on across that."""
+
 
 @dataclass(frozen=True)
 class ImportRequest:
@@ -84,6 +87,7 @@ def described(request: ImportRequest, marks: tuple[FileMark, ...]) -> dict[str, 
         "crs": request.crs,
         "labels": request.labels,
         "marks": [[mark.path, mark.size, mark.modified_ns] for mark in marks],
+        "grouping": _GROUPING,
     }
 
 
@@ -94,8 +98,10 @@ def request_from(values: dict[str, Any]) -> tuple[ImportRequest, tuple[FileMark,
     Raises
     ------
     ValueError, TypeError, KeyError
-        It is no such description.
+        It is no such description, or one whose import can't go on with this program.
     """
+    if values["grouping"] != _GROUPING:
+        raise ValueError(values["grouping"])
     labels = values["labels"]
     if labels not in ("label", "classification"):
         raise ValueError(labels)

@@ -150,12 +150,13 @@ class _Import:
             beside = pool.submit(_checksums, (*self._request.trajectories, *self._request.images))
             self._read_all(ways)
             trajectories, checksums = ways.result(), beside.result()
-        recordings = [
-            recording
-            for group in range(len(self._layout.groups))
+        dated = [
+            (date, recording)
+            for group, date in enumerate(self._delivery.dates)
             for recording in recordings_of(self._layout, group, self._records)
         ]
-        recordings.sort(key=lambda recording: recording.scanner)
+        dated.sort(key=lambda one: (one[0], one[1].scanner))
+        recordings = [recording for _, recording in dated]
         plan = BuildPlan(
             self._sources(),
             self._delivery.crs,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from argparse import Namespace
+from dataclasses import replace
 from pathlib import Path
 
 import laspy
@@ -17,6 +18,7 @@ from app.jobs import JobQueue
 from processing.errors import InUse, UserError
 from processing.ground.stored_surface import ground_surface_of
 from processing.labels.label_column import labels_of
+from processing.points.clock import DAY_S
 from processing.project.change import Change
 from processing.project.importing import ImportRequest
 from processing.project.label_change import label_changes
@@ -25,6 +27,7 @@ from processing.project.truth_store import has_truth
 from processing.text import Text
 from processing.tools.ground import GroundParameters
 from tests.builders import SimulatedDrive, simulated_drive, write_laz, write_trajectory_csv
+from tests.earthwork_site import GROUND, earthwork_site, write_site
 
 WAIT_MS = 30_000
 
@@ -121,6 +124,26 @@ def test_the_command_line_gives_classes_heights_and_the_surface(
         assert above.dtype == np.float32
         assert np.abs(above[is_road]).max() < 0.2
         np.testing.assert_array_equal(cloud.X, head.columns["xyz"][:, 0])
+
+
+def test_two_dates_with_the_same_station_numbers_are_judged_apart(tmp_path: Path) -> None:
+    dug = np.array([0.0, 0.0, -0.6])
+    before, after = earthwork_site(1), earthwork_site(2)
+    sites = {"before": before, "after": replace(after, xyz=after.xyz + dug)}
+    clouds = tuple(
+        write_site(site, tmp_path / f"{name}.laz", start_s=3.5e8 + number * 30 * DAY_S)
+        for number, (name, site) in enumerate(sites.items())
+    )
+    out = tmp_path / "out"
+    assert command(_wish(ImportRequest(clouds), out / "g.laz", f"surface={out / 's.tif'}")) == 0
+    surfaces = {f"s-{name} (1).tif" for name in sites}
+    assert {path.name for path in out.iterdir()} == {*surfaces, "g-before.laz", "g-after.laz"}
+    for name, site in sites.items():
+        cloud = laspy.read(out / f"g-{name}.laz")
+        np.testing.assert_allclose(np.asarray(cloud.xyz), site.xyz, atol=1e-6)
+        is_ground = np.asarray(cloud.classification) == GROUND
+        assert is_ground[site.truth == GROUND].mean() > 0.99
+        assert is_ground[site.truth != GROUND].mean() < 0.1
 
 
 def test_a_surface_never_overwrites_a_delivered_file(

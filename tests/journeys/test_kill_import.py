@@ -19,6 +19,7 @@ import pytest
 
 from processing.project.project import Project, is_project
 from resources import path_of
+from tests.earthwork_site import earthwork_site, write_site
 from tests.processing.project.drawn import tree_of
 
 # Runs `zuka import` again and again, each time in a process of its own; what takes long to load is
@@ -125,6 +126,14 @@ def without_times(folder: Path) -> list[Path]:
     return _written(folder, cloud, cloud.points.array, 1)
 
 
+def of_two_dates(folder: Path) -> list[Path]:
+    """A site, twice: on either date a file of two stations with the same numbers."""
+    return [
+        write_site(earthwork_site(date), folder / f"現場{date}.laz", start_s=3.5e8 + date * 3e6)
+        for date in range(2)
+    ]
+
+
 @pytest.mark.parametrize(
     ("delivered", "processes_from", "kills"),
     [
@@ -132,6 +141,7 @@ def without_times(folder: Path) -> list[Path]:
         (mixed_without_order, 10**9, 8),
         (without_times, 10**9, 3),
         (on_another_clock, 0, 3),
+        (of_two_dates, 10**9, 2),
     ],
 )
 def test_killed_at_random_instants_an_import_goes_on_to_the_same_bytes(
@@ -139,7 +149,7 @@ def test_killed_at_random_instants_an_import_goes_on_to_the_same_bytes(
 ):
     paths = delivered(tmp_path)
     inputs = [*paths, "--trajectory", path_of("sample_street/trajectory.csv")]
-    if delivered is without_times:
+    if delivered in (without_times, of_two_dates):
         inputs = paths
     choice = random.Random(kills)  # noqa: S311 - moments, not secrets
     importer = Importer(processes_from)

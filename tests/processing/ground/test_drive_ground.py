@@ -140,6 +140,10 @@ def test_epochs_are_never_one_recording_and_a_day_at_one_place_is(tmp_path: Path
     assert recorded_together(here, (later, away, soon, shared)) == (here, soon)
     parts = recordings_of((here, later, away, soon, shared))
     assert parts == ((here, soon), (later, shared), (away,))
+    saturday = drive_at(tmp_path / "saturday", xyz, file="5.laz", time_s=7 * _DAY_S - 900.0)
+    sunday = drive_at(tmp_path / "sunday", xyz, file="6.laz", time_s=300.0)
+    tuesday = drive_at(tmp_path / "tuesday", xyz, file="7.laz", time_s=2 * _DAY_S + 300.0)
+    assert recordings_of((sunday, tuesday, saturday)) == ((sunday, saturday), (tuesday,))
 
 
 def test_clouds_without_times_in_files_of_their_own_may_be_epochs(tmp_path: Path) -> None:

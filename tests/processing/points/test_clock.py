@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 
 from processing.errors import OutOfRange
-from processing.points.clock import ADJUSTMENT_S, DAY_S, WEEK_S, ClockKind, kind_of, match_clock
+from processing.points.clock import (
+    ADJUSTMENT_S,
+    DAY_S,
+    WEEK_S,
+    ClockKind,
+    are_within_a_day,
+    kind_of,
+    match_clock,
+)
 from processing.points.trajectory import Trajectory
 
 MONDAY_MORNING = 120_000.0
@@ -104,3 +112,23 @@ def test_a_clock_is_known_by_the_size_of_its_times(first, flag, kind):
 
 def test_no_times_tell_no_clock():
     assert kind_of([np.nan]) is ClockKind.UNKNOWN
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "within"),
+    [
+        (3.5e8, 3.5e8 + 0.9 * DAY_S, True),
+        (3.5e8, 3.5e8 + 1.1 * DAY_S, False),
+        (-3.5e8, -3.5e8 + 30 * DAY_S, False),
+        (ABSOLUTE, ABSOLUTE + 30 * DAY_S, False),
+        (3.5e8, 120_000.0, False),  # another clock
+        (120_000.0, 120_300.0, True),  # of two weeks perhaps: nothing tells
+        (120_000.0, 120_000.0 + 3 * DAY_S, False),  # of whichever weeks
+        (WEEK_S - 500.0, 300.0, True),  # Saturday's midnight
+        (WEEK_S - 500.0, WEEK_S + 300.0, True),  # the same, counted on
+    ],
+)
+def test_times_tell_whether_more_than_a_day_lies_between(one, other, within):
+    spans = (one, one + 100.0), (other, other + 100.0)
+    assert are_within_a_day(*spans) is within
+    assert are_within_a_day(*spans[::-1]) is within
