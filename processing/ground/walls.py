@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.ground.morphology import nearest_known
 from processing.kernels import kernel
 
 _LOWEST_FACE_M = 0.25
@@ -52,7 +53,8 @@ def faces(
     -----
     A face has measured ground near its foot on one side and near its top on the other; a fence or
     a machine has ground near its foot on both, also where it touches a face. A face goes up to
-    its crest near by, behind which the ground may lie in shadow.
+    its crest near by, behind which the ground may lie in shadow, and no higher than the ground
+    measured nearest at its top: what goes on above that stands on the crest.
     """
     import cv2
 
@@ -67,16 +69,31 @@ def faces(
         return np.full(column.shape, -np.inf, np.float32)
     reach = max(2, round(_REACH_M / size_m))
     upper = np.where(column, surface + tops, -np.inf).astype(np.float32)
+    crest = np.full(column.shape, -np.inf, np.float32)
     rim, feet, heads = np.zeros(count), np.zeros(count), np.zeros(count)
-    _sides_kernel(labels, surface, free, tops, reach, rim, feet, heads, upper)
+    _sides_kernel(labels, surface, free, tops, reach, (rim, feet, heads), upper, crest)
     length = size_m * np.hypot(boxes[:, cv2.CC_STAT_WIDTH], boxes[:, cv2.CC_STAT_HEIGHT])
     needed = np.where(length >= _LONG_M, _HEADS_OF_LONG, _HEADS)
     face = (length >= _SHORTEST_M) & (feet >= _FEET * rim) & (heads >= needed * rim) & (rim > 0)
     face[0] = False
     upper[~face[labels]] = -np.inf
+    upper = _below_crest(upper, crest, labels)
     near = cv2.dilate(upper, np.ones((3, 3), np.uint8)).astype(np.float32)
     highest = cv2.dilate(upper, np.ones((_CREST_CELLS, _CREST_CELLS), np.uint8)).astype(np.float32)
     return np.where(np.isfinite(near), highest, near)
+
+
+def _below_crest(
+    upper: NDArray[np.float32], crest: NDArray[np.float32], labels: NDArray[np.int32]
+) -> NDArray[np.float32]:
+    """Let no column of a face go higher than the ground found nearest at the top of that face."""
+    found = np.isfinite(crest) & np.isfinite(upper)
+    if not found.any():
+        return upper
+    nearest = nearest_known(found)
+    same = labels.reshape(-1)[nearest] == labels
+    highest = np.where(same, crest.reshape(-1)[nearest], np.inf)
+    return np.minimum(upper, highest).astype(np.float32)
 
 
 @kernel
@@ -119,11 +136,11 @@ def _sides_kernel(
     free: NDArray[np.bool_],
     tops: NDArray[np.float32],
     reach: int,
-    rim: NDArray[np.float64],
-    feet: NDArray[np.float64],
-    heads: NDArray[np.float64],
+    counts: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
     upper: NDArray[np.float32],
+    crest: NDArray[np.float32],
 ) -> None:
+    rim, feet, heads = counts
     rows, columns = labels.shape
     for row in range(rows):
         for column in range(columns):
@@ -144,6 +161,7 @@ def _sides_kernel(
                 elif beyond > 0.65 * tops[row, column]:
                     heads[label] += 1.0
                     upper[row, column] = max(upper[row, column], height)
+                    crest[row, column] = max(crest[row, column], height)
             if low_sides & 3 == 3 or low_sides & 12 == 12:
                 upper[row, column] = -np.inf
 

@@ -198,6 +198,22 @@ def test_a_fence_that_ends_at_a_wall_is_no_part_of_the_wall() -> None:
     assert is_ground[len(ground) + len(face) :].mean() < 0.15
 
 
+def test_a_bush_on_the_crest_of_a_step_is_no_part_of_its_face() -> None:
+    ground = _plane(30.0, 0.08)
+    ground[:, 2] += 2.0 * np.clip((ground[:, 0] - 15.0) / 0.4, 0.0, 1.0)
+    rng = np.random.default_rng(11)
+    up = rng.uniform(0.0, 1.0, 30000)
+    face = np.column_stack([15.0 + 0.4 * up, rng.uniform(0.0, 29.9, 30000), 2.0 * up])
+    inside = rng.uniform(-1.0, 1.0, (24000, 3))
+    inside = inside[(np.linalg.norm(inside, axis=1) < 1.0) & (inside[:, 2] > 0.1)]
+    bush = inside * [1.2, 1.2, 1.0] + [16.2, 15.0, 2.0]
+    whole = np.vstack([ground, face, bush])
+    is_ground = _found(whole).is_ground(whole)
+    assert is_ground[: len(ground)].mean() > 0.98
+    assert is_ground[len(ground) : len(ground) + len(face)].mean() > 0.9
+    assert is_ground[len(ground) + len(face) :].mean() < 0.06
+
+
 def test_a_hall_cut_by_the_border_goes_and_a_terrace_along_the_border_stays() -> None:
     xyz = _plane(80.0, 0.5)
     hall = (np.abs(xyz[:, 0] - 40.0) < 11.0) & (xyz[:, 1] < 12.0)
