@@ -16,6 +16,7 @@ _LONG_M = 15.0
 _HEADS_OF_LONG = 0.12
 _REACH_M = 8.0
 _CREST_CELLS = 7
+_CREST_M = 3.0
 _JOIN_CELLS = 3
 
 
@@ -54,7 +55,7 @@ def faces(
     A face has measured ground near its foot on one side and near its top on the other; a fence or
     a machine has ground near its foot on both, also where it touches a face. A face goes up to
     its crest near by, behind which the ground may lie in shadow, and no higher than the ground
-    measured nearest at its top: what goes on above that stands on the crest.
+    measured at its top near by: what goes on above that stands on the crest.
     """
     import cv2
 
@@ -77,22 +78,34 @@ def faces(
     face = (length >= _SHORTEST_M) & (feet >= _FEET * rim) & (heads >= needed * rim) & (rim > 0)
     face[0] = False
     upper[~face[labels]] = -np.inf
-    upper = _below_crest(upper, crest, labels)
+    upper = _below_crest(upper, crest, labels, size_m)
     near = cv2.dilate(upper, np.ones((3, 3), np.uint8)).astype(np.float32)
     highest = cv2.dilate(upper, np.ones((_CREST_CELLS, _CREST_CELLS), np.uint8)).astype(np.float32)
     return np.where(np.isfinite(near), highest, near)
 
 
 def _below_crest(
-    upper: NDArray[np.float32], crest: NDArray[np.float32], labels: NDArray[np.int32]
+    upper: NDArray[np.float32],
+    crest: NDArray[np.float32],
+    labels: NDArray[np.int32],
+    size_m: float,
 ) -> NDArray[np.float32]:
-    """Let no column of a face go higher than the ground found nearest at the top of that face."""
+    """Let no column of a face go higher than the ground found at the top of that face near by.
+
+    With the ground behind in shadow some heights are those of ledges in the face: the highest
+    within a few metres is the crest.
+    """
+    import cv2
+
     found = np.isfinite(crest) & np.isfinite(upper)
     if not found.any():
         return upper
+    side = 2 * max(1, round(_CREST_M / size_m)) + 1
+    element = np.ones((side, side), np.uint8)
+    around = cv2.dilate(np.where(found, crest, np.float32(-np.inf)), element)
     nearest = nearest_known(found)
     same = labels.reshape(-1)[nearest] == labels
-    highest = np.where(same, crest.reshape(-1)[nearest], np.inf)
+    highest = np.where(same, around.reshape(-1)[nearest], np.float32(np.inf))
     return np.minimum(upper, highest).astype(np.float32)
 
 
