@@ -1,7 +1,6 @@
-"""What the beams beside a beam met: loops over the pixels around a point.
+"""Beams in rows, and where surfaces go on from pulse to pulse and from row to row.
 
-Every point has a row, a column and a range from where its beam began. Surfaces go on from pulse
-to pulse and from row to row; noise seldom does.
+Every point has a row, a column and a range from where its beam began. Noise seldom goes on.
 """
 
 from __future__ import annotations
@@ -17,8 +16,6 @@ from processing.kernels import kernel
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
-BEAM_FEATURES = 22
-NEAR_FEATURES = 14
 SURE, SQUARE = 1, 2
 
 
@@ -147,84 +144,6 @@ def _row_beside(segments: NDArray[np.int32], row: int, side: int) -> int:
     return other
 
 
-@kernel
-def beam_features_kernel(
-    beams: Beams, is_sure: NDArray[np.bool_], points: _Integers, rows: _Integers, found: _Floats
-) -> None:
-    """Features of chosen points; ``found`` (k, BEAM_FEATURES) float64.
-
-    For a near (2 rows, 3 pulses), a middle (4 in steps of 2, 12) and a wide window (10 in steps of
-    5, every second of 64 pulses):
-    share of pulses that came back, and of these the share within three distances, in front and
-    behind, and how many of those in front or behind are sure.
-    """
-    for i in range(points.size):
-        _near_windows(beams, is_sure, points[i], rows[i], found[i, 0:NEAR_FEATURES])
-        _window(beams, is_sure, points[i], rows[i], 10, 5, 64, 2, found[i, 14:21])
-        found[i, 21] = math.log2(max(beams.ranges[points[i]], 0.1))
-
-
-@kernel
-def near_beams_kernel(
-    beams: Beams, is_sure: NDArray[np.bool_], points: _Integers, rows: _Integers, found: _Floats
-) -> None:
-    """The near and the middle window alone; ``found`` (k, NEAR_FEATURES)."""
-    for i in range(points.size):
-        _near_windows(beams, is_sure, points[i], rows[i], found[i])
-
-
-@kernel
-def _near_windows(
-    beams: Beams, is_sure: NDArray[np.bool_], point: int, row: int, found: _Floats
-) -> None:
-    _window(beams, is_sure, point, row, 2, 1, 3, 1, found[0:7])
-    _window(beams, is_sure, point, row, 4, 2, 12, 1, found[7:14])
-
-
-@kernel
-def _window(
-    beams: Beams,
-    is_sure: NDArray[np.bool_],
-    point: int,
-    row: int,
-    rows_aside: int,
-    row_step: int,
-    aside: int,
-    stride: int,
-    found: _Floats,
-) -> None:
-    reach = beams.ranges[point]
-    column = beams.columns[point]
-    near, fair, wide, front, behind, sure, used, rows = 0, 0, 0, 0, 0, 0, 0, 0
-    for other_row in range(row - rows_aside, row + rows_aside + 1, row_step):
-        if other_row < 0 or other_row >= beams.segments.size:
-            continue
-        if beams.segments[other_row] != beams.segments[row]:
-            continue
-        rows += 1
-        start, end = beams.row_starts[other_row], beams.row_starts[other_row + 1]
-        place = start + np.searchsorted(beams.columns[start:end], column - aside)
-        while place < end and beams.columns[place] <= column + aside:
-            if place != point:
-                gap = beams.ranges[place] - reach
-                used += 1
-                near += 1 if abs(gap) < 0.025 else 0
-                fair += 1 if abs(gap) < 0.1 else 0
-                wide += 1 if abs(gap) < 0.4 else 0
-                front += 1 if gap < -0.1 else 0
-                behind += 1 if gap > 0.1 else 0
-                sure += 1 if is_sure[place] and gap < -0.1 else 0
-            place += stride
-    total = max(used, 1)
-    found[0] = stride * used / (rows * (2 * aside + 1) - 1) if rows else 0.0
-    found[1] = near / total
-    found[2] = fair / total
-    found[3] = wide / total
-    found[4] = front / total
-    found[5] = behind / total
-    found[6] = sure / total
-
-
 def warm_up() -> None:
     """Compile the kernels."""
     zeros = np.zeros((4, 3))
@@ -232,7 +151,3 @@ def warm_up() -> None:
     beams = Beams(zeros, zeros, np.ones(4), segments, starts, segments, 0.01)
     spacing_kernel(beams, 0, 4, np.empty(4))
     surface_kernel(beams, np.ones(4), 0, 4, np.empty(4, np.uint8))
-    found = np.empty((4, BEAM_FEATURES))
-    beam_features_kernel(beams, np.zeros(4, np.bool_), np.arange(4), np.arange(4), found)
-    found = np.empty((4, NEAR_FEATURES))
-    near_beams_kernel(beams, np.zeros(4, np.bool_), np.arange(4), np.arange(4), found)

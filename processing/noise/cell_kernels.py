@@ -30,6 +30,17 @@ class CellLevel(NamedTuple):
 
 
 @kernel
+def number_kernel(codes: _Integers, numbers: NDArray[np.int32]) -> int:
+    """Number codes that don't decrease, equal ones alike; how many there are."""
+    number = -1
+    for place in range(codes.size):
+        if place == 0 or codes[place] != codes[place - 1]:
+            number += 1
+        numbers[place] = number
+    return number + 1
+
+
+@kernel
 def slots_kernel(codes: _Integers, slots: NDArray[np.int32]) -> None:
     """Enter every code at the first free slot from its own on."""
     mask = slots.size - 1
@@ -42,7 +53,7 @@ def slots_kernel(codes: _Integers, slots: NDArray[np.int32]) -> None:
 
 @kernel
 def point_sums_kernel(
-    xyz: _Floats, is_sure: NDArray[np.bool_], group: _Integers, sums: _Floats
+    xyz: _Floats, is_sure: NDArray[np.bool_], group: NDArray[np.int32], sums: _Floats
 ) -> None:
     """Add every point to the sums of its cell."""
     for point in range(xyz.shape[0]):
@@ -59,6 +70,14 @@ def point_sums_kernel(
         row[8] += y * y
         row[9] += y * z
         row[10] += z * z
+
+
+@kernel
+def cell_sums_kernel(below: _Floats, group: NDArray[np.int32], sums: _Floats) -> None:
+    """Add the sums of every cell to those of the cell that holds it."""
+    for cell in range(group.size):
+        for m in range(SUMS):
+            sums[group[cell], m] += below[cell, m]
 
 
 @kernel
@@ -88,7 +107,61 @@ def around_kernel(level: CellLevel, codes: _Integers, around: _Floats) -> None:
 
 
 @kernel
-def column_kernel(level: CellLevel, codes: _Integers, found: _Floats) -> None:
+def mean_around_kernel(
+    level: CellLevel, codes: _Integers, totals: _Floats, found: NDArray[np.float32]
+) -> None:
+    """The mean of a value over the points in the 27 cubes around each of some cubes.
+
+    ``totals`` (c,): the value's sum over the points of each cube of the level; ``found`` (k,).
+    """
+    ys, zs = _X << 1, _X << 2
+    for i in range(codes.size):
+        x0, y0, z0 = codes[i] & _X, codes[i] & ys, codes[i] & zs
+        total, count = 0.0, 0.0
+        for side in range(27):
+            x = _stepped(x0, side % 3 - 1, _X, 1)
+            y = _stepped(y0, side // 3 % 3 - 1, ys, 2)
+            z = _stepped(z0, side // 9 - 1, zs, 4)
+            cell = _cell_of(level, x | y | z) if x >= 0 and y >= 0 and z >= 0 else -1
+            if cell >= 0:
+                total += totals[cell]
+                count += level.sums[cell, 0]
+        found[i] = total / max(count, 1.0)
+
+
+@kernel
+def point_features_kernel(
+    level: CellLevel,
+    around: _Floats,
+    cells: _Integers,
+    local_xyz: _Floats,
+    places: _Integers,
+    ways: _Floats,
+    found: NDArray[np.float32],
+) -> None:
+    """Numbers of points from what lies around their cells.
+
+    ``around`` (k, 9) as from :func:`around_kernel`; ``cells`` (m,) into it; ``places`` (m,) into
+    ``local_xyz``; ``ways`` (m, 3), or no rows where beams aren't known. ``found`` (m, 8): log2 of
+    points and of sure points, linearity, planarity, thickness, distance from the plane in cells,
+    how level the plane is, and how squarely the beam met it.
+    """
+    for i in range(places.size):
+        mine, xyz = around[cells[i]], local_xyz[places[i]]
+        nx, ny, nz = mine[5], mine[6], mine[7]
+        found[i, 0] = math.log2(1 + mine[0])
+        found[i, 1] = math.log2(1 + mine[1])
+        found[i, 2], found[i, 3], found[i, 4] = mine[2], mine[3], mine[4]
+        found[i, 5] = abs(nx * xyz[0] + ny * xyz[1] + nz * xyz[2] - mine[8]) / level.side
+        found[i, 6] = abs(nz)
+        if ways.shape[0]:
+            found[i, 7] = abs(nx * ways[i, 0] + ny * ways[i, 1] + nz * ways[i, 2])
+        else:
+            found[i, 7] = 0.0
+
+
+@kernel
+def column_kernel(level: CellLevel, codes: _Integers, found: NDArray[np.float32]) -> None:
     """What lies straight above and straight below each of some cells.
 
     ``found`` (k, 6): upwards, then downwards: cells that are occupied without a break; cells to
@@ -280,11 +353,17 @@ def warm_up() -> None:
     codes = np.array([0, 3], np.int64)
     slots = np.full(16, -1, np.int32)
     slots_kernel(codes, slots)
-    sums = np.zeros((2, SUMS))
-    point_sums_kernel(np.zeros((2, 3)), np.ones(2, np.bool_), codes // 2, sums)
+    sums, numbers = np.zeros((2, SUMS)), np.zeros(2, np.int32)
+    number_kernel(codes, numbers)
+    point_sums_kernel(np.zeros((2, 3)), np.ones(2, np.bool_), numbers, sums)
+    cell_sums_kernel(sums, numbers, np.zeros((2, SUMS)))
     level = CellLevel(codes, sums, 1.0, slots)
-    around_kernel(level, codes, np.empty((2, AROUND)))
-    column_kernel(level, codes, np.empty((2, COLUMN)))
+    around, found = np.zeros((2, AROUND)), np.empty((2, 8), np.float32)
+    around_kernel(level, codes, around)
+    for ways in (np.zeros((0, 3)), np.zeros((2, 3))):
+        point_features_kernel(level, around, codes // 3, np.zeros((2, 3)), codes // 3, ways, found)
+    mean_around_kernel(level, codes, sums[:, 0].copy(), np.empty(2, np.float32))
+    column_kernel(level, codes, np.empty((2, COLUMN), np.float32))
     parents = np.arange(2)
     join_kernel(level, sums[:, 0] > 0, parents)
     largest_kernel(level, sums[:, 0] > 0, sums[:, 0], np.empty(2))

@@ -10,38 +10,57 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.noise.cell_kernels import SUMS, CellLevel, point_sums_kernel, slots_kernel
+from processing.noise.cell_kernels import (
+    SUMS,
+    CellLevel,
+    cell_sums_kernel,
+    number_kernel,
+    point_sums_kernel,
+    slots_kernel,
+)
 from processing.noise.morton import NestedCells
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 
-def cell_levels(cells: NestedCells, is_sure: NDArray[np.bool_], count: int) -> list[CellLevel]:
+def cell_levels(
+    cells: NestedCells, is_sure: NDArray[np.bool_], count: int
+) -> tuple[list[CellLevel], list[NDArray[np.int32]]]:
     """Levels 0 … count − 1 of points in nested cells.
 
     Parameters
     ----------
     is_sure : (n,) bool
         In the cells' order.
+
+    Returns
+    -------
+    levels : list of CellLevel
+    numbers : list of (…,) int32
+        The cell of level 0 of each point along the curve; then, for each cell of a level, the one
+        of the next that holds it.
     """
-    codes = cells.codes
-    is_first = np.r_[True, codes[1:] != codes[:-1]] if codes.size else np.zeros(0, bool)
-    group = np.cumsum(is_first) - 1
-    sums = np.zeros((int(is_first.sum()), SUMS))
-    point_sums_kernel(cells.local_xyz, is_sure, group, sums)
-    levels = [_level_of(codes[is_first], sums, cells.cell_m)]
+    codes, places = cells.codes, np.empty(cells.codes.size, np.int32)
+    used = number_kernel(codes, places)
+    sums, kept = np.zeros((used, SUMS)), np.empty(used, np.int64)
+    point_sums_kernel(cells.local_xyz, is_sure, places, sums)
+    kept[places] = codes
+    levels, numbers = [_level_of(kept, sums, cells.cell_m)], [places]
     for _ in range(1, count):
         below = levels[-1]
-        parents = below.codes >> 3
-        is_first = np.r_[True, parents[1:] != parents[:-1]] if parents.size else is_first
-        sums = np.add.reduceat(below.sums, np.flatnonzero(is_first)) if parents.size else below.sums
-        levels.append(_level_of(parents[is_first], sums, below.side * 2))
-    return levels
+        parents, places = below.codes >> 3, np.empty(below.codes.size, np.int32)
+        used = number_kernel(parents, places)
+        sums, kept = np.zeros((used, SUMS)), np.empty(used, np.int64)
+        cell_sums_kernel(below.sums, places, sums)
+        kept[places] = parents
+        levels.append(_level_of(kept, sums, below.side * 2))
+        numbers.append(places)
+    return levels, numbers
 
 
 def _level_of(codes: _Integers, sums: _Floats, side: float) -> CellLevel:
     size = 1 << max(4, int(2 * max(codes.size, 1)).bit_length())
     slots = np.full(size, -1, np.int32)
     slots_kernel(codes, slots)
-    return CellLevel(codes, np.ascontiguousarray(sums), side, slots)
+    return CellLevel(codes, sums, side, slots)

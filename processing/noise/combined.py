@@ -5,9 +5,12 @@
 2. Where beams are known, a few trees look at what costs little: what the beams beside a point met,
    what it hangs together with, its height. They keep what next to nothing speaks against.
 3. Every other point is described by numbers relative to the spacing that the scanner should have
-   there (:mod:`processing.noise.features`), and more trees weigh them. All trees learned from
-   simulated scenes with other shapes and shares of noise than any sample, and from real
-   recordings as examples of what must be kept (:mod:`processing.noise.training`).
+   there (:mod:`processing.noise.features`), and more trees weigh them.
+4. What they say of the points around is asked together with the numbers once more
+   (:mod:`processing.noise.second_look`): noise seldom comes alone, and true things hang together.
+
+All trees learned from simulated scenes with other shapes and shares of noise than any sample, and
+from real recordings as examples of what must be kept (:mod:`processing.noise.training`).
 """
 
 from __future__ import annotations
@@ -22,12 +25,15 @@ from processing.noise.beam_kernels import Beams
 from processing.noise.far_points import heights_of_far, is_far
 from processing.noise.features import Candidates, candidates_in_space, search_with_beams
 from processing.noise.noise_codes import HIGH_NOISE, codes_by_height
+from processing.noise.second_look import OPEN_ODDS
 from processing.noise.tree_files import read_trees
 from processing.noise.trees import Trees, log_odds
 from resources import path_of
 
 MODELS = "models/noise"
-FIRST_LOOK, WITH_BEAMS, IN_SPACE = "first_look.onnx", "noise_with_beams.onnx", "noise_in_space.onnx"
+FIRST_LOOK = "first_look.onnx"
+WITH_BEAMS = "with_beams.onnx", "with_beams_again.onnx"
+IN_SPACE = "in_space.onnx", "in_space_again.onnx"
 _FEWEST = 20
 
 
@@ -61,9 +67,10 @@ def noise_codes_with_beams(
         beams, intensity = _without(beams, far), intensity[~far]
     if beams.xyz.shape[0] >= _FEWEST:
         search = search_with_beams(beams, monitor)
-        is_doubtful = log_odds(_trees(FIRST_LOOK), search.cheap_features(monitor), monitor) > 0
-        candidates = search.candidates(is_doubtful, intensity, monitor)
-        codes[~far] = _codes(candidates, _trees(WITH_BEAMS), strictness, monitor)
+        cheap = search.cheap_features(monitor)
+        is_doubtful = log_odds(_trees(FIRST_LOOK), cheap, monitor) > 0
+        candidates = search.candidates(cheap, is_doubtful, intensity, monitor)
+        codes[~far] = _codes(candidates, WITH_BEAMS, strictness, monitor)
     return codes
 
 
@@ -94,19 +101,22 @@ def noise_codes_in_space(
     if finite.size < _FEWEST or not np.ptp(xyz[finite], axis=0).any():
         return codes
     candidates = candidates_in_space(xyz[finite], monitor)
-    codes[finite] = _codes(candidates, _trees(IN_SPACE), strictness, monitor)
+    codes[finite] = _codes(candidates, IN_SPACE, strictness, monitor)
     return codes
 
 
 def _codes(
-    candidates: Candidates, trees: Trees, strictness: float, monitor: Monitor
+    candidates: Candidates, models: tuple[str, str], strictness: float, monitor: Monitor
 ) -> NDArray[np.uint8]:
     """(n,) codes of all points that the candidates were taken from."""
-    odds = log_odds(trees, candidates.features, monitor)
+    odds = log_odds(_trees(models[0]), candidates.features, monitor)
+    is_open = np.flatnonzero(odds > OPEN_ODDS)
+    again = candidates.seen_again(odds, is_open, monitor)
     share = min(max(strictness, 1e-6), 1 - 1e-6)
-    noise = candidates.points[odds > np.log((1 - share) / share)]
-    codes = np.zeros(candidates.heights.size, np.uint8)
-    codes[noise] = codes_by_height(candidates.heights[noise])
+    is_noise = log_odds(_trees(models[1]), again, monitor) > np.log((1 - share) / share)
+    noise, heights = candidates.points[is_open[is_noise]], candidates.around.heights
+    codes = np.zeros(heights.size, np.uint8)
+    codes[noise] = codes_by_height(heights[noise])
     return codes
 
 

@@ -20,13 +20,16 @@ class Parts:
     ----------
     numbers : (c,) int64
         Each cube's part.
-    features : (p, PART_FEATURES) float64
+    sizes : (p,) float64
+        Points of each part.
+    features : (p, PART_FEATURES) float32
         Of each part: log2 of its points and of its sure points, log2 of its length in cubes, and
         how much it is a line and a plane, 0 to 1.
     """
 
     numbers: NDArray[np.int64]
-    features: NDArray[np.float64]
+    sizes: NDArray[np.float64]
+    features: NDArray[np.float32]
 
 
 def sure_counts(level: CellLevel) -> NDArray[np.float64]:
@@ -48,10 +51,13 @@ def sure_counts(level: CellLevel) -> NDArray[np.float64]:
     return found
 
 
-def parts_of(level: CellLevel) -> Parts:
-    """The parts of everything that was measured."""
+def parts_of(level: CellLevel, joins: NDArray[np.bool_] | None = None) -> Parts:
+    """The parts of everything that was measured, or of the cubes that join, (c,) bool.
+
+    Cubes that don't join are parts of their own.
+    """
     parents = np.arange(level.codes.size)
-    join_kernel(level, np.ones(parents.size, np.bool_), parents)
+    join_kernel(level, np.ones(parents.size, np.bool_) if joins is None else joins, parents)
     roots, numbers = np.unique(parents, return_inverse=True)
     sums = np.column_stack(
         [np.bincount(numbers, weights=one, minlength=roots.size) for one in level.sums.T]
@@ -68,4 +74,4 @@ def parts_of(level: CellLevel) -> Parts:
             (spreads[:, 1] - spreads[:, 2]) / length,
         ]
     )
-    return Parts(numbers, features)
+    return Parts(numbers, sums[:, 0].astype(np.float64), features.astype(np.float32))

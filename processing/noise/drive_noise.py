@@ -7,7 +7,9 @@ drive by tiles of space. The combined one follows the recording where its beams 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
+from threading import Lock
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +19,7 @@ from processing.noise.beam_origins import beam_origins
 from processing.noise.beams_of_drives import along_rows, beams_of
 from processing.noise.combined import noise_codes_in_space, noise_codes_with_beams
 from processing.noise.noise_codes import part_noise_by_ground
+from processing.noise.sharing import shared_out
 from processing.noise.stretches import POINTS, stretches_of
 from processing.noise.tiles_of_space import TiledCloud
 from processing.noise.whole_clouds import radius_outliers_by_parts, statistical_outliers_by_parts
@@ -89,8 +92,12 @@ class NoiseSearch:
         drive = self.drive
         image = drive.image(drive.pixel_kind)
         starts = image.row_starts
-        for stretch in stretches_of(starts, along_rows(origins, starts), self.points_per_stretch):
-            monitor.report(int(starts[stretch.rows.start]) / drive.count)
+        along = along_rows(origins, starts)
+        stretches = list(stretches_of(starts, along, self.points_per_stretch))
+        told, ended = Lock(), count(1)
+
+        def look(number: int, _: int) -> None:
+            stretch = stretches[number]
             drive.columns.give_back()
             beams, points = beams_of(drive, image, stretch.with_overlap, origins)
             intensity = read_stretch(drive.folder, "intensity", points.start, points.stop)
@@ -98,6 +105,10 @@ class NoiseSearch:
             first, end = int(starts[stretch.rows.start]), int(starts[stretch.rows.stop])
             skipped = first - int(starts[stretch.with_overlap.start])
             self.codes[first:end] = codes[skipped : skipped + end - first]
+            with told:
+                monitor.report(next(ended) / len(stretches))
+
+        shared_out(look, len(stretches), 1, monitor)
 
     def _combined_in_space(self, strictness: float, monitor: Monitor) -> None:
         cloud = self._tiled(monitor)

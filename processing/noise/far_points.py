@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 _SHARE = 1.0  # percent of the points at either end that may be far
 _TIMES = 50.0
 _LEAST_M = 1_000.0
+_SAMPLE = 100_000
 
 
 def is_far(xyz: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -24,9 +25,15 @@ def is_far(xyz: NDArray[np.float64]) -> NDArray[np.bool_]:
     """
     if not xyz.shape[0]:
         return np.zeros(0, np.bool_)
-    low, high = np.percentile(xyz, (_SHARE, 100.0 - _SHARE), axis=0)
+    sample = xyz[:: max(1, xyz.shape[0] // _SAMPLE)]
+    low, high = np.percentile(sample, (_SHARE, 100.0 - _SHARE), axis=0)
     reach = max(_LEAST_M, _TIMES * float((high - low).max()))
-    far: NDArray[np.bool_] = ((xyz < low - reach) | (xyz > high + reach)).any(axis=1)
+    least, most = low - reach, high + reach
+    far = np.zeros(xyz.shape[0], np.bool_)
+    if (xyz.min(axis=0) >= least).all() and (xyz.max(axis=0) <= most).all():
+        return far
+    for axis in range(3):
+        far |= (xyz[:, axis] < least[axis]) | (xyz[:, axis] > most[axis])
     return far
 
 

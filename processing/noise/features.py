@@ -12,21 +12,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import Monitor
-from processing.noise.beam_kernels import (
-    BEAM_FEATURES,
-    NEAR_FEATURES,
-    SQUARE,
-    SURE,
-    Beams,
-    beam_features_kernel,
-    near_beams_kernel,
-    spacing_kernel,
-    surface_kernel,
-)
+from processing.noise.beam_kernels import SQUARE, SURE, Beams, spacing_kernel, surface_kernel
 from processing.noise.local_spacing import local_spacings
 from processing.noise.morton import nested_cells
+from processing.noise.second_look import FirstJudgement, suspicions_beside
 from processing.noise.sharing import shared_out
 from processing.noise.surroundings import PART_SIZES, Surroundings
+from processing.noise.window_kernels import (
+    NEAR_FEATURES,
+    WIDE_FEATURES,
+    near_beams_kernel,
+    wide_beams_kernel,
+)
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
@@ -39,7 +36,6 @@ _FLAT_BAND_M = 0.1
 _PLANE_POINTS = 24
 _PLANE_SHARE = 0.4
 _PLANE_THICKNESS = 0.12  # in cells of two spacings
-_SURFACE_SHARE = 0.3
 _INTENSITY_SAMPLE = 20_000
 
 
@@ -52,13 +48,28 @@ class Candidates:
     points : (k,) int64
         Indices into the cloud.
     features : (k, f) float32
-    heights : (n,) float64
-        m above the local ground, of every point; NaN where none is known.
+    around : Surroundings
+        Of the whole cloud.
+    levels : list of int
+        At which parts of the cloud are looked at.
+    beams, rows : Beams and (k,) int64, or None
+        Where beams are known.
     """
 
     points: _Integers
     features: NDArray[np.float32]
-    heights: _Floats
+    around: Surroundings
+    levels: list[int]
+    beams: Beams | None = None
+    rows: _Integers | None = None
+
+    def seen_again(self, odds: _Floats, chosen: _Integers, monitor: Monitor) -> NDArray[np.float32]:
+        """(c, g): features of chosen ones, with what was first said of all, (k,) log-odds."""
+        judgement = FirstJudgement(self.around, self.points, odds)
+        blocks = [self.features[chosen], judgement.features(chosen, self.levels, monitor)]
+        if self.beams is not None and self.rows is not None:
+            blocks.append(suspicions_beside(self.beams, self.rows, judgement, chosen, monitor))
+        return np.concatenate(blocks, axis=1)
 
 
 @dataclass(frozen=True)
@@ -82,7 +93,7 @@ class BeamSearch:
 
     def cheap_features(self, monitor: Monitor) -> NDArray[np.float32]:
         """(k, f): what the beams beside each met, what it hangs together with, its height."""
-        found = np.empty((self.points.size, NEAR_FEATURES))
+        found = np.empty((self.points.size, NEAR_FEATURES), np.float32)
 
         def look(start: int, stop: int) -> None:
             part = slice(start, stop)
@@ -92,32 +103,39 @@ class BeamSearch:
 
         shared_out(look, self.points.size, _POINTS_AT_ONCE, monitor)
         places = self.around.place_features(self.points)
-        ways = self._ways(self.points)
-        return np.column_stack([found, places, ways[:, 2]]).astype(np.float32)
+        steepness = self._ways(self.points)[:, 2:].astype(np.float32)
+        return np.concatenate([found, places, steepness], axis=1)
 
     def candidates(
-        self, is_doubtful: NDArray[np.bool_], intensity: NDArray[np.uint16], monitor: Monitor
+        self,
+        cheap: NDArray[np.float32],
+        is_doubtful: NDArray[np.bool_],
+        intensity: NDArray[np.uint16],
+        monitor: Monitor,
     ) -> Candidates:
-        """Everything about those of the points that remain doubtful, (k,) bool."""
+        """Everything about those of the points that remain doubtful, (k,) bool.
+
+        ``cheap`` (k, f) are the cheap features.
+        """
         points, rows = self.points[is_doubtful], self.rows[is_doubtful]
-        found = np.empty((points.size, BEAM_FEATURES))
+        found = np.empty((points.size, WIDE_FEATURES), np.float32)
 
         def look(start: int, stop: int) -> None:
             part = slice(start, stop)
-            beam_features_kernel(self.beams, self.is_sure, points[part], rows[part], found[part])
+            wide_beams_kernel(self.beams, self.is_sure, points[part], rows[part], found[part])
 
         shared_out(look, points.size, _POINTS_AT_ONCE, monitor)
-        ways = self._ways(points)
         blocks = [
-            self.around.scale_features(points, ways, monitor),
-            self.around.place_features(points),
+            self.around.scale_features(points, self._ways(points), monitor),
             self.around.part_features(points, self.around.link),
-            ways[:, 2:],
+            cheap[is_doubtful],
             found,
             _light(self.beams.ranges, intensity, self.is_sure, points)[:, None],
         ]
-        features = np.column_stack(blocks).astype(np.float32)
-        return Candidates(points, features, self.around.heights)
+        features = np.concatenate(blocks, axis=1)
+        return Candidates(
+            points, features, self.around, [self.around.link], beams=self.beams, rows=rows
+        )
 
     def _ways(self, points: _Integers) -> _Floats:
         away = self.beams.xyz[points] - self.beams.origins[points]
@@ -152,8 +170,8 @@ def search_with_beams(beams: Beams, monitor: Monitor) -> BeamSearch:
 def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
     """Candidates of a cloud of which only places are known.
 
-    Where few points lie on surfaces, as in woods seen from the air or a single tree, places alone
-    don't tell leaves from noise: nothing is a candidate then.
+    How many points lie on surfaces is told to the trees, too: in woods seen from the air, or in a
+    single tree, leaves look like noise to whoever knows streets only.
 
     Parameters
     ----------
@@ -164,25 +182,26 @@ def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
     spacings = np.empty(xyz.shape[0])
     spacings[fine.order] = np.clip(local_spacings(fine), _FINEST_M, None)
     is_sure = _planar_points(xyz, spacings, monitor)
-    has_surfaces = is_sure.mean() >= _SURFACE_SHARE
     around = Surroundings.of(xyz, spacings, is_sure)
     is_ground = np.abs(around.heights) < _GROUND_BAND_M
-    points = np.flatnonzero(~(is_sure & around.is_main & is_ground) & has_surfaces)
+    points = np.flatnonzero(~(is_sure & around.is_main & is_ground))
     middle = float(np.median(spacings))
+    levels = [around.level_of(size * middle) for size in PART_SIZES]
     blocks = [
         around.scale_features(points, None, monitor),
         around.place_features(points),
         around.column_features(points),
-        *(around.part_features(points, around.level_of(size * middle)) for size in PART_SIZES),
+        *(around.part_features(points, level) for level in levels),
+        np.full((points.size, 1), is_sure.mean(), np.float32),
     ]
-    return Candidates(points, np.column_stack(blocks).astype(np.float32), around.heights)
+    return Candidates(points, np.concatenate(blocks, axis=1), around, levels)
 
 
 def _planar_points(xyz: _Floats, spacings: _Floats, monitor: Monitor) -> NDArray[np.bool_]:
     """Points in the middle of a densely measured plane, eight spacings wide."""
     count = xyz.shape[0]
     bare = Surroundings.bare(xyz, spacings, np.zeros(count, np.bool_))
-    around = bare.scale_of(1, np.arange(count), monitor)
+    around = bare.scale_features(np.arange(count), None, monitor, (1,))
     found: NDArray[np.bool_] = (
         (around[:, 0] > np.log2(1 + _PLANE_POINTS))
         & (around[:, 3] > _PLANE_SHARE)
@@ -197,7 +216,7 @@ def _light(
     intensity: NDArray[np.uint16],
     is_sure: NDArray[np.bool_],
     points: _Integers,
-) -> _Floats:
+) -> NDArray[np.float32]:
     """(k,) log2 of intensity over the median of sure points at about the same range."""
     sure = np.flatnonzero(is_sure)
     sure = sure[:: max(1, sure.size // (10 * _INTENSITY_SAMPLE))]
@@ -207,10 +226,10 @@ def _light(
         medians[number] = np.median(values[bins == number][:_INTENSITY_SAMPLE])
     known = np.flatnonzero(~np.isnan(medians))
     if not known.size:
-        return np.zeros(points.size)
+        return np.zeros(points.size, np.float32)
     medians = np.interp(np.arange(31), known, medians[known])
     mine = np.log2(intensity[points].astype(np.float64) + 1)
-    light: _Floats = mine - medians[_range_bins(ranges[points])]
+    light: NDArray[np.float32] = (mine - medians[_range_bins(ranges[points])]).astype(np.float32)
     return light
 
 

@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
 
 from processing.monitor import Monitor
+
+_here = threading.local()
 
 
 def shared_out(
     work: Callable[[int, int], None], count: int, at_once: int, monitor: Monitor
 ) -> None:
     """Call ``work(start, stop)`` until the range 0 … count − 1 is done.
+
+    Work that is shared out again from within its share stays on that core.
 
     Parameters
     ----------
@@ -26,7 +31,7 @@ def shared_out(
     Cancelled
         After the calls in hand have ended.
     """
-    workers = os.cpu_count() or 1
+    workers = 1 if getattr(_here, "is_a_share", False) else os.cpu_count() or 1
     starts = iter(range(0, count, at_once))
     if workers == 1 or count <= at_once:
         for start in starts:
@@ -35,6 +40,7 @@ def shared_out(
         return
 
     def take() -> None:
+        _here.is_a_share = True
         while (start := next(starts, None)) is not None:
             monitor.check()
             work(start, min(start + at_once, count))

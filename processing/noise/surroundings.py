@@ -5,21 +5,31 @@ Sizes are taken relative to the spacing that the points should have at each plac
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import Monitor
-from processing.noise.cell_kernels import AROUND, COLUMN, CellLevel, around_kernel, column_kernel
+from processing.noise.cell_kernels import (
+    AROUND,
+    COLUMN,
+    CellLevel,
+    around_kernel,
+    column_kernel,
+    mean_around_kernel,
+    point_features_kernel,
+)
 from processing.noise.cell_levels import cell_levels
-from processing.noise.connected import parts_of, sure_counts
+from processing.noise.connected import Parts, parts_of, sure_counts
 from processing.noise.ground_heights import heights_above_ground
 from processing.noise.morton import NestedCells, nested_cells
 from processing.noise.sharing import shared_out
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
+_Rows = NDArray[np.float32]
 
 SCALES = 5
 PER_SCALE = 8
@@ -29,6 +39,7 @@ PART_SIZES = (2.0, 4.0, 8.0, 32.0)  # in median spacings
 _LEVELS = 12
 _FINEST_M = 0.02
 _CELLS_AT_ONCE = 4_096
+_POINTS_AT_ONCE = 65_536
 _MAIN_SHARE = 0.1
 _LINK_M = 0.4
 _LINK_SPACINGS = 3.0
@@ -47,6 +58,8 @@ class Surroundings:
     spacings : (n,) float64
         m, of the points as given.
     levels : list of CellLevel
+    numbers : list of (…,) int32
+        Which cell holds what, as :func:`processing.noise.cell_levels.cell_levels`.
     is_main : (n,) bool
         Hangs together with a good part of the cloud's sure points; empty if not looked for.
     heights : (n,) float64
@@ -55,16 +68,20 @@ class Surroundings:
         Sure points in the part of each cell of the levels ``link`` and ``link`` + 2.
     link : int
         The level whose cells hang together when they touch.
+    parts : dict
+        What :meth:`parts_at` found.
     """
 
     cells: NestedCells
     place: _Integers
     spacings: _Floats
     levels: list[CellLevel]
+    numbers: list[NDArray[np.int32]]
     is_main: NDArray[np.bool_]
     heights: _Floats
     connected: tuple[_Floats, ...] = ()
     link: int = 0
+    parts: dict[int, Parts] = field(default_factory=dict)
 
     @classmethod
     def bare(cls, xyz: _Floats, spacings: _Floats, is_sure: NDArray[np.bool_]) -> Surroundings:
@@ -73,9 +90,9 @@ class Surroundings:
         cells = nested_cells(xyz, finest)
         place = np.empty(cells.order.size, np.int64)
         place[cells.order] = np.arange(cells.order.size)
-        levels = cell_levels(cells, is_sure[cells.order], _LEVELS)
+        levels, numbers = cell_levels(cells, is_sure[cells.order], _LEVELS)
         none = np.zeros(0)
-        return cls(cells, place, spacings, levels, none.astype(np.bool_), none)
+        return cls(cells, place, spacings, levels, numbers, none.astype(np.bool_), none)
 
     @classmethod
     def of(cls, xyz: _Floats, spacings: _Floats, is_sure: NDArray[np.bool_]) -> Surroundings:
@@ -86,9 +103,8 @@ class Surroundings:
         wide = min(link + _WIDER, _LEVELS - 1)
         connected = (sure_counts(bare.levels[link]), sure_counts(bare.levels[wide]))
         is_main_cell = connected[0] >= _MAIN_SHARE * max(1, int(is_sure.sum()))
-        codes = bare.cells.codes >> (3 * link)
         is_main = np.empty(xyz.shape[0], np.bool_)
-        is_main[bare.cells.order] = is_main_cell[np.cumsum(np.r_[0, codes[1:] != codes[:-1]])]
+        is_main[bare.cells.order] = is_main_cell[bare.held_by(link, slice(None))]
         heights = heights_above_ground(xyz, is_sure, max(1.0, 4 * middle))
         return replace(bare, is_main=is_main, heights=heights, connected=connected, link=link)
 
@@ -97,81 +113,142 @@ class Surroundings:
         level = round(float(np.log2(max(size_m, 1e-6) / self.cells.cell_m)))
         return min(max(level, 0), _LEVELS - 1)
 
-    def place_features(self, points: _Integers) -> _Floats:
+    def place_features(self, points: _Integers) -> _Rows:
         """(k, PLACE_FEATURES): log2 of the spacing, two of the connection, the height."""
-        found = np.empty((points.size, PLACE_FEATURES))
+        found = np.empty((points.size, PLACE_FEATURES), np.float32)
         found[:, 0] = np.log2(self.spacings[points])
         wide = min(self.link + _WIDER, _LEVELS - 1)
         for column, level in enumerate((self.link, wide)):
-            cells = self._cells_of(level, points)
-            found[:, 1 + column] = np.log2(1 + self.connected[column][cells])
+            found[:, 1 + column] = np.log2(1 + self.connected[column])[self.cells_of(level, points)]
         height = np.nan_to_num(self.heights[points])  # 0 where no ground is known
         found[:, 3] = np.sign(height) * np.log2(1 + np.abs(height) / 0.05)
         return found
 
-    def part_features(self, points: _Integers, level: int) -> _Floats:
+    def part_features(self, points: _Integers, level: int) -> _Rows:
         """(k, PART_FEATURES): what the part of the cloud looks like to which points belong."""
-        parts = parts_of(self.levels[level])
-        return parts.features[parts.numbers[self._cells_of(level, points)]]
+        parts = self.parts_at(level)
+        return parts.features[parts.numbers[self.cells_of(level, points)]]
 
-    def scale_features(self, points: _Integers, ways: _Floats | None, monitor: Monitor) -> _Floats:
-        """(k, SCALES × PER_SCALE): how points lie around; ``ways`` (k, 3) are their beams."""
-        return np.column_stack(
-            [self.scale_of(scale, points, monitor, ways) for scale in range(SCALES)]
-        )
+    def parts_at(self, level: int) -> Parts:
+        """What hangs together at a level; looked for once."""
+        if level not in self.parts:
+            self.parts[level] = parts_of(self.levels[level])
+        return self.parts[level]
 
-    def scale_of(
-        self, scale: int, points: _Integers, monitor: Monitor, ways: _Floats | None = None
-    ) -> _Floats:
-        """(k, PER_SCALE): how points lie in 27 cells of 2 ** scale spacings around each."""
-        found = np.empty((points.size, PER_SCALE))
-        for level, chosen in self._by_level(points, scale):
-            beams = None if ways is None else ways[chosen]
-            found[chosen] = self._around(level, points[chosen], beams, monitor)
+    def scale_features(
+        self,
+        points: _Integers,
+        ways: _Floats | None,
+        monitor: Monitor,
+        scales: Sequence[int] = range(SCALES),
+    ) -> _Rows:
+        """(k, scales × PER_SCALE): how points lie around, in 27 cells of 2 ** scale spacings.
+
+        Per scale: points, sure points, line, plane, scatter, offset, level, incidence; ``ways``
+        (k, 3) are the points' beams.
+        """
+        found = np.empty((points.size, len(scales) * PER_SCALE), np.float32)
+        own, places = self.own_levels(points), self.place[points]
+        for level in range(_LEVELS):
+            of_scale = [np.flatnonzero(self.level_at(own, scale) == level) for scale in scales]
+            if not any(chosen.size for chosen in of_scale):
+                continue
+            around, positions = self._around(level, [points[one] for one in of_scale], monitor)
+            for number, (chosen, cells) in enumerate(zip(of_scale, positions, strict=True)):
+                block = np.empty((chosen.size, PER_SCALE), np.float32)
+                beams = np.empty((0, 3)) if ways is None else ways[chosen]
+                self._tell(level, around, (cells, places[chosen], beams), block, monitor)
+                found[chosen, number * PER_SCALE : (number + 1) * PER_SCALE] = block
         return found
 
-    def column_features(self, points: _Integers) -> _Floats:
+    def means_around(self, level: int, points: _Integers, totals: _Floats) -> _Rows:
+        """(k,): the mean of a value in the 27 cells around each point; ``totals`` per cell."""
+        cells = self.levels[level]
+        used, (back,) = self._used_cells(level, [points])
+        found = np.empty(used.size, np.float32)
+        mean_around_kernel(cells, cells.codes[used], totals, found)
+        return found[back]
+
+    def column_features(self, points: _Integers) -> _Rows:
         """(k, 2 × COLUMN): what lies straight above and below, at two sizes."""
-        found = np.empty((points.size, len(COLUMN_SCALES) * COLUMN))
+        found = np.empty((points.size, len(COLUMN_SCALES) * COLUMN), np.float32)
+        own = self.own_levels(points)
         for number, scale in enumerate(COLUMN_SCALES):
             block = slice(number * COLUMN, (number + 1) * COLUMN)
-            for level, chosen in self._by_level(points, scale):
-                codes = self.cells.codes[self.place[points[chosen]]] >> (3 * level)
-                columns = np.empty((chosen.size, COLUMN))
-                column_kernel(self.levels[level], codes, columns)
-                found[chosen, block] = columns
+            levels = self.level_at(own, scale)
+            for level in np.unique(levels):
+                chosen = np.flatnonzero(levels == level)
+                used, back = self._used_cells(level, [points[chosen]])
+                columns = np.empty((used.size, COLUMN), np.float32)
+                column_kernel(self.levels[level], self.levels[level].codes[used], columns)
+                found[chosen, block] = columns[back[0]]
         return found
 
+    def held_by(self, level: int, places: _Integers | slice) -> NDArray[np.int32]:
+        """The cell of a level that holds each of some places along the curve."""
+        cells = self.numbers[0][places]
+        for above in range(1, level + 1):
+            cells = self.numbers[above][cells]
+        return cells
+
+    def cells_of(self, level: int, points: _Integers) -> NDArray[np.int32]:
+        """The cell of a level that holds each of some points."""
+        return self.held_by(level, self.place[points])
+
+    def own_levels(self, points: _Integers) -> _Integers:
+        """(k,) level whose cells are about a spacing wide, below zero where none is so fine."""
+        wanted = np.log2(self.spacings[points] / self.cells.cell_m)
+        own: _Integers = np.rint(wanted).astype(np.int64)
+        return own
+
+    def level_at(self, own: _Integers, scale: int) -> _Integers:
+        """The levels whose cells are 2 ** scale times as wide, as far as there are any."""
+        levels: _Integers = np.clip(own + scale, 0, _LEVELS - 1)
+        return levels
+
+    def _used_cells(self, level: int, groups: list[_Integers]) -> tuple[_Integers, list[_Integers]]:
+        """The cells that hold any of some points, rising, and where each group's are in them."""
+        cells = [self.cells_of(level, points) for points in groups]
+        is_used = np.zeros(self.levels[level].codes.size, np.bool_)
+        for one in cells:
+            is_used[one] = True
+        places = np.cumsum(is_used) - 1
+        return np.flatnonzero(is_used), [places[one] for one in cells]
+
     def _around(
-        self, level: int, points: _Integers, ways: _Floats | None, monitor: Monitor
-    ) -> _Floats:
-        """(k, PER_SCALE): points, sure points, line, plane, scatter, offset, level, incidence."""
-        cells, place = self.levels[level], self.place[points]
-        mine_codes = self.cells.codes[place] >> (3 * level)
-        codes, back = np.unique(mine_codes, return_inverse=True)
-        around = np.empty((codes.size, AROUND))
+        self, level: int, groups: list[_Integers], monitor: Monitor
+    ) -> tuple[_Floats, list[_Integers]]:
+        """What lies around the cells that hold points, and where each group's are in it."""
+        cells = self.levels[level]
+        used, positions = self._used_cells(level, groups)
+        codes, around = cells.codes[used], np.empty((used.size, AROUND))
 
         def add_up(start: int, stop: int) -> None:
             around_kernel(cells, codes[start:stop], around[start:stop])
 
-        shared_out(add_up, codes.size, _CELLS_AT_ONCE, monitor)
-        mine = around[back]
-        normals = mine[:, 5:8]
-        found = np.empty((place.size, PER_SCALE))
-        found[:, 0:2] = np.log2(1 + mine[:, 0:2])
-        found[:, 2:5] = mine[:, 2:5]
-        offsets = (normals * self.cells.local_xyz[place]).sum(axis=1) - mine[:, 8]
-        found[:, 5] = np.abs(offsets) / cells.side
-        found[:, 6] = np.abs(normals[:, 2])
-        found[:, 7] = 0.0 if ways is None else np.abs((normals * ways).sum(axis=1))
-        return found
+        shared_out(add_up, used.size, _CELLS_AT_ONCE, monitor)
+        return around, positions
 
-    def _by_level(self, points: _Integers, scale: int) -> list[tuple[int, _Integers]]:
-        """Levels whose cells are 2 ** scale spacings wide, and which of the points have them."""
-        wanted = np.log2(self.spacings[points] / self.cells.cell_m)
-        levels = np.clip(np.rint(wanted).astype(np.int64) + scale, 0, _LEVELS - 1)
-        return [(int(level), np.flatnonzero(levels == level)) for level in np.unique(levels)]
+    def _tell(
+        self,
+        level: int,
+        around: _Floats,
+        of_points: tuple[_Integers, _Integers, _Floats],
+        found: _Rows,
+        monitor: Monitor,
+    ) -> None:
+        cells, places, ways = of_points
 
-    def _cells_of(self, level: int, points: _Integers) -> _Integers:
-        codes = self.cells.codes[self.place[points]] >> (3 * level)
-        return np.searchsorted(self.levels[level].codes, codes)
+        def tell(start: int, stop: int) -> None:
+            part = slice(start, stop)
+            point_features_kernel(
+                self.levels[level],
+                around,
+                cells[part],
+                self.cells.local_xyz,
+                places[part],
+                ways[part],
+                found[part],
+            )
+
+        shared_out(tell, cells.size, _POINTS_AT_ONCE, monitor)

@@ -54,7 +54,7 @@ def noise_table(found: Sequence[Found]) -> str:
         ["published: road, Nihon University", method, settings, *figures, *["–"] * (4 + len(thin))]
         for method, settings, *figures in _PUBLISHED_NOISE
     ]
-    return _markdown(rows)
+    return markdown_table(rows)
 
 
 def sites_table(found: Sequence[Found]) -> str:
@@ -80,7 +80,7 @@ def sites_table(found: Sequence[Found]) -> str:
         ["published: Kako River", method, settings, *figures, *["–"] * 4]
         for method, settings, *figures in _PUBLISHED_GROUND
     ]
-    return _markdown(rows)
+    return markdown_table(rows)
 
 
 def kinds_table(found: Iterable[Found], names: Mapping[int, str] = SITE_KINDS) -> str:
@@ -92,7 +92,7 @@ def kinds_table(found: Iterable[Found], names: Mapping[int, str] = SITE_KINDS) -
         right = _right_of(one)
         shares = [_percent(right.get(kind, math.nan), 1) for kind in kinds]
         rows.append([one.scene, one.method, one.settings, *shares])
-    return _markdown(rows)
+    return markdown_table(rows)
 
 
 def airborne_table(found: Sequence[Found]) -> str:
@@ -115,7 +115,7 @@ def airborne_table(found: Sequence[Found]) -> str:
         known = [errors_by.get(sample, math.nan) for sample in samples]
         printed = [_percent(error / 100, 2) for error in (*known, sum(known) / len(known))]
         rows.append([method, settings, *printed, "–", f"{of_all:.2f} %"])
-    return _markdown(rows)
+    return markdown_table(rows)
 
 
 # Specification noise_ground.md, A6: Table 1 of the road-surface study; kept points.
@@ -158,7 +158,8 @@ def _right(score: PointScore) -> dict[int, float]:
     return {one.kind: one.right.value for one in score.kinds if one.group == "kind"}
 
 
-def _markdown(rows: Sequence[Sequence[str]]) -> str:
+def markdown_table(rows: Sequence[Sequence[str]]) -> str:
+    """Rows of cells as a Markdown table; the first is its head."""
     lines = ["| " + " | ".join(row) + " |" for row in rows]
     lines.insert(1, "|" + "---|" * len(rows[0]))
     return "\n".join(lines) + "\n"

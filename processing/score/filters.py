@@ -2,8 +2,8 @@
 
 ``python -m processing.score.filters DATA_FOLDER --markdown docs/accuracy.md`` makes the sections
 on noise and ground of the page; without ``--markdown`` they are written to standard output.
-``--pictures FOLDER`` paints where our filters err; ``--only noise|sites|airborne`` leaves the
-other sections as they are, ``--ours`` leaves out peers. Scenes are found as
+``--pictures FOLDER`` paints where our filters err; ``--only noise|unseen|sites|airborne`` leaves
+the other sections as they are, ``--ours`` leaves out peers. Scenes are found as
 :mod:`processing.score.filter_scenes` says.
 """
 
@@ -24,14 +24,17 @@ from processing.score.filter_tables import (
     Found,
     airborne_table,
     kinds_table,
+    markdown_table,
     noise_table,
     sites_table,
 )
 from processing.score.point_scores import PointScorer
 from processing.score.scorers import GROUND_SCORER, NOISE_SCORER
+from processing.score.unseen_scenes import unseen_rows
 
 HEADINGS = {
     "noise": "## Noise",
+    "unseen": "## Noise of scenes that nobody looked at",
     "sites": "## Ground of sites with machines",
     "airborne": "## Ground from the air",
 }
@@ -80,6 +83,11 @@ def _of_noise(chosen: argparse.Namespace) -> Iterator[str]:
     found = list(_found(noise_scenes(chosen.data), NOISE_SCORER, noise_methods(), chosen))
     yield f"{_ABOUT}{_ABOUT_NOISE}"
     yield noise_table(found)
+
+
+def _of_unseen(_: argparse.Namespace) -> Iterator[str]:
+    yield _ABOUT_UNSEEN
+    yield markdown_table(list(unseen_rows()))
 
 
 def _of_sites(chosen: argparse.Namespace) -> Iterator[str]:
@@ -133,6 +141,13 @@ Positive is the kept point in the first three figures, as in the road-surface st
 noise point in the next three. Doing nothing scores the first F of its row, so the study's measure \
 says little; a filter earns its keep by the second F, and by what it keeps of thin things.
 """
+_ABOUT_UNSEEN = """\
+`python -m processing.score.filters DATA_FOLDER --only unseen --markdown docs/accuracy.md` makes \
+this section from the simulator that the models learned from, with seeds that were never used \
+before: streets, scanners, kinds and shares of noise are drawn anew for each. The upper rows know \
+the scanner's beams (a drive with its trajectory, a scan with its place), the lower ones places \
+alone, most of them thinned. Shares are 0 to 1; the last two columns are the study's methods.
+"""
 _BY_TRUTH = """\
 Peers run as they are installed, CSF and SMRF from PyPI (`cloth-simulation-filter`, `pysmrf`). \
 “By this truth”: the settings that agree best with the scene's truth, which nobody has in the \
@@ -151,6 +166,7 @@ here.
 """
 _PARTS: Mapping[str, Callable[[argparse.Namespace], Iterator[str]]] = {
     "noise": _of_noise,
+    "unseen": _of_unseen,
     "sites": _of_sites,
     "airborne": _of_airborne,
 }

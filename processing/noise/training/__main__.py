@@ -22,10 +22,12 @@ from processing.noise.combined import (
     noise_codes_with_beams,
 )
 from processing.noise.training.examples import (
+    Case,
     Examples,
-    beam_examples,
-    kept_examples,
-    space_examples,
+    case_in_space,
+    case_with_beams,
+    kept_in_space,
+    kept_with_beams,
 )
 from processing.noise.training.fitting import Shape, fitted, shifted_to_keep
 from processing.noise.training.scanners import AIRBORNE, MOBILE, STANDING
@@ -36,11 +38,14 @@ from processing.noise.trees import Trees, log_odds
 from processing.points.drive import Drive
 from resources import path_of
 
-_BUDGETS = (120_000, 250_000, 400_000)
-_FEWEST = 400
+_BUDGETS = (150_000, 250_000, 450_000)
+_FEWEST = 100
 _FIRST_SHAPE = Shape(trees=30, leaves=12, rate=0.25)
-_BEAMS_SHAPE = Shape(trees=100, leaves=24, rate=0.15)
-_SPACE_SHAPE = Shape(trees=110, leaves=24, rate=0.15)
+_BEAMS_SHAPE = Shape(trees=80, leaves=24, rate=0.18)
+_SPACE_SHAPE = Shape(trees=100, leaves=31, rate=0.15)
+_AGAIN_SHAPE = Shape(trees=100, leaves=24, rate=0.15)
+_FOLDS = 3
+_KEPT_SEED = 100_000
 _LOST_AT_FIRST = 0.003
 _SCANNERS = {
     "beams": (MOBILE, MOBILE, MOBILE, STANDING),
@@ -53,7 +58,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     wish = _parser().parse_args(arguments)
     for what in wish.what:
         if not wish.score_only:
-            {"beams": _make_with_beams, "space": _make_in_space}[what](wish)
+            _make(what, wish)
         for seed in _seeds(wish.held_out):
             for scene, turn, name in _scenes(what, (seed,)):
                 _say(score_line(f"{what} {name}", _said(what, scene, turn), scene))
@@ -63,7 +68,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m processing.noise.training")
     parser.add_argument("--what", nargs="+", choices=("beams", "space"), default=["beams", "space"])
-    parser.add_argument("--seeds", default="1-36", help="of the scenes that are learned from")
+    parser.add_argument("--seeds", default="1-120", help="of the scenes that are learned from")
     parser.add_argument("--held-out", default="501-512", help="of the scenes that are scored")
     parser.add_argument(
         "--kept-with-beams", nargs="*", type=Path, default=[], help="folders of true recordings"
@@ -75,33 +80,56 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _make_with_beams(wish: argparse.Namespace) -> None:
-    random = np.random.default_rng(1)
-    examples = []
-    for scene, turn, name in _scenes("beams", _seeds(wish.seeds)):
-        examples.append(beam_examples(scene, turn, random))
-        _say(f"learned from {name}: {scene.noise.size} points")
-    examples += _kept(wish.kept_with_beams, random, in_space=False)
-    joined = Examples.joined(examples)
-    first = fitted(joined.cheap, joined.is_noise, joined.weights, _FIRST_SHAPE)
-    first = shifted_to_keep(first, joined.cheap, joined.is_noise, _LOST_AT_FIRST)
-    left = log_odds(first, joined.cheap, SilentMonitor()) > 0
-    _say(f"{left.mean():.1%} of {left.size} examples are left after the first look")
-    _write(FIRST_LOOK, first, joined.cheap.shape[1])
-    trees = fitted(joined.whole[left], joined.is_noise[left], joined.weights[left], _BEAMS_SHAPE)
-    _write(WITH_BEAMS, trees, joined.whole.shape[1])
+def _make(what: str, wish: argparse.Namespace) -> None:
+    looks: list[list[Examples]] = [[] for _ in range(_FOLDS)]
+    folds: list[list[Examples]] = [[] for _ in range(_FOLDS)]
+    for fold, name, case in _cases(what, wish):
+        look, everything = case.alone()
+        looks[fold].append(look)
+        folds[fold].append(everything)
+        _say(f"learned from {name}: {case.noise.size} points")
+    alone, first = [Examples.joined(one) for one in folds], None
+    names, shape = (WITH_BEAMS, _BEAMS_SHAPE) if what == "beams" else (IN_SPACE, _SPACE_SHAPE)
+    if what == "beams":
+        first, alone = _first_look([Examples.joined(one) for one in looks], alone)
+    others = [fitted(_but(alone, fold), shape) for fold in range(_FOLDS)]
+    own = fitted(Examples.joined(alone), shape)
+    _write(names[0], own, alone[0].rows.shape[1])
+    again = Examples.joined(case.again(first, others[fold]) for fold, _, case in _cases(what, wish))
+    _say(f"asked again about {again.is_noise.size} points")
+    _write(names[1], fitted(again, _AGAIN_SHAPE), again.rows.shape[1])
 
 
-def _make_in_space(wish: argparse.Namespace) -> None:
-    random = np.random.default_rng(2)
-    examples = []
-    for scene, _, name in _scenes("space", _seeds(wish.seeds)):
-        examples.append(space_examples(scene, random))
-        _say(f"learned from {name}: {scene.noise.size} points")
-    examples += _kept(wish.kept_in_space, random, in_space=True)
-    joined = Examples.joined(examples)
-    trees = fitted(joined.whole, joined.is_noise, joined.weights, _SPACE_SHAPE)
-    _write(IN_SPACE, trees, joined.whole.shape[1])
+def _first_look(
+    looks: Sequence[Examples], alone: Sequence[Examples]
+) -> tuple[Trees, list[Examples]]:
+    """The trees of the first look, and what it leaves of the examples."""
+    joined = Examples.joined(looks)
+    first = fitted(joined, _FIRST_SHAPE)
+    first = shifted_to_keep(first, joined.rows, joined.is_noise, _LOST_AT_FIRST)
+    _write(FIRST_LOOK, first, joined.rows.shape[1])
+    left = [log_odds(first, look.rows, SilentMonitor()) > 0 for look in looks]
+    share = sum(int(one.sum()) for one in left) / joined.is_noise.size
+    _say(f"{share:.1%} of {joined.is_noise.size} examples are left after the first look")
+    return first, [one.chosen(rows) for one, rows in zip(alone, left, strict=True)]
+
+
+def _but(folds: Sequence[Examples], fold: int) -> Examples:
+    return Examples.joined(one for number, one in enumerate(folds) if number != fold)
+
+
+def _cases(what: str, wish: argparse.Namespace) -> Iterator[tuple[int, str, Case]]:
+    """Scenes and recordings that are learned from, each of a fold; the same at every pass."""
+    for seed in _seeds(wish.seeds):
+        for scene, turn, name in _scenes(what, (seed,)):
+            is_space = what == "space"
+            case = case_in_space(scene, seed) if is_space else case_with_beams(scene, turn, seed)
+            yield seed // 12 % _FOLDS, name, case
+    folders = wish.kept_in_space if what == "space" else wish.kept_with_beams
+    for number, folder in enumerate(folders):
+        kept = kept_in_space if what == "space" else kept_with_beams
+        for case in kept(Drive(folder), _KEPT_SEED + 100 * number):
+            yield number % _FOLDS, f"kept {folder.name}", case
 
 
 def _scenes(what: str, seeds: Sequence[int]) -> Iterator[tuple[Scene, float, str]]:
@@ -114,18 +142,6 @@ def _scenes(what: str, seeds: Sequence[int]) -> Iterator[tuple[Scene, float, str
             scene = scene.chosen(scene.scans == 0)
         if scene.noise.size >= _FEWEST:
             yield scene, turn, f"{how} {seed}"
-
-
-def _kept(
-    folders: Sequence[Path], random: np.random.Generator, *, in_space: bool
-) -> list[Examples]:
-    found = []
-    for folder in folders:
-        examples = kept_examples(Drive(folder), random, in_space=in_space)
-        if examples is not None:
-            found.append(examples)
-            _say(f"kept {folder.name}: {examples.is_noise.size} examples")
-    return found
 
 
 def _said(what: str, scene: Scene, turn: float) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:

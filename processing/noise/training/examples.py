@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,20 +10,27 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from processing.monitor import SilentMonitor
-from processing.noise.beam_kernels import Beams
 from processing.noise.beam_origins import beam_origins
 from processing.noise.beams_of_drives import beams_of
-from processing.noise.features import candidates_in_space, search_with_beams
+from processing.noise.features import BeamSearch, Candidates, candidates_in_space, search_with_beams
+from processing.noise.second_look import OPEN_ODDS
 from processing.noise.training.scenes import Scene
 from processing.noise.training.streets import FAR, GRASS, POST, RAIL, TREE, WIRE
+from processing.noise.trees import Trees, log_odds
 from processing.points.drive import Drive
 
 Rows = NDArray[np.float32]
+_Bools = NDArray[np.bool_]
 
-_POINTS_PER_SCENE = 5_000
-_POINTS_OF_A_DRIVE = 400_000
+_POINTS_PER_SCENE = 8_000
+_MOST_POINTS = 200_000
+_STRETCHES = 4
+_FEWEST_ROWS = 50
+_KEPT_SHARES = (0.3, 0.1)
+_KEPT_PIECES = 4
+_FEWEST_POINTS = 100
 _THIN = (WIRE, POST, RAIL, GRASS, TREE, FAR)
-_THIN_WEIGHT, _THIN_WEIGHT_IN_SPACE, _TRUE_WEIGHT = 2.2, 4.0, 0.9
+_WIRE_WEIGHT, _THIN_WEIGHT, _TRUE_WEIGHT = 4.0, 2.2, 0.9
 _UNKNOWN_LIGHT_SHARE, _SHIFTED_LIGHT_SHARE = 0.4, 0.4
 
 
@@ -33,109 +40,169 @@ class Examples:
 
     Attributes
     ----------
-    cheap : (k, f) float32
-        What is asked first, where beams are known; no columns in space.
-    whole : (k, g) float32
-        Everything.
+    rows : (k, f) float32
     is_noise : (k,) bool
     weights : (k,) float64
         How much each counts: doubt is in favour of thin things.
     """
 
-    cheap: Rows
-    whole: Rows
-    is_noise: NDArray[np.bool_]
+    rows: Rows
+    is_noise: _Bools
     weights: NDArray[np.float64]
+
+    def chosen(self, rows: _Bools) -> Examples:
+        """Some of them."""
+        return Examples(self.rows[rows], self.is_noise[rows], self.weights[rows])
 
     @classmethod
     def joined(cls, parts: Iterable[Examples]) -> Examples:
         """All in one."""
         all_of = list(parts)
         return cls(
-            np.vstack([one.cheap for one in all_of]),
-            np.vstack([one.whole for one in all_of]),
+            np.vstack([one.rows for one in all_of]),
             np.concatenate([one.is_noise for one in all_of]),
             np.concatenate([one.weights for one in all_of]),
         )
 
 
-def beam_examples(scene: Scene, turn: float, random: Generator) -> Examples:
-    """Examples of a scene whose beams are known."""
-    cheap, whole, points = _asked(scene.beams(turn), scene.intensity)
-    chosen = _chosen(scene.kinds[points], random)
-    whole = whole[chosen]
-    points = points[chosen]
-    _change_light(whole, scene.kinds[points], random)
-    return _weighed(cheap[chosen], whole, scene, points, _THIN_WEIGHT)
+@dataclass(frozen=True)
+class Case:
+    """A cloud whose truth is known.
+
+    Attributes
+    ----------
+    noise, kinds : (n,) int64
+        Of every point: kind of noise, 0 none; what was met, −1 for noise.
+    search : BeamSearch or None
+        Where its beams are known.
+    intensity : (n,) uint16
+    candidates : Candidates or None
+        In space.
+    seed : int
+        Chance is drawn from it, so that every pass sees the same.
+    """
+
+    noise: NDArray[np.int64]
+    kinds: NDArray[np.int64]
+    seed: int
+    search: BeamSearch | None = None
+    intensity: NDArray[np.uint16] | None = None
+    candidates: Candidates | None = None
+
+    def alone(self) -> tuple[Examples, Examples]:
+        """Examples of points by themselves: what the first look sees of each, and everything.
+
+        The first has no columns in space.
+        """
+        if self.candidates is not None:
+            rows, points = self.candidates.features, self.candidates.points
+            cheap = np.zeros((points.size, 0), np.float32)
+        else:
+            search = self._search()
+            points, cheap = search.points, search.cheap_features(SilentMonitor())
+            rows = self._with_beams(cheap, np.ones(points.size, np.bool_)).features
+        return self._some(cheap, points), self._some(rows, points)
+
+    def again(self, first: Trees | None, own: Trees) -> Examples:
+        """Examples of points with what ``own`` said of them and of others."""
+        candidates, monitor = self._candidates(first), SilentMonitor()
+        odds = log_odds(own, candidates.features, monitor)
+        is_open = np.flatnonzero(odds > OPEN_ODDS)
+        rows = candidates.seen_again(odds, is_open, monitor)
+        return self._some(rows, candidates.points[is_open])
+
+    def _candidates(self, first: Trees | None) -> Candidates:
+        if self.candidates is not None:
+            return self.candidates
+        if first is None:
+            raise ValueError("beams need the trees of the first look")
+        cheap = self._search().cheap_features(SilentMonitor())
+        return self._with_beams(cheap, log_odds(first, cheap, SilentMonitor()) > 0)
+
+    def _with_beams(self, cheap: Rows, is_doubtful: _Bools) -> Candidates:
+        if self.intensity is None:
+            raise ValueError("beams come with intensities")
+        search, monitor = self._search(), SilentMonitor()
+        candidates = search.candidates(cheap, is_doubtful, self.intensity, monitor)
+        self._change_light(candidates)
+        return candidates
+
+    def _search(self) -> BeamSearch:
+        if self.search is None:
+            raise ValueError("only places are known of this cloud")
+        return self.search
+
+    def _change_light(self, candidates: Candidates) -> None:
+        """Make intensity unknown or other than simulated, so that the trees don't lean on it."""
+        random, light = np.random.default_rng(self.seed), candidates.features[:, -1]
+        way, kinds = random.random(), self.kinds[candidates.points]
+        if way < _UNKNOWN_LIGHT_SHARE:
+            light[:] = random.normal(0, 0.3, light.size)
+        elif way < _UNKNOWN_LIGHT_SHARE + _SHIFTED_LIGHT_SHARE:
+            light += np.where(kinds < 0, 0.0, random.normal(-0.7, 1.3, 12)[kinds])
+
+    def _some(self, rows: Rows, points: NDArray[np.int64]) -> Examples:
+        """Some of the rows, thin things twice as often as others."""
+        random = np.random.default_rng(self.seed + 1)
+        is_thin = np.isin(self.kinds[points], _THIN)
+        often = np.where(is_thin, 2.0, 1.0) * _POINTS_PER_SCENE / max(1, points.size)
+        chosen = random.random(points.size) < often
+        is_noise = self.noise[points] > 0
+        weights = np.where(is_noise, 1.0, _TRUE_WEIGHT)
+        weights[is_thin] = _THIN_WEIGHT
+        weights[self.kinds[points] == WIRE] = _WIRE_WEIGHT
+        return Examples(rows[chosen], is_noise[chosen], weights[chosen])
 
 
-def space_examples(scene: Scene, random: Generator) -> Examples:
-    """Examples of a scene of which only places are known."""
-    candidates = candidates_in_space(scene.xyz - scene.xyz.mean(axis=0), SilentMonitor())
-    chosen = _chosen(scene.kinds[candidates.points], random)
-    whole, points = candidates.features[chosen], candidates.points[chosen]
-    cheap = np.zeros((points.size, 0), np.float32)
-    return _weighed(cheap, whole, scene, points, _THIN_WEIGHT_IN_SPACE)
+def case_with_beams(scene: Scene, turn: float, seed: int) -> Case:
+    """A scene whose beams are known."""
+    search = search_with_beams(scene.beams(turn), SilentMonitor())
+    return Case(scene.noise, scene.kinds, seed, search, scene.intensity)
 
 
-def kept_examples(drive: Drive, random: Generator, *, in_space: bool) -> Examples | None:
-    """Examples of a recording all of whose points are taken for true; None without beams."""
-    if in_space:
-        points = slice(0, min(drive.count, 2 * _POINTS_OF_A_DRIVE))
-        xyz = drive.xyz(points)
-        whole = candidates_in_space(xyz - xyz.mean(axis=0), SilentMonitor()).features
-        cheap = np.zeros((whole.shape[0], 0), np.float32)
-    else:
-        origins = beam_origins(drive)
-        if origins is None:
-            return None
-        image = drive.image(drive.pixel_kind)
-        rows = int(np.searchsorted(image.row_starts, _POINTS_OF_A_DRIVE))
-        beams, points = beams_of(drive, image, range(max(4, min(rows, image.rows))), origins)
+def case_in_space(scene: Scene, seed: int) -> Case:
+    """A scene of which only places are known."""
+    xyz = scene.xyz - scene.xyz.mean(axis=0)
+    candidates = candidates_in_space(xyz, SilentMonitor())
+    return Case(scene.noise, scene.kinds, seed, candidates=candidates)
+
+
+def kept_with_beams(drive: Drive, seed: int) -> Iterator[Case]:
+    """A recording all of whose points are taken for true; none without beams."""
+    origins = beam_origins(drive)
+    if origins is None:
+        return
+    image = drive.image(drive.pixel_kind)
+    parts = max(1, min(_STRETCHES, image.rows // _FEWEST_ROWS))
+    cuts = np.linspace(0, image.rows, parts + 1).astype(np.int64)
+    for number in range(parts):
+        most = np.searchsorted(image.row_starts, image.row_starts[cuts[number]] + _MOST_POINTS)
+        rows = range(int(cuts[number]), int(min(cuts[number + 1], most)))
+        beams, points = beams_of(drive, image, rows, origins)
         intensity = np.asarray(drive.columns["intensity"][points])
-        cheap, whole, _ = _asked(beams, intensity)
-        whole[:, -1] = np.where(random.random(whole.shape[0]) < 0.5, whole[:, -1], 0)
-    chosen = random.random(whole.shape[0]) < _POINTS_PER_SCENE / max(1, whole.shape[0])
-    count = int(chosen.sum())
-    return Examples(
-        cheap[chosen],
-        whole[chosen],
-        np.zeros(count, np.bool_),
-        np.full(count, _THIN_WEIGHT),
-    )
+        noise = np.zeros(beams.ranges.size, np.int64)
+        search = search_with_beams(beams, SilentMonitor())
+        yield Case(noise, noise + TREE, seed + number, search, intensity)
 
 
-def _asked(beams: Beams, intensity: NDArray[np.uint16]) -> tuple[Rows, Rows, NDArray[np.int64]]:
-    monitor = SilentMonitor()
-    search = search_with_beams(beams, monitor)
-    everything = np.ones(search.points.size, np.bool_)
-    whole = search.candidates(everything, intensity, monitor).features
-    return search.cheap_features(monitor), whole, search.points
+def kept_in_space(drive: Drive, seed: int) -> Iterator[Case]:
+    """A recording all of whose points are taken for true, as it is, thinned, and in pieces."""
+    xyz = drive.xyz(slice(0, min(drive.count, 4 * _MOST_POINTS)))
+    random = np.random.default_rng(seed)
+    for number, cloud in enumerate(_as_delivered_elsewhere(xyz - xyz.mean(axis=0), random)):
+        noise = np.zeros(cloud.shape[0], np.int64)
+        candidates = candidates_in_space(np.ascontiguousarray(cloud), SilentMonitor())
+        yield Case(noise, noise + TREE, seed + number, candidates=candidates)
 
 
-def _chosen(kinds: NDArray[np.int64], random: Generator) -> NDArray[np.bool_]:
-    """Thin things twice as often as others."""
-    often = np.where(np.isin(kinds, _THIN), 2.0, 1.0)
-    chosen: NDArray[np.bool_] = random.random(kinds.size) < often * _POINTS_PER_SCENE / max(
-        1, kinds.size
-    )
-    return chosen
-
-
-def _change_light(whole: Rows, kinds: NDArray[np.int64], random: Generator) -> None:
-    """Make intensity unknown or other than simulated, so that the trees don't lean on it."""
-    way = random.random()
-    if way < _UNKNOWN_LIGHT_SHARE:
-        whole[:, -1] = random.normal(0, 0.3, whole.shape[0])
-    elif way < _UNKNOWN_LIGHT_SHARE + _SHIFTED_LIGHT_SHARE:
-        shifts = random.normal(-0.7, 1.3, 12)
-        whole[:, -1] += np.where(kinds < 0, 0.0, shifts[kinds])
-
-
-def _weighed(
-    cheap: Rows, whole: Rows, scene: Scene, points: NDArray[np.int64], thin_weight: float
-) -> Examples:
-    kinds, is_noise = scene.kinds[points], scene.noise[points] > 0
-    weights = np.where(is_noise, 1.0, _TRUE_WEIGHT)
-    weights[np.isin(kinds, _THIN)] = thin_weight
-    return Examples(cheap, whole, is_noise, weights)
+def _as_delivered_elsewhere(
+    xyz: NDArray[np.float64], random: Generator
+) -> list[NDArray[np.float64]]:
+    """A cloud as it is, thinned twice, and some small pieces of it."""
+    clouds = [xyz]
+    clouds += [xyz[random.random(xyz.shape[0]) < share] for share in _KEPT_SHARES]
+    for _ in range(_KEPT_PIECES):
+        away = np.abs(xyz[:, :2] - xyz[random.integers(xyz.shape[0]), :2]).max(axis=1)
+        count = min(xyz.shape[0], int(10 ** random.uniform(2, 4)))
+        clouds.append(xyz[np.argpartition(away, count - 1)[:count]])
+    return [one for one in clouds if one.shape[0] >= _FEWEST_POINTS]

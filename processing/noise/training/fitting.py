@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import SilentMonitor
-from processing.noise.training.examples import Rows
+from processing.noise.training.examples import Examples, Rows
 from processing.noise.trees import Trees, log_odds
 
 _BINS = 64
@@ -26,9 +26,7 @@ class Shape:
     rate: float
 
 
-def fitted(
-    rows: Rows, is_noise: NDArray[np.bool_], weights: NDArray[np.float64], shape: Shape
-) -> Trees:
+def fitted(examples: Examples, shape: Shape) -> Trees:
     """Trees that give the log-odds of being noise.
 
     References
@@ -48,7 +46,7 @@ def fitted(
         early_stopping=False,
         random_state=0,
     )
-    model.fit(np.nan_to_num(rows), is_noise, sample_weight=weights)
+    model.fit(np.nan_to_num(examples.rows), examples.is_noise, sample_weight=examples.weights)
     return _trees_of(model)
 
 

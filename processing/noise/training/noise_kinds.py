@@ -114,7 +114,7 @@ class NoiseMaker:
         shots, random = self.shots, self.random
         is_sky = self.met.ranges > self.most_m
         most_rows = int(shots.rows.max())
-        enough = random.uniform(0.03, 0.2) * int((self.met.things >= 0).sum())
+        enough = 2 ** random.uniform(-5, 1) * int((self.met.things >= 0).sum())
         for _ in range(random.integers(2, 9)):
             if (self.noise > 0).sum() > enough:
                 break

@@ -27,8 +27,8 @@ _Integers = NDArray[np.int64]
 
 _STREAMS = {MOBILE: 1, STANDING: 2, AIRBORNE: 3}
 _LIKE_TRUE_M = 0.05  # noise nearer to the true surface is left out
-_PIECES = 0.25
-_FEWEST_OF_A_PIECE = 400
+_PIECES = 0.08
+_FEWEST_OF_A_PIECE = 100
 _DEEPEST_M = -30.0
 _FAR_M = 1e9
 
@@ -122,7 +122,7 @@ def thinned(scene: Scene, seed: int) -> Scene:
     if way < 0.4:
         return scene
     if way < 0.7:
-        return scene.chosen(random.random(scene.ranges.size) < random.uniform(0.2, 0.8))
+        return scene.chosen(random.random(scene.ranges.size) < 2 ** random.uniform(-2.5, 0))
     cells = np.floor(scene.xyz / random.uniform(0.01, 0.06)).astype(np.int64)
     order = random.permutation(cells.shape[0])
     _, firsts = np.unique(cells[order], axis=0, return_index=True)

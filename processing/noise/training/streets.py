@@ -73,12 +73,16 @@ def street_of(random: Generator, length_m: float, *, has_far: bool) -> Street:
             _add_poles_and_wires(street, random, side, length_m)
         _add_signs(street, random, side, length_m)
         _add_plants(street, random, side, length_m)
+        if random.random() < 0.35:
+            _add_hedge(street, random, side, length_m)
         for _ in range(random.integers(0, 3)):
             y = side * (street.half_width - 1.2)
             x, z = random.uniform(0, length_m), street.ground_at(y) + 0.75
             street.things.append(
                 thing(BOX, CAR, 0.5, x, y, z, 2.1, 0.85, 0.75, random.normal() * 0.05)
             )
+    if has_far and random.random() < 0.4:
+        _add_wood(street, random, length_m)
     if has_far or random.random() < 0.6:
         _add_far(street, random, length_m, (25, 75, 5, 30, 5, 16, 8))
     if random.random() < 0.7:  # seldom in reach: what a scanner folds back
@@ -181,6 +185,33 @@ def _add_plants(street: Street, random: Generator, side: int, length_m: float) -
         y = side * (street.half_width + random.uniform(0.5, street.walk + 6))
         shrub = x, y, street.ground_at(y) + 0.5, radius, radius, radius
         street.things.append(thing(CROWN, TREE, 0.35, *shrub, random.uniform(0.15, 0.5)))
+
+
+def _add_hedge(street: Street, random: Generator, side: int, length_m: float) -> None:
+    """Leaves along the street, as high as a knee or a man."""
+    y = side * (street.half_width + random.uniform(0.3, street.walk + 2))
+    start, long = random.uniform(0, length_m * 0.7), random.uniform(3, 25)
+    high, wide, depth = (
+        random.uniform(0.3, 1.1),
+        random.uniform(0.25, 0.7),
+        random.uniform(0.05, 0.4),
+    )
+    for x in np.arange(start, min(start + long, length_m), wide * 1.2):
+        z = street.ground_at(y) + high * random.uniform(0.8, 1.1)
+        street.things.append(thing(CROWN, TREE, 0.35, x, y, z, wide, wide, high, depth))
+
+
+def _add_wood(street: Street, random: Generator, length_m: float) -> None:
+    """Crowns that touch, of any height, as seen from the air more than from the street."""
+    side = random.choice(_SIDES)
+    near = street.half_width + street.walk + random.uniform(3, 15)
+    for _ in range(random.integers(15, 50)):
+        x, y = random.uniform(0, length_m), side * (near + random.uniform(0, 25))
+        z, high, radius = street.ground_at(y), random.uniform(1, 16), random.uniform(0.6, 4)
+        trunk = x, y, z, x, y, z + high
+        street.things.append(thing(CAPSULE, TREE, 0.4, *trunk, random.uniform(0.05, 0.25)))
+        crown = x, y, z + high, radius, radius, radius * random.uniform(0.6, 2)
+        street.things.append(thing(CROWN, TREE, 0.35, *crown, random.uniform(0.3, 3)))
 
 
 def _add_far(street: Street, random: Generator, length_m: float, sizes: tuple[float, ...]) -> None:

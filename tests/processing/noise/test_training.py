@@ -5,13 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.noise.training.examples import beam_examples, space_examples
+from processing.monitor import SilentMonitor
+from processing.noise.training.examples import case_in_space, case_with_beams
+from processing.noise.training.fitting import Shape, fitted, shifted_to_keep
 from processing.noise.training.noise_kinds import NOISE_KINDS
 from processing.noise.training.rays import BOX, CAPSULE, NOWHERE, PANE, STRIP, met_by, thing
 from processing.noise.training.scanners import AIRBORNE, MOBILE, STANDING
 from processing.noise.training.scenes import Scene, scene_of, thinned
 from processing.noise.training.scores import f_measure, score_line
 from processing.noise.training.streets import KINDS, ROAD
+from processing.noise.trees import Trees, log_odds
 
 
 @pytest.fixture(scope="module")
@@ -61,19 +64,31 @@ def test_a_thinned_cloud_is_a_part_of_the_scene(scene: Scene) -> None:
     assert len(sizes) > 2
 
 
-def test_examples_are_rows_of_one_width_that_say_what_they_are(scene: Scene) -> None:
-    random = np.random.default_rng(0)
-    widths = set()
+def test_examples_are_rows_that_say_what_they_are(scene: Scene) -> None:
+    with_beams, in_space = case_with_beams(scene, 0.002, 2), case_in_space(scene, 2)
+    first = _tree_of_one_leaf(1.0)
     for examples in (
-        beam_examples(scene, 0.002, random),
-        beam_examples(scene_of(1, STANDING, 30_000)[0], 0.01, random),
+        *with_beams.alone(),
+        *in_space.alone(),
+        with_beams.again(first, first),
+        in_space.again(None, first),
     ):
-        widths.add((examples.cheap.shape[1], examples.whole.shape[1]))
         assert examples.is_noise.any()
         assert not examples.is_noise.all()
-        assert np.isfinite(examples.whole).all()
-    assert len(widths) == 1
-    assert space_examples(scene, random).cheap.shape[1] == 0
+        assert np.isfinite(examples.rows).all()
+        assert examples.rows.shape[0] == examples.is_noise.size == examples.weights.size
+    assert with_beams.again(_tree_of_one_leaf(-1.0), first).is_noise.size == 0
+    assert in_space.again(None, _tree_of_one_leaf(-9.0)).is_noise.size == 0
+
+
+def test_every_pass_sees_the_same_examples(scene: Scene) -> None:
+    case = case_in_space(scene, 2)
+    np.testing.assert_array_equal(case.alone()[1].rows, case.alone()[1].rows)
+
+
+def _tree_of_one_leaf(odds: float) -> Trees:
+    none = np.zeros(1, np.int32)
+    return Trees(none - 1, np.array([odds]), none, none, none, 0.0)
 
 
 def test_a_score_names_every_kind_that_is_there(scene: Scene) -> None:
@@ -85,14 +100,9 @@ def test_a_score_names_every_kind_that_is_there(scene: Scene) -> None:
 
 
 def test_trees_are_fitted_to_examples_and_a_first_look_keeps_the_noise(scene: Scene) -> None:
-    pytest.importorskip("sklearn")
-    from processing.monitor import SilentMonitor
-    from processing.noise.training.fitting import Shape, fitted, shifted_to_keep
-    from processing.noise.trees import log_odds
-
-    examples = beam_examples(scene, 0.002, np.random.default_rng(0))
-    trees = fitted(examples.cheap, examples.is_noise, examples.weights, Shape(5, 8, 0.3))
-    first = shifted_to_keep(trees, examples.cheap, examples.is_noise, 0.01)
-    is_left = log_odds(first, examples.cheap, SilentMonitor()) > 0
-    assert is_left[examples.is_noise].mean() >= 0.985
+    looks = case_with_beams(scene, 0.002, 2).alone()[0]
+    trees = fitted(looks, Shape(5, 8, 0.3))
+    first = shifted_to_keep(trees, looks.rows, looks.is_noise, 0.01)
+    is_left = log_odds(first, looks.rows, SilentMonitor()) > 0
+    assert is_left[looks.is_noise].mean() >= 0.985
     assert is_left.mean() < 1.0

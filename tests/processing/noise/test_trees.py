@@ -50,7 +50,8 @@ def test_trees_come_back_from_a_file_as_they_were(trees: Trees, tmp_path: Path) 
 
 
 def test_other_programs_read_the_same_from_the_file(trees: Trees, tmp_path: Path) -> None:
-    onnxruntime = pytest.importorskip("onnxruntime")
+    import onnxruntime
+
     write_trees(trees, tmp_path / "trees.onnx", 201)
     session = onnxruntime.InferenceSession(tmp_path / "trees.onnx")
     rows = rows_of((0.5, 0.0), (0.6, -300.0), (0.6, -299.0))
@@ -60,7 +61,7 @@ def test_other_programs_read_the_same_from_the_file(trees: Trees, tmp_path: Path
     np.testing.assert_allclose(shares[:, 1], 1 / (1 + np.exp(-odds)), atol=1e-6)
 
 
-@pytest.mark.parametrize("name", [FIRST_LOOK, WITH_BEAMS, IN_SPACE])
+@pytest.mark.parametrize("name", [FIRST_LOOK, *WITH_BEAMS, *IN_SPACE])
 def test_delivered_models_are_small_and_whole(name: str) -> None:
     path = path_of(f"{MODELS}/{name}")
     trees = read_trees(path)
