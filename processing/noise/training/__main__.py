@@ -43,7 +43,8 @@ _FEWEST = 100
 _FIRST_SHAPE = Shape(trees=30, leaves=12, rate=0.25)
 _BEAMS_SHAPE = Shape(trees=80, leaves=24, rate=0.18)
 _SPACE_SHAPE = Shape(trees=100, leaves=31, rate=0.15)
-_AGAIN_SHAPE = Shape(trees=100, leaves=24, rate=0.15)
+_AGAIN_SHAPE = Shape(trees=150, leaves=31, rate=0.12)
+_DOUBT = 1.5  # log-odds: noise must be four and a half times as likely as not
 _FOLDS = 3
 _KEPT_SEED = 100_000
 _LOST_AT_FIRST = 0.003
@@ -97,7 +98,8 @@ def _make(what: str, wish: argparse.Namespace) -> None:
     _write(names[0], own, alone[0].rows.shape[1])
     again = Examples.joined(case.again(first, others[fold]) for fold, _, case in _cases(what, wish))
     _say(f"asked again about {again.is_noise.size} points")
-    _write(names[1], fitted(again, _AGAIN_SHAPE), again.rows.shape[1])
+    last = fitted(again, _AGAIN_SHAPE)
+    _write(names[1], last._replace(base=last.base - _DOUBT), again.rows.shape[1])
 
 
 def _first_look(

@@ -30,7 +30,8 @@ _KEPT_SHARES = (0.3, 0.1)
 _KEPT_PIECES = 4
 _FEWEST_POINTS = 100
 _THIN = (WIRE, POST, RAIL, GRASS, TREE, FAR)
-_WIRE_WEIGHT, _THIN_WEIGHT, _TRUE_WEIGHT = 4.0, 2.2, 0.9
+_EASILY_LOST = (WIRE, TREE)
+_LOST_WEIGHT, _THIN_WEIGHT, _TRUE_WEIGHT = 4.0, 2.2, 0.9
 _UNKNOWN_LIGHT_SHARE, _SHIFTED_LIGHT_SHARE = 0.4, 0.4
 
 
@@ -136,9 +137,10 @@ class Case:
         """Make intensity unknown or other than simulated, so that the trees don't lean on it."""
         random, light = np.random.default_rng(self.seed), candidates.features[:, -1]
         way, kinds = random.random(), self.kinds[candidates.points]
+        shifted_share = _SHIFTED_LIGHT_SHARE if self.noise.any() else 0.0
         if way < _UNKNOWN_LIGHT_SHARE:
             light[:] = random.normal(0, 0.3, light.size)
-        elif way < _UNKNOWN_LIGHT_SHARE + _SHIFTED_LIGHT_SHARE:
+        elif way < _UNKNOWN_LIGHT_SHARE + shifted_share:
             light += np.where(kinds < 0, 0.0, random.normal(-0.7, 1.3, 12)[kinds])
 
     def _some(self, rows: Rows, points: NDArray[np.int64]) -> Examples:
@@ -150,7 +152,7 @@ class Case:
         is_noise = self.noise[points] > 0
         weights = np.where(is_noise, 1.0, _TRUE_WEIGHT)
         weights[is_thin] = _THIN_WEIGHT
-        weights[self.kinds[points] == WIRE] = _WIRE_WEIGHT
+        weights[np.isin(self.kinds[points], _EASILY_LOST)] = _LOST_WEIGHT
         return Examples(rows[chosen], is_noise[chosen], weights[chosen])
 
 

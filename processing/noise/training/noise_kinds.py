@@ -114,7 +114,7 @@ class NoiseMaker:
         shots, random = self.shots, self.random
         is_sky = self.met.ranges > self.most_m
         most_rows = int(shots.rows.max())
-        enough = 2 ** random.uniform(-5, 1) * int((self.met.things >= 0).sum())
+        enough = 2 ** random.uniform(-6, -1.5) * int((self.met.things >= 0).sum())
         for _ in range(random.integers(2, 9)):
             if (self.noise > 0).sum() > enough:
                 break
@@ -154,7 +154,7 @@ class NoiseMaker:
         drops = random.exponential(3, self._count) + 0.8
         self._put(self._some(0.0015 * amount * random.random()), drops, RAIN)
         along = shots.origins[:, 0].min() - 3, shots.origins[:, 0].max() + 3
-        for _ in range(random.integers(0, 6)):
+        for _ in range(random.integers(0, 4)):
             x, y, radius = random.uniform(*along), random.uniform(-6, 6), random.uniform(0.2, 1.2)
             z = self.street.ground_at(y) + random.uniform(0, 1.5) * radius
             thickness = random.uniform(0.4, 3) * radius

@@ -65,22 +65,8 @@ def street_of(random: Generator, length_m: float, *, has_far: bool) -> Street:
     """A street with what stands beside it, drawn by chance."""
     street = _bare_street(random)
     for side in _SIDES:
-        if random.random() < 0.6:
-            _add_facades(street, random, side, length_m)
-        if random.random() < 0.7:
-            _add_fence(street, random, side, length_m)
-        if random.random() < 0.7:
-            _add_poles_and_wires(street, random, side, length_m)
-        _add_signs(street, random, side, length_m)
-        _add_plants(street, random, side, length_m)
-        if random.random() < 0.35:
-            _add_hedge(street, random, side, length_m)
-        for _ in range(random.integers(0, 3)):
-            y = side * (street.half_width - 1.2)
-            x, z = random.uniform(0, length_m), street.ground_at(y) + 0.75
-            street.things.append(
-                thing(BOX, CAR, 0.5, x, y, z, 2.1, 0.85, 0.75, random.normal() * 0.05)
-            )
+        _add_one_side(street, random, side, length_m)
+    _add_traffic(street, random, length_m)
     if has_far and random.random() < 0.4:
         _add_wood(street, random, length_m)
     if has_far or random.random() < 0.6:
@@ -88,6 +74,25 @@ def street_of(random: Generator, length_m: float, *, has_far: bool) -> Street:
     if random.random() < 0.7:  # seldom in reach: what a scanner folds back
         _add_far(street, random, length_m, (55, 140, 15, 80, 10, 40, 15))
     return street
+
+
+def _add_one_side(street: Street, random: Generator, side: int, length_m: float) -> None:
+    if random.random() < 0.6:
+        _add_facades(street, random, side, length_m)
+    if random.random() < 0.7:
+        _add_fence(street, random, side, length_m)
+    if random.random() < 0.7:
+        _add_poles_and_wires(street, random, side, length_m)
+    _add_signs(street, random, side, length_m)
+    _add_plants(street, random, side, length_m)
+    if random.random() < 0.45:
+        _add_street_trees(street, random, side, length_m)
+    if random.random() < 0.45:
+        _add_hedge(street, random, side, length_m)
+    for _ in range(random.integers(0, 3)):
+        y = side * (street.half_width - 1.2)
+        x, z = random.uniform(0, length_m), street.ground_at(y) + 0.75
+        street.things.append(thing(BOX, CAR, 0.5, x, y, z, 2.1, 0.85, 0.75, random.normal() * 0.05))
 
 
 def _bare_street(random: Generator) -> Street:
@@ -187,10 +192,51 @@ def _add_plants(street: Street, random: Generator, side: int, length_m: float) -
         street.things.append(thing(CROWN, TREE, 0.35, *shrub, random.uniform(0.15, 0.5)))
 
 
+def _add_traffic(street: Street, random: Generator, length_m: float) -> None:
+    """What moves, as long or as short as the scanner's own way makes it, and people."""
+    for _ in range(random.integers(0, 6)):
+        x, y = random.uniform(0, length_m), random.uniform(-1, 1) * street.half_width * 0.8
+        z, long = street.ground_at(y), 2 ** random.uniform(-3.5, 2.5)
+        high = random.uniform(0.5, 1.3)
+        box = x, y, z + high + 0.15, long, random.uniform(0.3, 1.1), high, random.normal() * 0.05
+        street.things.append(thing(BOX, CAR, 0.5, *box))
+    for _ in range(random.integers(0, 6)):
+        x, y = (
+            random.uniform(0, length_m),
+            random.uniform(-1, 1) * (street.half_width + street.walk),
+        )
+        z, radius, high = street.ground_at(y), random.uniform(0.05, 0.3), random.uniform(0.8, 1.8)
+        ends = x, y, z + radius, x + random.normal() * 0.2, y, z + high - radius
+        street.things.append(thing(CAPSULE, CAR, 0.5, *ends, radius))
+
+
+def _add_street_trees(street: Street, random: Generator, side: int, length_m: float) -> None:
+    """A row of trees whose crowns reach over the road."""
+    y = side * (street.half_width + random.uniform(0.3, street.walk))
+    high, radius = random.uniform(2, 6), random.uniform(0.7, 2.8)
+    clumps, depth = int(random.integers(0, 13)), 2 ** random.uniform(-3, 1.5)
+    for x in np.arange(random.uniform(0, 8), length_m, random.uniform(5, 14)):
+        z, wide = (
+            street.ground_at(y) + high * random.uniform(0.8, 1.2),
+            radius * random.uniform(0.7, 1.2),
+        )
+        trunk = x, y, street.ground_at(y), x, y, z
+        street.things.append(thing(CAPSULE, TREE, 0.4, *trunk, random.uniform(0.04, 0.15)))
+        if clumps < 4:
+            crown = x, y, z, wide, wide, wide * random.uniform(0.5, 1.3)
+            street.things.append(thing(CROWN, TREE, 0.35, *crown, depth))
+            continue
+        for _ in range(clumps):
+            at = np.array([x, y, z]) + wide * 0.75 * random.uniform(-1, 1, 3)
+            size = wide * random.uniform(0.15, 0.5)
+            clump = *at, size, size, size * random.uniform(0.5, 1)
+            street.things.append(thing(CROWN, TREE, 0.35, *clump, depth * 0.3))
+
+
 def _add_hedge(street: Street, random: Generator, side: int, length_m: float) -> None:
     """Leaves along the street, as high as a knee or a man."""
     y = side * (street.half_width + random.uniform(0.3, street.walk + 2))
-    start, long = random.uniform(0, length_m * 0.7), random.uniform(3, 25)
+    start, long = random.uniform(0, length_m * 0.5), random.uniform(3, 50)
     high, wide, depth = (
         random.uniform(0.3, 1.1),
         random.uniform(0.25, 0.7),

@@ -101,7 +101,7 @@ def test_a_score_names_every_kind_that_is_there(scene: Scene) -> None:
 
 def test_trees_are_fitted_to_examples_and_a_first_look_keeps_the_noise(scene: Scene) -> None:
     looks = case_with_beams(scene, 0.002, 2).alone()[0]
-    trees = fitted(looks, Shape(5, 8, 0.3))
+    trees = fitted(looks, Shape(30, 12, 0.25))
     first = shifted_to_keep(trees, looks.rows, looks.is_noise, 0.01)
     is_left = log_odds(first, looks.rows, SilentMonitor()) > 0
     assert is_left[looks.is_noise].mean() >= 0.985
