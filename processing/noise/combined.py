@@ -35,6 +35,7 @@ FIRST_LOOK = "first_look.onnx"
 WITH_BEAMS = "with_beams.onnx", "with_beams_again.onnx"
 IN_SPACE = "in_space.onnx", "in_space_again.onnx"
 _FEWEST = 20
+_FEWEST_IN_SPACE = 1_000  # fewer don't tell what is usual around them
 
 
 def noise_codes_with_beams(
@@ -82,7 +83,7 @@ def noise_codes_in_space(
     Parameters
     ----------
     xyz : (n, 3) float64
-        m. Points that aren't finite are noise.
+        m. Points that aren't finite are noise, and spikes are; of fewer than a thousand others none.
 
     Returns
     -------
@@ -98,7 +99,7 @@ def noise_codes_in_space(
         spikes, others = finite[far], finite[~far]
         codes[spikes] = codes_by_height(heights_of_far(xyz[spikes], xyz[others]))
         finite = others
-    if finite.size < _FEWEST or not np.ptp(xyz[finite], axis=0).any():
+    if finite.size < _FEWEST_IN_SPACE or not np.ptp(xyz[finite], axis=0).any():
         return codes
     candidates = candidates_in_space(xyz[finite], monitor)
     codes[finite] = _codes(candidates, IN_SPACE, strictness, monitor)
