@@ -83,7 +83,7 @@ def noise_codes_in_space(
     Parameters
     ----------
     xyz : (n, 3) float64
-        m. Points that aren't finite are noise, and spikes are; of fewer than a thousand others none.
+        m. Points that aren't finite are noise, as spikes are; of fewer than 1,000 others none.
 
     Returns
     -------
