@@ -10,6 +10,8 @@ from concurrent.futures import ThreadPoolExecutor, wait
 from processing.monitor import Monitor
 
 _here = threading.local()
+_counting = threading.Lock()
+_at_work = 0  # threads that have taken a share
 
 
 def shared_out(
@@ -17,7 +19,7 @@ def shared_out(
 ) -> None:
     """Call ``work(start, stop)`` until the range 0 … count − 1 is done.
 
-    Work that is shared out again from within its share stays on that core.
+    Work that is shared out again from within a share takes only cores that no share is left for.
 
     Parameters
     ----------
@@ -31,22 +33,54 @@ def shared_out(
     Cancelled
         After the calls in hand have ended.
     """
-    workers = 1 if getattr(_here, "is_a_share", False) else os.cpu_count() or 1
     starts = iter(range(0, count, at_once))
-    if workers == 1 or count <= at_once:
+    workers = min(_free_cores(), -(-count // at_once))
+    if workers <= 1:
         for start in starts:
             monitor.check()
             work(start, min(start + at_once, count))
         return
+    taking = threading.Lock()
 
     def take() -> None:
-        _here.is_a_share = True
-        while (start := next(starts, None)) is not None:
-            monitor.check()
-            work(start, min(start + at_once, count))
+        with _Share():
+            while True:
+                with taking:
+                    start = next(starts, None)
+                if start is None:
+                    return
+                monitor.check()
+                work(start, min(start + at_once, count))
 
     with ThreadPoolExecutor(max_workers=workers) as pool:
         done = [pool.submit(take) for _ in range(workers)]
         wait(done)
     for future in done:
         future.result()
+
+
+def _free_cores() -> int:
+    """How many threads may work here: all cores, or, within a share, it and those left over."""
+    cores = os.cpu_count() or 1
+    if not getattr(_here, "has_share", False):
+        return cores
+    with _counting:
+        return max(1, cores - _at_work + 1)
+
+
+class _Share:
+    """A thread takes part in work that is shared out; its own waiting doesn't count."""
+
+    def __enter__(self) -> None:
+        self._change(1)
+        _here.has_share = True
+
+    def __exit__(self, *_: object) -> None:
+        _here.has_share = False
+        self._change(-1)
+
+    @staticmethod
+    def _change(by: int) -> None:
+        global _at_work  # one count for all threads
+        with _counting:
+            _at_work += by
