@@ -5,10 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.monitor import SilentMonitor
+from processing.noise.key_order import ordered_by_key
+
 _LOW_SHARE = 0.1
 _FEWEST = 3
 _SAMPLE = 400_000
+_SAMPLE_OF_EXTENT = 40_000
 _PASSES = 3
+_STEP_M, _STEPS = 0.001, 1 << 22
 _ASIDE = 2
 _ROWS_AT_ONCE = 128
 _MOST_CELLS = 4_000  # along one side
@@ -42,8 +47,9 @@ def heights_above_ground(
     if used.size < _FEWEST:
         used = np.arange(xyz.shape[0])
     used = used[:: max(1, used.size // _SAMPLE)]
-    lowest = np.percentile(xyz[used, :2], 0.5, axis=0) - 30 * cell_m
-    highest = np.percentile(xyz[used, :2], 99.5, axis=0) + 30 * cell_m
+    some = xyz[used[:: max(1, used.size // _SAMPLE_OF_EXTENT)], :2]
+    lowest = np.percentile(some, 0.5, axis=0) - 30 * cell_m
+    highest = np.percentile(some, 99.5, axis=0) + 30 * cell_m
     shape = np.minimum(np.ceil((highest - lowest) / cell_m).astype(np.int64) + 1, _MOST_CELLS)
     side = np.maximum((highest - lowest) / (shape - 1), 1e-9)
     squares = np.clip(((xyz[:, :2] - lowest) / side).astype(np.int64), 0, shape - 1)
@@ -74,8 +80,10 @@ def low_heights(
     low : (k,) float64
         m; NaN for a cell of few points.
     """
-    order = np.lexsort((heights, numbers))
-    numbers = numbers[order]
+    lowest = heights.min(initial=0.0)
+    steps = np.minimum((heights - lowest) / _STEP_M, _STEPS - 1).astype(np.int64)
+    keys, order = ordered_by_key(numbers * _STEPS + steps, SilentMonitor())
+    numbers = keys // _STEPS
     firsts = np.flatnonzero(np.r_[True, numbers[1:] != numbers[:-1]][: numbers.size])
     sizes = np.diff(np.r_[firsts, numbers.size])
     chosen = heights[order][firsts + (sizes * _LOW_SHARE).astype(np.int64)]

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 POINTS = 1_000_000
-OVERLAP_M = 10.0
+OVERLAP_M = 6.0
 
 
 @dataclass(frozen=True)

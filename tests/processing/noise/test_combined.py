@@ -156,7 +156,7 @@ def test_stretches_own_every_row_once_and_look_some_metres_around() -> None:
     assert [row for one in stretches for row in one.rows] == list(range(200))
     second = stretches[1]
     assert second.rows == range(30, 60)
-    assert second.with_overlap == range(20, 70)
+    assert second.with_overlap == range(24, 66)
 
 
 def test_a_stop_does_not_make_a_stretch_endless() -> None:
