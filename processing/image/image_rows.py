@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from processing.image.gaps import STOP_S, closed_up
 from processing.image.kinds import ImageKind
 from processing.image.rows_of_kind import Revolutions, RowPlan, plan_of_cells, plan_of_turns
+from processing.points.array_files import read_arrays
 from processing.points.ordering import read_stretch, stretches
 
 _Integers = NDArray[np.int64]
@@ -135,22 +136,19 @@ def _made_of(pulses: _Integers, folding: Revolutions | int) -> _Integers:
 
 def _read(path: Path, made_of: _Integers) -> ImageRows | None:
     try:
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as kept:
-            if not np.array_equal(kept[_MADE_OF], made_of):
-                return None
-            rows = ImageRows(
-                row_starts=kept["row_starts"],
-                origins=kept["origins"],
-                spans=kept["spans"],
-                per_span=int(kept["per_span"]),
-                segments=kept["segments"],
-                widths=kept["widths"],
-            )
+        kept = read_arrays(path)
+        if not np.array_equal(kept[_MADE_OF], made_of):
+            return None
+        rows = ImageRows(
+            row_starts=kept["row_starts"],
+            origins=kept["origins"],
+            spans=kept["spans"],
+            per_span=int(kept["per_span"]),
+            segments=kept["segments"],
+            widths=kept["widths"],
+        )
     except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile):
         # What can be computed again is computed again when the file is lost or damaged.
-        return None
-    except SystemError:
-        # Python 3.11 may stumble over a file's header while another thread parses too.
         return None
     return rows if _fits(rows) else None
 

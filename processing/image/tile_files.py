@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.kinds import ImageKind
+from processing.points.array_files import read_array, read_arrays
 
 Floats = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -39,11 +40,8 @@ class TileFiles:
         if self._whole is None:
             return None
         try:
-            table: Floats = np.load(self._whole)
+            table: Floats = read_array(self._whole)
         except (OSError, ValueError, EOFError):
-            return None
-        except SystemError:
-            # Python 3.11 may stumble over the file's header while another thread parses too.
             return None
         is_table = table.shape == self._shape and table.dtype == np.float64
         return table if is_table else None
@@ -53,9 +51,9 @@ class TileFiles:
         if self._begun is None:
             return None
         try:
-            with self._begun.open("rb") as file, np.load(file) as kept:
-                found: tuple[Floats, Flags] = kept["sums"], kept["done"]
-        except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile, SystemError):
+            kept = read_arrays(self._begun)
+            found: tuple[Floats, Flags] = kept["sums"], kept["done"]
+        except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile):
             return None
         is_such = found[0].shape == sums and found[1].shape == rows
         is_such &= found[0].dtype == np.float64 and found[1].dtype == np.bool_

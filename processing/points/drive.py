@@ -19,6 +19,7 @@ from processing.image.coordinates import Coordinates
 from processing.image.kinds import ImageKind
 from processing.image.nearest import NearestSearch
 from processing.image.point_image import PointCloudImage
+from processing.points.array_files import read_array
 from processing.points.columns import Columns
 from processing.points.drive_info import DriveInfo, SourceFile, read_drive_info
 from processing.points.file_places import FolderMove, folder_of, path_now
@@ -313,7 +314,7 @@ def write_trajectory(folder: Path, trajectory: Trajectory) -> None:
 
 def _read_trajectory(path: Path) -> Trajectory:
     with told_as_user_error(path):
-        table = np.load(path)
+        table = read_array(path)
     return Trajectory(
         time=table[:, 0],
         xyz=table[:, 1:4],

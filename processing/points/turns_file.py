@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from processing.errors import BadFile, told_as_user_error
+from processing.points.array_files import read_arrays
 from processing.points.turns import Turns
 from processing.text import Text
 
@@ -46,18 +47,18 @@ def read_turns(folder: Path) -> Turns | None:
         return None
     with told_as_user_error(path):
         try:
-            with np.load(path, allow_pickle=False) as stored:
-                return Turns(
-                    method=str(stored["method"]),
-                    turn_rate_hz=float(stored["turn_rate_hz"]),
-                    pulse_rate_hz=float(stored["pulse_rate_hz"]),
-                    pulses_per_turn=float(stored["pulses_per_turn"]),
-                    reference_times=stored["reference_times"],
-                    fold_pulses=stored["fold_pulses"],
-                    segments=stored["segments"],
-                    row_ends=stored["row_ends"],
-                    coherence=float(stored["coherence"]),
-                )
+            stored = read_arrays(path)
+            return Turns(
+                method=str(stored["method"]),
+                turn_rate_hz=float(stored["turn_rate_hz"]),
+                pulse_rate_hz=float(stored["pulse_rate_hz"]),
+                pulses_per_turn=float(stored["pulses_per_turn"]),
+                reference_times=stored["reference_times"],
+                fold_pulses=stored["fold_pulses"],
+                segments=stored["segments"],
+                row_ends=stored["row_ends"],
+                coherence=float(stored["coherence"]),
+            )
         except (ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
             raise BadFile(
                 Text("The rows of a drive are damaged.", "走行データの行データが壊れています。"),
