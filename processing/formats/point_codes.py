@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from processing.errors import BadFile, MissingInput, told_as_user_error
 from processing.formats.point_files import read_chunks, read_info
 from processing.formats.text_numbers import TextPart, number_blocks
+from processing.points.array_files import read_arrays
 from processing.score.coded_points import CodedFile, CodedPoints
 from processing.text import Text
 
@@ -111,10 +112,8 @@ def _mapped(path: Path) -> NDArray[Any]:
 
 def _loaded_arrays(path: Path) -> Arrays:
     try:
-        # Opened here, as numpy leaves a file open that is no whole archive.
-        with told_as_user_error(path), path.open("rb") as file:
-            archive = np.load(file, allow_pickle=False)
-            return {name: archive[name] for name in archive.files}
+        with told_as_user_error(path):
+            return read_arrays(path)
     except (ValueError, EOFError, zipfile.BadZipFile, KeyError) as error:
         raise _damaged(path) from error
 

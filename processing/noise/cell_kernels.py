@@ -114,15 +114,10 @@ def mean_around_kernel(
 
     ``totals`` (c,): the value's sum over the points of each cube of the level; ``found`` (k,).
     """
-    ys, zs = _X << 1, _X << 2
     for i in range(codes.size):
-        x0, y0, z0 = codes[i] & _X, codes[i] & ys, codes[i] & zs
         total, count = 0.0, 0.0
         for side in range(27):
-            x = _stepped(x0, side % 3 - 1, _X, 1)
-            y = _stepped(y0, side // 3 % 3 - 1, ys, 2)
-            z = _stepped(z0, side // 9 - 1, zs, 4)
-            cell = _cell_of(level, x | y | z) if x >= 0 and y >= 0 and z >= 0 else -1
+            cell = _beside(level, codes[i], side)
             if cell >= 0:
                 total += totals[cell]
                 count += level.sums[cell, 0]

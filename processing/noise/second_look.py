@@ -52,6 +52,11 @@ class FirstJudgement:
     points: _Integers
     odds: _Floats
 
+    def suspicions(self) -> _Floats:
+        """(k,): how likely each of the judged points is noise, 0 to 1."""
+        likely: _Floats = 1 / (1 + np.exp(-self.odds))
+        return likely
+
     def features(self, chosen: _Integers, levels: list[int], monitor: Monitor) -> _Rows:
         """(c, …) of the chosen ones of the judged points, (c,) int64.
 
@@ -60,7 +65,7 @@ class FirstJudgement:
         to which it belongs at the first of them.
         """
         around, points = self.around, self.points[chosen]
-        suspicions = 1 / (1 + np.exp(-self.odds))
+        suspicions = self.suspicions()
         blocks = [
             np.clip(self.odds[chosen], -_MOST_ODDS, _MOST_ODDS)[:, None],
             np.full((chosen.size, 1), np.log2(_LEAST_SHARE + suspicions.sum() / around.place.size)),
@@ -108,7 +113,7 @@ def suspicions_beside(
     ``rows`` (k,) are those of the judged points.
     """
     suspicions = np.zeros(beams.ranges.size, np.float32)
-    suspicions[judgement.points] = 1 / (1 + np.exp(-judgement.odds))
+    suspicions[judgement.points] = judgement.suspicions()
     points, rows = judgement.points[chosen], rows[chosen]
     found = np.empty((points.size, SUSPICION_FEATURES), np.float32)
 

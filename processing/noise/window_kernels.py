@@ -43,9 +43,7 @@ def near_beams_kernel(
         counts[:] = 0
         for number in range(_ROWS.size):
             other = row + _ROWS[number]
-            if other < 0 or other >= beams.segments.size:
-                continue
-            if beams.segments[other] != beams.segments[row]:
+            if not _is_beside(beams.segments, row, other):
                 continue
             if is_new:
                 places[number] = beams.row_starts[other]
@@ -78,9 +76,7 @@ def wide_beams_kernel(
         column = beams.columns[point]
         counts[:] = 0
         for other in range(row - _WIDE_ROWS, row + _WIDE_ROWS + 1, _ROW_STEP):
-            if other < 0 or other >= beams.segments.size:
-                continue
-            if beams.segments[other] != beams.segments[row]:
+            if not _is_beside(beams.segments, row, other):
                 continue
             end = beams.row_starts[other + 1]
             first = _first_from(beams.columns, beams.row_starts[other], end, column - _WIDE)
@@ -126,9 +122,7 @@ def _suspicion(
     stride = _STRIDE if aside == _WIDE else 1
     column, total, count, like, likes = beams.columns[point], 0.0, 0.0, 0.0, 0.0
     for other in range(row - reach, row + reach + 1, step):
-        if other < 0 or other >= beams.segments.size:
-            continue
-        if beams.segments[other] != beams.segments[row]:
+        if not _is_beside(beams.segments, row, other):
             continue
         end = beams.row_starts[other + 1]
         first = _first_from(beams.columns, beams.row_starts[other], end, column - aside)
@@ -181,6 +175,12 @@ def _shares(counts: _Integers, aside: int, stride: int, found: _Rows) -> None:
     found[0] = stride * used / (rows * (2 * aside + 1) - 1) if rows else 0.0
     for number in range(1, _PER_WINDOW):
         found[number] = counts[number] / max(used, 1)
+
+
+@kernel
+def _is_beside(segments: NDArray[np.int32], row: int, other: int) -> bool:
+    """Whether there is such a row in the same stretch of rows."""
+    return 0 <= other < segments.size and segments[other] == segments[row]
 
 
 @kernel

@@ -50,7 +50,6 @@ _DOUBT = {"beams": 1.5, "space": 0.0}
 # Log-odds: the others learn from a little more than they will be shown; a third less is left of a
 # street so, for one point of noise in two hundred.
 _NARROWER = 0.3
-_CHEAP = 19
 _FOLDS = 3
 _KEPT_SEED = 100_000
 _LOST_AT_FIRST = 0.003
@@ -105,7 +104,8 @@ def _make(what: str, wish: argparse.Namespace) -> None:
     again = Examples.joined(case.again(first, others[fold]) for fold, _, case in _cases(what, wish))
     _say(f"asked again about {again.is_noise.size} points")
     if first is not None:
-        _write(FIRST_LOOK, first._replace(base=first.base - _NARROWER), _CHEAP)
+        columns = looks[0][0].rows.shape[1]
+        _write(FIRST_LOOK, first._replace(base=first.base - _NARROWER), columns)
     last = fitted(again, _AGAIN_SHAPE)
     _write(names[1], last._replace(base=last.base - _DOUBT[what]), again.rows.shape[1])
 
