@@ -1,0 +1,1 @@
+"""What stands beside the road: plants, signs, poles, barriers, buildings."""

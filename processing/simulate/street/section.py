@@ -1,0 +1,44 @@
+"""A section of a street as its makers see it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import ArrayLike
+
+from processing.simulate.chance import chance
+from processing.simulate.mesh import Floats
+from processing.simulate.street.alignment import Alignment
+from processing.simulate.street.ground import Ground
+from processing.simulate.street.plan import SectionPlan
+
+
+@dataclass(frozen=True)
+class Section:
+    """Plan, alignment and ground of one section.
+
+    Attributes
+    ----------
+    seed : int
+        Of the street.
+    """
+
+    seed: int
+    plan: SectionPlan
+    alignment: Alignment
+    ground: Ground
+
+    def chance(self, what: str, number: int = 0) -> Generator:
+        """A stream of its own for what a maker draws here."""
+        return chance(self.seed, what, self.plan.index, number)
+
+    def place(self, chainage: ArrayLike, offset: ArrayLike, above_m: ArrayLike = 0.0) -> Floats:
+        """Places on the ground, or above it: (..., 3) float64, m, the street's frame."""
+        height = self.ground.height(chainage, offset) + np.asarray(above_m, np.float64)
+        return self.alignment.at(chainage, offset, height)
+
+    def heading(self, chainage: float) -> float:
+        """Where the road leads there: radians anticlockwise from east."""
+        return float(self.alignment.heading(chainage))

@@ -1,0 +1,85 @@
+"""A whole street, built section by section when a section is asked for."""
+
+from __future__ import annotations
+
+import threading
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from processing.simulate.mesh import Mesh
+from processing.simulate.street.alignment import Alignment, alignment_of
+from processing.simulate.street.cross_section import ground_of
+from processing.simulate.street.plan import SectionPlan, plans_of
+from processing.simulate.street.section import Section
+from processing.simulate.street.styles import Style
+from processing.simulate.street.surfaces import add_ground
+from processing.simulate.things import THINGS_PER_SECTION, Built, Mover, Thing, TrueFeature
+
+Maker = Callable[[Section, Built], None]
+MAKERS: tuple[Maker, ...] = (add_ground,)
+"""What builds a section, in this order; each draws from streams of its own."""
+
+_KEPT_SECTIONS = 24
+_LOWEST_INDEX = -100
+
+
+@dataclass(frozen=True)
+class BuiltSection:
+    """What one section holds."""
+
+    plan: SectionPlan
+    mesh: Mesh
+    things: tuple[Thing, ...]
+    truth: tuple[TrueFeature, ...]
+    movers: tuple[Mover, ...]
+
+
+class Street:
+    """The street of a seed: the same whatever is built of it, and in which order.
+
+    Parameters
+    ----------
+    length_m : float
+        What is driven of it; a longer one begins like a shorter one.
+    """
+
+    def __init__(self, seed: int, style: Style, length_m: float) -> None:
+        self.seed, self.style, self.length_m = seed, style, length_m
+        self.alignment: Alignment = alignment_of(seed, style, length_m)
+        self.plans = tuple(plans_of(seed, style, length_m))
+        self._starts = np.array([one.start_m for one in self.plans])
+        self._built: OrderedDict[int, BuiltSection] = OrderedDict()
+        self._lock = threading.RLock()
+
+    def within(self, from_m: float, to_m: float) -> range:
+        """Rows in `plans` of the sections that a stretch of chainage touches."""
+        first = int(np.searchsorted(self._starts, from_m, "right")) - 1
+        last = int(np.searchsorted(self._starts, to_m, "left"))
+        return range(max(0, first), max(first + 1, last))
+
+    def section(self, row: int) -> BuiltSection:
+        """One section with everything in it; a few are kept."""
+        with self._lock:
+            if row not in self._built:
+                self._built[row] = self._build(self.plans[row])
+            self._built.move_to_end(row)
+            while len(self._built) > _KEPT_SECTIONS:
+                self._built.popitem(last=False)
+            return self._built[row]
+
+    def bare_section(self, row: int) -> Section:
+        """Plan and ground of a section, without building what stands on it."""
+        plan = self.plans[row]
+        return Section(self.seed, plan, self.alignment, ground_of(plan, self.alignment))
+
+    def _build(self, plan: SectionPlan) -> BuiltSection:
+        section = Section(self.seed, plan, self.alignment, ground_of(plan, self.alignment))
+        built = Built((plan.index - _LOWEST_INDEX) * THINGS_PER_SECTION + 1)
+        for add in MAKERS:
+            add(section, built)
+        return BuiltSection(
+            plan, built.mesh.mesh(), tuple(built.things), tuple(built.truth), tuple(built.movers)
+        )

@@ -1,0 +1,1 @@
+"""What parks, drives and walks."""
