@@ -73,6 +73,8 @@ class Mover:
         Where it is at time 0 of the recording; offsets count to the left of the road's centre.
     speed_m_s : float
         Along the chainage; negative for those that come towards its beginning. It faces its way.
+    from_s, to_s : float
+        When it is there, on the pass' time.
     sway_m, sway_s : float
         Amplitude and period of its swinging from side to side (people, bicycles).
     """
@@ -81,6 +83,8 @@ class Mover:
     chainage_m: float
     offset_m: float
     speed_m_s: float
+    from_s: float
+    to_s: float
     sway_m: float = 0.0
     sway_s: float = 1.0
 

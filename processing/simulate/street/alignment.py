@@ -99,7 +99,7 @@ def alignment_of(seed: int, style: Style, length_m: float) -> Alignment:
     knots = (np.arange(curves.size) - (behind[0].size - 1)) * _KNOT_M
     per_knot = int(_KNOT_M / _STEP_M)
     first, last = -int(MARGIN_M / _STEP_M), int(np.ceil((length_m + MARGIN_M) / _STEP_M))
-    chainages = np.arange(first, last + 1) * _STEP_M
+    chainages: Floats = np.arange(first, last + 1) * _STEP_M
     curvatures: Floats = np.interp(chainages, knots, curves * curviness)
     slopes: Floats = np.interp(chainages, knots, grades * hilliness)
     zero = -first
@@ -114,10 +114,9 @@ def alignment_of(seed: int, style: Style, length_m: float) -> Alignment:
     tilts: Floats = -np.sign(curvatures) * np.minimum(
         style.most_tilt, style.most_tilt * np.abs(curvatures) * style.least_radius_m * 2
     )
-    smooth = np.ones(per_knot) / per_knot
-    spread: Floats = np.convolve(np.pad(tilts, per_knot, mode="edge"), smooth, "same")[
-        per_knot:-per_knot
-    ]
+    padded: Floats = np.pad(tilts, per_knot, mode="edge")
+    spread: Floats = np.convolve(padded, np.ones(per_knot) / per_knot, "same")
+    spread = spread[per_knot:-per_knot]
     return Alignment(chainages, places, headings, curvatures, spread, slopes, camber)
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from processing.simulate.mesh import Mesh
+from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.street.alignment import Alignment, alignment_of
 from processing.simulate.street.cross_section import ground_of
 from processing.simulate.street.plan import SectionPlan, plans_of
@@ -74,6 +74,16 @@ class Street:
         """Plan and ground of a section, without building what stands on it."""
         plan = self.plans[row]
         return Section(self.seed, plan, self.alignment, ground_of(plan, self.alignment))
+
+    def ground_height(self, chainages: Floats, offsets: Floats) -> Floats:
+        """Height of the ground, z in m: (n,) float64 of (n,) places beside the road."""
+        heights = np.empty(chainages.shape)
+        rows = np.clip(np.searchsorted(self._starts, chainages, "right") - 1, 0, None)
+        for row in np.unique(rows):
+            there = rows == row
+            ground = self.bare_section(int(row)).ground
+            heights[there] = ground.height(chainages[there], offsets[there])
+        return heights
 
     def _build(self, plan: SectionPlan) -> BuiltSection:
         section = Section(self.seed, plan, self.alignment, ground_of(plan, self.alignment))

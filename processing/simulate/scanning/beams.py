@@ -1,0 +1,135 @@
+"""The beams of a spinning scanner: when each pulse leaves, from where, and in which direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.kernels import kernel
+from processing.simulate.mesh import Floats
+from processing.simulate.scanning.passes import Pass
+from processing.simulate.scanning.sensors import Head
+
+
+@dataclass(frozen=True)
+class Spin:
+    """How a head sends its pulses.
+
+    Attributes
+    ----------
+    pulses : int
+        In one turn.
+    turns_per_s : float
+    phase_rad : float
+        Where the mirror points at time 0.
+    """
+
+    pulses: int
+    turns_per_s: float
+    phase_rad: float
+
+    @property
+    def rate_hz(self) -> float:
+        """Pulses per second."""
+        return self.pulses * self.turns_per_s
+
+
+@dataclass(frozen=True)
+class Beams:
+    """Some pulses in the order in which they were sent.
+
+    Attributes
+    ----------
+    first : int
+        Number of the first pulse, counted from the beginning of the pass.
+    time_s : (n,) float64
+        From the beginning of the pass.
+    origins, ways : (n, 3) float64
+        m, the street's frame; unit vectors.
+    """
+
+    first: int
+    time_s: Floats
+    origins: Floats
+    ways: Floats
+
+
+def head_axes(head: Head) -> Floats:
+    """The head's axes in the vehicle's frame (forward, left, up).
+
+    Returns
+    -------
+    (3, 3) float64
+        Columns: the direction of the beam at angle 0 (upwards), that a quarter of a turn on, and
+        the axis about which the mirror spins.
+    """
+    yaw, pitch = np.radians(head.yaw_deg), np.radians(head.pitch_deg)
+    axis = np.array([np.cos(yaw) * np.cos(pitch), np.sin(yaw) * np.cos(pitch), np.sin(pitch)])
+    up = np.array([0.0, 0.0, 1.0]) - axis[2] * axis
+    up /= np.linalg.norm(up)
+    return np.stack([up, np.cross(axis, up), axis], axis=-1)
+
+
+def beams_of(driven: Pass, head: Head, spin: Spin, pulses: range) -> Beams:
+    """Pulses of a head, by their numbers from the beginning of the pass."""
+    count = len(pulses)
+    time_s = (pulses.start + np.arange(count)) / spin.rate_hz
+    origins, ways = np.empty((count, 3)), np.empty((count, 3))
+    _beams_kernel(
+        pulses.start,
+        (spin.rate_hz, 1.0 / spin.pulses, spin.phase_rad),
+        (driven.time_s, driven.places, driven.turns),
+        (np.array(head.lever_m), head_axes(head)),
+        (origins, ways),
+    )
+    return Beams(pulses.start, time_s, origins, ways)
+
+
+@kernel
+def _beams_kernel(
+    first: int,
+    spin: tuple[float, float, float],
+    poses: tuple[Floats, Floats, Floats],
+    head: tuple[Floats, Floats],
+    out: tuple[Floats, Floats],
+) -> None:
+    """Poses are interpolated between records element by element."""
+    rate, per_turn, phase = spin
+    times, places, turns = poses
+    lever, axes = head
+    origins, ways = out
+    row = 0
+    beam = np.empty(3)
+    for number in range(origins.shape[0]):
+        pulse = first + number
+        time = pulse / rate
+        while row < times.size - 2 and times[row + 1] <= time:
+            row += 1
+        share = (time - times[row]) / (times[row + 1] - times[row])
+        angle = phase + 2 * np.pi * (pulse * per_turn - np.floor(pulse * per_turn))
+        c, s = np.cos(angle), np.sin(angle)
+        for axis in range(3):
+            beam[axis] = c * axes[axis, 0] + s * axes[axis, 1]
+        length = 0.0
+        for axis in range(3):
+            at = places[row, axis] + share * (places[row + 1, axis] - places[row, axis])
+            way = 0.0
+            for one in range(3):
+                low, high = turns[row, axis, one], turns[row + 1, axis, one]
+                turn = low + share * (high - low)
+                at += turn * lever[one]
+                way += turn * beam[one]
+            origins[number, axis], ways[number, axis] = at, way
+            length += way * way
+        length = np.sqrt(length)
+        for axis in range(3):
+            ways[number, axis] /= length
+
+
+def warm_up() -> None:
+    """Compile the kernel."""
+    poses = np.array([0.0, 1.0]), np.zeros((2, 3)), np.stack([np.eye(3)] * 2)
+    out: tuple[NDArray[np.float64], NDArray[np.float64]] = np.empty((1, 3)), np.empty((1, 3))
+    _beams_kernel(0, (1.0, 1.0, 0.0), poses, (np.zeros(3), np.eye(3)), out)

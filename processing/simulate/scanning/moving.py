@@ -1,0 +1,122 @@
+"""Beams against what moves: every pulse meets it where it is at that pulse's time."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from processing.kernels import kernel
+from processing.simulate.mesh import Floats, Integers
+from processing.simulate.scanning.beams import Beams
+from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.returns import Met
+from processing.simulate.street.street import Street
+from processing.simulate.things import Mover
+
+_STEP_S = 0.05
+_REACH_M = 130.0
+
+
+class MovingScene:
+    """Movers of a recording, each with a small scene of its own.
+
+    Parameters
+    ----------
+    street : Street
+    movers : list of Mover
+    """
+
+    def __init__(self, street: Street, movers: list[Mover]) -> None:
+        self._street, self._movers = street, movers
+        self._scenes: dict[int, tuple[Scene, float]] = {}
+
+    def meet(self, beams: Beams, met: Met) -> None:
+        """Put what moves before what stands, where it is nearer."""
+        if beams.time_s.size == 0:
+            return
+        first, last = float(beams.time_s[0]), float(beams.time_s[-1])
+        middle = beams.origins.mean(axis=0)
+        for number, mover in enumerate(self._movers):
+            if last < mover.from_s or first > mover.to_s:
+                continue
+            times = np.arange(np.floor(first / _STEP_S), np.ceil(last / _STEP_S) + 2) * _STEP_S
+            places, headings = poses_of(mover, self._street, times)
+            if np.linalg.norm(places - middle, axis=1).min() > _REACH_M:
+                continue
+            self._meet_one(beams, met, number, (times, places, headings))
+
+    def _meet_one(
+        self, beams: Beams, met: Met, number: int, poses: tuple[Floats, Floats, Floats]
+    ) -> None:
+        mover = self._movers[number]
+        scene, radius = self._scene(number)
+        rays = np.empty(beams.time_s.size, np.int64)
+        origins, ways = np.empty((rays.size, 3)), np.empty((rays.size, 3))
+        span = (mover.from_s, mover.to_s, radius)
+        sent = (beams.time_s, beams.origins, beams.ways)
+        count = _turned_kernel(sent, poses, span, (rays, origins, ways))
+        if count:
+            chosen = rays[:count]
+            hits = scene.cast(origins[:count], ways[:count])
+            met.take(chosen, hits, mover.mesh)
+
+    def _scene(self, number: int) -> tuple[Scene, float]:
+        if number not in self._scenes:
+            mesh = self._movers[number].mesh
+            radius = float(np.linalg.norm(mesh.vertices, axis=1).max()) + 0.05
+            self._scenes[number] = Scene(mesh, np.zeros(3)), radius
+        return self._scenes[number]
+
+
+def poses_of(mover: Mover, street: Street, times: Floats) -> tuple[Floats, Floats]:
+    """Where a mover is at times: its place on the ground (n, 3) and its heading (n,) in radians."""
+    at = mover.chainage_m + mover.speed_m_s * times
+    offset = mover.offset_m + mover.sway_m * np.sin(2 * np.pi * times / mover.sway_s)
+    places = street.alignment.at(at, offset, street.ground_height(at, offset))
+    headings = street.alignment.heading(at) + (np.pi if mover.speed_m_s < 0 else 0.0)
+    return places, np.asarray(headings)
+
+
+@kernel
+def _turned_kernel(
+    beams: tuple[Floats, Floats, Floats],
+    poses: tuple[Floats, Floats, Floats],
+    span: tuple[float, float, float],
+    out: tuple[Integers, Floats, Floats],
+) -> int:
+    """Choose beams that pass near the mover, and turn them into its own frame."""
+    times, origins, ways = beams
+    marks, places, headings = poses
+    start, end, radius = span
+    rays, own_origins, own_ways = out
+    found, row = 0, 0
+    for ray in range(times.size):
+        time = times[ray]
+        if time < start or time > end:
+            continue
+        while row < marks.size - 2 and marks[row + 1] <= time:
+            row += 1
+        share = (time - marks[row]) / (marks[row + 1] - marks[row])
+        x = origins[ray, 0] - (places[row, 0] + share * (places[row + 1, 0] - places[row, 0]))
+        y = origins[ray, 1] - (places[row, 1] + share * (places[row + 1, 1] - places[row, 1]))
+        z = origins[ray, 2] - (places[row, 2] + share * (places[row + 1, 2] - places[row, 2]))
+        along = x * ways[ray, 0] + y * ways[ray, 1] + z * ways[ray, 2]
+        away = x * x + y * y + z * z
+        if away > radius * radius and (along > 0 or away - along * along > radius * radius):
+            continue
+        turn = headings[row] + share * (headings[row + 1] - headings[row])
+        c, s = np.cos(turn), np.sin(turn)
+        rays[found] = ray
+        own_origins[found, 0], own_origins[found, 1] = c * x + s * y, c * y - s * x
+        own_origins[found, 2], own_ways[found, 2] = z, ways[ray, 2]
+        own_ways[found, 0] = c * ways[ray, 0] + s * ways[ray, 1]
+        own_ways[found, 1] = c * ways[ray, 1] - s * ways[ray, 0]
+        found += 1
+    return found
+
+
+def warm_up() -> None:
+    """Compile the kernel."""
+    one, three = np.zeros(1), np.zeros((1, 3))
+    poses = np.array([0.0, 1.0]), np.zeros((2, 3)), np.zeros(2)
+    out = np.zeros(1, np.int64), three.copy(), three.copy()
+    _turned_kernel((one, three, three), poses, (0.0, 1.0, 1.0), out)
