@@ -1,0 +1,19 @@
+"""All that stands beside a section: each kind is added in turn and takes its places."""
+
+from __future__ import annotations
+
+from processing.simulate.roadside.places import Places
+from processing.simulate.roadside.poles import add_utility_poles
+from processing.simulate.roadside.wires import add_wires
+from processing.simulate.street.section import Section
+from processing.simulate.things import Built
+
+KINDS = (add_utility_poles, add_wires)
+"""In this order: what comes first chooses its places first."""
+
+
+def add_furniture(section: Section, built: Built) -> None:
+    """Add poles, wires, lights, signals, signs and plants of a section."""
+    places = Places(section)
+    for add in KINDS:
+        add(places, built)

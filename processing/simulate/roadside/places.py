@@ -1,0 +1,108 @@
+"""Where things stand beside the road: each place is given away once.
+
+Every maker of a section draws from the same `Places`, so that no tree grows through a pole and
+nothing stands on the carriageway, on a gutter's lids or in a side street.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.random import Generator
+
+from processing.simulate.mesh import Floats
+from processing.simulate.street.plan import LEFT, RIGHT, SidePlan
+from processing.simulate.street.section import Section
+
+_KERB_GAP_M = 0.12  # between the rear of a curb or lid and what stands behind it
+_WALL_GAP_M = 0.15
+
+
+@dataclass(frozen=True)
+class Spot:
+    """A place to stand on.
+
+    Attributes
+    ----------
+    chainage_m, offset_m : float
+        Offsets count to the left of the road's centre.
+    side : int
+        `LEFT` or `RIGHT`.
+    """
+
+    chainage_m: float
+    offset_m: float
+
+    @property
+    def side(self) -> int:
+        """Of the road."""
+        return LEFT if self.offset_m > 0 else RIGHT
+
+
+def free_from_m(side: SidePlan) -> float:
+    """Distance from the road's centre where the ground behind gutter and curb begins."""
+    away = side.edge_m
+    for band in side.bands():
+        if band.name in ("drain", "curb"):
+            away = band.outer_m
+    return away
+
+
+def free_to_m(side: SidePlan) -> float:
+    """Distance from the road's centre up to which things may stand: the foot of a wall."""
+    outside = side.band("outside")
+    if side.outside == "wall" and outside is not None:
+        return outside.inner_m - _WALL_GAP_M
+    return side.edge_m + 60.0
+
+
+@dataclass
+class Places:
+    """What is still free beside a section."""
+
+    section: Section
+    _taken: list[tuple[float, float, float]] = field(default_factory=list)
+
+    def is_free(self, spot: Spot, radius_m: float) -> bool:
+        """Whether something of a radius can stand there."""
+        plan = self.section.plan
+        if spot.side in plan.junctions:
+            return False
+        side = plan.side(spot.side)
+        away = abs(spot.offset_m)
+        if not plan.start_m + radius_m <= spot.chainage_m <= plan.end_m - radius_m:
+            return False
+        if away - radius_m < free_from_m(side) + _KERB_GAP_M or away + radius_m > free_to_m(side):
+            return False
+        return all(
+            np.hypot(spot.chainage_m - s, spot.offset_m - o) > radius_m + r
+            for s, o, r in self._taken
+        )
+
+    def take(self, spot: Spot, radius_m: float) -> bool:
+        """Give a place away; False where it isn't free."""
+        if not self.is_free(spot, radius_m):
+            return False
+        self._taken.append((spot.chainage_m, spot.offset_m, radius_m))
+        return True
+
+    def where(self, spot: Spot) -> Floats:
+        """The place on the ground: (3,) float64, m, the street's frame."""
+        return self.section.place(spot.chainage_m, spot.offset_m)
+
+    def beside(
+        self, random: Generator, side: int, chainage_m: float, radius_m: float
+    ) -> Spot | None:
+        """Where posts are set up at a chainage: behind the curb, or at the walk's far edge."""
+        plan = self.section.plan.side(side)
+        near = free_from_m(plan) + _KERB_GAP_M + radius_m
+        walk = plan.band("walk")
+        away = near + float(random.uniform(0.0, 0.45))
+        if walk is not None and random.random() < 0.25:
+            away = walk.outer_m - radius_m - float(random.uniform(0.02, 0.2))
+        for distance in (away, near + 0.01):
+            spot = Spot(chainage_m, side * distance)
+            if self.take(spot, radius_m):
+                return spot
+        return None
