@@ -8,13 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from processing.errors import OutOfRange
+from processing.simulate.scanning.beams import head_axes
+from processing.simulate.scanning.passes import REFERENCE_HIGH_M
 from processing.simulate.scanning.sensors import Head, Sensor
 from processing.text import Text
 
 Floats = NDArray[np.float64]
-
-REFERENCE_HEIGHT_M = 1.9
-"""Of the trajectory's reference point over the road: a roof rack on an estate car."""
 
 _KM_H = 3.6
 _REACH_ACROSS_M = 20.0
@@ -46,7 +45,7 @@ class Survey:
     pulses: int
     most_m: float
     speed_m_s: float
-    height_m: float = REFERENCE_HEIGHT_M
+    height_m: float = sum(REFERENCE_HIGH_M) / 2
 
     @property
     def between_turns_m(self) -> float:
@@ -168,12 +167,6 @@ def density_map(survey: Survey) -> DensityMap:
     return DensityMap(survey, across, up, each.sum(axis=0), spacing, wall)
 
 
-def axis_of(head: Head) -> Floats:
-    """Where the mirror's axis points: (3,) float64 unit vector, forward, left, up."""
-    yaw, pitch = np.deg2rad([head.yaw_deg, head.pitch_deg])
-    return np.array([np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch)])
-
-
 def _middles(first: int, stop: int) -> Floats:
     """The middles of cells, m."""
     return (np.arange(first, stop, dtype=np.float64) + 0.5) * _CELL_M
@@ -203,7 +196,7 @@ def _density(survey: Survey, head: Head, beside: Floats, above: Floats, distance
     distance : (...) float64
         From the head to the plane, m.
     """
-    ahead, left, up = axis_of(head)
+    ahead, left, up = head_axes(head)[:, 2]
     x = -(left * beside + up * above) / ahead
     square = x**2 + beside**2 + above**2
     per_radian = survey.pulses / (2 * np.pi)

@@ -15,10 +15,12 @@ from processing.simulate.street.plan import SectionPlan
 from processing.simulate.street.street import Street
 
 RECORDS_PER_S = 200.0
+REFERENCE_HIGH_M = (1.7, 2.0)
+"""Of the trajectory's reference point above the road."""
+
 _STEP_M = 0.05
 _SLOWEST_M_S = 0.15
 _BRAKING_M_S2 = 1.5
-_REFERENCE_HIGH_M = (1.7, 2.0)  # of the trajectory's reference point above the road
 _WAVES = 5
 
 
@@ -90,7 +92,7 @@ def pass_of(street: Street, number: int, driving: Driving) -> Pass:
     beside = way * (
         _lane_m(street, at) + 0.2 * _swaying(random, at, (15.0, 120.0)) + random.normal(0, 0.1)
     )
-    high = float(random.uniform(*_REFERENCE_HIGH_M)) + 0.006 * _swaying(random, records, (0.6, 2))
+    high = float(random.uniform(*REFERENCE_HIGH_M)) + 0.006 * _swaying(random, records, (0.6, 2))
     places = street.alignment.at(at, beside, street.alignment.carriageway_height(at, beside) + high)
     turns, angles = _attitude(street.alignment, random, records, (at, beside, way))
     errors = driving.drift_m * np.column_stack(

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from processing.errors import OutOfRange
+from processing.simulate.scanning.beams import head_axes
 from processing.simulate.scanning.density import (
     Survey,
-    axis_of,
     density_map,
     road_density,
     survey_of,
@@ -17,18 +17,15 @@ from processing.simulate.scanning.density import (
 from processing.simulate.scanning.sensors import SENSORS
 
 MOBILE = [one.id for one in SENSORS.values() if one.kind == "mobile"]
-DRIVEN_M = 30.0
-FROM_M, TO_M = 12.0, 18.0
+DRIVEN_M = 40.0
+FROM_M, TO_M = 12.0, 28.0
 CELL_M = 1.0
 
 
 def beams(survey: Survey, head: int) -> tuple[np.ndarray, np.ndarray]:
     """Origins and ways of all pulses of a straight drive along x."""
     one = survey.heads[head]
-    axis = axis_of(one)
-    first = np.cross(axis, [0.0, 0.0, 1.0])
-    first /= np.linalg.norm(first)
-    second = np.cross(axis, first)
+    first, second, _ = head_axes(one).T
     times = np.arange(0, DRIVEN_M / survey.speed_m_s, 1 / (survey.turns_per_s * survey.pulses))
     angles = 2 * np.pi * survey.turns_per_s * times
     ways = np.cos(angles)[:, None] * first + np.sin(angles)[:, None] * second
@@ -57,7 +54,7 @@ def counted(places: np.ndarray, other: int, edges: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("sensor", MOBILE)
 def test_points_counted_on_a_flat_road_are_as_dense_as_is_told(sensor: str) -> None:
-    survey = survey_of(SENSORS[sensor], 36.0, pulses=1200, turns_per_s=50.0)
+    survey = survey_of(SENSORS[sensor], 37.3, pulses=5000, turns_per_s=20.0)
     edges = np.arange(-8.0, 8.1, CELL_M)
     told = np.array([road_density(survey, np.linspace(low, low + 1, 21)).mean() for low in edges])
     found = counted(met(survey, 2, 0.0), 1, edges)
@@ -67,7 +64,7 @@ def test_points_counted_on_a_flat_road_are_as_dense_as_is_told(sensor: str) -> N
 @pytest.mark.parametrize("side_m", [-6.0, 4.0])
 @pytest.mark.parametrize("sensor", ["vq250", "zf9012"])
 def test_points_counted_on_a_wall_are_as_dense_as_is_told(sensor: str, side_m: float) -> None:
-    survey = survey_of(SENSORS[sensor], 18.0, pulses=2000, turns_per_s=50.0)
+    survey = survey_of(SENSORS[sensor], 18.0, pulses=4000, turns_per_s=20.0)
     edges = np.arange(0.0, 6.1, CELL_M)
     told = [wall_density(survey, side_m, np.linspace(low, low + 1, 21)).mean() for low in edges]
     found = counted(met(survey, 1, side_m), 2, edges)
