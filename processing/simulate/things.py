@@ -6,6 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from processing.simulate.mesh import Floats, Mesh, MeshBuilder
 
 Fact = str | int | float | bool | list[float] | None
@@ -72,11 +75,22 @@ class Mover:
     chainage_m, offset_m : float
         Where it is at time 0 of the recording; offsets count to the left of the road's centre.
     speed_m_s : float
-        Along the chainage; negative for those that come towards its beginning. It faces its way.
+        Along the chainage; negative for those that come towards its beginning.
     from_s, to_s : float
         When it is there, on the pass' time.
+    turn_rad : float
+        Where it faces, anticlockwise from the road's direction: π for oncoming traffic.
+    aside_m_s : float
+        Speed to the left, of those that cross the road.
     sway_m, sway_s : float
         Amplitude and period of its swinging from side to side (people, bicycles).
+    surge_m, surge_s : float
+        Amplitude and period of its falling back and catching up along the road.
+    phase_rad : float
+        Of both swings at time 0.
+    course : (n, 2) float64 or None
+        Times and chainages that its own chainage counts from, of those that keep their distance
+        from the recording vehicle.
     """
 
     mesh: Mesh
@@ -85,8 +99,25 @@ class Mover:
     speed_m_s: float
     from_s: float
     to_s: float
+    turn_rad: float = 0.0
+    aside_m_s: float = 0.0
     sway_m: float = 0.0
     sway_s: float = 1.0
+    surge_m: float = 0.0
+    surge_s: float = 1.0
+    phase_rad: float = 0.0
+    course: Floats | None = None
+
+    def way_at(self, time_s: ArrayLike) -> tuple[Floats, Floats]:
+        """Chainages and offsets at times of the pass, m: (...) float64 each."""
+        time = np.asarray(time_s, np.float64)
+        surge = self.surge_m * np.sin(2 * np.pi * time / self.surge_s + self.phase_rad)
+        along: Floats = self.chainage_m + self.speed_m_s * time + surge
+        if self.course is not None:
+            along = along + np.interp(time, self.course[:, 0], self.course[:, 1])
+        sway = self.sway_m * np.sin(2 * np.pi * time / self.sway_s + self.phase_rad)
+        aside: Floats = self.offset_m + self.aside_m_s * time + sway
+        return along, aside
 
 
 @dataclass

@@ -69,11 +69,9 @@ class MovingScene:
 
 def poses_of(mover: Mover, street: Street, times: Floats) -> tuple[Floats, Floats]:
     """Where a mover is at times: its place on the ground (n, 3) and its heading (n,) in radians."""
-    at = mover.chainage_m + mover.speed_m_s * times
-    offset = mover.offset_m + mover.sway_m * np.sin(2 * np.pi * times / mover.sway_s)
+    at, offset = mover.way_at(times)
     places = street.alignment.at(at, offset, street.ground_height(at, offset))
-    headings = street.alignment.heading(at) + (np.pi if mover.speed_m_s < 0 else 0.0)
-    return places, np.asarray(headings)
+    return places, street.alignment.heading(at) + mover.turn_rad
 
 
 @kernel
