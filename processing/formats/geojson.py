@@ -47,6 +47,25 @@ def write_geojson(
     ----------
     RFC 7946; GeoJSON format specification 2008, section 3 (crs).
     """
+    members = (_member(feature) for feature in features)
+    write_members(path, members, crs=crs, monitor=monitor, never=never)
+
+
+def write_members(
+    path: Path,
+    members: Iterable[dict[str, Any]],
+    *,
+    crs: str,
+    monitor: Monitor | None = None,
+    never: Iterable[Path] = (),
+) -> None:
+    """Write features that are GeoJSON members already (properties may be nested), one on a line.
+
+    Raises
+    ------
+    UserError
+        As `write_geojson`.
+    """
     monitor = monitor or SilentMonitor()
     with (
         written_safely(path, never=never) as temporary,
@@ -54,10 +73,10 @@ def write_geojson(
     ):
         file.write(f'{{"type": "FeatureCollection",\n"crs": {_line(_crs_member(crs))},\n')
         file.write('"features": [')
-        for number, feature in enumerate(features):
+        for number, member in enumerate(members):
             if number % _CHECK_EVERY == 0:
                 monitor.check()
-            file.write((",\n" if number else "\n") + _line(_member(feature)))
+            file.write((",\n" if number else "\n") + _line(member))
         file.write("\n]}\n")
 
 

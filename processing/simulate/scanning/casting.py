@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,7 +45,7 @@ class Scene:
 
         self.mesh, self._origin = mesh, np.asarray(origin, np.float64)
         # Open3D's stubs don't know that a tensor is made of an array.
-        self._tensor: Any = o3d.core.Tensor
+        self._tensor = cast("Any", o3d.core.Tensor)
         self._scene = o3d.t.geometry.RaycastingScene()
         if mesh.triangles.shape[0]:
             local = np.ascontiguousarray(mesh.vertices - self._origin, np.float32)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -75,6 +76,16 @@ class Returns:
     def chosen(self, points: NDArray[np.bool_] | Integers) -> Returns:
         """Some of the points."""
         return Returns(*(getattr(self, one.name)[points] for one in fields(self)))
+
+    @staticmethod
+    def joined(parts: Sequence[Returns]) -> Returns:
+        """All points of some, one after the other."""
+        return Returns(
+            *(
+                np.concatenate([getattr(one, name.name) for one in parts])
+                for name in fields(Returns)
+            )
+        )
 
     @property
     def instance(self) -> NDArray[np.int32]:
@@ -250,7 +261,7 @@ def _later(
     rays = np.flatnonzero(~np.isnan(ranges) & np.isnan(seconds) & is_open[met.material])
     reach = met.ranges
     for step in range(_MOST_LATER):
-        rays = rays[_shares(beams.first + rays, key + 20 + step) < _PASSES_ON]
+        rays = rays[shares_of(beams.first + rays, key + 20 + step) < _PASSES_ON]
         if rays.size == 0:
             break
         start = reach[rays] + _STEP_BEHIND_M
@@ -264,7 +275,7 @@ def _later(
         far[rays] = start + there.ranges
         labels, evidence = met.label.copy(), met.evidence.copy()
         labels[rays], evidence[rays] = there.label, there.evidence
-        fuzz = 0.006 * (_shares(beams.first + rays, key + 30 + step) - 0.5)
+        fuzz = 0.006 * (shares_of(beams.first + rays, key + 30 + step) - 0.5)
         noisy = far.copy()
         noisy[rays] += fuzz
         parts.append(
@@ -278,7 +289,7 @@ def _taken(met: Met, rows: NDArray[np.bool_]) -> Met:
     return Met(*(getattr(met, one.name)[rows] for one in fields(met)))
 
 
-def _shares(numbers: Integers, salt: int) -> Floats:
+def shares_of(numbers: Integers, salt: int) -> Floats:
     """Numbers from 0 to 1 that belong to numbers and a salt (as `return_kernels.share_of`)."""
     bits = numbers.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15)
     bits += np.uint64(salt * 0xD1B54A32D192ED03 % (1 << 64))
@@ -292,12 +303,7 @@ def _ordered(beams: Beams, parts: list[Returns]) -> Returns:
     """Returns of all kinds by pulse and range, numbered within their pulse."""
     joined = parts[0]
     if len(parts) > 1:
-        joined = Returns(
-            *(
-                np.concatenate([getattr(one, name.name) for one in parts])
-                for name in fields(Returns)
-            )
-        )
+        joined = Returns.joined(parts)
         away = np.linalg.norm(joined.xyz - beams.origins[joined.pulse - beams.first], axis=1)
         joined = joined.chosen(np.lexsort((away, joined.pulse)))
     return numbered(joined)

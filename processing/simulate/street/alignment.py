@@ -99,7 +99,7 @@ def alignment_of(seed: int, style: Style, length_m: float) -> Alignment:
     knots = (np.arange(curves.size) - (behind[0].size - 1)) * _KNOT_M
     per_knot = int(_KNOT_M / _STEP_M)
     first, last = -int(MARGIN_M / _STEP_M), int(np.ceil((length_m + MARGIN_M) / _STEP_M))
-    chainages: Floats = np.arange(first, last + 1) * _STEP_M
+    chainages = np.arange(first, last + 1).astype(np.float64) * _STEP_M
     curvatures: Floats = np.interp(chainages, knots, curves * curviness)
     slopes: Floats = np.interp(chainages, knots, grades * hilliness)
     zero = -first
