@@ -75,7 +75,7 @@ class PointFile:
         record["X"], record["Y"], record["Z"] = placed.astype(np.int32).T
         record["gps_time"], record["intensity"] = points.time_s, points.intensity
         record["return_number"], record["number_of_returns"] = points.number, points.count
-        record["point_source_id"] = points.source_id
+        record["point_source_id"] = np.full(points.time_s.size, points.source_id)
         self._writer.write_points(record)
         self.count += points.time_s.size
 

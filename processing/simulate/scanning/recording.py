@@ -1,0 +1,218 @@
+"""A pass recorded: sections in their order, pulses in stretches, files and evidence as they come.
+
+Scenes hold the sections around the vehicle and are made once per section, so memory doesn't grow
+with the street; stretches begin at fixed pulses, so the points don't depend on how it is cut.
+"""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from processing.monitor import Monitor
+from processing.simulate.chance import chance
+from processing.simulate.mesh import Floats, Integers, Mesh
+from processing.simulate.scanning.beams import Spin, beams_of
+from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.moving import MovingScene
+from processing.simulate.scanning.passes import Pass
+from processing.simulate.scanning.returns import (
+    Met,
+    Returns,
+    Weather,
+    returns_of,
+    scanner_numbers,
+)
+from processing.simulate.scanning.scanner_noise import NoiseSource, Recorded
+from processing.simulate.scanning.sensors import Head, Sensor
+from processing.simulate.street.street import BuiltSection, Street
+
+_STRETCH = 1 << 17
+_REACH_M = 110.0
+_WORKERS = max(2, min(8, os.cpu_count() or 2))
+
+
+@dataclass(frozen=True)
+class Setup:
+    """What records.
+
+    Attributes
+    ----------
+    sensor : Sensor
+    spin : Spin
+        Of all heads; each starts at an angle of its own.
+    weather : Weather
+    """
+
+    sensor: Sensor
+    spin: Spin
+    weather: Weather
+
+
+@dataclass(frozen=True)
+class Stretch:
+    """Some points of one head, in their order."""
+
+    head: Head
+    returns: Returns
+
+
+class Recording:
+    """One pass along a street.
+
+    Parameters
+    ----------
+    driven : Pass
+    moving : MovingScene
+        What drives and walks meanwhile.
+    """
+
+    def __init__(self, street: Street, setup: Setup, driven: Pass, moving: MovingScene) -> None:
+        self._street, self._setup, self._driven, self._moving = street, setup, driven, moving
+        self._spins = [self._spin(number) for number in range(len(setup.sensor.heads))]
+        self._noise = [
+            NoiseSource(street.seed, (driven.number, number), setup.sensor, spin)
+            for number, spin in enumerate(self._spins)
+        ]
+
+    @property
+    def pulses(self) -> int:
+        """Of one head, in all."""
+        return int(self._driven.duration_s * self._setup.spin.rate_hz)
+
+    def sections(self) -> Iterator[BuiltSection]:
+        """The sections that are seen, in their order along the street; built when asked for."""
+        low, high = self._driven.chainages.min(), self._driven.chainages.max()
+        for row in self._street.within(low - _REACH_M, high + _REACH_M):
+            yield self._street.section(row)
+
+    def stretches(self, monitor: Monitor) -> Iterator[Stretch]:
+        """All points, of every head in the order of its time.
+
+        Raises
+        ------
+        Cancelled
+        """
+        spans = self._spans()
+        with ThreadPoolExecutor(_WORKERS) as pool:
+            coming = pool.submit(self._scene, spans[0][0])
+            waiting: deque[Future[Stretch]] = deque()
+            try:
+                for number, (_, pulses) in enumerate(spans):
+                    scene = coming.result()
+                    if number + 1 < len(spans):
+                        coming = pool.submit(self._scene, spans[number + 1][0])
+                    for head, part in self._tasks(pulses):
+                        waiting.append(pool.submit(self._record, scene, head, part))
+                        while len(waiting) > 2 * _WORKERS:
+                            yield _next(waiting, monitor)
+                    monitor.report(pulses.stop / max(1, self.pulses))
+                while waiting:
+                    yield _next(waiting, monitor)
+            finally:
+                coming.cancel()
+                for one in waiting:
+                    one.cancel()
+
+    def _spin(self, head: int) -> Spin:
+        spin = self._setup.spin
+        random = chance(self._street.seed, "spin", self._driven.number, head)
+        return Spin(spin.pulses, spin.turns_per_s, float(random.uniform(0, 2 * np.pi)))
+
+    def _spans(self) -> list[tuple[int, range]]:
+        """Sections (rows of the street's plans) that are driven through, and pulses sent there."""
+        driven = self._driven
+        way = -1 if driven.number % 2 else 1
+        rows = list(self._street.within(driven.chainages.min(), driven.chainages.max()))[::way]
+        plans = self._street.plans
+        edges = [plans[row].end_m if way > 0 else plans[row].start_m for row in rows[:-1]]
+        at = np.searchsorted(way * driven.chainages, way * np.array(edges))
+        times = driven.time_s[np.minimum(at, driven.time_s.size - 1)]
+        cuts = [0, *np.ceil(times * self._setup.spin.rate_hz).astype(int).tolist(), self.pulses]
+        cuts = np.minimum(cuts, self.pulses).tolist()
+        return [
+            (row, range(start, stop))
+            for row, start, stop in zip(rows, cuts[:-1], cuts[1:], strict=True)
+            if stop > start
+        ]
+
+    def _tasks(self, pulses: range) -> Iterator[tuple[int, range]]:
+        start = pulses.start
+        while start < pulses.stop:
+            stop = min(pulses.stop, (start // _STRETCH + 1) * _STRETCH)
+            for head in range(len(self._spins)):
+                yield head, range(start, stop)
+            start = stop
+
+    def _scene(self, row: int) -> Scene:
+        plan = self._street.plans[row]
+        near = self._street.within(plan.start_m - _REACH_M, plan.end_m + _REACH_M)
+        mesh = Mesh.joined(self._street.section(one).mesh for one in near)
+        middle = (plan.start_m + plan.end_m) / 2
+        origin = self._street.alignment.at(
+            middle, 0.0, self._street.alignment.carriageway_height(middle, 0.0)
+        )
+        return Scene(mesh, origin)
+
+    def _record(self, scene: Scene, number: int, pulses: range) -> Stretch:
+        setup, head = self._setup, self._setup.sensor.heads[number]
+        beams = beams_of(self._driven, head, self._spins[number], pulses)
+        met = Met.of(scene.cast(beams.origins, beams.ways), scene.mesh)
+        self._moving.meet(beams, met)
+        scanner = scanner_numbers(setup.sensor, setup.spin.pulses, setup.weather)
+        random = chance(self._street.seed, "returns", self._driven.number, number)
+        returns, _ = returns_of(beams, met, scene, scanner, int(random.integers(1 << 40)))
+        noisy = self._noise[number].added(Recorded(beams, met, returns, scene))
+        return Stretch(head, noisy)
+
+
+def _next(waiting: deque[Future[Stretch]], monitor: Monitor) -> Stretch:
+    monitor.check()
+    return waiting.popleft().result()
+
+
+class Evidence:
+    """How many points show each piece of each thing."""
+
+    def __init__(self) -> None:
+        self._keys: list[Integers] = []
+        self._counts: list[Integers] = []
+
+    def count(self, returns: Sequence[Returns]) -> None:
+        """Count points."""
+        for one in returns:
+            keys, counts = np.unique(one.evidence[one.evidence >= 0], return_counts=True)
+            self._keys.append(keys)
+            self._counts.append(counts)
+        if len(self._keys) > 64:
+            self._merge()
+
+    def of(self, instance: int) -> Integers:
+        """Points on each of the 256 pieces of a thing."""
+        self._merge()
+        keys, counts = self._keys[0], self._counts[0]
+        low, high = np.searchsorted(keys, [instance * 256, (instance + 1) * 256])
+        pieces = np.zeros(256, np.int64)
+        pieces[keys[low:high] - instance * 256] = counts[low:high]
+        return pieces
+
+    def _merge(self) -> None:
+        if len(self._keys) == 1:
+            return
+        keys = np.concatenate([np.empty(0, np.int64), *self._keys])
+        counts = np.concatenate([np.empty(0, np.int64), *self._counts])
+        merged, place = np.unique(keys, return_inverse=True)
+        self._keys = [merged]
+        self._counts = [np.bincount(place, counts, merged.size).astype(np.int64)]
+
+
+def moved_by_errors(driven: Pass, returns: Returns) -> Floats:
+    """Places as they are delivered: off by what the trajectory is off. (n, 3) float64, m."""
+    errors = [np.interp(returns.time_s, driven.time_s, one) for one in driven.errors.T]
+    moved: Floats = returns.xyz + np.column_stack(errors)
+    return moved

@@ -1,0 +1,235 @@
+"""A street made to order: built, driven along, recorded, written as a delivery with its truth."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.monitor import Monitor, PartMonitor
+from processing.simulate.chance import chance
+from processing.simulate.mesh import Floats
+from processing.simulate.scanning.beams import Spin
+from processing.simulate.scanning.delivered_files import (
+    CRS_NAME,
+    ArrayFile,
+    DeliveredPoints,
+    PointFile,
+)
+from processing.simulate.scanning.moving import MovingScene
+from processing.simulate.scanning.passes import Driving, Pass, pass_of
+from processing.simulate.scanning.recording import (
+    Evidence,
+    Recording,
+    Setup,
+    Stretch,
+    moved_by_errors,
+)
+from processing.simulate.scanning.return_kernels import intensities
+from processing.simulate.scanning.returns import Weather
+from processing.simulate.scanning.sensors import Sensor, sensor_of
+from processing.simulate.simulated import Simulated
+from processing.simulate.street.street import Street
+from processing.simulate.street.styles import style_of
+from processing.simulate.things import Mover, Thing, TrueFeature
+from processing.simulate.truth import Seen, write_rough_positions, write_things, write_truth
+from processing.simulate.whole_folder import made_whole
+from processing.simulate.wishes import StreetWish
+from processing.text import Text
+
+_DRY_SHARE = 0.65
+_KMH = 3.6
+_TRUTH_SHARE = 0.97  # of the progress; the rest is truth
+
+
+def simulate_street(wish: StreetWish, folder: Path, monitor: Monitor) -> Simulated:
+    """Make a street and its recording.
+
+    Parameters
+    ----------
+    folder : Path
+        New or empty; whole or not there afterwards.
+
+    Raises
+    ------
+    OutOfRange
+        The wish names a style or a sensor that there is none of.
+    InUse
+        There is something in the folder.
+    NoSpace
+        The disk is full.
+    Cancelled
+    """
+    style = style_of(wish.style)
+    sensor = sensor_of(wish.sensor, "mobile")
+    with made_whole(folder) as hidden:
+        (hidden / "truth").mkdir()
+        work = _Work(wish, Street(wish.seed, style, wish.length_m), sensor, hidden)
+        for number in range(wish.passes):
+            share = _TRUTH_SHARE / wish.passes
+            work.drive(number, PartMonitor(monitor, number * share, (number + 1) * share))
+        monitor.report(_TRUTH_SHARE, Text("Writing truth", "正解データを書き出し中"))
+        work.finish()
+    return Simulated(
+        folder,
+        tuple(folder / name for name in work.point_files),
+        tuple(folder / name for name in work.trajectories),
+        (),
+        folder / "truth",
+        CRS_NAME,
+        sum(work.counts.values()),
+    )
+
+
+@dataclass(frozen=True)
+class _Files:
+    """What one head's points go to."""
+
+    points: PointFile
+    labels: ArrayFile
+    instances: ArrayFile
+
+
+class _Work:
+    """One simulation on its way: what is known of it so far."""
+
+    def __init__(self, wish: StreetWish, street: Street, sensor: Sensor, folder: Path) -> None:
+        self.wish, self.street, self.sensor, self.folder = wish, street, sensor, folder
+        random = chance(wish.seed, "place")
+        self.origin = np.array(
+            [random.uniform(-14_000, -8_000), random.uniform(-38_000, -32_000), 0.0]
+        )
+        self.origin[2] = random.uniform(5, 300)
+        self.start_s = float(np.round(random.uniform(3.5e8, 4.2e8), 3))
+        wet = random.random() > _DRY_SHARE
+        self.weather = Weather(
+            float(random.uniform(0.05, 0.7)) if wet else 0.0, float(random.uniform(0.3, 0.9))
+        )
+        self.spin = Spin(wish.pulses or sensor.pulses, wish.turns_per_s or sensor.turns_per_s, 0.0)
+        self.setup = Setup(sensor, self.spin, self.weather)
+        slow, fast = street.style.speed_m_s
+        usual = float(chance(wish.seed, "speed").uniform(slow, fast))
+        self.driving = Driving(wish.speed_km_h / _KMH or usual, wish.stops, wish.drift_m)
+        self.evidence = Evidence()
+        self.point_files: list[str] = []
+        self.trajectories: list[str] = []
+        self.counts: dict[str, int] = {}
+        self.things: dict[int, Thing] = {}
+        self.truth: dict[tuple[int, str, int], TrueFeature] = {}
+        self.passes: list[Pass] = []
+
+    def drive(self, number: int, monitor: Monitor) -> None:
+        """Drive once and write what was recorded."""
+        monitor.report(0.0, Text("Recording", "計測中"))
+        driven = pass_of(self.street, number, self.driving)
+        movers: list[Mover] = []
+        recording = Recording(self.street, self.setup, driven, MovingScene(self.street, movers))
+        with self._files(number) as files:
+            for stretch in recording.stretches(monitor):
+                self._write(driven, number, stretch, files[stretch.head.name])
+        for section in recording.sections():
+            monitor.check()
+            self.things.update({one.instance: one for one in section.things})
+            for place, one in enumerate(section.truth):
+                self.truth[one.instance, one.file, place] = one
+        self._write_trajectory(driven, number)
+        self.passes.append(driven)
+
+    def finish(self) -> None:
+        """Write truth, and what the whole is."""
+        truth = self.folder / "truth"
+        seen = Seen.by(self.passes[0], self.evidence)
+        features = list(self.truth.values())
+        objects = write_truth(truth, features, seen, self.origin)
+        write_things(truth / "instance_kinds.json", self.things.values())
+        write_rough_positions(
+            truth / "sign_initial.csv", features, seen, self.origin, self.wish.seed
+        )
+        heads = {
+            one.name: {
+                "point_source_id": one.source_id,
+                "lever_arm_fwd_left_up_m": list(one.lever_m),
+                "spin_axis_yaw_deg": one.yaw_deg,
+                "spin_axis_pitch_deg": one.pitch_deg,
+            }
+            for one in self.sensor.heads
+        }
+        scene: dict[str, Any] = {  # whatever JSON can hold
+            **asdict(self.wish),
+            "heads": heads,
+            "pulses_per_revolution": self.spin.pulses,
+            "revolutions_per_s": self.spin.turns_per_s,
+            "start_time_s": self.start_s,
+            "duration_s": [one.duration_s for one in self.passes],
+            "origin": self.origin.tolist(),
+            "wetness": self.weather.wetness,
+            "objects": objects,
+            "points": self.counts,
+        }
+        text = json.dumps(scene, indent=1, ensure_ascii=False)
+        (truth / "scene.json").write_text(text + "\n", encoding="utf-8")
+
+    @contextmanager
+    def _files(self, number: int) -> Iterator[dict[str, _Files]]:
+        with ExitStack() as stack:
+            files = {}
+            for head in self.sensor.heads:
+                stem = _numbered(head.name, number)
+                truth = self.folder / "truth"
+                files[head.name] = _Files(
+                    stack.enter_context(PointFile(self.folder / f"{stem}.laz", self.origin)),
+                    stack.enter_context(ArrayFile(truth / f"{stem}.labels.npy", np.uint8)),
+                    stack.enter_context(ArrayFile(truth / f"{stem}.instances.npy", np.int32)),
+                )
+                self.point_files.append(f"{stem}.laz")
+            yield files
+            for name, one in files.items():
+                self.counts[_numbered(name, number)] = one.points.count
+
+    def _write(self, driven: Pass, number: int, stretch: Stretch, files: _Files) -> None:
+        returns = stretch.returns
+        strength: NDArray[np.uint16] = np.empty(returns.pulse.size, np.uint16)
+        intensities(returns.strength, self.weather.damping, strength)
+        files.points.write(
+            DeliveredPoints(
+                moved_by_errors(driven, returns) + self.origin,
+                self._times(number) + returns.time_s,
+                strength,
+                returns.number,
+                returns.count,
+                stretch.head.source_id,
+            )
+        )
+        files.labels.write(returns.label)
+        files.instances.write(returns.instance)
+        self.evidence.count([returns])
+
+    def _times(self, number: int) -> float:
+        """When a pass begins: adjusted standard GPS time; some minutes after the one before."""
+        before = sum(one.duration_s for one in self.passes[:number])
+        return self.start_s + before + 600.0 * number
+
+    def _write_trajectory(self, driven: Pass, number: int) -> None:
+        name = f"{_numbered('trajectory', number)}.csv"
+        places: Floats = driven.places + driven.errors + self.origin
+        table = np.column_stack([driven.time_s + self._times(number), places, driven.angles_deg])
+        np.savetxt(
+            self.folder / name,
+            table,
+            fmt=["%.6f", "%.5f", "%.5f", "%.5f", "%.6f", "%.6f", "%.6f"],
+            delimiter=",",
+            comments="",
+            header="time_s,easting_m,northing_m,height_m,roll_deg,pitch_deg,heading_deg",
+            encoding="utf-8",
+        )
+        self.trajectories.append(name)
+
+
+def _numbered(name: str, number: int) -> str:
+    return name if number == 0 else f"{name}_{number + 1}"
