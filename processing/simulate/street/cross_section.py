@@ -58,7 +58,8 @@ def _add_band(side: SidePlan, band: Band, lines: list[_Line], strips: list[Strip
         return
     wide = band.outer_m - lines[-1][0]
     fall = {"drain": -0.06, "walk": 0.02, "strip": 0.02, "verge": 0.0}
-    rise = fall.get(band.name, 0.0) * wide
+    has_lids = band.name == "drain" and side.drain == "lids"
+    rise = 0.0 if has_lids else fall.get(band.name, 0.0) * wide
     if band.name == "outside":
         steep = abs(side.outside_high_m) * 1.5
         lines += [(lines[-1][0] + max(steep, 0.01), high + side.outside_high_m)]
@@ -70,7 +71,7 @@ def _add_band(side: SidePlan, band: Band, lines: list[_Line], strips: list[Strip
     materials = {"drain": Material.CONCRETE, "walk": Material.PAVING, "strip": Material.SOIL}
     labels = {"drain": ROAD, "walk": GROUND, "strip": GROUND, "verge": GRASS}
     material = materials.get(band.name, Material.GRASS)
-    strips += [Strip(band.name, material, labels[band.name])]
+    strips += [Strip(band.name, material, labels[band.name], has_surface=not has_lids)]
 
 
 def _placed(

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from processing.simulate.gutters.gutters import add_gutters
 from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.roadside.furniture import add_furniture
 from processing.simulate.street.alignment import Alignment, alignment_of
@@ -20,7 +21,7 @@ from processing.simulate.street.surfaces import add_ground
 from processing.simulate.things import THINGS_PER_SECTION, Built, Mover, Thing, TrueFeature
 
 Maker = Callable[[Section, Built], None]
-MAKERS: tuple[Maker, ...] = (add_ground, add_furniture)
+MAKERS: tuple[Maker, ...] = (add_ground, add_gutters, add_furniture)
 """What builds a section, in this order; each draws from streams of its own."""
 
 _KEPT_SECTIONS = 24

@@ -1,0 +1,1 @@
+"""Covered gutters: their beds, lids and gratings, and what lies on them."""
