@@ -1,0 +1,205 @@
+"""A tree with its truth: trunks, branches, leaves, stakes, what grows about its foot."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.random import Generator
+
+from processing.simulate.chance import chance
+from processing.simulate.materials import Material
+from processing.simulate.mesh import Floats
+from processing.simulate.roadside.crowns import (
+    CrownWish,
+    Keeps,
+    branches_of,
+    leaves_of,
+    scattered_leaves,
+)
+from processing.simulate.roadside.growth import Growth
+from processing.simulate.roadside.places import Places, Spot
+from processing.simulate.roadside.stakes import stakes_of
+from processing.simulate.roadside.trunks import (
+    HIGH_PIECE,
+    Stem,
+    StemWish,
+    girth_of_stem_m,
+    stem_of,
+    stem_shape,
+)
+from processing.simulate.street.section import Section
+from processing.simulate.things import Built, TrueFeature
+
+TRUNK, CROWN, SHRUB = 66, 5, 4
+TRUTH_WITHIN_M = 8.0
+"""Of the carriageway's edge: trees farther off are not asked for."""
+
+_CLEAR_OVER_ROAD_M = 4.2  # 建築限界: 4.5 m over carriageways, trees a little in arrears
+_SEVERAL_STEMS = 0.7  # of the sum of their girths: how street trees of several stems are measured
+
+
+@dataclass(frozen=True)
+class TreeWish:
+    """What one tree is to be like.
+
+    Attributes
+    ----------
+    high_m : float
+    is_young : bool
+        Newly planted: thin and staked.
+    leaves : int
+        At most; fewer as the season has it.
+    """
+
+    growth: Growth
+    spot: Spot
+    high_m: float
+    is_young: bool
+    leaves: int
+
+
+def leaf_share(section: Section, growth: Growth) -> float:
+    """How many of its leaves a tree carries in this street's season; 0 is a bare winter."""
+    if growth.is_evergreen:
+        return 1.0
+    season = chance(section.seed, "season").random()
+    return 0.0 if season < 0.2 else 0.35 if season < 0.35 else 1.0
+
+
+def add_tree(places: Places, built: Built, wish: TreeWish, random: Generator) -> None:
+    """Add a tree at a place that was taken for it."""
+    section, growth, spot = places.section, wish.growth, wish.spot
+    foot = places.where(spot)
+    instance = built.thing("tree")
+    stems = _stems(random, wish)
+    girths = []
+    for stem in stems:
+        shape, pieces = stem_shape(stem)
+        girths.append(girth_of_stem_m(stem, shape))
+        built.mesh.add((shape[0] + foot, shape[1]), Material.BARK, TRUNK, instance, piece=pieces)
+    crown = _crown_wish(random, wish, leaf_share(section, growth))
+    keeps = _clear_of_road(section, spot)
+    branches, leafy = branches_of(random, growth, stems, crown, keeps)
+    leaves = leaves_of(random, growth, leafy, crown, keeps)
+    built.mesh.add(
+        (branches[0] + foot, branches[1]), Material.BARK, TRUNK, instance, piece=HIGH_PIECE
+    )
+    built.mesh.add((leaves[0] + foot, leaves[1]), Material.LEAVES, CROWN, instance)
+    stakes = 0
+    if len(stems) == 1 and random.random() < (0.9 if wish.is_young else 0.3):
+        stakes = _add_stakes(places, built, wish, stems[0])
+    _add_undergrowth(built, random, stems[0], foot)
+    if abs(spot.offset_m) - section.plan.side(spot.side).edge_m > TRUTH_WITHIN_M:
+        return
+    extent = np.concatenate([branches[0], leaves[0], stems[0].path[-1:]])
+    girth = girths[0] if len(girths) == 1 else _SEVERAL_STEMS * sum(girths)
+    built.truth.append(
+        TrueFeature(
+            "trees",
+            "Point",
+            foot[None],
+            {
+                "kind": "tree",
+                "girth_m": girth,
+                "dbh_m": girth / np.pi,
+                "stem_dbh_m": [one / np.pi for one in girths],
+                "stems": len(girths),
+                "stakes": stakes,
+                "height_m": float(extent[:, 2].max()),
+                "crown_m": float(np.ptp(extent[:, :2], axis=0).mean()),
+                "growth": growth.name,
+            },
+            instance,
+            spot.chainage_m,
+        )
+    )
+
+
+def _stems(random: Generator, wish: TreeWish) -> list[Stem]:
+    growth = wish.growth
+    count = int(random.integers(growth.stems[0], growth.stems[1] + 1))
+    diameter = wish.high_m / float(random.uniform(*growth.slenderness))
+    diameter = float(np.clip(diameter * random.lognormal(0, 0.15), 0.035, 0.6))
+    if wish.is_young:
+        diameter = float(np.clip(diameter * 0.6, 0.035, 0.12))
+    lean = float(min(random.exponential(0.025), 0.14))
+    turn = float(random.uniform(0, 2 * np.pi))
+    common = np.array([np.cos(turn), np.sin(turn)]) * lean
+    if count == 1:
+        end = 0.25 if growth.form < 0.7 else 0.35
+        top = wish.high_m * (0.92 if growth.form < 0.35 else 0.72)
+        return [stem_of(random, StemWish(diameter / 2, top, end, (common[0], common[1])))]
+    stems = []
+    apart = diameter * float(random.uniform(0.5, 1.0)) + 0.03
+    for each in range(count):
+        angle = turn + each * 2 * np.pi / count + float(random.normal(0, 0.3))
+        way = np.array([np.cos(angle), np.sin(angle)])
+        out = common + way * float(random.uniform(0.06, 0.2))
+        radius = diameter / 2 * float(random.uniform(0.45, 0.85))
+        foot = way * apart
+        top = wish.high_m * float(random.uniform(0.6, 0.8))
+        stems.append(
+            stem_of(random, StemWish(radius, top, 0.3, (out[0], out[1]), (foot[0], foot[1])))
+        )
+    return stems
+
+
+def _crown_wish(random: Generator, wish: TreeWish, share: float) -> CrownWish:
+    growth = wish.growth
+    base = max(wish.high_m * float(random.uniform(*growth.base)), min(1.6, wish.high_m * 0.45))
+    wide = wish.high_m * float(random.uniform(*growth.crown)) * (0.5 if wish.is_young else 1.0)
+    branches = int(np.clip(wish.high_m * random.uniform(1.5, 3.0), 5, 26))
+    leaves = int(wish.leaves * share * np.clip(wide * wish.high_m / 24, 0.25, 1.0))
+    leaf = float(np.clip(random.uniform(0.06, 0.1) * np.sqrt(wide / 2), 0.05, 0.15))
+    return CrownWish(base, wish.high_m, wide, branches, leaves, leaf)
+
+
+def _clear_of_road(section: Section, spot: Spot) -> Keeps:
+    """Nothing low hangs over the carriageway: lorries see to that."""
+    heading = section.heading(spot.chainage_m)
+    outwards = spot.side * np.array([-np.sin(heading), np.cos(heading)])
+    reach = abs(spot.offset_m) - section.plan.side(spot.side).edge_m
+
+    def keeps(places: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+        is_over = places[:, :2] @ outwards < -reach + 0.3
+        kept: np.ndarray[tuple[int], np.dtype[np.bool_]] = ~is_over | (
+            places[:, 2] > _CLEAR_OVER_ROAD_M
+        )
+        return kept
+
+    return keeps
+
+
+def _add_stakes(places: Places, built: Built, wish: TreeWish, stem: Stem) -> int:
+    section, spot = places.section, wish.spot
+    random = section.chance("stakes", int(spot.chainage_m * 100) * spot.side)
+    foot = places.where(spot)
+    wood, straps, count = stakes_of(random, stem, section.heading(spot.chainage_m))
+    instance = built.thing("stake")
+    built.mesh.add((wood[0] + foot, wood[1]), Material.WOOD, TRUNK, instance)
+    built.mesh.add((straps[0] + foot, straps[1]), Material.CLOTH, TRUNK, instance)
+    return count
+
+
+def _add_undergrowth(built: Built, random: Generator, stem: Stem, foot: Floats) -> None:
+    """Shoots and shrubs about the foot, ivy on the trunk: now and then."""
+    kind = random.random()
+    if kind < 0.14:
+        high, wide = float(random.uniform(0.2, 1.0)), float(random.uniform(0.2, 0.5))
+        count = int(120 + 500 * high)
+        turns = random.uniform(0, 2 * np.pi, count)
+        away = stem.radius_m(0.3) + wide * np.abs(random.normal(0.3, 0.5, count))
+        level = np.abs(random.normal(0, high / 2, count)).clip(0.03, high)
+        centres = np.column_stack([away * np.cos(turns), away * np.sin(turns), level])
+    elif kind < 0.19:
+        count, high = 300, float(random.uniform(0.8, 2.6))
+        turns, level = random.uniform(0, 2 * np.pi, count), random.uniform(0.03, high, count)
+        away = np.interp(level, stem.path[:, 2], stem.radii) + random.uniform(0, 0.05, count)
+        axis = np.column_stack([np.interp(level, stem.path[:, 2], stem.path[:, i]) for i in (0, 1)])
+        turned = np.column_stack([np.cos(turns), np.sin(turns)]) * away[:, None]
+        centres = np.column_stack([axis + turned, level])
+    else:
+        return
+    leaves = scattered_leaves(random, centres, 0.06)
+    built.mesh.add((leaves[0] + foot, leaves[1]), Material.LEAVES, SHRUB, built.thing("shrub"))
