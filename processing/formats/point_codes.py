@@ -164,7 +164,7 @@ def _codes_of(
         Text(
             "Name it “code”, or use: {names}.",
             "「code」という名前にするか、次を使ってください: {names}",
-        ).filled(names=", ".join(flags)),
+        ).filled(names=", ".join((*_CODES[1:], *flags))),
     )
 
 

@@ -18,7 +18,7 @@ from processing.project.scratch_folder import whole_folder
 from processing.project.truth_making import OTHER, MadeTruth
 from processing.project.truth_store import TRUTH
 from processing.score.coded_points import CodedFile
-from processing.score.scorers import GROUND_SCORER, SCORERS
+from processing.score.scorers import GROUND_SCORER, POINT_SCORERS
 from processing.text import Text
 
 _AT_ONCE = 1_000_000
@@ -33,7 +33,7 @@ def coded_truth(path: Path) -> CodedFile:
     MissingInput, NoSpace, BadFile
         It can't be read, is damaged, or has no classes.
     """
-    flags = {name: codes for one in SCORERS.values() for name, codes in one.flags.items()}
+    flags = {name: codes for one in POINT_SCORERS for name, codes in one.flags.items()}
     # Text with yes and no alone is that of the ISPRS filter test, which is about the ground.
     no, yes = GROUND_SCORER.if_false, GROUND_SCORER.if_true
     return read_truth(path, if_false=no, if_true=yes, flags=flags)

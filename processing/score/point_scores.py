@@ -108,7 +108,7 @@ class PointScorer:
     name : Text
     codes : frozenset of int
         The codes that the tool is asked for; kinds are right where truth and result agree on
-        these.
+        these. None: every code counts for itself.
     if_false, if_true : int
         Codes of a truth that says only no and yes: text with classes 0 and 1.
     flags : mapping of str to (int, int)
@@ -248,7 +248,11 @@ def _count_kinds(
 ) -> None:
     if not pair.truth.kinds:
         return
-    is_right = is_one_of(pair.truth.codes, codes) == is_one_of(pair.result.codes, codes)
+    is_right = (
+        is_one_of(pair.truth.codes, codes) == is_one_of(pair.result.codes, codes)
+        if codes
+        else pair.truth.codes == pair.result.codes
+    )
     for group, values in pair.truth.kinds.items():
         found, place = np.unique(values, return_inverse=True)
         of = np.bincount(place, minlength=found.size)

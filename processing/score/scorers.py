@@ -1,7 +1,8 @@
 """Every kind of result that can be scored against a truth, declared once.
 
 ``zuka score``, the accuracy tables and the evaluation in the window take their scorers from here.
-A tool that classifies points has a :class:`~processing.score.point_scores.PointScorer`.
+A tool that classifies points has a :class:`~processing.score.point_scores.PointScorer`, one that
+maps features a :class:`~processing.score.file_scores.FeatureScorer`.
 """
 
 from __future__ import annotations
@@ -9,6 +10,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from processing.errors import OutOfRange
+from processing.score.class_scores import class_score
+from processing.score.curb_lines import curb_score
+from processing.score.file_scores import FeatureScorer, VolumeScorer
+from processing.score.gutters import gutter_score
 from processing.score.point_scores import (
     GROUND_CODES,
     NOISE_CODES,
@@ -16,10 +21,14 @@ from processing.score.point_scores import (
     ground_score,
     noise_score,
 )
+from processing.score.poles import pole_score
+from processing.score.signs import sign_score
+from processing.score.trees import tree_score
+from processing.score.volumes import volume_score
 from processing.text import Text
 
-Scorer = PointScorer
-"""One per kind of result; a kind that isn't points joins here as a union."""
+Scorer = PointScorer | FeatureScorer | VolumeScorer
+"""One per kind of result."""
 
 NOISE_SCORER = PointScorer(
     tool="noise",
@@ -39,7 +48,27 @@ GROUND_SCORER = PointScorer(
     flags={"ground": (1, 2)},
     told=ground_score,
 )
-SCORERS: Mapping[str, Scorer] = {one.tool: one for one in (NOISE_SCORER, GROUND_SCORER)}
+CLASS_SCORER = PointScorer(
+    tool="classify",
+    name=Text("Classes", "分類"),
+    codes=frozenset(),
+    if_false=0,
+    if_true=1,
+    flags={},
+    told=class_score,
+)
+POINT_SCORERS = (NOISE_SCORER, GROUND_SCORER, CLASS_SCORER)
+FEATURE_SCORERS = (
+    FeatureScorer("curbs", Text("Curbs", "縁石"), curb_score),
+    FeatureScorer("gutters", Text("Covered gutters", "蓋付き側溝"), gutter_score),
+    FeatureScorer("trees", Text("Street trees", "街路樹"), tree_score),
+    FeatureScorer("signs", Text("Road signs", "道路標識"), sign_score),
+    FeatureScorer("poles", Text("Poles", "柱"), pole_score),
+)
+VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
+SCORERS: Mapping[str, Scorer] = {
+    one.tool: one for one in (*POINT_SCORERS, *FEATURE_SCORERS, VOLUME_SCORER)
+}
 
 
 def scorer_of(tool: str) -> Scorer:

@@ -1,0 +1,64 @@
+"""The score of classified points in words: a table on the terminal, an object in JSON."""
+
+from __future__ import annotations
+
+from app.cli.aligned import aligned
+from app.cli.score_cells import (
+    COUNTS_HEAD,
+    count_cells,
+    counts_json,
+    figure,
+    or_null,
+    percent,
+    so_many_of,
+)
+from processing.score.point_scores import PointScore
+from processing.score.reliability import Share
+from processing.text import Language, Text
+
+_HEAD = (Text("positive class", "正例とするクラス"), *COUNTS_HEAD)
+_KINDS_HEAD = (Text("kind", "種類"), Text("points", "点数"), Text("right", "正解率"))
+
+
+def point_score_json(score: PointScore) -> dict[str, object]:
+    """Every count and figure."""
+    kinds: dict[str, dict[str, object]] = {}
+    for one in score.kinds:
+        kinds.setdefault(one.group, {})[str(one.kind)] = _share_json(one.right)
+    return {
+        "points": score.points,
+        "classes": {one.id: counts_json(one.counts) for one in score.classes},
+        "shares": {one.id: _share_json(one.share) for one in score.shares},
+        "figures": {one.id: or_null(one.value) for one in score.figures},
+        "kinds": kinds,
+    }
+
+
+def point_score_lines(score: PointScore, tool: Text, language: Language) -> list[str]:
+    """Lines for people."""
+    points = Text("{name}: {points} points", "{name}：{points}点")
+    lines = [points.filled(name=tool, points=f"{score.points:,}").spoken(language), ""]
+    rows = [[word.spoken(language) for word in _HEAD]]
+    rows += [[one.name.spoken(language), *count_cells(one.counts)] for one in score.classes]
+    lines += [*aligned(rows), ""]
+    lines += aligned(
+        [
+            *(
+                [one.name.spoken(language), percent(one.share.value), so_many_of(one.share)]
+                for one in score.shares
+            ),
+            *([one.name.spoken(language), figure(one.value), ""] for one in score.figures),
+        ]
+    )
+    if score.kinds:
+        kinds = [[word.spoken(language) for word in _KINDS_HEAD]]
+        kinds += [
+            [f"{one.group} {one.kind}", f"{int(one.right.of):,}", percent(one.right.value)]
+            for one in score.kinds
+        ]
+        lines += ["", *aligned(kinds)]
+    return lines
+
+
+def _share_json(share: Share) -> dict[str, object]:
+    return {"points": int(share.hits), "of": int(share.of), "share": or_null(share.value)}

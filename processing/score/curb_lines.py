@@ -1,0 +1,218 @@
+"""Curb edges against a truth, counted in sections of 2 m as the thesis does, and measured.
+
+Each edge is judged by itself: upper edges by true upper ones, lower by lower. A true section is
+found where result lines run along most of it; what runs along no true line, or along one that
+another line already accounts for, is cut into sections that are false. So a line at a wrong place
+is both a miss and a false alarm, and neither the direction of lines nor where they are split
+matters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.score.curb_sections import (
+    COVERED_SHARE,
+    SECTION_M,
+    TrueSection,
+    kind_of,
+    pieces_of,
+    sections_of,
+)
+from processing.score.file_scores import Counts, Errors, FileScore, errors_of, named_share
+from processing.score.line_places import Integers, Lines, middle_places
+from processing.score.mapped_features import Floats, MappedFeature, MappedFile
+from processing.score.point_classes import TwoByTwo
+from processing.text import Text
+
+CURBS: dict[str, dict[str, object]] = {
+    "curb": {},
+    "curb_upper": {"edge": "upper"},
+    "curb_lower": {"edge": "lower"},
+}
+"""Kinds of features that are curbs, with the edge that a kind implies."""
+
+EDGES = ("upper", "lower")
+
+TOLERANCE_M = 0.10
+"""Mms.md 6.4: how far in plan a line may be from the true one."""
+
+FOUND_SHARE = 0.5
+"""A section is found, or false, if most of it is."""
+
+_STEP_M = 0.05  # judged places along a line: 40 a section
+_NAME = Text("curbs", "縁石")
+
+
+@dataclass(frozen=True)
+class _EdgeScore:
+    """One edge, judged once with dropped curbs and once without."""
+
+    counts: dict[bool, TwoByTwo]
+    plan_off: Floats
+    height_off: Floats
+    step_off: Floats
+    right_types: int
+    unseen: int
+
+
+def curb_score(
+    result: MappedFile, truth: MappedFile, tolerance_m: float = TOLERANCE_M
+) -> FileScore:
+    """Score curbs.
+
+    Parameters
+    ----------
+    tolerance_m : float
+        How far in plan a line may be from the true one.
+
+    Raises
+    ------
+    BadFile
+        Features aren't lines of curbs, don't say which edge they are, or a measure is no number.
+    """
+    found = _by_edge(result)
+    true = _by_edge(truth)
+    edges = {
+        edge: _edge_score(
+            result,
+            [one for one in found[edge] if kind_of(one) != "back"],
+            sections_of(truth, true[edge]),
+            tolerance_m,
+        )
+        for edge in EDGES
+    }
+    return FileScore(
+        "curbs",
+        (
+            Counts(
+                "without_dropped",
+                Text("2 m sections, without dropped curbs", "2m区間（切下げを除く）"),
+                _sum([one.counts[False] for one in edges.values()]),
+            ),
+            Counts(
+                "all",
+                Text("2 m sections, with dropped curbs", "2m区間（切下げを含む）"),
+                _sum([one.counts[True] for one in edges.values()]),
+            ),
+            *(
+                Counts(
+                    edge,
+                    Text(*_edge_name(edge, "2 m sections", "の2m区間")),
+                    edges[edge].counts[True],
+                )
+                for edge in EDGES
+            ),
+        ),
+        (
+            named_share(
+                "type",
+                ("sections found with the right type", "種類（縁石・切下げ）も正しい区間"),
+                sum(one.right_types for one in edges.values()),
+                sum(one.counts[True].hits for one in edges.values()),
+            ),
+        ),
+        tuple(error for edge in EDGES for error in _edge_errors(edge, edges[edge])),
+        left_out={"unseen_sections": sum(one.unseen for one in edges.values())},
+        limits={
+            "tolerance_m": tolerance_m,
+            "section_m": SECTION_M,
+            "found_share": FOUND_SHARE,
+            "covered_share": COVERED_SHARE,
+        },
+    )
+
+
+def _by_edge(file: MappedFile) -> dict[str, list[MappedFeature]]:
+    """Lines by edge; the rear edges of kerb stones, which no map asks for, in both."""
+    lines: dict[str, list[MappedFeature]] = {edge: [] for edge in EDGES}
+    for one in file.of_kinds(CURBS, "line", _NAME):
+        for edge in EDGES if kind_of(one) == "back" else (file.word(one, "edge", EDGES),):
+            lines[edge].append(one)
+    return lines
+
+
+def _edge_score(
+    result: MappedFile,
+    features: Sequence[MappedFeature],
+    sections: Sequence[TrueSection],
+    tolerance_m: float,
+) -> _EdgeScore:
+    asked = [section for section in sections if section.is_asked]
+    at, of = _all_places([section.xyz for section in asked])
+    lines = Lines([one.xyz for one in features])
+    near = lines.nearest(at, tolerance_m)
+    is_found = _mostly(near.line >= 0, of, len(asked))
+    is_dropped = np.array([one.kind == "dropped" for one in asked], np.bool_)
+    false = _false_sections(features, Lines([one.xyz for one in sections]), lines, tolerance_m)
+    counts = {}
+    for with_dropped in (True, False):
+        counted = is_found[with_dropped | ~is_dropped]
+        hits = int(counted.sum())
+        counts[with_dropped] = TwoByTwo(hits, false, counted.size - hits, 0)
+    used = np.flatnonzero((near.line >= 0) & is_found[of])
+    found = _lines_of(near.line[used], of[used])
+    return _EdgeScore(
+        counts,
+        near.off_m[used],
+        (near.xyz - at)[used, 2],
+        np.array(
+            [result.number(features[j], "height_m") - asked[i].step_m for i, j in found.items()]
+        ),
+        sum(kind_of(features[line]) == asked[section].kind for section, line in found.items()),
+        len(sections) - len(asked),
+    )
+
+
+def _all_places(lines: Sequence[Floats]) -> tuple[Floats, Integers]:
+    """Judged places along lines, (n, 3), and of which line each is."""
+    places = [middle_places(line, _STEP_M) for line in lines]
+    of = np.repeat(np.arange(len(lines)), [len(one) for one in places])
+    return np.vstack([np.empty((0, 3)), *places]), of.astype(np.int64)
+
+
+def _mostly(is_so: NDArray[np.bool_], of: Integers, count: int) -> NDArray[np.bool_]:
+    """(count,) whether something is so at most places of each line."""
+    whole = np.bincount(of, minlength=count)
+    share = np.bincount(of[is_so], minlength=count) / np.maximum(whole, 1)
+    return np.asarray(share >= FOUND_SHARE)
+
+
+def _lines_of(line: Integers, of: Integers) -> dict[int, int]:
+    """By section, the line beside the middle of what was found of it."""
+    parts = np.split(np.arange(of.size), np.flatnonzero(np.diff(of)) + 1)
+    return {int(of[one[0]]): int(line[one[one.size // 2]]) for one in parts if one.size}
+
+
+def _false_sections(
+    features: Sequence[MappedFeature], true_lines: Lines, lines: Lines, tolerance_m: float
+) -> int:
+    """Sections of result lines that no true line, seen or not, accounts for."""
+    pieces = [part for one in features for part in pieces_of(one.xyz)]
+    owner = np.repeat(np.arange(len(features)), [len(pieces_of(one.xyz)) for one in features])
+    at, of = _all_places(pieces)
+    true = true_lines.nearest(at, tolerance_m)
+    is_right = true.line >= 0
+    # Of two lines along one true line only the nearer is right.
+    beside = lines.nearest(true.xyz[is_right], tolerance_m)
+    is_right[is_right] = beside.line == owner[of[is_right]]
+    return int((~_mostly(is_right, of, len(pieces))).sum())
+
+
+def _sum(counts: Sequence[TwoByTwo]) -> TwoByTwo:
+    return sum(counts, TwoByTwo(0, 0, 0, 0))
+
+
+def _edge_errors(edge: str, score: _EdgeScore) -> Iterator[Errors]:
+    yield errors_of(f"{edge}_plan", _edge_name(edge, "in plan", "の水平距離"), "m", score.plan_off)
+    yield errors_of(f"{edge}_height", _edge_name(edge, "height", "の標高"), "m", score.height_off)
+    yield errors_of(f"{edge}_step", _edge_name(edge, "curb's step", "の段差"), "m", score.step_off)
+
+
+def _edge_name(edge: str, english: str, japanese: str) -> tuple[str, str]:
+    ja = {"upper": "上端", "lower": "下端"}[edge]
+    return f"{edge} edge, {english}", f"{ja}{japanese}"
