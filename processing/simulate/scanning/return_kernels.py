@@ -25,6 +25,7 @@ NOISE, EXIT, DIVERGENCE, TURN_RAD, MOST_RETURNS, IS_PHASE, WEAKEST, DAMPING, WET
 
 TRUE, MIXED, LATER = 0, 1, 2
 _BASE_M = 10.0
+_NEAR_M = 8.0  # nearer than this a receiver sees its own beam only in part
 
 
 @kernel
@@ -80,8 +81,8 @@ def _strength(surface: Floats, reach: float, cosine: float, light: tuple[float, 
     diffuse = part * (1.0 - shine) * cosine
     mirrored: float = shine * cosine**60
     back = surface[RETRO] * math.sqrt(cosine)
-    away = max(reach, 1.5)
-    power: float = (diffuse + mirrored + back) * (_BASE_M / away) ** 2
+    away = (reach * reach + _NEAR_M * _NEAR_M) / (_BASE_M * _BASE_M + _NEAR_M * _NEAR_M)
+    power: float = (diffuse + mirrored + back) / away
     return power
 
 

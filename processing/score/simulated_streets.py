@@ -1,0 +1,277 @@
+"""Simulated recordings held against their own truth: what the points show of what it says.
+
+``python -m processing.score.simulated_streets --markdown docs/accuracy.md`` simulates streets of
+seeds that nobody looked at, and measures rates, heights, trunks and plates from the points alone.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import laspy
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.formats.safe_write import written_safely
+from processing.monitor import SilentMonitor
+from processing.score.filter_tables import markdown_table
+from processing.score.filters import with_section
+from processing.simulate.streets import simulate_street
+from processing.simulate.wishes import StreetWish
+
+HEADING = "## Simulated streets against their truth"
+SEEDS = range(901, 913)
+_STYLES = ("urban", "rural", "highway")
+_SENSORS = ("vq250", "vq450", "zf9012", "vmx2ha")
+_LENGTH_M = 100.0
+
+_POLE, _SIGN, _CURB = 66, 65, 67
+_FEWEST_POINTS = 30
+_STONE_M = 0.1  # of the top behind the upper edge, and of the apron before the lower one
+_BESIDE_M = 0.25
+_BREAST_M = (1.1, 1.3)
+_FULL_ARC_DEG = 130.0
+
+_Floats = NDArray[np.float64]
+_Members = list[dict[str, Any]]  # whatever JSON can hold
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """All points of a simulated recording with their truth.
+
+    Attributes
+    ----------
+    xyz : (n, 3) float64
+        m.
+    label, instance : (n,)
+    """
+
+    xyz: _Floats
+    label: NDArray[np.uint8]
+    instance: NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class Errors:
+    """How far measured values are from true ones.
+
+    Attributes
+    ----------
+    count : int
+    median, spread : float
+        Of the errors: the middle, and the middle of their distances from it.
+    """
+
+    count: int
+    median: float
+    spread: float
+
+    @staticmethod
+    def of(errors: Sequence[float]) -> Errors:
+        """Of some errors; NaN where there are none."""
+        if not errors:
+            return Errors(0, np.nan, np.nan)
+        middle = float(np.median(errors))
+        return Errors(len(errors), middle, float(np.median(np.abs(np.array(errors) - middle))))
+
+    def cell(self, factor: float) -> str:
+        """As a table's cell: middle ± spread (how many), times a factor."""
+        if not self.count:
+            return "–"
+        return f"{factor * self.median:+.1f} ± {factor * self.spread:.1f} ({self.count})"
+
+
+def cloud_of(folder: Path) -> Cloud:
+    """The points of a simulated delivery."""
+    parts = [laspy.read(path) for path in sorted(folder.glob("*.laz"))]
+    truth = folder / "truth"
+    names = sorted(path.stem for path in folder.glob("*.laz"))
+    return Cloud(
+        np.concatenate([np.asarray(one.xyz) for one in parts]),
+        np.concatenate([np.load(truth / f"{name}.labels.npy") for name in names]),
+        np.concatenate([np.load(truth / f"{name}.instances.npy") for name in names]),
+    )
+
+
+def curb_heights(cloud: Cloud, truth: Path) -> Errors:
+    """Steps of seen 2 m stretches, from the points before and behind the edges, against truth."""
+    edges = [one for one in _members(truth / "curbs.geojson") if _facts(one)["type"] != "back"]
+    lower = {_facts(one)["run"]: one for one in edges if _facts(one)["edge"] == "lower"}
+    near = np.isin(cloud.label, (2, 11, _CURB))
+    xyz = cloud.xyz[near]
+    order = np.argsort(xyz[:, 0])
+    xyz = xyz[order]
+    errors = []
+    for one in edges:
+        run = _facts(one)["run"]
+        if _facts(one)["edge"] != "upper" or run not in lower or _facts(one)["type"] != "curb":
+            continue
+        high, low = _line(one), _line(lower[run])
+        along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(high, axis=0), axis=1))]
+        for section in _facts(one)["sections"]:
+            if section["in_span"] and section["covered"] > 0.9 and section["u1"] > 1.5:
+                middle = (section["u0"] + section["u1"]) / 2
+                error = _step_error(xyz, high, low, _at(high, along, middle))
+                errors += [] if error is None else [error]
+    return Errors.of(errors)
+
+
+def trunk_diameters(cloud: Cloud, truth: Path) -> Errors:
+    """Girth-diameters of trunks seen well from two sides, from circles through their points."""
+    errors = []
+    for one in _members(truth / "trees.geojson"):
+        facts = _facts(one)
+        if facts["arc_deg"] < _FULL_ARC_DEG or facts["stems"] != 1:
+            continue
+        own = cloud.xyz[(cloud.instance == facts["instance"]) & (cloud.label == _POLE)]
+        above = own[:, 2] - one["geometry"]["coordinates"][2]
+        ring = own[(above > _BREAST_M[0]) & (above < _BREAST_M[1]), :2]
+        if len(ring) >= _FEWEST_POINTS:
+            errors.append(_circle_diameter(ring) - facts["dbh_m"])
+    return Errors.of(errors)
+
+
+def plate_distances(cloud: Cloud, truth: Path) -> tuple[Errors, Errors]:
+    """Distances of plates' points from the true plane (m), and turns of their fitted one (°)."""
+    away, turned = [], []
+    for one in _members(truth / "signs.geojson"):
+        facts = _facts(one)
+        if facts["front_points"] < _FEWEST_POINTS:
+            continue
+        own = cloud.xyz[(cloud.instance == facts["instance"]) & (cloud.label == _SIGN)]
+        facing = np.radians(facts["facing_deg"])
+        normal = np.array([np.sin(facing), np.cos(facing)])
+        centre = np.array(one["geometry"]["coordinates"])
+        off = (own[:, :2] - centre[:2]) @ normal
+        away.append(float(np.median(off)))
+        across = np.array([-normal[1], normal[0]])
+        beside = (own[:, :2] - centre[:2]) @ across
+        if np.ptp(beside) > 0.2:
+            slope = np.polyfit(beside, off, 1)[0]
+            turned.append(float(np.degrees(np.arctan(slope))))
+    return Errors.of(away), Errors.of(turned)
+
+
+def pulse_rate(path: Path) -> float:
+    """Pulses per second from the times of a file's points alone."""
+    times = np.unique(np.asarray(laspy.read(path).gps_time))
+    steps = np.diff(times)
+    return float(1.0 / np.median(steps[steps < 2 * np.percentile(steps, 5)]))
+
+
+def street_rows(seeds: Sequence[int] = SEEDS, length_m: float = _LENGTH_M) -> Iterator[list[str]]:
+    """Rows of cells, the head first: one per street."""
+    yield [
+        "style, sensor, seed",
+        "points",
+        "pulses/s: measured − true (ppm)",
+        "curb steps (mm)",
+        "trunk diameters (mm)",
+        "plates, along their normal (mm)",
+        "plates, turned (°)",
+    ]
+    for number, seed in enumerate(seeds):
+        style, sensor = _STYLES[number % len(_STYLES)], _SENSORS[number % len(_SENSORS)]
+        wish = StreetWish(seed=seed, length_m=length_m, style=style, sensor=sensor, images=False)
+        with tempfile.TemporaryDirectory(prefix="zuka-") as place:
+            folder = Path(place) / "street"
+            simulate_street(wish, folder, SilentMonitor())
+            yield [f"{style}, {sensor}, {seed}", *_cells(folder)]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the table to a page, or to standard output."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--markdown", type=Path)
+    parser.add_argument("--length", type=float, default=_LENGTH_M)
+    parser.add_argument("--seeds", type=int, nargs="+", default=list(SEEDS))
+    wish = parser.parse_args(arguments)
+    rows = list(street_rows(wish.seeds, wish.length))
+    section = "\n".join((f"{HEADING}\n", *markdown_table(rows)))
+    if wish.markdown is None:
+        sys.stdout.write(section)
+        return 0
+    page = with_section(wish.markdown.read_text("utf-8"), HEADING, section)
+    with written_safely(wish.markdown) as path:
+        path.write_text(page, "utf-8")
+    return 0
+
+
+def _cells(folder: Path) -> list[str]:
+    truth = folder / "truth"
+    scene = json.loads((truth / "scene.json").read_text("utf-8"))
+    cloud = cloud_of(folder)
+    true_rate = scene["pulses_per_revolution"] * scene["revolutions_per_s"]
+    rate = pulse_rate(min(folder.glob("*.laz")))
+    away, turned = plate_distances(cloud, truth)
+    return [
+        f"{cloud.label.size:,}",
+        f"{1e6 * (rate / true_rate - 1):+.0f}",
+        curb_heights(cloud, truth).cell(1000),
+        trunk_diameters(cloud, truth).cell(1000),
+        away.cell(1000),
+        turned.cell(1),
+    ]
+
+
+def _members(path: Path) -> _Members:
+    members: _Members = json.loads(path.read_text("utf-8"))["features"]
+    return members
+
+
+def _facts(member: dict[str, Any]) -> dict[str, Any]:
+    facts: dict[str, Any] = member["properties"]
+    return facts
+
+
+def _line(member: dict[str, Any]) -> _Floats:
+    return np.array(member["geometry"]["coordinates"], np.float64)
+
+
+def _at(line: _Floats, along: _Floats, middle: float) -> _Floats:
+    return np.array([np.interp(middle, along, axis) for axis in line.T])
+
+
+def _step_error(xyz: _Floats, high: _Floats, low: _Floats, place: _Floats) -> float | None:
+    """Measured less true height of the step within 25 cm of a place of the upper edge."""
+    nearest = low[np.argmin(np.hypot(*(low[:, :2] - place[:2]).T))]
+    behind = int(np.argmin(np.hypot(*(high[:, :2] - place[:2]).T)))
+    way = high[min(behind + 1, len(high) - 1)] - high[max(behind - 1, 0)]
+    way = way[:2] / np.linalg.norm(way[:2])
+    aside = np.array([-way[1], way[0]])
+    if (nearest[:2] - place[:2]) @ aside > 0:
+        aside = -aside  # away from the road
+    span = np.searchsorted(xyz[:, 0], [place[0] - 1, place[0] + 1])
+    own = xyz[span[0] : span[1]]
+    along, across = (own[:, :2] - place[:2]) @ way, (own[:, :2] - place[:2]) @ aside
+    foot = float((nearest[:2] - place[:2]) @ aside)
+    is_near = (np.abs(along) < _BESIDE_M) & (np.abs(own[:, 2] - place[2]) < 0.5)
+    top = own[is_near & (across > 0.03) & (across < _STONE_M), 2]
+    road = own[is_near & (across < foot - 0.02) & (across > foot - _STONE_M), 2]
+    if min(top.size, road.size) < _FEWEST_POINTS // 3:
+        return None
+    low_at = nearest[2]
+    return float(np.median(top) - np.median(road) - (place[2] - low_at))
+
+
+def _circle_diameter(ring: _Floats) -> float:
+    """The circle nearest to points in the plane (Kåsa's fit), then without the farthest."""
+    for _ in range(3):
+        matrix = np.column_stack([2 * ring, np.ones(len(ring))])
+        answer, *_ = np.linalg.lstsq(matrix, (ring**2).sum(axis=1), rcond=None)
+        centre, radius = answer[:2], np.sqrt(max(0.0, answer[2] + answer[:2] @ answer[:2]))
+        off = np.abs(np.hypot(*(ring - centre).T) - radius)
+        ring = ring[off <= max(3 * np.median(off), 1e-4)]
+    return float(2 * radius)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
