@@ -1,0 +1,1 @@
+"""Photographs of a simulated street, as deliveries have them."""

@@ -1,0 +1,64 @@
+"""What cameras see at a moment: the sections around, and movers where they are at that time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from processing.simulate.cameras.rigs import Pose
+from processing.simulate.mesh import Mesh, placed
+from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.moving import poses_of
+from processing.simulate.street.street import Street
+from processing.simulate.things import Mover
+
+_REACH_M = 160.0
+
+
+class SeenStreet:
+    """A street and its traffic as photographs show them.
+
+    Parameters
+    ----------
+    street : Street
+    movers : sequence of Mover
+        Of the pass.
+    """
+
+    def __init__(self, street: Street, movers: Sequence[Mover]) -> None:
+        self._street, self._movers = street, movers
+        self._row = -1
+        self._standing: Scene | None = None
+
+    def at(self, pose: Pose) -> list[Scene]:
+        """The scenes around a pose at its time: what stands, and what moves."""
+        row = self._street.within(pose.chainage_m, pose.chainage_m)[0]
+        if self._standing is None or row != self._row:
+            self._standing, self._row = self._scene(row), row
+        meshes = [self._placed(one, pose) for one in self._movers if self._is_near(one, pose)]
+        if not meshes:
+            return [self._standing]
+        return [self._standing, Scene(Mesh.joined(meshes), pose.place)]
+
+    def _scene(self, row: int) -> Scene:
+        plan = self._street.plans[row]
+        near = self._street.within(plan.start_m - _REACH_M, plan.end_m + _REACH_M)
+        mesh = Mesh.joined(self._street.section(one).mesh for one in near)
+        middle = (plan.start_m + plan.end_m) / 2
+        level = self._street.alignment.carriageway_height(middle, 0.0)
+        return Scene(mesh, self._street.alignment.at(middle, 0.0, level))
+
+    def _is_near(self, mover: Mover, pose: Pose) -> bool:
+        if not mover.from_s <= pose.time_s <= mover.to_s:
+            return False
+        at, _ = mover.way_at(pose.time_s)
+        return abs(float(at) - pose.chainage_m) < _REACH_M
+
+    def _placed(self, mover: Mover, pose: Pose) -> Mesh:
+        places, headings = poses_of(mover, self._street, np.array([pose.time_s]))
+        vertices, _ = placed(
+            (mover.mesh.vertices, mover.mesh.triangles), places[0].tolist(), float(headings[0])
+        )
+        return replace(mover.mesh, vertices=vertices)
