@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from processing.simulate.mesh import Floats, Shape
 from processing.simulate.roadside.growth import Growth
-from processing.simulate.roadside.rods import rods
+from processing.simulate.roadside.rods import joined, rods
 from processing.simulate.roadside.trunks import Stem
 
 _PLACES = 5  # of a branch
@@ -97,7 +97,10 @@ def branches_of(
         return (np.empty((0, 3)), np.empty((0, 3), np.int64)), np.empty((0, 3))
     radii = _TIP_M + (wide[:, None] - _TIP_M).clip(0) * np.linspace(1, 0, _PLACES)
     leafy = np.concatenate([paths[:, 2:].reshape(-1, 3), *(one.path[-2:] for one in stems)])
-    return rods(paths, radii, 5, is_closed=False), leafy
+    boughs = int(kept.sum())
+    limbs = rods(paths[:boughs], radii[:boughs], 5, is_closed=False)
+    twigs = rods(paths[boughs:, ::2], radii[boughs:, ::2], 3, is_closed=False)
+    return joined([limbs, twigs]), leafy
 
 
 def _ways(turns: Floats, rise: Floats) -> Floats:
@@ -120,9 +123,9 @@ def leaves_of(
     """Leaves in clumps about twigs: single triangles that look everywhere."""
     if wish.leaves == 0 or not len(leafy):
         return np.empty((0, 3)), np.empty((0, 3), np.int64)
-    clumps = leafy[random.integers(0, len(leafy), max(12, wish.leaves // 18))]
+    clumps = leafy[random.integers(0, len(leafy), max(20, wish.leaves // 9))]
     clumps = clumps + random.normal(0, 0.06 * wish.wide_m, clumps.shape)
-    tight = random.uniform(0.1, 0.3, len(clumps)) * np.clip(wish.wide_m / 4, 0.5, 1.6)
+    tight = random.uniform(0.12, 0.34, len(clumps)) * np.clip(wish.wide_m / 4, 0.5, 1.6)
     owner = random.integers(0, len(clumps), wish.leaves)
     centres = clumps[owner] + random.normal(0, 1, (wish.leaves, 3)) * tight[owner, None]
     if growth.droop > 0.5:

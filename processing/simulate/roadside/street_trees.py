@@ -102,7 +102,7 @@ def _in_row(places: Places, random: Generator, row: _Row) -> list[TreeWish]:
             high = float(np.clip(row.high_m * random.normal(1.0, 0.14), low * 0.85, top * 1.1))
             if is_young:
                 high = float(random.uniform(2.6, 4.2))
-            wishes.append(TreeWish(row.growth, spot, high, is_young, 0))
+            wishes.append(TreeWish(row.growth, spot, high, "young" if is_young else "grown", 0))
         at += row.pitch_m * float(random.uniform(0.75, 1.3))
     return wishes
 
@@ -121,7 +121,7 @@ def _in_yards(places: Places, random: Generator, side: int) -> list[TreeWish]:
         growth = YARD_GROWTHS[int(random.integers(len(YARD_GROWTHS)))]
         if places.take(spot, _ROOM_M + 0.05):
             high = float(random.uniform(2.4, min(5.5, growth.high_m[1])))
-            wishes.append(TreeWish(growth, spot, high, is_young=False, leaves=0))
+            wishes.append(TreeWish(growth, spot, high, "grown", 0))
     return wishes
 
 
@@ -145,11 +145,9 @@ def _add_wood(places: Places, built: Built, side: int) -> None:
         own = section.chance("tree of a wood", number * side)
         high = float(own.uniform(*growth.high_m))
         if abs(spot.offset_m) - plan.edge_m <= TRUTH_WITHIN_M:
-            add_tree(places, built, TreeWish(growth, spot, high, is_young=False, leaves=500), own)
+            add_tree(places, built, TreeWish(growth, spot, high, "wild", 500), own)
         else:
-            _add_coarse_tree(
-                places, built, TreeWish(growth, spot, high, is_young=False, leaves=200), own
-            )
+            _add_coarse_tree(places, built, TreeWish(growth, spot, high, "wild", 200), own)
 
 
 def _add_coarse_tree(places: Places, built: Built, wish: TreeWish, random: Generator) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.random import Generator
@@ -35,8 +36,15 @@ TRUNK, CROWN, SHRUB = 66, 5, 4
 TRUTH_WITHIN_M = 8.0
 """Of the carriageway's edge: trees farther off are not asked for."""
 
+_MANY_LEAVES = 1_500
+_COVER = 1.1  # area of all leaves by that of the crown as seen from beside
+_WIDEST_LEAF_M = 0.16
 _CLEAR_OVER_ROAD_M = 4.2  # 建築限界: 4.5 m over carriageways, trees a little in arrears
+_STAKED = {"young": 0.9, "grown": 0.28, "wild": 0.0}
 _SEVERAL_STEMS = 0.7  # of the sum of their girths: how street trees of several stems are measured
+
+
+Age = Literal["young", "grown", "wild"]
 
 
 @dataclass(frozen=True)
@@ -46,8 +54,8 @@ class TreeWish:
     Attributes
     ----------
     high_m : float
-    is_young : bool
-        Newly planted: thin and staked.
+    age : str
+        ``young``: newly planted, thin and staked; ``wild``: of a wood, never staked.
     leaves : int
         At most; fewer as the season has it.
     """
@@ -55,7 +63,7 @@ class TreeWish:
     growth: Growth
     spot: Spot
     high_m: float
-    is_young: bool
+    age: Age
     leaves: int
 
 
@@ -87,7 +95,7 @@ def add_tree(places: Places, built: Built, wish: TreeWish, random: Generator) ->
     )
     built.mesh.add((leaves[0] + foot, leaves[1]), Material.LEAVES, CROWN, instance)
     stakes = 0
-    if len(stems) == 1 and random.random() < (0.9 if wish.is_young else 0.3):
+    if len(stems) == 1 and random.random() < _STAKED[wish.age]:
         stakes = _add_stakes(places, built, wish, stems[0])
     _add_undergrowth(built, random, stems[0], foot)
     if abs(spot.offset_m) - section.plan.side(spot.side).edge_m > TRUTH_WITHIN_M:
@@ -121,7 +129,7 @@ def _stems(random: Generator, wish: TreeWish) -> list[Stem]:
     count = int(random.integers(growth.stems[0], growth.stems[1] + 1))
     diameter = wish.high_m / float(random.uniform(*growth.slenderness))
     diameter = float(np.clip(diameter * random.lognormal(0, 0.15), 0.035, 0.6))
-    if wish.is_young:
+    if wish.age == "young":
         diameter = float(np.clip(diameter * 0.6, 0.035, 0.12))
     lean = float(min(random.exponential(0.025), 0.14))
     turn = float(random.uniform(0, 2 * np.pi))
@@ -148,10 +156,14 @@ def _stems(random: Generator, wish: TreeWish) -> list[Stem]:
 def _crown_wish(random: Generator, wish: TreeWish, share: float) -> CrownWish:
     growth = wish.growth
     base = max(wish.high_m * float(random.uniform(*growth.base)), min(1.6, wish.high_m * 0.45))
-    wide = wish.high_m * float(random.uniform(*growth.crown)) * (0.5 if wish.is_young else 1.0)
-    branches = int(np.clip(wish.high_m * random.uniform(1.5, 3.0), 5, 26))
+    wide = (
+        wish.high_m * float(random.uniform(*growth.crown)) * (0.5 if wish.age == "young" else 1.0)
+    )
+    most = 24 if wish.leaves > _MANY_LEAVES else 13
+    branches = int(np.clip(wish.high_m * random.uniform(1.5, 3.0), 5, most))
     leaves = int(wish.leaves * share * np.clip(wide * wish.high_m / 24, 0.25, 1.0))
-    leaf = float(np.clip(random.uniform(0.06, 0.1) * np.sqrt(wide / 2), 0.05, 0.15))
+    cover = _COVER * wide * (wish.high_m - base) * float(random.uniform(0.6, 1.3))
+    leaf = float(np.clip(np.sqrt(cover / max(wish.leaves, 1) / 0.45), 0.05, _WIDEST_LEAF_M))
     return CrownWish(base, wish.high_m, wide, branches, leaves, leaf)
 
 

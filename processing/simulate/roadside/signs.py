@@ -1,0 +1,201 @@
+"""Sign posts beside the road: plates one above the other, some back to back, some bent."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.random import Generator
+
+from processing.simulate.materials import Material
+from processing.simulate.mesh import Floats
+from processing.simulate.roadside.neighbours import neighbour
+from processing.simulate.roadside.places import Places, Spot
+from processing.simulate.roadside.pole_line import TAPER, axis, pole_line
+from processing.simulate.roadside.poles import POLE, SHAFT_PIECE, SUNK_M, pole_truth
+from processing.simulate.roadside.rods import joined, rod, rods
+from processing.simulate.roadside.sign_choice import plate_of, plates_of
+from processing.simulate.roadside.sign_plates import (
+    SIGN,
+    THICK_M,
+    Hung,
+    Plate,
+    add_plate,
+    axes_of,
+    outline,
+)
+from processing.simulate.street.plan import LEFT, RIGHT, SIDES
+from processing.simulate.things import Built
+
+# Posts of signs: steel pipes of 60.5, 76.3 and 89.1 mm (道路標識ハンドブック); the lower edge of a
+# plate is 1.8 m up, 2.5 m over walks (道路標識設置基準 2-2).
+POSTS_M = (0.0605, 0.0605, 0.0763, 0.0891)
+LOWEST_M, LOWEST_OVER_WALK_M = 1.8, 2.5
+_BRACKET_M = 0.025
+_PER_M = {"urban": 1 / 26, "rural": 1 / 60, "highway": 1 / 90}
+
+
+@dataclass(frozen=True)
+class Post:
+    """A post as it stands: foot, way of its axis (unit), radius, and where it belongs."""
+
+    spot: Spot
+    foot: Floats
+    way: Floats
+    radius_m: float
+    ground_m: float
+
+    def at(self, above_m: float) -> Floats:
+        """A place on its axis, by the height above the foot."""
+        return np.asarray(self.foot + self.way * (above_m / self.way[2]), np.float64)
+
+
+def add_signs(places: Places, built: Built) -> None:
+    """Add sign posts at chance places, the signs of junctions next door, and signs on poles."""
+    section = places.section
+    plan = section.plan
+    for side in SIDES:
+        random = section.chance("signs", side)
+        for _ in range(int(random.poisson(plan.length_m * _PER_M[plan.style.id] / 2 * 1.6))):
+            at = float(random.uniform(plan.start_m, plan.end_m))
+            _add_post(places, built, random, (side, at, plates_of(random, plan.style)))
+    _add_stop_signs(places, built)
+    _add_on_poles(places, built)
+
+
+def against_traffic_rad(places: Places, spot: Spot) -> float:
+    """Where a sign looks: to those who drive on its side, anticlockwise from east."""
+    heading = places.section.heading(spot.chainage_m)
+    return heading + np.pi if spot.side == LEFT else heading
+
+
+def _add_stop_signs(places: Places, built: Built) -> None:
+    """Side streets stop: their signs stand at the far corner on the left of who comes out."""
+    section = places.section
+    random = section.chance("stop signs")
+    for step, side in ((-1, LEFT), (1, RIGHT)):
+        plan = neighbour(section, step)
+        if plan is None or side not in plan.junctions or random.random() < 0.3:
+            continue
+        at = section.plan.start_m + 0.7 if step < 0 else section.plan.end_m - 0.7
+        stop = [plate_of(random, "triangle", section.plan.style)]
+        outwards = section.heading(at) + side * np.pi / 2
+        _add_post(places, built, random, (side, at, stop), looks_rad=outwards)
+
+
+def _add_post(
+    places: Places,
+    built: Built,
+    random: Generator,
+    wish: tuple[int, float, list[Plate]],
+    *,
+    looks_rad: float | None = None,
+) -> None:
+    side, at, plates = wish
+    radius = float(random.choice(POSTS_M)) / 2
+    wide = max(one.size_m for one in plates)
+    spot = places.beside(random, side, at, max(0.12, min(wide / 2, 0.45)))
+    if spot is None:
+        return
+    foot = places.where(spot)
+    lean = random.normal(0, 0.006 if random.random() < 0.9 else 0.05, 2)
+    way = np.array([lean[0], lean[1], 1.0])
+    post = Post(spot, foot, way / np.linalg.norm(way), radius, float(foot[2]))
+    looks = against_traffic_rad(places, spot) if looks_rad is None else looks_rad
+    looks += side * float(np.deg2rad(random.uniform(-4, 14)))
+    over_walk = places.section.plan.side(side).walk_m > 0
+    lowest = LOWEST_OVER_WALK_M if over_walk and random.random() < 0.5 else LOWEST_M
+    lowest += float(random.uniform(-0.1, 0.35))
+    top = hang_plates(built, random, post, plates, (looks, lowest))
+    if random.random() < 0.18:
+        other = plates_of(random, places.section.plan.style)[:2]
+        top = max(top, hang_plates(built, random, post, other, (looks + np.pi, lowest)))
+    add_post(built, post, top + float(random.uniform(-0.03, 0.12)), "sign_pole")
+
+
+def add_post(built: Built, post: Post, high_m: float, kind: str) -> int:
+    """Add a post of one thickness and its truth; its instance."""
+    instance = built.thing("pole")
+    path = np.stack([post.at(-SUNK_M), post.at(0.0), post.at(high_m / 2), post.at(high_m)])
+    built.mesh.add(
+        rods(path[None], post.radius_m, 14),
+        Material.PAINTED_METAL,
+        POLE,
+        instance,
+        piece=SHAFT_PIECE,
+    )
+    facts = {"height_m": high_m, "diameter_m": 2 * post.radius_m}
+    pole_truth(built, post.spot, instance, post.foot, type=kind, **facts)
+    return instance
+
+
+def hang_plates(
+    built: Built,
+    random: Generator,
+    post: Post,
+    plates: list[Plate],
+    wish: tuple[float, float],
+) -> float:
+    """Hang plates on a post, the last one lowest.
+
+    Parameters
+    ----------
+    wish : (float, float)
+        Where they look (anticlockwise from east), and the height of the lowest edge above the
+        foot, m.
+
+    Returns
+    -------
+    float
+        Height of the highest edge above the foot, m.
+    """
+    looks_rad, edge = wish
+    for plate in plates[::-1]:
+        corners = outline(plate)
+        low, high = corners[:, 1].min(), corners[:, 1].max()
+        is_hit = random.random() < 0.06
+        hung = Hung(
+            np.zeros(3),
+            looks_rad + float(np.deg2rad(random.normal(0, 14 if is_hit else 1.5))),
+            float(np.deg2rad(random.normal(0, 4 if is_hit else 0.8))),
+            float(np.deg2rad(random.normal(0, 5 if is_hit else 0.7))),
+            float(random.normal(0, 0.15)) if is_hit else 0.0,
+            post.ground_m,
+        )
+        centre = post.at(edge - low)
+        away = post.radius_m + _BRACKET_M + THICK_M
+        look = axes_of(hung)[2]
+        middle = centre + look * away
+        instance = add_plate(
+            built,
+            plate,
+            Hung(middle, hung.facing_rad, hung.tilt_rad, hung.roll_rad, hung.bend, post.ground_m),
+            post.spot.chainage_m,
+        )
+        holds = [post.at(edge - low + y) for y in (low * 0.4, high * 0.4)]
+        reach = look * (away - THICK_M)
+        brackets = joined([rod(one, one + reach, 0.012) for one in holds])
+        built.mesh.add(brackets, Material.STEEL, SIGN, instance)
+        edge += float(high - low) + float(random.uniform(0.015, 0.06))
+    return edge
+
+
+def _add_on_poles(places: Places, built: Built) -> None:
+    """A few signs hang on utility poles."""
+    section = places.section
+    for pole in pole_line(section).poles:
+        random = section.chance("sign on a pole", pole.number)
+        if pole.section != section.plan.index or random.random() > 0.14:
+            continue
+        ground = section.ground.height(pole.spot.chainage_m, pole.spot.offset_m)
+        edge = section.alignment.carriageway_height(pole.spot.chainage_m, pole.spot.offset_m)
+        above = float(ground - edge)
+        foot, top = axis(section.alignment, pole, np.array([above, above + 3.0]))
+        radius = (pole.top_diameter_m + (pole.high_m - above - 2.5) * TAPER) / 2
+        post = Post(
+            pole.spot, foot, (top - foot) / np.linalg.norm(top - foot), radius, float(ground)
+        )
+        shape: PlateShape = "circle" if random.random() < 0.6 else "rectangle"
+        plates = [plate_of(random, shape, section.plan.style)]
+        looks = against_traffic_rad(places, pole.spot)
+        hang_plates(built, random, post, plates, (looks, float(random.uniform(2.2, 3.0))))
