@@ -1,84 +1,235 @@
-"""The cross section of a stretch: its lines and strips from the far right to the far left."""
+"""The cross sections of a section: its lines and strips from the far right to the far left."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import replace
+
 import numpy as np
 
+from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats
 from processing.simulate.street.alignment import Alignment
+from processing.simulate.street.dropped_curbs import drops_of, lowering
 from processing.simulate.street.ground import Ground, Strip
-from processing.simulate.street.plan import LEFT, RIGHT, Band, SectionPlan, SidePlan
+from processing.simulate.street.junction_shape import Mouth, mouth_of
+from processing.simulate.street.layout import Layout, SideLayout
+from processing.simulate.street.measures import looks_of, measures_along
+from processing.simulate.street.median import median_nodes, median_of, opening_of
+from processing.simulate.street.plan import LEFT, RIGHT, SIDES, SectionPlan, SidePlan
+from processing.simulate.street.profile import GROUND, ROAD, Course, Profile, profile_of
+from processing.simulate.street.section import Section
+from processing.simulate.street.stones import Laid, laid, plain
+from processing.simulate.street.sweep import Straight, Sweep
+from processing.simulate.street.terrain import Terrain
+from processing.simulate.street.unevenness import unevenness_of
 
-GROUND, ROAD, CURB, GRASS = 2, 11, 67, 3
-_STEP_M = 0.5
-_FACE_M = 0.02  # how far a face leans back
+_ROAD_STEP_M = 0.75
+_ROAD_LINE_M = 0.4
+_PLAIN_STEP_M = 0.5
+_SAME_M = 1e-4
+_FOLD_SHARE = 0.8
+"""On the inside of a bend the land ends before its lines cross: this share of the radius."""
 
-_Line = tuple[float, float]  # distance from the centre, height above the asphalt's edge
 
-
-def ground_of(plan: SectionPlan, alignment: Alignment) -> Ground:
-    """The ground of a section."""
-    nodes = np.linspace(plan.start_m, plan.end_m, max(2, int(plan.length_m / _STEP_M) + 1))
-    right_lines, right_strips = _side(plan.right)
-    left_lines, left_strips = _side(plan.left)
-    right = _placed(alignment, nodes, plan.right.edge_m, right_lines, RIGHT)
-    left = _placed(alignment, nodes, plan.left.edge_m, left_lines, LEFT)
-    middle = np.zeros((nodes.size, 1))
-    centre = alignment.carriageway_height(nodes, 0.0)[:, None]
-    road = Strip("road", Material.ASPHALT, ROAD)
-    return Ground(
-        nodes,
-        np.hstack([right[0][:, ::-1], middle, left[0]]),
-        np.hstack([right[1][:, ::-1], centre, left[1]]),
-        (*right_strips[::-1], road, road, *left_strips),
+def section_of(seed: int, plans: Sequence[SectionPlan], row: int, alignment: Alignment) -> Section:
+    """A section with its lines; depends on its own plan and those of its neighbours alone."""
+    plan = plans[row]
+    before = plans[row - 1] if row > 0 else None
+    after = plans[row + 1] if row + 1 < len(plans) else None
+    mouths = {side: mouth_of(seed, plan, side) for side in plan.junctions}
+    terrain = Terrain(
+        plan, alignment, unevenness_of(seed), tuple(one.grade for one in mouths.values())
     )
+    sides = {}
+    for side in SIDES:
+        beside = tuple(one.side(side) if one else None for one in (before, plan, after))
+        own = (beside[0], plan.side(side), beside[2])
+        sides[side] = _side_layout(seed, terrain, side, own, mouths.get(side))
+    opening = opening_of(plan, _widest(mouths))
+    step = int(np.ceil(plan.length_m / _ROAD_STEP_M)) + 1
+    nodes = np.linspace(plan.start_m, plan.end_m, step)
+    if plan.median_m > 0:
+        nodes = median_nodes(plan, opening)
+    median = median_of(seed, plan, terrain, nodes, opening)
+    layout = _layout(terrain, nodes, sides, median)
+    return Section(seed, plan, alignment, layout)
 
 
-def _side(side: SidePlan) -> tuple[list[_Line], list[Strip]]:
-    """Lines outwards from the asphalt's edge, which is the first, and the strips after each."""
-    lines: list[_Line] = [(side.edge_m, 0.0)]
-    strips: list[Strip] = []
-    for band in side.bands():
-        _add_band(side, band, lines, strips)
-    return lines, strips
+def boundary_line(
+    seed: int, plans: Sequence[SectionPlan], row: int, side: int, *, at_end: bool
+) -> tuple[Profile, SidePlan]:
+    """The lines of a side where a section meets the one before it or behind it."""
+    plan = plans[row]
+    before = plans[row - 1].side(side) if row > 0 else None
+    after = plans[row + 1].side(side) if row + 1 < len(plans) else None
+    own = _covered(plan.side(side)) if side in plan.junctions else plan.side(side)
+    along = np.array([plan.end_m if at_end else plan.start_m])
+    ends = np.array([plan.start_m, plan.end_m])
+    none = np.zeros(1)
+    course = Course(
+        own,
+        measures_along(seed, (before, plan.side(side), after), along, ends),
+        looks_of(seed, plan.side(side)),
+        own.edge_m + unevenness_of(seed).wander[side].at(along),
+        Laid(along, none, none, none),
+        lowering((), along),
+    )
+    return profile_of(course), own
 
 
-def _add_band(side: SidePlan, band: Band, lines: list[_Line], strips: list[Strip]) -> None:
-    high = lines[-1][1]
-    if band.name == "curb":
-        top = high + side.curb_high_m
-        behind = {"raised": top, "semi": high + 0.05, "flat": high, "asphalt": high}[side.curb]
-        lines += [
-            (band.inner_m + _FACE_M, top),
-            (band.outer_m, top),
-            (band.outer_m + 0.001, behind),
-        ]
-        strips += [Strip("curb", Material.CONCRETE, CURB)] * 3
+def far_m(terrain: Terrain, side: int, chainage: Floats, least_m: Floats) -> Floats:
+    """How far from the centre the land reaches there: (n,) float64, m."""
+    outer = next(one.outer_m for one in terrain.plan.side(side).bands() if one.name == "outside")
+    alignment = terrain.alignment
+    bend = side * np.interp(chainage, alignment.chainages, alignment.curvatures)
+    limit = _FOLD_SHARE / np.maximum(bend, 1e-6)
+    reach: Floats = np.maximum(np.minimum(outer, limit), least_m + 1.0)
+    return reach
+
+
+def land_of(seed: int, side: SidePlan) -> Strip:
+    """What the ground is made of behind a street's side."""
+    random = chance(seed, "land", int(side.verge_m * 1e7))
+    yards = (Material.GRAVEL, Material.SOIL, Material.OLD_CONCRETE, Material.GRASS)
+    materials = {"lots": yards[int(random.integers(4))], "rise": Material.GRASS}
+    return Strip("land", materials.get(side.outside, Material.SOIL), GROUND)
+
+
+def _covered(side: SidePlan) -> SidePlan:
+    """A side whose gutter runs below the side street's asphalt."""
+    return side if side.drain in ("none", "apron") else replace(side, drain="apron")
+
+
+def _widest(mouths: dict[int, Mouth]) -> tuple[float, float] | None:
+    if not mouths:
+        return None
+    return min(one.from_m for one in mouths.values()), max(one.to_m for one in mouths.values())
+
+
+def _side_layout(
+    seed: int,
+    terrain: Terrain,
+    side: int,
+    plans: tuple[SidePlan | None, SidePlan, SidePlan | None],
+    mouth: Mouth | None,
+) -> SideLayout:
+    plan, own = terrain.plan, plans[1]
+    looks = looks_of(seed, own)
+    ends = np.array([plan.start_m, plan.end_m])
+    drops = drops_of(seed, plan, side)
+    breaks = np.array([place for drop in drops for place in drop.breaks()])
+    random = chance(seed, "stones", plan.index, side)
+    if own.curb in ("none", "asphalt") or mouth is not None:
+        nodes = plain(ends, _PLAIN_STEP_M, breaks)
+    else:
+        nodes = laid(random, ends, looks.stone_m, looks.sloppiness_m, breaks)
+    wander = terrain.unevenness.wander[side].at(nodes.along)
+    if mouth is not None:
+        wander = wander * mouth.calm(nodes.along)
+    course = Course(
+        own,
+        measures_along(seed, plans, nodes.along, ends),
+        looks,
+        own.edge_m + wander,
+        nodes,
+        lowering(drops, nodes.along),
+    )
+    profile = _mouth_profile(course) if mouth is not None else profile_of(course)
+    least = profile.away[-1]
+    profile.line(far_m(terrain, side, nodes.along, least), profile.above[-1], land_of(seed, own))
+    sweep = Sweep.along(Straight(nodes.along, side), profile, terrain, side)
+    return SideLayout(sweep, drops, looks, mouth)
+
+
+def _mouth_profile(course: Course) -> Profile:
+    profile = Profile()
+    profile.line(course.edge, 0.0)
+    return profile
+
+
+def _layout(
+    terrain: Terrain, nodes: Floats, sides: dict[int, SideLayout], median: tuple[Sweep, ...]
+) -> Layout:
+    plan = terrain.plan
+    halves = {side: _road_lines(plan, side) for side in SIDES}
+    middle = np.array([] if median else [0.0])
+    lines = np.concatenate([-halves[RIGHT][::-1], middle, halves[LEFT]])
+    every = [nodes, *(one.sweep.chainages[:, 0] for one in sides.values())]
+    common = _apart(np.unique(np.concatenate(every)))
+    road = Strip("road", Material.ASPHALT, ROAD)
+    left, right = sides[LEFT].sweep, sides[RIGHT].sweep
+    parts = [_resampled(right, common, is_mirrored=True)]
+    strips: list[Strip] = [*right.profile.strips[::-1], road]
+    for side in (RIGHT, LEFT):
+        offsets = np.broadcast_to(side * halves[side], (nodes.size, halves[side].size))
+        if side == RIGHT:
+            offsets = offsets[:, ::-1]
+        flat = np.broadcast_to(nodes[:, None], offsets.shape)
+        bare = _on(common, nodes, (offsets, terrain.height(flat, offsets)))
+        if side == RIGHT:
+            parts.append(bare)
+            strips += [road] * (halves[side].size - 1)
+            _add_middle(parts, strips, median, (common, nodes, terrain))
+        else:
+            parts.append(bare)
+            strips += [road] * (halves[side].size - 1)
+    parts.append(_resampled(left, common, is_mirrored=False))
+    strips += [road, *left.profile.strips]
+    ground = Ground(
+        common,
+        np.hstack([one[0] for one in parts]),
+        np.hstack([one[1] for one in parts]),
+        tuple(strips),
+    )
+    return Layout(terrain, ground, nodes, lines, sides, median)
+
+
+def _apart(nodes: Floats) -> Floats:
+    """Nodes without those that lie on another's place but for rounding."""
+    inner = nodes[1:-1]
+    is_apart = (np.diff(nodes)[:-1] > _SAME_M) & (nodes[-1] - inner > _SAME_M)
+    return np.concatenate([nodes[:1], inner[is_apart], nodes[-1:]])
+
+
+def _add_middle(
+    parts: list[tuple[Floats, Floats]],
+    strips: list[Strip],
+    median: tuple[Sweep, ...],
+    where: tuple[Floats, Floats, Terrain],
+) -> None:
+    common, nodes, terrain = where
+    road = Strip("road", Material.ASPHALT, ROAD)
+    if not median:
+        middle = np.zeros((nodes.size, 1))
+        parts.append(_on(common, nodes, (middle, terrain.height(nodes[:, None], middle))))
+        strips += [road, road]
         return
-    wide = band.outer_m - lines[-1][0]
-    fall = {"drain": -0.06, "walk": 0.02, "strip": 0.02, "verge": 0.0}
-    has_lids = band.name == "drain" and side.drain == "lids"
-    rise = 0.0 if has_lids else fall.get(band.name, 0.0) * wide
-    if band.name == "outside":
-        steep = abs(side.outside_high_m) * 1.5
-        lines += [(lines[-1][0] + max(steep, 0.01), high + side.outside_high_m)]
-        strips += [Strip("slope", Material.GRASS, GRASS)]
-        lines += [(max(band.outer_m, lines[-1][0] + 1), high + side.outside_high_m)]
-        strips += [Strip("land", Material.SOIL, GROUND)]
-        return
-    lines += [(band.outer_m, high + rise)]
-    materials = {"drain": Material.CONCRETE, "walk": Material.PAVING, "strip": Material.SOIL}
-    labels = {"drain": ROAD, "walk": GROUND, "strip": GROUND, "verge": GRASS}
-    material = materials.get(band.name, Material.GRASS)
-    strips += [Strip(band.name, material, labels[band.name], has_surface=not has_lids)]
+    left, right = median
+    parts.append(_resampled(right, common, is_mirrored=True))
+    parts.append(_resampled(left, common, is_mirrored=False))
+    inner = right.profile.strips
+    strips += [road, *inner[::-1], inner[0], *inner, road]
 
 
-def _placed(
-    alignment: Alignment, nodes: Floats, edge_m: float, lines: list[_Line], side: int
-) -> tuple[Floats, Floats]:
-    away = np.array([one[0] for one in lines])
-    high = np.array([one[1] for one in lines])
-    edge = alignment.carriageway_height(nodes, side * edge_m)
-    offsets = np.broadcast_to(side * away, (nodes.size, away.size))
-    return offsets, edge[:, None] + high
+def _road_lines(plan: SectionPlan, side: int) -> Floats:
+    """Distances of the carriageway's lines between the middle and one edge, both left out."""
+    wide = plan.side(side).edge_m - plan.median_m / 2
+    count = max(2, int(np.ceil(wide / _ROAD_LINE_M)))
+    return plan.median_m / 2 + wide * np.arange(1, count) / count
+
+
+def _resampled(sweep: Sweep, common: Floats, *, is_mirrored: bool) -> tuple[Floats, Floats]:
+    lines = (sweep.offsets, sweep.heights)
+    if is_mirrored:
+        lines = (sweep.offsets[:, ::-1], sweep.heights[:, ::-1])
+    return _on(common, sweep.chainages[:, 0], lines)
+
+
+def _on(common: Floats, nodes: Floats, lines: tuple[Floats, Floats]) -> tuple[Floats, Floats]:
+    """Lines at other nodes, straight between their own."""
+    row = np.clip(np.searchsorted(nodes, common, "right") - 1, 0, nodes.size - 2)
+    share = ((common - nodes[row]) / (nodes[row + 1] - nodes[row]))[:, None]
+    offsets, heights = (one[row] + share * (one[row + 1] - one[row]) for one in lines)
+    return offsets, heights

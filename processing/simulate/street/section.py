@@ -12,6 +12,7 @@ from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats
 from processing.simulate.street.alignment import Alignment
 from processing.simulate.street.ground import Ground
+from processing.simulate.street.layout import Layout
 from processing.simulate.street.plan import SectionPlan
 
 
@@ -23,12 +24,19 @@ class Section:
     ----------
     seed : int
         Of the street.
+    layout : Layout
+        The lines of its surfaces: where curbs are lowered, where side streets meet the road.
     """
 
     seed: int
     plan: SectionPlan
     alignment: Alignment
-    ground: Ground
+    layout: Layout
+
+    @property
+    def ground(self) -> Ground:
+        """Its surfaces, by lines along the road."""
+        return self.layout.ground
 
     def chance(self, what: str, number: int = 0) -> Generator:
         """A stream of its own for what a maker draws here."""

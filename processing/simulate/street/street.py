@@ -13,7 +13,7 @@ from processing.simulate.gutters.gutters import add_gutters
 from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.roadside.furniture import add_furniture
 from processing.simulate.street.alignment import Alignment, alignment_of
-from processing.simulate.street.cross_section import ground_of
+from processing.simulate.street.cross_section import section_of
 from processing.simulate.street.plan import SectionPlan, plans_of
 from processing.simulate.street.section import Section
 from processing.simulate.street.styles import Style
@@ -66,7 +66,7 @@ class Street:
         """One section with everything in it; a few are kept."""
         with self._lock:
             if row not in self._built:
-                self._built[row] = self._build(self.plans[row])
+                self._built[row] = self._build(row)
             self._built.move_to_end(row)
             while len(self._built) > _KEPT_SECTIONS:
                 self._built.popitem(last=False)
@@ -74,8 +74,7 @@ class Street:
 
     def bare_section(self, row: int) -> Section:
         """Plan and ground of a section, without building what stands on it."""
-        plan = self.plans[row]
-        return Section(self.seed, plan, self.alignment, ground_of(plan, self.alignment))
+        return section_of(self.seed, self.plans, row, self.alignment)
 
     def ground_height(self, chainages: Floats, offsets: Floats) -> Floats:
         """Height of the ground, z in m: (n,) float64 of (n,) places beside the road."""
@@ -87,8 +86,9 @@ class Street:
             heights[there] = ground.height(chainages[there], offsets[there])
         return heights
 
-    def _build(self, plan: SectionPlan) -> BuiltSection:
-        section = Section(self.seed, plan, self.alignment, ground_of(plan, self.alignment))
+    def _build(self, row: int) -> BuiltSection:
+        section = self.bare_section(row)
+        plan = section.plan
         built = Built((plan.index - _LOWEST_INDEX) * THINGS_PER_SECTION + 1)
         for add in MAKERS:
             add(section, built)

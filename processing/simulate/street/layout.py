@@ -1,0 +1,61 @@
+"""What a section's cross sections amount to: the lines of its surfaces, side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from processing.simulate.mesh import Floats
+from processing.simulate.street.dropped_curbs import Drop
+from processing.simulate.street.ground import Ground
+from processing.simulate.street.junction_shape import Mouth
+from processing.simulate.street.measures import Looks
+from processing.simulate.street.sweep import Sweep
+from processing.simulate.street.terrain import Terrain
+
+
+@dataclass(frozen=True)
+class SideLayout:
+    """The lines of one side.
+
+    Attributes
+    ----------
+    sweep : Sweep
+        From the asphalt's edge to the land; at a junction the edge and the land alone.
+    drops : tuple of Drop
+        Where the curb is lowered, by chainage.
+    mouth : Mouth or None
+        The side street that meets the road here.
+    """
+
+    sweep: Sweep
+    drops: tuple[Drop, ...]
+    looks: Looks
+    mouth: Mouth | None
+
+
+@dataclass(frozen=True)
+class Layout:
+    """The surfaces of a section.
+
+    Attributes
+    ----------
+    terrain : Terrain
+        The height over which all lines stand.
+    ground : Ground
+        All lines on common nodes.
+    road_nodes : (n,) float64
+        Chainages of the carriageway's nodes.
+    road_lines : (m,) float64
+        Offsets of the carriageway's lines, right to left, without its edges.
+    sides : mapping of side to SideLayout
+    median : tuple of Sweep
+        Both halves of the raised strip in the middle; empty where there is none.
+    """
+
+    terrain: Terrain
+    ground: Ground
+    road_nodes: Floats
+    road_lines: Floats
+    sides: Mapping[int, SideLayout]
+    median: tuple[Sweep, ...]
