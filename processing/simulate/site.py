@@ -1,0 +1,259 @@
+"""An earthwork site to order: two dates, scanned from tripods, with exact cut and fill."""
+
+from __future__ import annotations
+
+import dataclasses
+import shutil
+import uuid
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from processing.errors import InUse, told_as_user_error
+from processing.monitor import Monitor, PartMonitor
+from processing.simulate.chance import chance
+from processing.simulate.mesh import Floats, Integers
+from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.returns import Weather
+from processing.simulate.scanning.sensors import sensor_of
+from processing.simulate.simulated import Simulated
+from processing.simulate.sites.bodies import NAMES, Kind
+from processing.simulate.sites.delivery import (
+    CRS,
+    CloudFile,
+    Place,
+    Truth,
+    write_json,
+    write_site,
+)
+from processing.simulate.sites.layout import Layout, layout_of, scene_mesh
+from processing.simulate.sites.movement import MovingThings, dust_of, tracks_of
+from processing.simulate.sites.recording import Survey, duration_s, pattern_of, recorded
+from processing.simulate.sites.stations import count_for, stations_of
+from processing.simulate.sites.terrain import Terrain, terrain_of
+from processing.simulate.sites.volumes import SEEN_CELL_M, cut_and_fill
+from processing.simulate.wishes import SiteWish
+from processing.text import Text
+from processing.tools.parameters import filled_in
+
+DATES = ("before", "after")
+_FIRST_S = 350_000_000.0  # adjusted standard GPS time
+_DAY_S = 86_400.0
+
+
+def simulate_site(
+    wish: SiteWish, folder: Path, monitor: Monitor, *, registration_m: float = 0.0
+) -> Simulated:
+    """Make a site, record it on both dates, and write the delivery and its truth.
+
+    Parameters
+    ----------
+    folder : Path
+        Holds ``in`` and ``truth`` afterwards; appears only when everything is written.
+    registration_m : float
+        Standard deviation of an error that all of the later date has in common: nothing changed
+        where nothing was done, and yet the clouds differ.
+
+    Raises
+    ------
+    InUse
+        The folder holds files already.
+    OutOfRange
+        A wish is not within its limits.
+    MissingInput, NoSpace, BadFile
+        What the operating system says; `Cancelled`.
+    """
+    wish = filled_in(SiteWish, dataclasses.asdict(wish))
+    with _made_whole(folder) as hidden:
+        count = _write(wish, hidden, monitor, registration_m)
+    monitor.report(1.0)
+    points = tuple(folder / "in" / f"{date}.laz" for date in DATES)
+    return Simulated(folder, points, (), (), folder / "truth", CRS, count)
+
+
+@contextmanager
+def _made_whole(folder: Path) -> Iterator[Path]:
+    """A hidden folder beside a folder, which takes its name when all is written."""
+    folder = folder.absolute()
+    hidden = folder.with_name(f".{folder.name}-{uuid.uuid4().hex[:8]}")
+    with told_as_user_error(folder):
+        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+            raise InUse(
+                Text("This folder is not empty.", "このフォルダは空ではありません。"),
+                Text.same(str(folder)),
+                Text(
+                    "Choose a new or an empty folder; nothing was written.",
+                    "新しいフォルダか空のフォルダを指定してください。何も書き込まれていません。",
+                ),
+            )
+        try:
+            for part in ("in", "truth"):
+                (hidden / part).mkdir(parents=True)
+            yield hidden
+            if folder.exists():
+                folder.rmdir()
+            hidden.rename(folder)
+        finally:
+            shutil.rmtree(hidden, ignore_errors=True)
+
+
+@dataclass(frozen=True)
+class _Site:
+    """What both dates have in common."""
+
+    wish: SiteWish
+    terrain: Terrain
+    place: Place
+    polygon: Floats
+
+    @property
+    def cells(self) -> tuple[int, int]:
+        per_cell = max(1, round(SEEN_CELL_M / self.terrain.before.heights.res))
+        rows, columns = self.terrain.before.heights.z.shape
+        return -(-(rows - 1) // per_cell), -(-(columns - 1) // per_cell)
+
+
+def _write(wish: SiteWish, hidden: Path, monitor: Monitor, registration_m: float) -> int:
+    random = chance(wish.seed, "place")
+    terrain = terrain_of(wish.seed, wish.style, wish.length_m, monitor.check)
+    east, north = np.round(random.uniform((-30_000, -60_000), (10_000, -20_000)))
+    place = Place(float(east), float(north))
+    site = _Site(wish, terrain, place, _polygon(wish.seed, terrain.before.heights.size_m))
+    truth = Truth(hidden / "truth")
+    starts = [_FIRST_S + float(random.integers(0, 30_000)) * 1000.0]
+    starts.append(starts[0] + round(float(random.uniform(5, 60))) * _DAY_S)
+    common = chance(wish.seed, "registration").normal(0, 1, 3) * registration_m
+    seen, scenes = [], {}
+    for number, date in enumerate(DATES):
+        part = PartMonitor(monitor, 0.48 * number, 0.48 * (number + 1))
+        cloud, scenes[date] = _record(site, date, hidden, starts[number], (part, common * number))
+        truth.write_cloud(date, cloud)
+        ground = terrain.before if date == "before" else terrain.after
+        truth.write_terrain(date, ground.heights, place)
+        seen.append(cloud.seen)
+        monitor.check()
+    on_map = place.on_map(site.polygon)
+    write_site(hidden / "in" / "site.geojson", on_map)
+    write_json(hidden / "truth" / "volume.json", _volumes(site, seen[0], seen[1]))
+    epochs = {date: {**truth.counts[date], **scenes[date]} for date in DATES}
+    scene = {"scene": "simulated site", **dataclasses.asdict(wish), "epochs": epochs}
+    write_json(hidden / "truth" / "scene.json", {**scene, "later_shift_m": common.tolist()})
+    return sum(counts["points"] for counts in truth.counts.values())
+
+
+def _record(
+    site: _Site, date: str, hidden: Path, starts_s: float, work: tuple[Monitor, Floats]
+) -> tuple[CloudFile, dict[str, object]]:
+    """Record one date; gives its cloud and what stood there."""
+    monitor, shift = work
+    survey = _survey(site, date, monitor)
+    text = Text("Scanning the site.", "現場をスキャンしています。")
+    with CloudFile(hidden / "in" / f"{date}.laz", site.place, starts_s, site.cells) as cloud:
+        for share, points in recorded(survey):
+            monitor.check()
+            cloud.write(dataclasses.replace(points, xyz=points.xyz + shift))
+            monitor.report(share, text)
+    east, north = site.place.easting_m, site.place.northing_m
+    stations = [
+        [one.place[0] + east, one.place[1] + north, one.place[2]] for one in survey.stations
+    ]
+    objects = [
+        {"kind": NAMES[one.kind], "x": one.x + east, "y": one.y + north}
+        for one in survey.layout.things
+    ]
+    moving = [NAMES[one.body.kind] for one in survey.moving.tracks]
+    return cloud, {
+        "stations": stations,
+        "wetness": survey.weather.wetness,
+        "objects": objects,
+        "moving": moving,
+        "dust_clouds": len(survey.dust),
+    }
+
+
+def _survey(site: _Site, date: str, monitor: Monitor) -> Survey:
+    wish = site.wish
+    sensor = sensor_of(wish.sensor, "standing")
+    pattern = pattern_of(sensor, wish.spacing_m)
+    layout = layout_of(wish.seed, date, site.terrain)
+    monitor.check()
+    mesh = scene_mesh(layout)
+    middle = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
+    scene = Scene(mesh, middle)
+    monitor.check()
+    random = chance(wish.seed, "stations", date)
+    count = count_for(wish.length_m, wish.stations)
+    stations = stations_of(random, layout, scene, count)
+    seconds = duration_s(pattern, len(stations))
+    moving = chance(wish.seed, "moving", date)
+    tracks = tracks_of(moving, layout, seconds)
+    weather = Weather(
+        float(moving.uniform(0, 0.6)) if moving.random() < 0.5 else 0.0,
+        float(moving.uniform(0.4, 1.0)),
+    )
+    return Survey(
+        wish.seed,
+        date,
+        sensor,
+        pattern,
+        weather,
+        stations,
+        layout,
+        scene,
+        MovingThings(tracks, layout),
+        dust_of(moving, layout, seconds),
+        _kinds(layout, [track.body.kind for track in tracks]),
+    )
+
+
+def _kinds(layout: Layout, moving: list[Kind]) -> Integers:
+    return np.concatenate([layout.kinds(), np.array([int(one) for one in moving], np.int64)])
+
+
+def _polygon(seed: int, size_m: tuple[float, float]) -> Floats:
+    """The site's outline: the rectangle with its corners cut off, some sides bent inwards."""
+    random = chance(seed, "polygon")
+    east, north = size_m
+    margin = random.uniform(0.02, 0.08) * north
+    low, high = np.array([margin, margin]), np.array([east - margin, north - margin])
+    cuts = random.uniform(0.05, 0.35, (4, 2)) * (high - low)
+    corners = [
+        (low[0], low[1] + cuts[0, 1]),
+        (low[0] + cuts[0, 0], low[1]),
+        (high[0] - cuts[1, 0], low[1]),
+        (high[0], low[1] + cuts[1, 1]),
+        (high[0], high[1] - cuts[2, 1]),
+        (high[0] - cuts[2, 0], high[1]),
+        (low[0] + cuts[3, 0], high[1]),
+        (low[0], high[1] - cuts[3, 1]),
+    ]
+    if random.random() < 0.4:
+        notch = (random.uniform(0.4, 0.6) * east, low[1] + random.uniform(0.05, 0.2) * north)
+        corners.insert(2, notch)
+    return np.array(corners)
+
+
+def _volumes(site: _Site, before: Integers, after: Integers) -> dict[str, object]:
+    heights = site.terrain.before.heights
+    found = cut_and_fill(heights, site.terrain.after.heights, site.polygon)
+    seen = (before > 0) & (after > 0)
+    cut, fill = float(found.cut_m3.sum()), float(found.fill_m3.sum())
+    area = float(found.area_m2.sum())
+    unseen = float(found.area_m2[~seen].sum())
+    return {
+        "cut_m3": cut,
+        "fill_m3": fill,
+        "net_m3": fill - cut,
+        "area_m2": area,
+        "polygon": site.place.on_map(site.polygon).tolist(),
+        "seen_in_both_share": 1.0 - unseen / area,
+        "unseen_area_m2": unseen,
+        "cut_where_seen_m3": float(found.cut_m3[seen].sum()),
+        "fill_where_seen_m3": float(found.fill_m3[seen].sum()),
+        "grid_m": heights.res,
+        "integration_step_m": 0.0,
+        "note": "net = fill - cut; exact, between the triangulated grounds of both dates",
+    }

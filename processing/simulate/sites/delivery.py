@@ -1,0 +1,179 @@
+"""A site's files: clouds as delivered, and the truth beside them."""
+
+from __future__ import annotations
+
+import datetime as dt
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.simulate.mesh import Floats
+from processing.simulate.sites.heights import HeightGrid
+from processing.simulate.sites.recording import Points
+from processing.simulate.sites.volumes import SEEN_CELL_M
+
+CRS = "EPSG:6677"
+_SCALE_M = 0.001
+_DAY = dt.date(2026, 1, 1)
+"""Written into every header: the same seed gives the same bytes on any day."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a site's frame lies in the reference system, and when it was recorded.
+
+    Attributes
+    ----------
+    easting_m, northing_m : float
+        Of the first node.
+    offsets : (3,) float64
+        Of the files' whole numbers.
+    """
+
+    easting_m: float
+    northing_m: float
+
+    @property
+    def offsets(self) -> Floats:
+        """Whole hundreds of metres near the site."""
+        return np.array([np.floor(self.easting_m / 100), np.floor(self.northing_m / 100), 0]) * 100
+
+    def on_map(self, xy: Floats) -> Floats:
+        """Places of the site's frame in the reference system: (n, 2) float64."""
+        return np.asarray(xy + np.array([self.easting_m, self.northing_m]), np.float64)
+
+
+class CloudFile:
+    """A cloud that is written as its points come.
+
+    Parameters
+    ----------
+    starts_s : float
+        Adjusted standard GPS time of the recording's beginning.
+    cells : (int, int)
+        Rows and columns of the cells that ground points are counted in.
+    """
+
+    def __init__(self, path: Path, place: Place, starts_s: float, cells: tuple[int, int]) -> None:
+        import laspy
+
+        self._place, self._starts_s = place, starts_s
+        self.seen = np.zeros(cells, np.int64)
+        self.count = 0
+        self._labels: list[NDArray[np.uint8]] = []
+        self._kinds: list[NDArray[np.int8]] = []
+        self._header = _header(place)
+        self._laspy: Any = laspy  # laspy has no types
+        self._writer: Any = laspy.open(path, mode="w", header=self._header, do_compress=True)
+
+    def __enter__(self) -> CloudFile:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
+    ) -> None:
+        self._writer.close()
+
+    def write(self, points: Points) -> None:
+        """Add points behind those that are there."""
+        if points.time_s.size == 0:
+            return
+        laspy = self._laspy
+        shift = np.array([self._place.easting_m, self._place.northing_m, 0.0])
+        whole = np.round((points.xyz + shift - self._place.offsets) / _SCALE_M).astype(np.int32)
+        record = laspy.ScaleAwarePointRecord.zeros(points.time_s.size, header=self._header)
+        record.X, record.Y, record.Z = whole.T
+        record.intensity = points.intensity
+        record.return_number, record.number_of_returns = points.number, points.count
+        record.gps_time = self._starts_s + points.time_s
+        record.point_source_id = np.full(points.time_s.size, points.station, np.uint16)
+        self._writer.write_points(record)
+        self._labels.append(points.label)
+        self._kinds.append(points.kind)
+        self.count += points.time_s.size
+        self._count_ground(whole[points.label == 2] * _SCALE_M + self._place.offsets - shift)
+
+    def _count_ground(self, xyz: Floats) -> None:
+        rows, columns = self.seen.shape
+        i = np.clip(xyz[:, 0] / SEEN_CELL_M, 0, columns - 1).astype(np.int64)
+        j = np.clip(xyz[:, 1] / SEEN_CELL_M, 0, rows - 1).astype(np.int64)
+        self.seen += np.bincount(j * columns + i, minlength=rows * columns).reshape(rows, columns)
+
+    @property
+    def labels(self) -> NDArray[np.uint8]:
+        """Class codes of all points so far."""
+        return np.concatenate([np.empty(0, np.uint8), *self._labels])
+
+    @property
+    def kinds(self) -> NDArray[np.int8]:
+        """What all points so far are of."""
+        return np.concatenate([np.empty(0, np.int8), *self._kinds])
+
+
+@dataclass
+class Truth:
+    """The truth's folder.
+
+    Attributes
+    ----------
+    counts : dict
+        Points by date and label, for the scene's description.
+    """
+
+    folder: Path
+    counts: dict[str, dict[str, int]] = field(default_factory=dict)
+
+    def write_cloud(self, date: str, cloud: CloudFile) -> None:
+        """Labels and kinds of one date, in the order of its file."""
+        labels = cloud.labels
+        np.save(self.folder / f"labels_{date}.npy", labels)
+        np.save(self.folder / f"kinds_{date}.npy", cloud.kinds)
+        names = {"ground": 2, "other": 1, "low_noise": 7, "high_noise": 18}
+        counts = {name: int((labels == code).sum()) for name, code in names.items()}
+        self.counts[date] = {"points": int(labels.size), **counts}
+
+    def write_terrain(self, date: str, heights: HeightGrid, place: Place) -> None:
+        """The true ground of one date."""
+        np.savez_compressed(
+            self.folder / f"terrain_{date}.npz",
+            z=heights.z,
+            x0=np.float64(place.easting_m),
+            y0=np.float64(place.northing_m),
+            res=np.float64(heights.res),
+        )
+
+
+def write_json(path: Path, content: Mapping[str, Any]) -> None:
+    """A description as JSON."""
+    path.write_text(json.dumps(content, ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
+
+
+def write_site(path: Path, polygon: Floats) -> None:
+    """The site's polygon, (n, 2) in the reference system, as GeoJSON."""
+    ring = [[float(x), float(y)] for x, y in [*polygon, polygon[0]]]
+    geometry = {"type": "Polygon", "coordinates": [ring]}
+    feature = {"type": "Feature", "properties": {"kind": "site"}, "geometry": geometry}
+    name = {"name": "urn:ogc:def:crs:EPSG::6677"}
+    crs = {"type": "name", "properties": name}
+    write_json(path, {"type": "FeatureCollection", "crs": crs, "features": [feature]})
+
+
+def _header(place: Place) -> Any:  # laspy has no types
+    import laspy
+    from pyproj import CRS as System  # noqa: N811  `CRS` is this module's own name
+
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    header.scales = np.full(3, _SCALE_M)
+    header.offsets = place.offsets
+    header.creation_date = _DAY
+    header.generating_software = "Zuka"
+    header.system_identifier = "simulated"
+    header.add_crs(System.from_user_input(CRS))
+    header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
+    return header

@@ -1,0 +1,263 @@
+"""Points where nothing is: mirrored by water and metal, echoed twice, dust, arcs of phase."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
+
+from processing.simulate.materials import Material
+from processing.simulate.mesh import Floats, Integers
+from processing.simulate.scanning.beams import Beams
+from processing.simulate.scanning.casting import Hits, Scene
+from processing.simulate.scanning.returns import NO_EVIDENCE, Met, Returns, numbered
+from processing.simulate.sites.bodies import Kind
+from processing.simulate.sites.layout import Standing
+from processing.simulate.sites.movement import Cloud
+
+MACHINES = (Kind.EXCAVATOR, Kind.DUMP_TRUCK, Kind.BULLDOZER, Kind.ROLLER)
+
+# How often a beam that meets a mirror-like surface is taken from what the mirror shows.
+_MIRRORS = {
+    Material.WATER: 0.5,
+    Material.GLASS: 0.2,
+    Material.STEEL: 0.01,
+    Material.CAR_PAINT: 0.01,
+}
+_FARTHEST_MIRRORED_M = 60.0
+_NEAR_MACHINE_M = 2.5
+_TWICE_NEAR_MACHINE = 0.012
+_TWICE_ON_WET = 0.0008
+_IN_THE_AIR = 1.5e-5
+_PHASE_IN_THE_SKY = 4e-4
+
+
+@dataclass(frozen=True)
+class Arc:
+    """Ranges that a phase-based scanner gives wrongly: a piece of a ring about it.
+
+    Attributes
+    ----------
+    reach_m : float
+    from_rad, to_rad : float
+        Azimuths; anticlockwise from east.
+    low_rad, high_rad : float
+        Elevations.
+    share : float
+        Of the pulses there.
+    """
+
+    reach_m: float
+    from_rad: float
+    to_rad: float
+    low_rad: float
+    high_rad: float
+    share: float
+
+
+@dataclass(frozen=True)
+class Haunts:
+    """Where ghosts come from in one scan.
+
+    Attributes
+    ----------
+    wetness : float
+        Share of the ground that is wet.
+    is_phase : bool
+        Whether the scanner measures by phase.
+    """
+
+    machines: list[Standing]
+    dust: list[Cloud]
+    arcs: list[Arc]
+    wetness: float
+    is_phase: bool
+
+
+@dataclass(frozen=True)
+class Ghosts:
+    """Pulses that return from where nothing is, in place of what they met.
+
+    Attributes
+    ----------
+    rays : (n,) int64
+        Rows of the beams, rising.
+    ranges, strengths : (n,) float64
+    kinds : (n,) int8
+        `Kind.GHOST` or `Kind.DUST`.
+    """
+
+    rays: Integers
+    ranges: Floats
+    strengths: Floats
+    kinds: NDArray[np.int8]
+
+
+def arcs_of(random: Generator) -> list[Arc]:
+    """Arcs of one scan of a phase-based scanner; often none."""
+    arcs = []
+    for _ in range(int(random.integers(0, 3))):
+        start, low = random.uniform(-np.pi, np.pi), np.radians(random.uniform(-35, 5))
+        arcs.append(
+            Arc(
+                random.uniform(3, 25),
+                start,
+                start + np.radians(random.uniform(15, 120)),
+                low,
+                low + np.radians(random.uniform(0.3, 2.0)),
+                random.uniform(0.1, 0.6),
+            )
+        )
+    return arcs
+
+
+def ghosts_of(
+    random: Generator, beams: Beams, met: Met, seen: tuple[Hits, Scene], haunts: Haunts
+) -> Ghosts:
+    """Ghosts of a stretch of pulses.
+
+    Parameters
+    ----------
+    met : Met
+        What the beams met first, of all that stands and moves.
+    seen : (Hits, Scene)
+        What they met of what stands, for what mirrors show.
+    """
+    parts = [_dust(random, beams, met, cloud) for cloud in haunts.dust]
+    parts.append(_mirrored(random, beams, met, *seen))
+    parts.append(_twice(random, beams, met, haunts))
+    parts.append(_in_the_air(random, met, haunts))
+    parts += [_arc(random, beams, arc) for arc in haunts.arcs]
+    rays = np.concatenate([one.rays for one in parts])
+    rays, first = np.unique(rays, return_index=True)
+    return Ghosts(
+        rays,
+        np.concatenate([one.ranges for one in parts])[first],
+        np.concatenate([one.strengths for one in parts])[first],
+        np.concatenate([one.kinds for one in parts])[first],
+    )
+
+
+def haunted(
+    returns: Returns, kinds: NDArray[np.int8], beams: Beams, ghosts: Ghosts
+) -> tuple[Returns, NDArray[np.int8]]:
+    """Returns with ghosts in place of what their pulses met, in the order of the pulses."""
+    if ghosts.rays.size == 0:
+        return returns, kinds
+    rays = ghosts.rays
+    taken = np.zeros(beams.time_s.size, np.bool_)
+    taken[rays] = True
+    keep = ~taken[returns.pulse - beams.first]
+    kept = returns.chosen(keep)
+    ones = np.ones(rays.size, np.uint8)
+    places = beams.origins[rays] + beams.ways[rays] * ghosts.ranges[:, None]
+    pulse = np.concatenate([kept.pulse, beams.first + rays])
+    order = np.argsort(pulse, kind="stable")
+    joined = Returns(
+        pulse,
+        np.concatenate([kept.time_s, beams.time_s[rays]]),
+        np.concatenate([kept.xyz, places]),
+        np.concatenate([kept.strength, ghosts.strengths]),
+        np.concatenate([kept.number, ones]),
+        np.concatenate([kept.count, ones]),
+        np.concatenate([kept.label, ones]),
+        np.concatenate([kept.evidence, np.full(rays.size, NO_EVIDENCE)]),
+    ).chosen(order)
+    return numbered(joined), np.concatenate([kinds[keep], ghosts.kinds])[order]
+
+
+def _ghosts(
+    rays: Integers, ranges: Floats, strength: Floats | float, kind: Kind = Kind.GHOST
+) -> Ghosts:
+    strengths = np.broadcast_to(np.asarray(strength, np.float64), rays.shape).copy()
+    return Ghosts(rays, ranges, strengths, np.full(rays.size, int(kind), np.int8))
+
+
+def _dust(random: Generator, beams: Beams, met: Met, cloud: Cloud) -> Ghosts:
+    """A return from somewhere on a beam's way through the cloud, seldom or often."""
+    first, last = float(beams.time_s[0]), float(beams.time_s[-1])
+    if last < cloud.from_s or first > cloud.to_s:
+        return _ghosts(np.empty(0, np.int64), np.empty(0), 0.0)
+    centre = cloud.centre + cloud.drift * (first - cloud.from_s)
+    start = (beams.origins - centre) / cloud.radii
+    way = beams.ways / cloud.radii
+    a = np.einsum("ij,ij->i", way, way)
+    b = np.einsum("ij,ij->i", start, way)
+    inside = b * b - a * (np.einsum("ij,ij->i", start, start) - 1)
+    rays = np.flatnonzero(inside > 0)
+    root = np.sqrt(inside[rays])
+    near = np.maximum((-b[rays] - root) / a[rays], 1.5)
+    far = np.minimum((-b[rays] + root) / a[rays], met.ranges[rays])
+    long = np.maximum(far - near, 0.0)
+    struck = random.random(rays.size) < 1 - np.exp(-cloud.per_m * long)
+    ranges = (near + random.random(rays.size) * long)[struck]
+    return _ghosts(rays[struck], ranges, 0.02 * (10 / np.maximum(ranges, 2)) ** 2, Kind.DUST)
+
+
+def _mirrored(random: Generator, beams: Beams, met: Met, hits: Hits, scene: Scene) -> Ghosts:
+    """What a mirror shows, taken for something straight behind it."""
+    shares = np.zeros(len(Material))
+    for material, share in _MIRRORS.items():
+        shares[material] = share
+    stands = met.ranges == hits.ranges
+    chance = shares[met.material] * (stands & (hits.triangles >= 0))
+    rays = np.flatnonzero(chance > 0)
+    rays = rays[random.random(rays.size) < chance[rays]]
+    corners = scene.mesh.vertices[scene.mesh.triangles[hits.triangles[rays]]]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None]
+    ways = beams.ways[rays]
+    on = ways - 2 * np.einsum("ij,ij->i", ways, normals)[:, None] * normals
+    places = beams.origins[rays] + ways * met.ranges[rays, None] + 0.01 * on
+    beyond = scene.cast(places, on).ranges
+    shown = (beyond > 0.2) & (beyond < _FARTHEST_MIRRORED_M)
+    rays, beyond = rays[shown], beyond[shown]
+    ranges = met.ranges[rays] + beyond + random.normal(0, 0.02, rays.size)
+    return _ghosts(rays, ranges, 0.05 * (10 / ranges) ** 2)
+
+
+def _twice(random: Generator, beams: Beams, met: Met, haunts: Haunts) -> Ghosts:
+    """Beams that go to and fro between the ground and a machine or water before they return."""
+    rays = np.flatnonzero(np.isfinite(met.ranges) & (met.evidence // 256 == 0))
+    rays = rays[random.random(rays.size) < _TWICE_NEAR_MACHINE]
+    x, y = (
+        beams.origins[rays, axis] + beams.ways[rays, axis] * met.ranges[rays] for axis in (0, 1)
+    )
+    near = np.zeros(rays.size, np.bool_)
+    for one in haunts.machines:
+        near |= np.hypot(x - one.x, y - one.y) < one.radius_m * 0.6 + _NEAR_MACHINE_M
+    seldom = _TWICE_ON_WET * haunts.wetness / _TWICE_NEAR_MACHINE
+    rays = rays[near | (random.random(rays.size) < seldom)]
+    longer = 0.1 + random.exponential(0.7, rays.size)
+    ranges = met.ranges[rays] + longer
+    return _ghosts(rays, ranges, 0.03 * (10 / ranges) ** 2)
+
+
+def _in_the_air(random: Generator, met: Met, haunts: Haunts) -> Ghosts:
+    """Single points of sun, rain and birds; of a phase-based scanner more where it sees the sky."""
+    drawn = random.random(met.ranges.size)
+    share = np.full(drawn.size, _IN_THE_AIR)
+    if haunts.is_phase:
+        share[~np.isfinite(met.ranges)] = _PHASE_IN_THE_SKY
+    rays = np.flatnonzero(drawn < share)
+    ranges = random.uniform(2.0, 45.0, rays.size)
+    keep = ranges < met.ranges[rays]
+    return _ghosts(rays[keep], ranges[keep], 0.01)
+
+
+def _arc(random: Generator, beams: Beams, arc: Arc) -> Ghosts:
+    elevation = np.arcsin(np.clip(beams.ways[:, 2], -1, 1))
+    azimuth = np.arctan2(beams.ways[:, 1], beams.ways[:, 0])
+    turned = (azimuth - arc.from_rad) % (2 * np.pi)
+    inside = (turned < arc.to_rad - arc.from_rad) & (elevation > arc.low_rad)
+    rays = np.flatnonzero(inside & (elevation < arc.high_rad))
+    rays = rays[random.random(rays.size) < arc.share]
+    return _ghosts(rays, arc.reach_m + random.normal(0, 0.015, rays.size), 0.02)
+
+
+def machines_among(things: Iterable[Standing]) -> list[Standing]:
+    """The machines of what stands."""
+    return [one for one in things if one.kind in MACHINES]
