@@ -29,6 +29,23 @@ class _Parser(argparse.ArgumentParser):
         )
 
 
+class _OrderParser(_Parser):
+    """Tells in its help what else can be set; the fields are looked up only then."""
+
+    what = ""
+
+    def format_help(self) -> str:
+        """What argparse tells, and the settings of what is made."""
+        if not self.what:
+            return super().format_help()
+        from app.cli.parameter_lines import parameter_lines
+        from app.language import system_language
+        from processing.simulate.orders import ORDERS
+
+        lines = parameter_lines(ORDERS[self.what].wish, system_language())
+        return "\n".join([super().format_help(), "settings:", *lines, ""])
+
+
 def read_arguments(arguments: Sequence[str]) -> tuple[Command, argparse.Namespace]:
     """The command that is wanted, and its arguments.
 
@@ -41,7 +58,7 @@ def read_arguments(arguments: Sequence[str]) -> tuple[Command, argparse.Namespac
     parser.add_argument("--version", action="version", version=f"zuka {version('zuka')}")
     parser.set_defaults(module="open_window", paths=[])
     commands = parser.add_subparsers(metavar="COMMAND", parser_class=_Parser)
-    for add in (_add_window_commands, _add_reading_commands, _add_working_commands):
+    for add in (_add_window_commands, _add_reading_commands, _add_working_commands, _add_simulate):
         add(commands)
     namespace = parser.parse_args(arguments)
     module = import_module(f"app.cli.{namespace.module}")
@@ -128,6 +145,33 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
     exporting.add_argument("--encoding", choices=["utf-8", "cp932"], default="utf-8")
     exporting.add_argument("--candidates", action="store_true", help="unchecked ones as well")
     exporting.set_defaults(module="export")
+
+
+def _add_simulate(commands: _Commands[_Parser]) -> None:
+    simulating = commands.add_parser(
+        "simulate",
+        help="a street or a site with its truth",
+        epilog="street takes --seed N --length M --style S --sensor S "
+        "--set NAME=VALUE --out DIR; it tells more by its own --help",
+    )
+    whats = simulating.add_subparsers(
+        metavar="street|density", required=True, parser_class=_OrderParser
+    )
+    for what, told in (("street", "a street, recorded by a vehicle"),):
+        making = whats.add_parser(what, help=told)
+        making.what = what
+        making.add_argument("--seed", metavar="N", help="the same number gives the same street")
+        making.add_argument("--length", metavar="M")
+        making.add_argument("--style", metavar="S")
+        making.add_argument("--sensor", metavar="S")
+        making.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
+        making.add_argument("--out", type=Path, required=True, metavar="DIR")
+        making.set_defaults(module="simulate", what=what)
+    foretelling = whats.add_parser("density", help="points/m² beside a vehicle, before it drives")
+    foretelling.add_argument("--sensor", required=True, metavar="S")
+    foretelling.add_argument("--speed", required=True, type=float, metavar="KMH")
+    foretelling.add_argument("--out", type=Path, required=True, metavar="OUT.png|OUT.csv")
+    foretelling.set_defaults(module="simulate", what="density")
 
 
 def _add_inputs(parser: argparse.ArgumentParser) -> None:

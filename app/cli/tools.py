@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from app.cli.output import print_json, print_lines
+from app.cli.parameter_lines import parameter_lines
 from app.language import system_language
 from processing.runner import tool_of
 from processing.tools.parameters import Parameter, parameters_of
@@ -67,10 +68,4 @@ def _lines(tool: Tool) -> list[str]:
         f"  {tool.explanation.spoken(language)}",
         f"  {tool.needs.value} -> {outputs}",
     ]
-    for parameter in parameters_of(tool.parameters):
-        limits = f" ({parameter.low:g} … {parameter.high:g})" if parameter.high else ""
-        words = " | ".join(option.value for option in parameter.choices)
-        unit = f" {parameter.unit}" if parameter.unit else ""
-        name = parameter.name.spoken(language)
-        lines.append(f"  --set {parameter.id}={parameter.default}{unit}{limits} {words} {name}")
-    return lines
+    return [*lines, *parameter_lines(tool.parameters, language)]

@@ -1,0 +1,83 @@
+"""What a wish would give, told before it is fulfilled: points, room on the disk, density."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from processing.simulate.scanning.density import DensityMap, density_map, survey_of
+from processing.simulate.scanning.sensors import sensor_of
+from processing.simulate.street.styles import Style, style_of
+from processing.simulate.wishes import SiteWish, StreetWish
+
+_KM_H = 3.6
+_SECONDS_OF_WAITS = 8.0
+# Recordings of made streets and of the sample: the rest goes to the sky or comes back too weak.
+_RETURNS_PER_PULSE = 0.6
+_BYTES_PER_POINT = 10.0  # of LAZ, labels and instances
+_BYTES_PER_IMAGE, _IMAGE_EVERY_M, _CAMERAS = 90_000, 10.0, 3
+_USUAL_STATIONS = 5
+_SPACING_AT_M = 10.0
+_HIGHEST_DEG, _LOWEST_DEG = 90.0, -60.0
+_EPOCHS = 2
+
+
+@dataclass(frozen=True)
+class Forecast:
+    """About what a simulation gives.
+
+    Attributes
+    ----------
+    points : int
+    size : int
+        Bytes of all files.
+    seconds : float
+        How long the recording would take outdoors.
+    density : DensityMap or None
+        Beside a vehicle; None for scans from tripods.
+    """
+
+    points: int
+    size: int
+    seconds: float
+    density: DensityMap | None = None
+
+
+def usual_speed_km_h(style: Style) -> float:
+    """In the middle of what is driven on such a street."""
+    return sum(style.speed_m_s) / 2 * _KM_H
+
+
+def forecast_street(wish: StreetWish) -> Forecast:
+    """About what a street would give.
+
+    Raises
+    ------
+    OutOfRange
+        There is no such sensor or style.
+    """
+    sensor = sensor_of(wish.sensor, "mobile")
+    speed = wish.speed_km_h or usual_speed_km_h(style_of(wish.style))
+    survey = survey_of(sensor, speed, pulses=wish.pulses, turns_per_s=wish.turns_per_s)
+    seconds = wish.passes * (wish.length_m * _KM_H / speed + wish.stops * _SECONDS_OF_WAITS)
+    rate = survey.pulses * survey.turns_per_s * len(survey.heads)
+    points = round(seconds * rate * _RETURNS_PER_PULSE)
+    images = wish.images * wish.passes * _CAMERAS * math.ceil(wish.length_m / _IMAGE_EVERY_M)
+    size = round(points * _BYTES_PER_POINT) + images * _BYTES_PER_IMAGE
+    return Forecast(points, size, seconds, density_map(survey))
+
+
+def forecast_site(wish: SiteWish) -> Forecast:
+    """About what a site would give.
+
+    Raises
+    ------
+    OutOfRange
+        There is no such sensor.
+    """
+    sensor = sensor_of(wish.sensor, "standing")
+    step_deg = math.degrees(wish.spacing_m / _SPACING_AT_M)
+    pulses = (360.0 / step_deg) * ((_HIGHEST_DEG - _LOWEST_DEG) / step_deg)
+    pulses *= _EPOCHS * (wish.stations or _USUAL_STATIONS)
+    points = round(pulses * _RETURNS_PER_PULSE)
+    return Forecast(points, round(points * _BYTES_PER_POINT), pulses / sensor.rate_hz)
