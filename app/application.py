@@ -265,6 +265,7 @@ def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -
     parts.start_page.open_requested.connect(files.choose_project)
     parts.start_page.import_requested.connect(files.choose_import)
     parts.start_page.demo_requested.connect(files.open_demo)
+    parts.start_page.simulation_requested.connect(files.simulations.choose)
     for view in (parts.image_views, parts.map_view):
         view.open_requested.connect(files.choose_project)
         view.import_requested.connect(files.choose_import)

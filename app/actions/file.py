@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.actions.action import Action
 from app.catalogue_wish import adopt_catalogue
+from app.simulate_wiring import Simulations
 from app.window_parts import WindowParts
 from processing.errors import UserError
 from processing.project.dropped_files import request_of_files
@@ -28,6 +29,7 @@ class FileActions:
     def __init__(self, parts: WindowParts, projects_folder: Path) -> None:
         self._parts = parts
         self._projects_folder = projects_folder
+        self.simulations = Simulations(parts, projects_folder)
 
     def actions(self) -> tuple[Action, ...]:
         """The file menu, from top to bottom."""
@@ -61,6 +63,7 @@ class FileActions:
                     "点群を軌跡・画像とともに読み込みます。元のファイルは変更しません。",
                 ),
             ),
+            self._simulate(),
             Action(
                 "export",
                 Text("Export…", "書き出し…"),
@@ -74,6 +77,18 @@ class FileActions:
                     "図面をDXFやCSVなどのファイルに書き出します。",
                 ),
                 needs_project=True,
+            ),
+        )
+
+    def _simulate(self) -> Action:
+        return Action(
+            "simulate",
+            Text("Simulate a recording…", "模擬計測データの作成…"),
+            self.simulations.choose,
+            "file",
+            hint=Text(
+                "Makes a street or a site with its truth, and shows what a sensor records.",
+                "正解付きの道路・現場データを作り、センサーの計測結果を確認できます。",
             ),
         )
 

@@ -17,6 +17,7 @@ from resources import path_of
 from widgets.dialogs.export_map import ExportForm
 from widgets.dialogs.import_drive import ImportForm
 from widgets.dialogs.shortcuts import ShortcutsForm
+from widgets.dialogs.simulate import SimulateForm
 
 
 def import_form(studio: Studio) -> None:
@@ -37,6 +38,12 @@ def export_form(studio: Studio) -> None:
 def reference_system(studio: Studio) -> None:
     """What the coordinates refer to."""
     studio.letter("R", CONTROL)
+
+
+def simulate_form(studio: Studio) -> None:
+    """A street to be made, and how densely it would be measured."""
+    studio.act("simulate")
+    studio.dialog(SimulateForm)
 
 
 def shortcuts(studio: Studio) -> None:
@@ -105,6 +112,7 @@ FORMS: Mapping[str, Callable[[Studio], None]] = {
     "form-import": import_form,
     "form-reference-system": reference_system,
     "form-shortcuts": shortcuts,
+    "form-simulate": simulate_form,
 }
 WITHOUT_STREET: Mapping[str, Callable[[Studio], None]] = {
     "start-recent": start_recent,

@@ -28,6 +28,7 @@ _MARKS = re.compile(r"\(&\w\)|&(?=\w)")
 _LEAST_WORDS = {"en": 20, "ja": 12}
 COMMANDS = (
     "open", "demo", "info", "import", "image", "tools", "run", "score", "study", "export", "bench",
+    "simulate",
 )  # fmt: skip
 
 

@@ -29,7 +29,7 @@ _PROJECT = Qt.ItemDataRole.UserRole
 
 
 class StartPage(QWidget):
-    """Recent projects, and the three ways to begin.
+    """Recent projects, and the ways to begin.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ class StartPage(QWidget):
 
     Signals
     -------
-    open_requested, import_requested, demo_requested
+    open_requested, import_requested, demo_requested, simulation_requested
         The buttons.
     recent_chosen(folder: Path)
         A project of the list.
@@ -49,6 +49,7 @@ class StartPage(QWidget):
     open_requested = Signal()
     import_requested = Signal()
     demo_requested = Signal()
+    simulation_requested = Signal()
     recent_chosen = Signal(object)
     forget_requested = Signal(object)
 
@@ -181,6 +182,7 @@ class StartPage(QWidget):
             (self.tr("Import a delivery…"), self.import_requested),
             (self.tr("Open a project…"), self.open_requested),
             (self.tr("Sample street"), self.demo_requested),
+            (self.tr("Simulate a recording…"), self.simulation_requested),
         )
         buttons = []
         for words, wish in wishes:
