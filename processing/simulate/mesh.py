@@ -189,7 +189,7 @@ def plate(outline: Floats) -> Shape:
     return np.asarray(outline, np.float64), np.column_stack([np.zeros_like(rest), rest, rest + 1])
 
 
-def placed(shape: Shape, where: Sequence[float], heading_rad: float) -> Shape:
+def placed(shape: Shape, where: Sequence[float] | Floats, heading_rad: float) -> Shape:
     """A shape whose own x axis points along a heading (anticlockwise from east), at a place."""
     vertices, triangles = shape
     cosine, sine = np.cos(heading_rad), np.sin(heading_rad)

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from processing.simulate.roadside.lights import add_lights
 from processing.simulate.roadside.places import Places
 from processing.simulate.roadside.poles import add_utility_poles
+from processing.simulate.roadside.signals import add_signals
 from processing.simulate.roadside.signs import add_signs
 from processing.simulate.roadside.street_trees import add_street_trees
 from processing.simulate.roadside.wires import add_wires
 from processing.simulate.street.section import Section
 from processing.simulate.things import Built
 
-KINDS = (add_utility_poles, add_wires, add_signs, add_street_trees)
+KINDS = (add_utility_poles, add_signals, add_lights, add_signs, add_wires, add_street_trees)
 """In this order: what comes first chooses its places first."""
 
 

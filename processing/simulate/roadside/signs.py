@@ -2,28 +2,27 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.random import Generator
 
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats
 from processing.simulate.roadside.neighbours import neighbour
 from processing.simulate.roadside.places import Places, Spot
 from processing.simulate.roadside.pole_line import TAPER, axis, pole_line
-from processing.simulate.roadside.poles import POLE, SHAFT_PIECE, SUNK_M, pole_truth
-from processing.simulate.roadside.rods import joined, rod, rods
+from processing.simulate.roadside.posts import Post, add_post, post_on
+from processing.simulate.roadside.rods import joined, rod
 from processing.simulate.roadside.sign_choice import plate_of, plates_of
 from processing.simulate.roadside.sign_plates import (
     SIGN,
     THICK_M,
     Hung,
     Plate,
+    PlateShape,
     add_plate,
     axes_of,
     outline,
 )
+from processing.simulate.roadside.signals import has_signals
 from processing.simulate.street.plan import LEFT, RIGHT, SIDES
 from processing.simulate.things import Built
 
@@ -33,21 +32,6 @@ POSTS_M = (0.0605, 0.0605, 0.0763, 0.0891)
 LOWEST_M, LOWEST_OVER_WALK_M = 1.8, 2.5
 _BRACKET_M = 0.025
 _PER_M = {"urban": 1 / 26, "rural": 1 / 60, "highway": 1 / 90}
-
-
-@dataclass(frozen=True)
-class Post:
-    """A post as it stands: foot, way of its axis (unit), radius, and where it belongs."""
-
-    spot: Spot
-    foot: Floats
-    way: Floats
-    radius_m: float
-    ground_m: float
-
-    def at(self, above_m: float) -> Floats:
-        """A place on its axis, by the height above the foot."""
-        return np.asarray(self.foot + self.way * (above_m / self.way[2]), np.float64)
 
 
 def add_signs(places: Places, built: Built) -> None:
@@ -75,7 +59,9 @@ def _add_stop_signs(places: Places, built: Built) -> None:
     random = section.chance("stop signs")
     for step, side in ((-1, LEFT), (1, RIGHT)):
         plan = neighbour(section, step)
-        if plan is None or side not in plan.junctions or random.random() < 0.3:
+        if plan is None or side not in plan.junctions or has_signals(section.seed, plan):
+            continue
+        if random.random() < 0.25:
             continue
         at = section.plan.start_m + 0.7 if step < 0 else section.plan.end_m - 0.7
         stop = [plate_of(random, "triangle", section.plan.style)]
@@ -92,15 +78,12 @@ def _add_post(
     looks_rad: float | None = None,
 ) -> None:
     side, at, plates = wish
-    radius = float(random.choice(POSTS_M)) / 2
+    diameter = float(random.choice(POSTS_M))
     wide = max(one.size_m for one in plates)
     spot = places.beside(random, side, at, max(0.12, min(wide / 2, 0.45)))
     if spot is None:
         return
-    foot = places.where(spot)
-    lean = random.normal(0, 0.006 if random.random() < 0.9 else 0.05, 2)
-    way = np.array([lean[0], lean[1], 1.0])
-    post = Post(spot, foot, way / np.linalg.norm(way), radius, float(foot[2]))
+    post = post_on(places, random, spot, diameter)
     looks = against_traffic_rad(places, spot) if looks_rad is None else looks_rad
     looks += side * float(np.deg2rad(random.uniform(-4, 14)))
     over_walk = places.section.plan.side(side).walk_m > 0
@@ -111,22 +94,6 @@ def _add_post(
         other = plates_of(random, places.section.plan.style)[:2]
         top = max(top, hang_plates(built, random, post, other, (looks + np.pi, lowest)))
     add_post(built, post, top + float(random.uniform(-0.03, 0.12)), "sign_pole")
-
-
-def add_post(built: Built, post: Post, high_m: float, kind: str) -> int:
-    """Add a post of one thickness and its truth; its instance."""
-    instance = built.thing("pole")
-    path = np.stack([post.at(-SUNK_M), post.at(0.0), post.at(high_m / 2), post.at(high_m)])
-    built.mesh.add(
-        rods(path[None], post.radius_m, 14),
-        Material.PAINTED_METAL,
-        POLE,
-        instance,
-        piece=SHAFT_PIECE,
-    )
-    facts = {"height_m": high_m, "diameter_m": 2 * post.radius_m}
-    pole_truth(built, post.spot, instance, post.foot, type=kind, **facts)
-    return instance
 
 
 def hang_plates(

@@ -1,0 +1,167 @@
+"""Street lamps on steel posts, and small ones on utility poles.
+
+Pieces of a lamp post: 1 the shaft, 0 arm and head.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.random import Generator
+
+from processing.simulate.chance import chance
+from processing.simulate.materials import Material
+from processing.simulate.mesh import Floats, Shape, box, placed
+from processing.simulate.roadside.places import Places, Spot
+from processing.simulate.roadside.pole_line import axis, pole_line
+from processing.simulate.roadside.poles import (
+    FITTING_PIECE,
+    POLE,
+    SHAFT_PIECE,
+    SUNK_M,
+    pole_truth,
+)
+from processing.simulate.roadside.rods import joined, rod, rods
+from processing.simulate.street.plan import LEFT, RIGHT, SIDES
+from processing.simulate.street.section import Section
+from processing.simulate.street.styles import HIGHWAY, RURAL
+from processing.simulate.things import Built
+
+_SHARES = {"urban": 0.75, "rural": 0.25, "highway": 0.75}
+_BREAST_M = 1.2
+
+
+@dataclass(frozen=True)
+class LampKind:
+    """What the lamps of a street look like, lengths in m."""
+
+    sides: tuple[int, ...]
+    pitch_m: float
+    high_m: float
+    foot_m: float
+    top_m: float
+    reach_m: float
+    is_bent: bool
+    is_led: bool
+
+
+def lamp_kind(section: Section) -> LampKind | None:
+    """The lamps of a street; None where it has none.
+
+    Posts of 4.5 to 12 m after 道路照明施設設置基準: 10 and 12 m on wide roads, low ones over walks.
+    """
+    style = section.plan.style
+    random = chance(section.seed, "lamps")
+    if random.random() > _SHARES[style.id]:
+        return None
+    both = SIDES if style is HIGHWAY or random.random() < 0.35 else ()
+    line = pole_line(section).poles
+    other = -line[0].spot.side if line else (LEFT if random.random() < 0.5 else RIGHT)
+    is_low = style is not HIGHWAY and random.random() < 0.25
+    high = float(random.uniform(4.2, 5.5) if is_low else random.uniform(7.5, 12.0))
+    pitch = float(random.uniform(16, 24) if is_low else random.uniform(28, 45))
+    foot = float(random.uniform(0.09, 0.115) if is_low else random.uniform(0.14, 0.2))
+    return LampKind(
+        both or (other,),
+        pitch * (2 if style is RURAL else 1),
+        high,
+        foot,
+        foot * float(random.uniform(0.45, 1.0)),
+        0.0 if is_low and random.random() < 0.5 else float(random.uniform(0.8, 2.4)),
+        bool(random.random() < 0.5),
+        bool(random.random() < 0.6),
+    )
+
+
+def add_lights(places: Places, built: Built) -> None:
+    """Add lamp posts at their numbers along the chainage, and lamps on utility poles."""
+    section = places.section
+    kind = lamp_kind(section)
+    if kind is not None:
+        plan = section.plan
+        for side in kind.sides:
+            shift = 0.5 if side == RIGHT else 0.0
+            first = int(np.ceil(plan.start_m / kind.pitch_m - shift))
+            for number in range(first, int(plan.end_m / kind.pitch_m - shift) + 1):
+                random = section.chance("lamp", number * 2 + (side > 0))
+                at = (number + shift + float(random.normal(0, 0.04))) * kind.pitch_m
+                spot = places.beside(random, side, at, kind.foot_m / 2 + 0.12)
+                if spot is not None:
+                    _add_lamp_post(places, built, kind, spot, random)
+    _add_on_poles(places, built)
+
+
+def _add_lamp_post(
+    places: Places, built: Built, kind: LampKind, spot: Spot, random: Generator
+) -> None:
+    section = places.section
+    foot = places.where(spot)
+    high = kind.high_m + float(random.normal(0, 0.05))
+    lean = random.normal(0, 0.004 if random.random() < 0.93 else 0.025, 2)
+    levels = np.array([-SUNK_M, 0.0, 0.25, 0.26, high * 0.5, high])
+    path = foot + np.column_stack([np.outer(levels, lean), levels])
+    slope = (kind.top_m - kind.foot_m) / high
+    radii = (kind.foot_m + slope * np.maximum(levels, 0)) / 2
+    radii[:3] *= float(random.choice([1.0, 1.0, 1.35]))
+    instance = built.thing("pole")
+    material = Material.PAINTED_METAL if random.random() < 0.75 else Material.STEEL
+    built.mesh.add(rods(path[None], radii, 16), material, POLE, instance, piece=SHAFT_PIECE)
+    parts, end = _arm(section, kind, spot, path[-1])
+    turn = section.heading(spot.chainage_m) - spot.side * np.pi / 2
+    parts.append(placed(_head(kind), end, turn))
+    if random.random() < 0.6:
+        hatch = box((-0.06, kind.foot_m * 0.35, 0.5), (0.06, kind.foot_m / 2 + 0.02, 0.85))
+        parts.append(placed(hatch, foot, turn))
+    built.mesh.add(joined(parts), material, POLE, instance, piece=FITTING_PIECE)
+    pole_truth(
+        built,
+        spot,
+        instance,
+        foot,
+        type="lamp_post",
+        height_m=float(max(end[2] + 0.1, path[-1, 2]) - foot[2]),
+        diameter_m=float(kind.foot_m + slope * _BREAST_M),
+    )
+
+
+def _arm(section: Section, kind: LampKind, spot: Spot, top: Floats) -> tuple[list[Shape], Floats]:
+    """The arm towards the road and its end."""
+    if kind.reach_m == 0.0:
+        return [], top
+    heading = section.heading(spot.chainage_m)
+    towards = -spot.side * np.array([-np.sin(heading), np.cos(heading), 0.0])
+    up = np.array([0.0, 0.0, 1.0])
+    share = np.linspace(0, 1, 7)[:, None]
+    rise = np.sin(share * np.pi / 2) * 0.7 if kind.is_bent else share * 0.25
+    path = top - up * 0.05 + towards * share * kind.reach_m + up * rise * min(kind.reach_m, 1.5)
+    return [rods(path[None], np.linspace(kind.top_m / 2, 0.028, 7), 10)], path[-1]
+
+
+def _head(kind: LampKind) -> Shape:
+    """Its own x axis points over the road."""
+    if kind.is_led:
+        return box((-0.1, -0.14, -0.05), (0.5, 0.14, 0.06))
+    path = np.array(
+        [[-0.1, 0, 0], [0.1, 0, 0], [0.35, 0, -0.01], [0.6, 0, -0.02], [0.68, 0, -0.02]]
+    )
+    return rods(path[None], np.array([0.05, 0.12, 0.16, 0.11, 0.03]), 10)
+
+
+def _add_on_poles(places: Places, built: Built) -> None:
+    """Small lamps for the walk on every other utility pole (防犯灯)."""
+    section = places.section
+    share = float(chance(section.seed, "small lamps").uniform(0.1, 0.6))
+    for pole in pole_line(section).poles:
+        random = section.chance("small lamp", pole.number)
+        if pole.section != section.plan.index or random.random() > share:
+            continue
+        start = axis(section.alignment, pole, np.array([float(random.uniform(4.4, 5.4))]))[0]
+        heading = section.heading(pole.spot.chainage_m)
+        left = np.array([-np.sin(heading), np.cos(heading), 0.0])
+        end = start - pole.spot.side * left * float(random.uniform(0.5, 0.9)) + [0.0, 0.0, 0.15]
+        instance = built.thing("lamp")
+        turn = heading - pole.spot.side * np.pi / 2
+        head = placed(box((-0.05, -0.07, -0.05), (0.4, 0.07, 0.03)), end, turn)
+        parts = joined([rod(start, end, 0.017), head])
+        built.mesh.add(parts, Material.PAINTED_METAL, POLE, instance)
