@@ -11,7 +11,7 @@ import json
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -155,7 +155,8 @@ def plate_distances(cloud: Cloud, truth: Path) -> tuple[Errors, Errors]:
         across = np.array([-normal[1], normal[0]])
         beside = (own[:, :2] - centre[:2]) @ across
         if np.ptp(beside) > 0.2:
-            slope = np.polyfit(beside, off, 1)[0]
+            matrix = np.column_stack([beside, own[:, 2] - centre[2], np.ones(beside.size)])
+            slope = np.linalg.lstsq(matrix, off, rcond=None)[0][0]
             turned.append(float(np.degrees(np.arctan(slope))))
     return Errors.of(away), Errors.of(turned)
 
@@ -164,7 +165,13 @@ def pulse_rate(path: Path) -> float:
     """Pulses per second from the times of a file's points alone."""
     times = np.unique(np.asarray(laspy.read(path).gps_time))
     steps = np.diff(times)
-    return float(1.0 / np.median(steps[steps < 2 * np.percentile(steps, 5)]))
+    step = float(np.median(steps[steps < 2 * np.percentile(steps, 5)]))
+    window = 64
+    while window < times.size:  # each window is long enough for the step known so far
+        since = times[:window] - times[0]
+        step *= float(np.polyfit(np.round(since / step), since / step, 1)[0])
+        window *= 4
+    return 1.0 / step
 
 
 def street_rows(seeds: Sequence[int] = SEEDS, length_m: float = _LENGTH_M) -> Iterator[list[str]]:
@@ -180,7 +187,8 @@ def street_rows(seeds: Sequence[int] = SEEDS, length_m: float = _LENGTH_M) -> It
     ]
     for number, seed in enumerate(seeds):
         style, sensor = _STYLES[number % len(_STYLES)], _SENSORS[number % len(_SENSORS)]
-        wish = StreetWish(seed=seed, length_m=length_m, style=style, sensor=sensor, images=False)
+        wish = StreetWish(seed=seed, length_m=length_m, style=style, sensor=sensor)
+        wish = replace(wish, drift_m=0.0, images=False)
         with tempfile.TemporaryDirectory(prefix="zuka-") as place:
             folder = Path(place) / "street"
             simulate_street(wish, folder, SilentMonitor())
@@ -195,7 +203,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seeds", type=int, nargs="+", default=list(SEEDS))
     wish = parser.parse_args(arguments)
     rows = list(street_rows(wish.seeds, wish.length))
-    section = "\n".join((f"{HEADING}\n", *markdown_table(rows)))
+    section = f"{HEADING}\n\n{markdown_table(rows)}"
     if wish.markdown is None:
         sys.stdout.write(section)
         return 0

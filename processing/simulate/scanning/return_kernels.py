@@ -23,7 +23,7 @@ NOISE, EXIT, DIVERGENCE, TURN_RAD, MOST_RETURNS, IS_PHASE, WEAKEST, DAMPING, WET
     range(10)
 )
 
-TRUE, MIXED, LATER = 0, 1, 2
+TRUE, MIXED = 0, 1
 _BASE_M = 10.0
 _NEAR_M = 8.0  # nearer than this a receiver sees its own beam only in part
 
@@ -147,18 +147,19 @@ def edge_returns(
     met: tuple[Floats, Integers],
     scanner: Floats,
     key: int,
-    out: tuple[Floats, Floats, Floats, NDArray[np.uint8]],
+    out: tuple[Floats, Floats, Floats, Integers, NDArray[np.uint8]],
 ) -> None:
     """Let beams that meet an edge also return from what is beside it, or from in between.
 
     ``met``: true ranges (NaN: none) and bodies of the beams. ``out``: measured ranges and
-    strengths, changed in place; ranges of second returns (NaN: none); kinds, `MIXED` where the
-    range is of no surface. The neighbour in the turn tells what is beside.
+    strengths, changed in place; ranges of second returns (NaN: none) and the beams that met what
+    they are of; kinds, `MIXED` where the range is of no surface. The neighbour in the turn tells
+    what is beside.
     """
     truths, bodies = met
-    ranges, strengths, seconds, kinds = out
+    ranges, strengths, seconds, others, kinds = out
     for ray in range(truths.size):
-        seconds[ray], kinds[ray] = np.nan, TRUE
+        seconds[ray], others[ray], kinds[ray] = np.nan, ray, TRUE
         other = ray + 1 if share_of(first + ray, key + 5) < 0.5 else ray - 1
         if other < 0 or other >= truths.size:
             continue
@@ -183,6 +184,7 @@ def edge_returns(
             kinds[ray] = MIXED if abs(low - here) > 0.03 else TRUE
         elif gap > 0 and scanner[MOST_RETURNS] > 1.5:
             seconds[ray] = beside + 2 * scanner[NOISE] * normal_of(first + ray, key + 8)
+            others[ray] = other
         strengths[ray] *= 0.25 + 0.75 * part
 
 
@@ -202,5 +204,6 @@ def warm_up() -> None:
     out = np.ones(1), np.ones(1), np.ones(1)
     start, key = 0, 1
     first_returns((start, three, three), (one, one, bytes_), surfaces, scanner, key, out)
-    edge_returns(start, (one, body), scanner, key, (one.copy(), one.copy(), one.copy(), bytes_))
+    echoes = one.copy(), one.copy(), one.copy(), body.copy(), bytes_
+    edge_returns(start, (one, body), scanner, key, echoes)
     intensities(one, 0.5, np.zeros(1, np.uint16))

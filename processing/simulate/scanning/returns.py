@@ -207,9 +207,9 @@ def returns_of(
         key,
         (ranges, truths, strengths),
     )
-    seconds, kinds = np.empty(count), np.empty(count, np.uint8)
+    seconds, others, kinds = np.empty(count), np.empty(count, np.int64), np.empty(count, np.uint8)
     bodies = met.evidence // PIECES + met.label.astype(np.int64) * (1 << 40)
-    out = (ranges, strengths, seconds, kinds)
+    out = (ranges, strengths, seconds, others, kinds)
     edge_returns(beams.first, (truths, bodies), scanner, key, out)
     is_there = ~np.isnan(ranges)
     label = np.where(kinds == MIXED, HIGH_NOISE, met.label).astype(np.uint8)
@@ -217,7 +217,8 @@ def returns_of(
     firsts = _Echoes(np.flatnonzero(is_there), ranges, strengths, label, evidence)
     parts = [firsts.of_all(beams)]
     if scanner[4] > 1.5:
-        parts += _later(beams, met, scene, (ranges, seconds, strengths), key)
+        parts += _beside(beams, met, seconds, others, strengths)
+        parts += _behind(beams, met, scene, (ranges, seconds, strengths), key)
     return _ordered(beams, parts), truths
 
 
@@ -246,17 +247,21 @@ class _Echoes:
         )
 
 
-def _later(
+def _beside(
+    beams: Beams, met: Met, seconds: Floats, others: Integers, strengths: Floats
+) -> list[Returns]:
+    """Second returns at edges."""
+    rays = np.flatnonzero(~np.isnan(seconds))
+    there = _Echoes(rays, seconds, strengths * 0.4, met.label[others], met.evidence[others])
+    return [there.of_all(beams)]
+
+
+def _behind(
     beams: Beams, met: Met, scene: Scene, measured: tuple[Floats, Floats, Floats], key: int
 ) -> list[Returns]:
-    """Second returns at edges, and those from behind leaves and nets."""
+    """Later returns, from behind leaves and nets."""
     ranges, seconds, strengths = measured
-    rays = np.flatnonzero(~np.isnan(seconds))
-    beside = np.where(np.isfinite(met.ranges[np.minimum(rays + 1, met.ranges.size - 1)]), 1, 0)
-    other = np.clip(rays + beside, 0, met.ranges.size - 1)
-    labels, evidence = met.label.copy(), met.evidence.copy()
-    labels[rays], evidence[rays] = met.label[other], met.evidence[other]
-    parts = [_Echoes(rays, seconds, strengths * 0.4, labels, evidence).of_all(beams)]
+    parts = []
     is_open = np.array([SURFACES[one].is_open for one in Material])
     rays = np.flatnonzero(~np.isnan(ranges) & np.isnan(seconds) & is_open[met.material])
     reach = met.ranges
