@@ -55,7 +55,7 @@ def beds_of(section: Section) -> Iterator[Bed]:
     """The strips that the ground leaves open for covered gutters."""
     ground = section.ground
     for number, strip in enumerate(ground.strips):
-        if strip.has_surface or strip.kind != "drain":
+        if strip.has_surface or strip.kind not in ("drain", "lids"):
             continue
         places = section.alignment.at(
             np.broadcast_to(ground.nodes[:, None], (ground.nodes.size, 2)),

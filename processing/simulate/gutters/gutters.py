@@ -48,6 +48,7 @@ from processing.simulate.street.section import Section
 from processing.simulate.things import Built, TrueFeature
 
 _CAST_M = 0.02  # a wider rest of a run is closed by concrete
+_BEND_STEP_M = 2.0
 _REPLACED_SHARE = 0.04
 _BASIN_DEEPER_M = 0.15
 
@@ -146,12 +147,13 @@ def _bend(gutter: _Gutter) -> float:
 
 
 def _line_bend(along: Floats, line: Floats) -> float:
-    """The sharpest curvature of a line in plan, 1/m, its wander over some metres left out."""
-    if len(along) < 3:
+    """The sharpest curvature of a line in plan, 1/m, over some metres."""
+    at = np.linspace(along[0], along[-1], max(2, int((along[-1] - along[0]) / _BEND_STEP_M) + 1))
+    ways = np.diff([np.interp(at, along, line[:, axis]) for axis in range(2)], axis=1)
+    headings = np.unwrap(np.arctan2(ways[1], ways[0]))
+    if headings.size < 2:
         return 0.0
-    ways = np.diff(line[:, :2], axis=0)
-    headings = np.unwrap(np.arctan2(ways[:, 1], ways[:, 0]))
-    return float(np.abs(np.diff(headings) / np.diff(along)[1:]).max())
+    return float(np.abs(np.diff(headings)).max() / (at[1] - at[0]))
 
 
 def _silt(random: Generator, gutter: _Gutter, places: list[Place]) -> tuple[Floats, Material]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from processing.simulate.border.lots import add_lots
 from processing.simulate.roadside.lights import add_lights
 from processing.simulate.roadside.places import Places
 from processing.simulate.roadside.poles import add_utility_poles
@@ -12,7 +13,15 @@ from processing.simulate.roadside.wires import add_wires
 from processing.simulate.street.section import Section
 from processing.simulate.things import Built
 
-KINDS = (add_utility_poles, add_signals, add_lights, add_signs, add_wires, add_street_trees)
+KINDS = (
+    add_lots,
+    add_utility_poles,
+    add_signals,
+    add_lights,
+    add_signs,
+    add_wires,
+    add_street_trees,
+)
 """In this order: what comes first chooses its places first."""
 
 

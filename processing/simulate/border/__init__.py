@@ -1,0 +1,1 @@
+"""What borders a street: barriers, walls, buildings, yards, fields and slopes."""

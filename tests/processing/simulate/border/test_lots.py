@@ -1,0 +1,117 @@
+"""Lots: buildings stay off the road and out of each other, and are the same in any order."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from processing.simulate.border.houses import (
+    Building,
+    Plot,
+    flats,
+    greenhouse,
+    hall,
+    house,
+    shop,
+)
+from processing.simulate.border.lots import add_lots, lots_of
+from processing.simulate.chance import chance
+from processing.simulate.mesh import Mesh
+from processing.simulate.roadside.places import Places, Spot
+from processing.simulate.street.section import Section
+from processing.simulate.street.street import Street
+from processing.simulate.street.styles import RURAL, URBAN, Style
+from processing.simulate.things import Built
+
+BUILDINGS: list[Building] = [house, shop, flats, hall, greenhouse]
+
+
+def _sections(seed: int, style: Style) -> list[Section]:
+    street = Street(seed, style, 200.0)
+    return [street.bare_section(row) for row in street.within(0.0, 200.0)]
+
+
+def _built(section: Section) -> tuple[Mesh, Built]:
+    built = Built(1)
+    add_lots(Places(section), built)
+    return built.mesh.mesh(), built
+
+
+def _distances(section: Section, mesh: Mesh) -> np.ndarray:
+    """How far vertices are from the road's centre, by the nearest place of its line."""
+    line = section.alignment.places[:, :2]
+    near = np.linspace(section.plan.start_m - 30, section.plan.end_m + 30, 400)
+    centre = np.column_stack(
+        [np.interp(near, section.alignment.chainages, line[:, axis]) for axis in range(2)]
+    )
+    away = np.linalg.norm(mesh.vertices[:, None, :2] - centre[None], axis=2)
+    nearest: np.ndarray = away.min(axis=1)
+    return nearest
+
+
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_nothing_of_a_lot_stands_on_road_or_walk(seed: int) -> None:
+    for section in _sections(seed, URBAN):
+        mesh, _ = _built(section)
+        if len(mesh.vertices):
+            inner = min(
+                band.inner_m
+                for side in (section.plan.left, section.plan.right)
+                if (band := side.band("outside")) is not None
+            )
+            assert _distances(section, mesh).min() > inner - 0.05
+
+
+def test_lots_follow_each_other_within_their_section() -> None:
+    for section in _sections(3, URBAN):
+        for side in (1, -1):
+            lots = list(lots_of(section, side))
+            ends = [section.plan.start_m, *(one.to_m for one in lots)]
+            assert all(end <= lot.from_m for end, lot in zip(ends[:-1], lots, strict=True))
+            assert ends[-1] <= section.plan.end_m
+            assert side not in section.plan.junctions or not lots
+
+
+@pytest.mark.parametrize("make", BUILDINGS)
+def test_a_building_keeps_within_its_plot_whatever_the_draw(make: Building) -> None:
+    plot = Plot(9.0, 16.0)
+    for number in range(30):
+        parts = make(chance(number, "test"), plot)
+        vertices = np.concatenate([shape[0] for shape, _ in parts])
+        assert np.isfinite(vertices).all()
+        assert vertices[:, 0].min() > -plot.half_m - 0.75, "eaves may stand over the side"
+        assert vertices[:, 0].max() < plot.half_m + 0.75
+        assert vertices[:, 1].min() > -0.5
+        for shape, _ in parts:
+            assert shape[1].min() >= 0
+            assert shape[1].max() < len(shape[0])
+
+
+def test_places_under_a_building_are_taken() -> None:
+    for section in _sections(1, URBAN):
+        places, built = Places(section), Built(1)
+        add_lots(places, built)
+        for lot in lots_of(section, 1):
+            spot = Spot(lot.middle_m, lot.side * lot.front_m)
+            assert not places.is_free(spot, 0.1)
+
+
+def test_buildings_are_built_quickly_and_of_few_triangles() -> None:
+    for style in (URBAN, RURAL):
+        for section in _sections(4, style):
+            mesh, built = _built(section)
+            assert len(mesh.triangles) < 30_000
+            assert {one.kind for one in built.things} <= {
+                "building",
+                "carport",
+                "fence",
+                "gate",
+                "vending_machine",
+                "wall",
+                "wheel_stop",
+            }
+
+
+def test_a_section_has_the_same_lots_when_it_is_built_again() -> None:
+    one, other = _sections(6, URBAN)[2], _sections(6, URBAN)[2]
+    np.testing.assert_array_equal(_built(one)[0].vertices, _built(other)[0].vertices)
