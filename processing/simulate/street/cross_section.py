@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,11 +11,17 @@ from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats
 from processing.simulate.street.alignment import Alignment
+from processing.simulate.street.corner_track import (
+    CornerTrack,
+    corner_course,
+    corner_drops,
+    corner_nodes,
+)
 from processing.simulate.street.dropped_curbs import drops_of, lowering
 from processing.simulate.street.ground import Ground, Strip
-from processing.simulate.street.junction_shape import Mouth, mouth_of
-from processing.simulate.street.layout import Layout, SideLayout
-from processing.simulate.street.measures import looks_of, measures_along
+from processing.simulate.street.junction_shape import DEEP_M, Mouth, mouth_of
+from processing.simulate.street.layout import CornerLayout, Layout, Outline, SideLayout
+from processing.simulate.street.measures import Looks, looks_of, measures_along
 from processing.simulate.street.median import median_nodes, median_of, opening_of
 from processing.simulate.street.plan import LEFT, RIGHT, SIDES, SectionPlan, SidePlan
 from processing.simulate.street.profile import GROUND, ROAD, Course, Profile, profile_of
@@ -29,6 +35,8 @@ _ROAD_STEP_M = 0.75
 _ROAD_LINE_M = 0.4
 _PLAIN_STEP_M = 0.5
 _SAME_M = 1e-4
+_MOUTH_NEAR_M = 12.0
+_MOUTH_LINE_M = 0.3
 _FOLD_SHARE = 0.8
 """On the inside of a bend the land ends before its lines cross: this share of the radius."""
 
@@ -47,6 +55,12 @@ def section_of(seed: int, plans: Sequence[SectionPlan], row: int, alignment: Ali
         beside = tuple(one.side(side) if one else None for one in (before, plan, after))
         own = (beside[0], plan.side(side), beside[2])
         sides[side] = _side_layout(seed, terrain, side, own, mouths.get(side))
+        if after is not None:
+            outlines = (
+                outline(seed, plans, row, side, is_end=True),
+                outline(seed, plans, row + 1, side, is_end=False),
+            )
+            sides[side] = replace(sides[side], end=outlines)
     opening = opening_of(plan, _widest(mouths))
     step = int(np.ceil(plan.length_m / _ROAD_STEP_M)) + 1
     nodes = np.linspace(plan.start_m, plan.end_m, step)
@@ -57,26 +71,28 @@ def section_of(seed: int, plans: Sequence[SectionPlan], row: int, alignment: Ali
     return Section(seed, plan, alignment, layout)
 
 
-def boundary_line(
-    seed: int, plans: Sequence[SectionPlan], row: int, side: int, *, at_end: bool
-) -> tuple[Profile, SidePlan]:
-    """The lines of a side where a section meets the one before it or behind it."""
+def outline(
+    seed: int, plans: Sequence[SectionPlan], row: int, side: int, *, is_end: bool
+) -> Outline:
+    """The lines of a side where a section ends or begins."""
     plan = plans[row]
     before = plans[row - 1].side(side) if row > 0 else None
     after = plans[row + 1].side(side) if row + 1 < len(plans) else None
-    own = _covered(plan.side(side)) if side in plan.junctions else plan.side(side)
-    along = np.array([plan.end_m if at_end else plan.start_m])
-    ends = np.array([plan.start_m, plan.end_m])
+    own = plan.side(side)
+    along = np.array([plan.end_m if is_end else plan.start_m])
     none = np.zeros(1)
     course = Course(
-        own,
-        measures_along(seed, (before, plan.side(side), after), along, ends),
-        looks_of(seed, plan.side(side)),
+        covered(own) if side in plan.junctions else own,
+        measures_along(seed, (before, own, after), along, np.array([plan.start_m, plan.end_m])),
+        looks_of(seed, own),
         own.edge_m + unevenness_of(seed).wander[side].at(along),
         Laid(along, none, none, none),
         lowering((), along),
     )
-    return profile_of(course), own
+    profile = profile_of(course)
+    profile.line(profile.away[-1] + 1.0, profile.above[-1], land_of(seed, own))
+    away, above = profile.stacked()
+    return Outline(away[0], above[0], tuple(profile.strips))
 
 
 def far_m(terrain: Terrain, side: int, chainage: Floats, least_m: Floats) -> Floats:
@@ -97,7 +113,7 @@ def land_of(seed: int, side: SidePlan) -> Strip:
     return Strip("land", materials.get(side.outside, Material.SOIL), GROUND)
 
 
-def _covered(side: SidePlan) -> SidePlan:
+def covered(side: SidePlan) -> SidePlan:
     """A side whose gutter runs below the side street's asphalt."""
     return side if side.drain in ("none", "apron") else replace(side, drain="apron")
 
@@ -136,17 +152,53 @@ def _side_layout(
         nodes,
         lowering(drops, nodes.along),
     )
-    profile = _mouth_profile(course) if mouth is not None else profile_of(course)
-    least = profile.away[-1]
-    profile.line(far_m(terrain, side, nodes.along, least), profile.above[-1], land_of(seed, own))
+    if mouth is not None:
+        profile = _mouth_profile(mouth, replace(course, side=covered(own)))
+        corners = tuple(_corners(seed, terrain, plans, mouth, looks))
+    else:
+        profile, corners = profile_of(course), ()
+        reach = far_m(terrain, side, nodes.along, profile.away[-1])
+        profile.line(reach, profile.above[-1], land_of(seed, own))
     sweep = Sweep.along(Straight(nodes.along, side), profile, terrain, side)
-    return SideLayout(sweep, drops, looks, mouth)
+    return SideLayout(sweep, drops, looks, mouth, corners, None)
 
 
-def _mouth_profile(course: Course) -> Profile:
+def _mouth_profile(mouth: Mouth, course: Course) -> Profile:
+    """Lines beside a mouth that know its heights alone: the corners have the surfaces."""
+    nodes = course.laid.along
+    away, above = profile_of(course).stacked()
+    inwards, levels = away.mean(axis=0) - course.side.edge_m, above.mean(axis=0)
+    inwards = inwards + 1e-6 * np.arange(inwards.size)
     profile = Profile()
     profile.line(course.edge, 0.0)
+    bare = Strip("mouth", Material.ASPHALT, ROAD, has_surface=False)
+    near = np.arange(1, int(_MOUTH_NEAR_M / _MOUTH_LINE_M)) * _MOUTH_LINE_M
+    for beside in (*near, *np.arange(_MOUTH_NEAR_M, DEEP_M, 2.0)):
+        depths = mouth.inside_m(nodes, np.full(nodes.size, beside))
+        inside = np.maximum(depths[0], depths[1])
+        level = np.where(inside <= 0, 0.0, np.interp(inside, inwards, levels))
+        profile.line(course.side.edge_m + beside, level, bare)
     return profile
+
+
+def _corners(
+    seed: int,
+    terrain: Terrain,
+    plans: tuple[SidePlan | None, SidePlan, SidePlan | None],
+    mouth: Mouth,
+    looks: Looks,
+) -> Iterator[CornerLayout]:
+    own = plans[1]
+    for number, corner in enumerate(mouth.corners):
+        random = chance(seed, "corner", terrain.plan.index, mouth.side, number)
+        drops = corner_drops(random, own, corner)
+        nodes, first, last = corner_nodes(random, corner, looks, DEEP_M, drops)
+        track = CornerTrack(mouth, corner, own.edge_m, nodes.along, first, last)
+        wander = terrain.unevenness.wander[mouth.side]
+        course = corner_course(seed, plans, track, nodes, looks=looks, drops=drops, wander=wander)
+        profile = profile_of(replace(course, side=covered(own)))
+        sweep = Sweep.along(track, profile, terrain, mouth.side)
+        yield CornerLayout(track, sweep, drops, land_of(seed, own))
 
 
 def _layout(

@@ -6,12 +6,50 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from processing.simulate.mesh import Floats
+from processing.simulate.street.corner_track import CornerTrack
 from processing.simulate.street.dropped_curbs import Drop
-from processing.simulate.street.ground import Ground
+from processing.simulate.street.ground import Ground, Strip
 from processing.simulate.street.junction_shape import Mouth
 from processing.simulate.street.measures import Looks
 from processing.simulate.street.sweep import Sweep
 from processing.simulate.street.terrain import Terrain
+
+
+@dataclass(frozen=True)
+class CornerLayout:
+    """One corner of a side street's mouth.
+
+    Attributes
+    ----------
+    sweep : Sweep
+        From the asphalt's edge to the land, round the corner.
+    drops : tuple of Drop
+        Where its curb is lowered, by the track's metres.
+    land : Strip
+        What lies behind.
+    """
+
+    track: CornerTrack
+    sweep: Sweep
+    drops: tuple[Drop, ...]
+    land: Strip
+
+
+@dataclass(frozen=True)
+class Outline:
+    """A side's lines across the road at one place: (k,) float64 each.
+
+    Attributes
+    ----------
+    away, above : (k,) float64
+        m from the centre, and over the terrain.
+    strips : tuple of Strip
+        Between them.
+    """
+
+    away: Floats
+    above: Floats
+    strips: tuple[Strip, ...]
 
 
 @dataclass(frozen=True)
@@ -26,12 +64,18 @@ class SideLayout:
         Where the curb is lowered, by chainage.
     mouth : Mouth or None
         The side street that meets the road here.
+    corners : tuple of CornerLayout
+        Its corners: before it and behind it.
+    end : (Outline, Outline) or None
+        Where the section meets the next one: its own lines and those of the next.
     """
 
     sweep: Sweep
     drops: tuple[Drop, ...]
     looks: Looks
     mouth: Mouth | None
+    corners: tuple[CornerLayout, ...]
+    end: tuple[Outline, Outline] | None
 
 
 @dataclass(frozen=True)

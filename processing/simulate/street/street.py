@@ -14,6 +14,8 @@ from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.roadside.furniture import add_furniture
 from processing.simulate.street.alignment import Alignment, alignment_of
 from processing.simulate.street.cross_section import section_of
+from processing.simulate.street.ends import add_ends
+from processing.simulate.street.junctions import add_junctions
 from processing.simulate.street.plan import SectionPlan, plans_of
 from processing.simulate.street.section import Section
 from processing.simulate.street.styles import Style
@@ -21,7 +23,7 @@ from processing.simulate.street.surfaces import add_ground
 from processing.simulate.things import THINGS_PER_SECTION, Built, Mover, Thing, TrueFeature
 
 Maker = Callable[[Section, Built], None]
-MAKERS: tuple[Maker, ...] = (add_ground, add_gutters, add_furniture)
+MAKERS: tuple[Maker, ...] = (add_ground, add_junctions, add_ends, add_gutters, add_furniture)
 """What builds a section, in this order; each draws from streams of its own."""
 
 _KEPT_SECTIONS = 24

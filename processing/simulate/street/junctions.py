@@ -1,0 +1,85 @@
+"""Side streets: their carriageway, the corners with curbs and walks, and the land between."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from processing.simulate.mesh import Floats, grid
+from processing.simulate.street.junction_shape import Mouth
+from processing.simulate.street.layout import CornerLayout
+from processing.simulate.street.profile import ROAD
+from processing.simulate.street.section import Section
+from processing.simulate.street.surfaces import asphalt_of
+from processing.simulate.street.sweep import add_runs, add_surfaces
+from processing.simulate.things import NO_THING, Built
+
+_COLUMNS = 9
+
+
+def add_junctions(section: Section, built: Built) -> None:
+    """Add the side streets of a section."""
+    for side in section.plan.junctions:
+        part = section.layout.sides[side]
+        if part.mouth is None:
+            continue
+        for corner in part.corners:
+            add_surfaces(corner.sweep, section.alignment, built, part.looks.walk)
+            add_runs(corner.sweep, section.alignment, built)
+            _add_land(section, corner, built)
+        _add_carriageway(section, part.mouth, part.corners, built)
+
+
+def _add_land(section: Section, corner: CornerLayout, built: Built) -> None:
+    """The block behind a corner: from the section's end to the side street's last line."""
+    track = corner.track
+    from_end, beside = track.square(corner.sweep.profile.away[-1])
+    above = corner.sweep.profile.above[-1]
+    top = float(beside[-1])
+    is_road = np.arange(from_end.size) <= track.last
+    columns, picked = np.unique(from_end[is_road], return_index=True)
+    low = beside[is_road][picked]
+    start = low[-1]
+    up = np.unique(np.append(beside[beside > start + 1e-9], [start, top]))
+    share = (up - start) / (top - start)
+    rows_beside = low[None, :] + share[:, None] * (top - low[None, :])
+    rows_from_end = np.broadcast_to(columns, rows_beside.shape)
+    chainage, offset = track.placed(track.chainages(rows_from_end), rows_beside)
+    level = float(np.median(above))
+    road_level = above[is_road][picked]
+    height = section.layout.terrain.height(chainage, offset)
+    height = height + road_level[None, :] + share[:, None] * (level - road_level[None, :])
+    rows = section.alignment.at(chainage, offset, height)
+    built.mesh.add(grid(rows), corner.land.material, corner.land.label, NO_THING)
+
+
+def street_sides(corners: tuple[CornerLayout, ...], beside: Floats) -> tuple[Floats, Floats]:
+    """Where the side street's asphalt begins and ends, in the square frame, at depths (n,)."""
+    limits = []
+    for corner in corners:
+        track = corner.track
+        from_end, depth = track.square(corner.sweep.profile.away[0])
+        kept = slice(track.first, None)
+        rising = np.maximum.accumulate(depth[kept])
+        limits.append(track.chainages(np.interp(beside, rising, from_end[kept])))
+    return limits[0], limits[1]
+
+
+def _add_carriageway(
+    section: Section, mouth: Mouth, corners: tuple[CornerLayout, ...], built: Built
+) -> None:
+    depths = [one.track.square(one.sweep.profile.away[0])[1][one.track.first :] for one in corners]
+    top = min(float(one[-1]) for one in depths)
+    beside = np.unique(np.concatenate([[0.0, top], *depths]))
+    beside = beside[(beside >= 0) & (beside <= top)]
+    beside = beside[np.append(True, np.diff(beside) > 0.02)]
+    low, high = street_sides(corners, beside)
+    share = np.linspace(0.0, 1.0, _COLUMNS)
+    along = low[:, None] + share * (high - low)[:, None]
+    deep = np.broadcast_to(beside[:, None], along.shape)
+    chainage, offset = corners[0].track.placed(along, deep)
+    height = section.layout.terrain.height(chainage, offset)
+    # A crown of 1.5 % of half the width, as the road's own camber, vanishing at its edges.
+    crown = 0.015 * mouth.half_m * (1 - (2 * share - 1) ** 2)
+    height = height + crown[None, :] * np.clip(deep / 6.0, 0.0, 1.0)
+    rows = section.alignment.at(chainage, offset, height)
+    built.mesh.add(grid(rows), asphalt_of(section.seed), ROAD, NO_THING)
