@@ -14,6 +14,12 @@ from processing.simulate.street.sweep import add_runs, add_surfaces
 from processing.simulate.things import NO_THING, Built
 
 _COLUMNS = 9
+_UNDER_M = 0.05
+_BELOW_M = 0.008
+"""The side street's asphalt reaches under the road's, so that no beam passes between them."""
+
+_SKIRT_M = 0.4
+"""How far the land reaches down where the next section's, made of wider pieces, meets it."""
 
 
 def add_junctions(section: Section, built: Built) -> None:
@@ -50,6 +56,8 @@ def _add_land(section: Section, corner: CornerLayout, built: Built) -> None:
     height = height + road_level[None, :] + share[:, None] * (level - road_level[None, :])
     rows = section.alignment.at(chainage, offset, height)
     built.mesh.add(grid(rows), corner.land.material, corner.land.label, NO_THING)
+    skirt = np.stack([rows[:, 0], rows[:, 0] - [0.0, 0.0, _SKIRT_M]], axis=1)
+    built.mesh.add(grid(skirt), corner.land.material, corner.land.label, NO_THING)
 
 
 def street_sides(corners: tuple[CornerLayout, ...], beside: Floats) -> tuple[Floats, Floats]:
@@ -82,4 +90,7 @@ def _add_carriageway(
     crown = 0.015 * mouth.half_m * (1 - (2 * share - 1) ** 2)
     height = height + crown[None, :] * np.clip(deep / 6.0, 0.0, 1.0)
     rows = section.alignment.at(chainage, offset, height)
+    under_s, under_o = corners[0].track.placed(along[:1], deep[:1] - _UNDER_M)
+    below = section.layout.terrain.height(under_s, under_o) - _BELOW_M
+    rows = np.concatenate([section.alignment.at(under_s, under_o, below), rows])
     built.mesh.add(grid(rows), asphalt_of(section.seed), ROAD, NO_THING)
