@@ -10,7 +10,7 @@ import argparse
 import json
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -21,16 +21,27 @@ from numpy.typing import NDArray
 
 from processing.formats.safe_write import written_safely
 from processing.monitor import SilentMonitor
+from processing.score.disturbed_truths import disturbed_rows
 from processing.score.filter_tables import markdown_table
 from processing.score.filters import with_section
 from processing.simulate.streets import simulate_street
 from processing.simulate.wishes import StreetWish
 
 HEADING = "## Simulated streets against their truth"
+DISTURBED_HEADING = "## Truths of simulated streets, disturbed"
 SEEDS = range(901, 913)
 _STYLES = ("urban", "rural", "highway")
 _SENSORS = ("vq250", "vq450", "zf9012", "vmx2ha")
 _LENGTH_M = 100.0
+_HEAD = (
+    "style, sensor, seed",
+    "points",
+    "pulses/s: measured − true (ppm)",
+    "curb steps (mm)",
+    "trunk diameters (mm)",
+    "plates, along their normal (mm)",
+    "plates, turned (°)",
+)
 
 _POLE, _SIGN, _CURB = 66, 65, 67
 _FEWEST_POINTS = 30
@@ -174,17 +185,25 @@ def pulse_rate(path: Path) -> float:
     return 1.0 / step
 
 
-def street_rows(seeds: Sequence[int] = SEEDS, length_m: float = _LENGTH_M) -> Iterator[list[str]]:
-    """Rows of cells, the head first: one per street."""
-    yield [
-        "style, sensor, seed",
-        "points",
-        "pulses/s: measured − true (ppm)",
-        "curb steps (mm)",
-        "trunk diameters (mm)",
-        "plates, along their normal (mm)",
-        "plates, turned (°)",
-    ]
+@dataclass
+class Tables:
+    """Rows of cells, the head first.
+
+    Attributes
+    ----------
+    streets : list
+        One row per street.
+    disturbed : list
+        Scores of disturbed truths, of one street of each style.
+    """
+
+    streets: list[list[str]]
+    disturbed: list[list[str]]
+
+
+def tables_of(seeds: Sequence[int] = SEEDS, length_m: float = _LENGTH_M) -> Tables:
+    """Simulate streets of these seeds, of each style and several sensors, and measure them."""
+    tables = Tables([list(_HEAD)], [])
     for number, seed in enumerate(seeds):
         style, sensor = _STYLES[number % len(_STYLES)], _SENSORS[number % len(_SENSORS)]
         wish = StreetWish(seed=seed, length_m=length_m, style=style, sensor=sensor)
@@ -192,24 +211,31 @@ def street_rows(seeds: Sequence[int] = SEEDS, length_m: float = _LENGTH_M) -> It
         with tempfile.TemporaryDirectory(prefix="zuka-") as place:
             folder = Path(place) / "street"
             simulate_street(wish, folder, SilentMonitor())
-            yield [f"{style}, {sensor}, {seed}", *_cells(folder)]
+            tables.streets.append([f"{style}, {sensor}, {seed}", *_cells(folder)])
+            if number < len(_STYLES):
+                head, *rows = disturbed_rows(folder / "truth")
+                tables.disturbed += [] if tables.disturbed else [["street", *head]]
+                tables.disturbed += [[f"{style} {seed}", *row] for row in rows]
+    return tables
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write the table to a page, or to standard output."""
+    """Write the tables to a page, or to standard output."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--markdown", type=Path)
     parser.add_argument("--length", type=float, default=_LENGTH_M)
     parser.add_argument("--seeds", type=int, nargs="+", default=list(SEEDS))
     wish = parser.parse_args(arguments)
-    rows = list(street_rows(wish.seeds, wish.length))
-    section = f"{HEADING}\n\n{markdown_table(rows)}"
-    if wish.markdown is None:
-        sys.stdout.write(section)
-        return 0
-    page = with_section(wish.markdown.read_text("utf-8"), HEADING, section)
-    with written_safely(wish.markdown) as path:
-        path.write_text(page, "utf-8")
+    tables = tables_of(wish.seeds, wish.length)
+    sections = {HEADING: tables.streets, DISTURBED_HEADING: tables.disturbed}
+    for heading, rows in sections.items():
+        section = f"{heading}\n\n{markdown_table(rows)}"
+        if wish.markdown is None:
+            sys.stdout.write(f"{section}\n")
+            continue
+        page = with_section(wish.markdown.read_text("utf-8"), heading, section)
+        with written_safely(wish.markdown) as path:
+            path.write_text(page, "utf-8")
     return 0
 
 

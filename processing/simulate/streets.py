@@ -44,6 +44,7 @@ from processing.simulate.wishes import StreetWish
 from processing.text import Text
 
 _DRY_SHARE = 0.65
+_SHOWN_M = 40.0  # of truth before the beginning and behind the end
 _KMH = 3.6
 _TRUTH_SHARE = 0.97  # of the progress; the rest is truth
 
@@ -137,7 +138,8 @@ class _Work:
             monitor.check()
             self.things.update({one.instance: one for one in section.things})
             for place, one in enumerate(section.truth):
-                self.truth[one.instance, one.file, place] = one
+                if -_SHOWN_M < one.chainage_m < self.wish.length_m + _SHOWN_M:
+                    self.truth[one.instance, one.file, place] = one
         self._write_trajectory(driven, number)
         self.passes.append(driven)
 
