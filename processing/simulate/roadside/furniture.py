@@ -3,12 +3,17 @@
 from __future__ import annotations
 
 from processing.simulate.border.lots import add_lots
+from processing.simulate.roadside.bollards import add_bollards
+from processing.simulate.roadside.hedges import add_hedges
 from processing.simulate.roadside.lights import add_lights
+from processing.simulate.roadside.mirrors import add_mirrors
+from processing.simulate.roadside.overhead_signs import add_overhead_signs
 from processing.simulate.roadside.places import Places
 from processing.simulate.roadside.poles import add_utility_poles
 from processing.simulate.roadside.signals import add_signals
 from processing.simulate.roadside.signs import add_signs
 from processing.simulate.roadside.street_trees import add_street_trees
+from processing.simulate.roadside.weeds import add_weeds
 from processing.simulate.roadside.wires import add_wires
 from processing.simulate.street.section import Section
 from processing.simulate.things import Built
@@ -17,10 +22,15 @@ KINDS = (
     add_lots,
     add_utility_poles,
     add_signals,
+    add_overhead_signs,
     add_lights,
     add_signs,
+    add_mirrors,
     add_wires,
     add_street_trees,
+    add_bollards,
+    add_hedges,
+    add_weeds,
 )
 """In this order: what comes first chooses its places first."""
 

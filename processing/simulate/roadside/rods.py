@@ -73,3 +73,10 @@ def joined(shapes: Iterable[Shape]) -> Shape:
         np.concatenate([one[0] for one in parts]),
         np.concatenate([one[1] + start for one, start in zip(parts, starts[:-1], strict=True)]),
     )
+
+
+def tilted(shape: Shape, angle_rad: float) -> Shape:
+    """A shape turned about its y axis: what looks along x looks up by the angle."""
+    cosine, sine = np.cos(angle_rad), np.sin(angle_rad)
+    turn = np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])
+    return shape[0] @ turn, shape[1]

@@ -25,8 +25,8 @@ from processing.simulate.street.plan import SIDES, SectionPlan, SidePlan
 from processing.simulate.street.styles import HIGHWAY, URBAN
 from processing.simulate.things import Built
 
-_LEAVES_IN_A_SECTION = 24_000
-_MOST_LEAVES = 2_600
+_LEAVES_IN_A_SECTION = 20_000
+_MOST_LEAVES = 2_400
 _ROOM_M = 0.35  # about a trunk
 _MOST_WOOD_TREES = 26
 _WOOD_DEEP_M = 24.0

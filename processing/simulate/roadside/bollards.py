@@ -1,0 +1,75 @@
+"""Short posts: bollards along walks, delineators along country roads."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from processing.simulate.chance import chance
+from processing.simulate.materials import Material
+from processing.simulate.mesh import placed
+from processing.simulate.roadside.places import Places, Spot, free_from_m
+from processing.simulate.roadside.posts import add_post, post_on
+from processing.simulate.roadside.rods import rods
+from processing.simulate.roadside.signs import against_traffic_rad
+from processing.simulate.street.plan import SIDES
+from processing.simulate.street.styles import URBAN
+from processing.simulate.things import Built
+
+OTHER = 1
+_GAP_M = 0.3  # behind the curb
+
+
+def add_bollards(places: Places, built: Built) -> None:
+    """Add rows of bollards on walks, delineators elsewhere."""
+    plan = places.section.plan
+    for side in SIDES:
+        if plan.side(side).walk_m > 1.5:
+            _add_row(places, built, side)
+        elif plan.style is not URBAN:
+            _add_delineators(places, built, side)
+
+
+def _add_row(places: Places, built: Built, side: int) -> None:
+    """Bollards of 65 to 85 cm, 1.2 to 2 m apart (車止め)."""
+    section = places.section
+    random = section.chance("bollards", side)
+    if random.random() > 0.2:
+        return
+    diameter = float(random.choice([0.0605, 0.0763, 0.1143, 0.1143, 0.1398, 0.2]))
+    high = float(random.uniform(0.6, 0.9))
+    pitch = float(random.uniform(1.2, 2.0))
+    away = free_from_m(section.plan.side(side)) + _GAP_M + diameter / 2
+    at = float(random.uniform(section.plan.start_m, section.plan.end_m))
+    material = Material.STEEL if random.random() < 0.5 else Material.PAINTED_METAL
+    for each in range(int(random.integers(2, 9))):
+        spot = Spot(at + each * pitch + float(random.normal(0, 0.03)), side * away)
+        if random.random() < 0.07 or not places.take(spot, diameter / 2 + 0.05):
+            continue
+        post = post_on(places, random, spot, diameter)
+        add_post(built, post, high + float(random.normal(0, 0.01)), "bollard", material=material)
+
+
+def _add_delineators(places: Places, built: Built, side: int) -> None:
+    """Thin posts with a reflector 90 cm up, 20 to 50 m apart (視線誘導標設置基準)."""
+    section = places.section
+    street = chance(section.seed, "delineators", side)
+    if street.random() < 0.5:
+        return
+    pitch = float(street.uniform(20, 50))
+    diameter = float(street.choice([0.034, 0.0605, 0.089]))
+    plan = section.plan
+    for number in range(int(np.ceil(plan.start_m / pitch)), int(plan.end_m / pitch) + 1):
+        random = section.chance("delineator", number * side)
+        away = free_from_m(plan.side(side)) + 0.15 + diameter / 2
+        spot = Spot(number * pitch + float(random.normal(0, 0.4)), side * away)
+        if random.random() < 0.1 or not places.take(spot, diameter / 2 + 0.03):
+            continue
+        post = post_on(places, random, spot, diameter)
+        high = float(random.normal(0.92, 0.02))
+        add_post(built, post, high, "delineator")
+        looks = against_traffic_rad(places, spot)
+        path = np.array([[0.0, 0.0, 0.0], [0.02, 0.0, 0.0]])
+        look = np.array([np.cos(looks), np.sin(looks), 0.0])
+        where = post.at(high - 0.06) + look * post.radius_m
+        disc = placed(rods(path[None], 0.045, 12), where, looks)
+        built.mesh.add(disc, Material.SIGN_FACE, OTHER, built.thing("reflector"))
