@@ -23,8 +23,10 @@ _OTHER_SHAPES = {"circle": "square", "square": "circle"}
 
 def _moved(by_m: float) -> Disturbance:
     def move(truth: MappedFile) -> MappedFile:
-        """Half as far east as north: neither along nor across a street by chance."""
-        shift = by_m * np.array([0.447, 0.894, 0.0])
+        """All together, across the direction in which most of them lie."""
+        places = np.concatenate([one.xyz[:, :2] for one in truth.features])
+        across = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2][-1]
+        shift = by_m * np.array([*across, 0.0])
         return _with(truth, [replace(one, xyz=one.xyz + shift) for one in truth.features])
 
     return move
@@ -59,9 +61,9 @@ def _with(truth: MappedFile, features: list[MappedFeature]) -> MappedFile:
 
 DISTURBANCES: dict[str, Disturbance] = {
     "as it is": lambda truth: truth,
-    "moved 5 cm": _moved(0.05),
-    "moved 30 cm": _moved(0.3),
-    "moved 3 m": _moved(3.0),
+    "5 cm aside": _moved(0.05),
+    "30 cm aside": _moved(0.3),
+    "3 m aside": _moved(3.0),
     "each third left out": _without_each_third,
     "of other kinds": _of_other_kinds,
 }
@@ -78,6 +80,8 @@ def disturbed_rows(folder: Path) -> Iterator[list[str]]:
     yield ["truth", "F of", *DISTURBANCES]
     for scorer in FEATURE_SCORERS:
         truth = read_mapped(folder / f"{scorer.tool}.geojson")
+        if not truth.features:
+            continue
         scores = [scorer.score(disturb(truth), truth) for disturb in DISTURBANCES.values()]
         for place, counted in enumerate(scores[0].counts):
             values = [one.counts[place].counts.f_measure for one in scores]

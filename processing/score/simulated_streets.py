@@ -177,11 +177,11 @@ def pulse_rate(path: Path) -> float:
     times = np.unique(np.asarray(laspy.read(path).gps_time))
     steps = np.diff(times)
     step = float(np.median(steps[steps < 2 * np.percentile(steps, 5)]))
-    window = 64
-    while window < times.size:  # each window is long enough for the step known so far
+    window = 8
+    while window < times.size:  # the step known so far must count a window without a mistake
         since = times[:window] - times[0]
         step *= float(np.polyfit(np.round(since / step), since / step, 1)[0])
-        window *= 4
+        window *= 3
     return 1.0 / step
 
 
@@ -288,12 +288,17 @@ def _step_error(xyz: _Floats, high: _Floats, low: _Floats, place: _Floats) -> fl
     along, across = (own[:, :2] - place[:2]) @ way, (own[:, :2] - place[:2]) @ aside
     foot = float((nearest[:2] - place[:2]) @ aside)
     is_near = (np.abs(along) < _BESIDE_M) & (np.abs(own[:, 2] - place[2]) < 0.5)
-    top = own[is_near & (across > 0.03) & (across < _STONE_M), 2]
-    road = own[is_near & (across < foot - 0.02) & (across > foot - _STONE_M), 2]
-    if min(top.size, road.size) < _FEWEST_POINTS // 3:
+    profile = np.column_stack([across, own[:, 2]])
+    top = profile[is_near & (across > 0.03) & (across < _STONE_M)]
+    road = profile[is_near & (across < foot - 0.02) & (across > foot - _STONE_M)]
+    if min(len(top), len(road)) < _FEWEST_POINTS:
         return None
-    low_at = nearest[2]
-    return float(np.median(top) - np.median(road) - (place[2] - low_at))
+    return float(_level(top, 0.0) - _level(road, foot) - (place[2] - nearest[2]))
+
+
+def _level(profile: _Floats, across: float) -> float:
+    """Height of a surface at an edge, from the slope of its points beside it."""
+    return float(np.polyval(np.polyfit(profile[:, 0], profile[:, 1], 1), across))
 
 
 def _circle_diameter(ring: _Floats) -> float:
