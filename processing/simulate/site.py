@@ -25,9 +25,9 @@ from processing.simulate.sites.delivery import (
     CRS,
     CloudFile,
     Place,
-    Truth,
     write_json,
     write_site,
+    write_terrain,
 )
 from processing.simulate.sites.layout import Layout, layout_of, scene_mesh
 from processing.simulate.sites.movement import MovingThings, dust_of, tracks_of
@@ -122,26 +122,24 @@ def _write(wish: SiteWish, hidden: Path, monitor: Monitor, registration_m: float
     east, north = np.round(random.uniform((-30_000, -60_000), (10_000, -20_000)))
     place = Place(float(east), float(north))
     site = _Site(wish, terrain, place, _polygon(wish.seed, terrain.before.heights.size_m))
-    truth = Truth(hidden / "truth")
     starts = [_FIRST_S + float(random.integers(0, 30_000)) * 1000.0]
     starts.append(starts[0] + round(float(random.uniform(5, 60))) * _DAY_S)
     common = chance(wish.seed, "registration").normal(0, 1, 3) * registration_m
-    seen, scenes = [], {}
+    seen, epochs = [], {}
     for number, date in enumerate(DATES):
         part = PartMonitor(monitor, 0.48 * number, 0.48 * (number + 1))
-        cloud, scenes[date] = _record(site, date, hidden, starts[number], (part, common * number))
-        truth.write_cloud(date, cloud)
+        cloud, epoch = _record(site, date, hidden, starts[number], (part, common * number))
+        epochs[date] = {**cloud.counts, **epoch}
         ground = terrain.before if date == "before" else terrain.after
-        truth.write_terrain(date, ground.heights, place)
+        write_terrain(hidden / "truth" / f"terrain_{date}.npz", ground.heights, place)
         seen.append(cloud.seen)
         monitor.check()
     on_map = place.on_map(site.polygon)
     write_site(hidden / "in" / "site.geojson", on_map)
     write_json(hidden / "truth" / "volume.json", _volumes(site, seen[0], seen[1]))
-    epochs = {date: {**truth.counts[date], **scenes[date]} for date in DATES}
     scene = {"scene": "simulated site", **dataclasses.asdict(wish), "epochs": epochs}
     write_json(hidden / "truth" / "scene.json", {**scene, "later_shift_m": common.tolist()})
-    return sum(counts["points"] for counts in truth.counts.values())
+    return sum(int(str(one["points"])) for one in epochs.values())
 
 
 def _record(
@@ -151,7 +149,8 @@ def _record(
     monitor, shift = work
     survey = _survey(site, date, monitor)
     text = Text("Scanning the site.", "現場をスキャンしています。")
-    with CloudFile(hidden / "in" / f"{date}.laz", site.place, starts_s, site.cells) as cloud:
+    path, truth = hidden / "in" / f"{date}.laz", hidden / "truth"
+    with CloudFile(path, truth, site.place, starts_s, cells=site.cells) as cloud:
         for share, points in recorded(survey):
             monitor.check()
             cloud.write(dataclasses.replace(points, xyz=points.xyz + shift))

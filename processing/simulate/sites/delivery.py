@@ -5,7 +5,7 @@ from __future__ import annotations
 import datetime as dt
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -49,25 +49,62 @@ class Place:
         return np.asarray(xy + np.array([self.easting_m, self.northing_m]), np.float64)
 
 
-class CloudFile:
-    """A cloud that is written as its points come.
+class GrowingArray:
+    """An array of numbers in a ``.npy`` file whose length is known at its end only.
 
     Parameters
     ----------
+    path : Path
+        As :func:`numpy.load` reads it, once it is closed.
+    kind : dtype
+        Of its numbers.
+    """
+
+    def __init__(self, path: Path, kind: np.dtype[Any]) -> None:
+        self._kind, self.count = kind, 0
+        self._file = path.open("wb")
+        self._head()
+
+    def add(self, values: NDArray[Any]) -> None:
+        """Put values of any number behind those that are there."""
+        self._file.write(np.ascontiguousarray(values, self._kind).tobytes())
+        self.count += values.size
+
+    def close(self) -> None:
+        """Note the length."""
+        self._file.seek(0)
+        self._head()
+        self._file.close()
+
+    def _head(self) -> None:
+        # NumPy leaves room for a shape of 21 digits, so that the head never grows.
+        shape = {"descr": self._kind.str, "fortran_order": False, "shape": (self.count,)}
+        np.lib.format.write_array_header_1_0(self._file, shape)
+
+
+class CloudFile:
+    """A cloud that is written as its points come, with its labels and kinds.
+
+    Parameters
+    ----------
+    truth : Path
+        Folder of its labels and kinds.
     starts_s : float
         Adjusted standard GPS time of the recording's beginning.
     cells : (int, int)
         Rows and columns of the cells that ground points are counted in.
     """
 
-    def __init__(self, path: Path, place: Place, starts_s: float, cells: tuple[int, int]) -> None:
+    def __init__(
+        self, path: Path, truth: Path, place: Place, starts_s: float, *, cells: tuple[int, int]
+    ) -> None:
         import laspy
 
         self._place, self._starts_s = place, starts_s
         self.seen = np.zeros(cells, np.int64)
-        self.count = 0
-        self._labels: list[NDArray[np.uint8]] = []
-        self._kinds: list[NDArray[np.int8]] = []
+        self.of_label = np.zeros(256, np.int64)
+        self._labels = GrowingArray(truth / f"labels_{path.stem}.npy", np.dtype(np.uint8))
+        self._kinds = GrowingArray(truth / f"kinds_{path.stem}.npy", np.dtype(np.int8))
         self._header = _header(place)
         self._laspy: Any = laspy  # laspy has no types
         self._writer: Any = laspy.open(path, mode="w", header=self._header, do_compress=True)
@@ -79,6 +116,8 @@ class CloudFile:
         self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
     ) -> None:
         self._writer.close()
+        self._labels.close()
+        self._kinds.close()
 
     def write(self, points: Points) -> None:
         """Add points behind those that are there."""
@@ -94,9 +133,9 @@ class CloudFile:
         record.gps_time = self._starts_s + points.time_s
         record.point_source_id = np.full(points.time_s.size, points.station, np.uint16)
         self._writer.write_points(record)
-        self._labels.append(points.label)
-        self._kinds.append(points.kind)
-        self.count += points.time_s.size
+        self._labels.add(points.label)
+        self._kinds.add(points.kind)
+        self.of_label += np.bincount(points.label, minlength=256)
         self._count_ground(whole[points.label == 2] * _SCALE_M + self._place.offsets - shift)
 
     def _count_ground(self, xyz: Floats) -> None:
@@ -106,47 +145,24 @@ class CloudFile:
         self.seen += np.bincount(j * columns + i, minlength=rows * columns).reshape(rows, columns)
 
     @property
-    def labels(self) -> NDArray[np.uint8]:
-        """Class codes of all points so far."""
-        return np.concatenate([np.empty(0, np.uint8), *self._labels])
-
-    @property
-    def kinds(self) -> NDArray[np.int8]:
-        """What all points so far are of."""
-        return np.concatenate([np.empty(0, np.int8), *self._kinds])
-
-
-@dataclass
-class Truth:
-    """The truth's folder.
-
-    Attributes
-    ----------
-    counts : dict
-        Points by date and label, for the scene's description.
-    """
-
-    folder: Path
-    counts: dict[str, dict[str, int]] = field(default_factory=dict)
-
-    def write_cloud(self, date: str, cloud: CloudFile) -> None:
-        """Labels and kinds of one date, in the order of its file."""
-        labels = cloud.labels
-        np.save(self.folder / f"labels_{date}.npy", labels)
-        np.save(self.folder / f"kinds_{date}.npy", cloud.kinds)
+    def counts(self) -> dict[str, int]:
+        """Points in all and of each label."""
         names = {"ground": 2, "other": 1, "low_noise": 7, "high_noise": 18}
-        counts = {name: int((labels == code).sum()) for name, code in names.items()}
-        self.counts[date] = {"points": int(labels.size), **counts}
+        return {
+            "points": int(self.of_label.sum()),
+            **{name: int(self.of_label[code]) for name, code in names.items()},
+        }
 
-    def write_terrain(self, date: str, heights: HeightGrid, place: Place) -> None:
-        """The true ground of one date."""
-        np.savez_compressed(
-            self.folder / f"terrain_{date}.npz",
-            z=heights.z,
-            x0=np.float64(place.easting_m),
-            y0=np.float64(place.northing_m),
-            res=np.float64(heights.res),
-        )
+
+def write_terrain(path: Path, heights: HeightGrid, place: Place) -> None:
+    """The true ground of one date."""
+    np.savez_compressed(
+        path,
+        z=heights.z,
+        x0=np.float64(place.easting_m),
+        y0=np.float64(place.northing_m),
+        res=np.float64(heights.res),
+    )
 
 
 def write_json(path: Path, content: Mapping[str, Any]) -> None:

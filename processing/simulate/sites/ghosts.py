@@ -68,6 +68,8 @@ class Haunts:
         Share of the ground that is wet.
     is_phase : bool
         Whether the scanner measures by phase.
+    restless : float
+        How many times more than usual is echoed twice or seen in the air on that day.
     """
 
     machines: list[Standing]
@@ -75,6 +77,7 @@ class Haunts:
     arcs: list[Arc]
     wetness: float
     is_phase: bool
+    restless: float
 
 
 @dataclass(frozen=True)
@@ -222,7 +225,7 @@ def _mirrored(random: Generator, beams: Beams, met: Met, hits: Hits, scene: Scen
 def _twice(random: Generator, beams: Beams, met: Met, haunts: Haunts) -> Ghosts:
     """Beams that go to and fro between the ground and a machine or water before they return."""
     rays = np.flatnonzero(np.isfinite(met.ranges) & (met.evidence // 256 == 0))
-    rays = rays[random.random(rays.size) < _TWICE_NEAR_MACHINE]
+    rays = rays[random.random(rays.size) < _TWICE_NEAR_MACHINE * haunts.restless]
     x, y = (
         beams.origins[rays, axis] + beams.ways[rays, axis] * met.ranges[rays] for axis in (0, 1)
     )
@@ -239,7 +242,7 @@ def _twice(random: Generator, beams: Beams, met: Met, haunts: Haunts) -> Ghosts:
 def _in_the_air(random: Generator, met: Met, haunts: Haunts) -> Ghosts:
     """Single points of sun, rain and birds; of a phase-based scanner more where it sees the sky."""
     drawn = random.random(met.ranges.size)
-    share = np.full(drawn.size, _IN_THE_AIR)
+    share = np.full(drawn.size, _IN_THE_AIR * haunts.restless)
     if haunts.is_phase:
         share[~np.isfinite(met.ranges)] = _PHASE_IN_THE_SKY
     rays = np.flatnonzero(drawn < share)

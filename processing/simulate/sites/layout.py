@@ -142,8 +142,10 @@ class _Furnisher:
         for _ in range(self._count(1, 3)):
             path = wander(self.random, self._place(), self._place(), 1.0)
             look = int(self.random.integers(1 << 30))
-            for x, y, heading in _along(path, _PANEL_M, most=24):
-                if self.random.random() < 0.08 or not self.layout.is_free(x, y, 0.3):
+            row = _along(path, _PANEL_M, most=24)
+            free = [self.layout.is_free(x, y, 0.3) for x, y, _ in row]
+            for (x, y, heading), has_room in zip(row, free, strict=True):
+                if self.random.random() < 0.08 or not has_room:
                     continue
                 body = fence_panel(np.random.default_rng(look), _PANEL_M)
                 self.layout.add(body, x, y, heading + self.random.normal(0, 0.02))

@@ -92,7 +92,7 @@ def dump_truck(random: Generator) -> Body:
         body.append((_load(random, back, front, (half - 0.09, low + 0.1, tall)), Material.SOIL))
     elif random.random() < 0.3:
         tip = random.uniform(0.3, 0.85)
-        body = [turned(part, 1, tip, (back + 0.3, 0.0, low)) for part in body]
+        body = [turned(part, 1, -tip, (back + 0.3, 0.0, low)) for part in body]
     return Body(Kind.DUMP_TRUCK, (*parts, *body), (long / 2 * 0.8, half))
 
 

@@ -40,7 +40,7 @@ LOWEST_RAD = np.radians(-60.0)
 NEAR_GROUND_M = 0.04
 """A mixed point or blade of grass within this of the ground counts as ground."""
 
-_PULSES_AT_ONCE = 120_000
+_PULSES_AT_ONCE = 60_000
 _BETWEEN_STATIONS_S = 420.0
 _SPACING_AT_M = 10.0
 
@@ -210,7 +210,8 @@ def _haunts(survey: Survey, number: int) -> Haunts:
     is_phase = survey.sensor.measures_by == "phase"
     arcs = arcs_of(chance(survey.seed, "arcs", survey.date, number)) if is_phase else []
     machines = machines_among(survey.layout.things)
-    return Haunts(machines, survey.dust, arcs, survey.weather.wetness, is_phase)
+    restless = float(np.exp(chance(survey.seed, "restless", survey.date).uniform(-0.7, 2.0)))
+    return Haunts(machines, survey.dust, arcs, survey.weather.wetness, is_phase, restless)
 
 
 def labels_of(

@@ -79,7 +79,7 @@ def wander(random: Generator, start: ArrayLike, end: ArrayLike, sway: float) -> 
     first, last = np.asarray(start, np.float64), np.asarray(end, np.float64)
     way = last - first
     span = max(float(np.hypot(*way)), 1e-6)
-    count = int(np.clip(span / 1.2, 4, 60))
+    count = int(np.clip(span / 1.2, 16, 60))
     shares = np.linspace(0, 1, count)
     side = np.array([-way[1], way[0]]) / span
     swing = (
@@ -125,7 +125,7 @@ def heap(random: Generator, z: Floats, x: Floats, y: Floats, where: Sequence[flo
         u, v = np.cos(turn) * dx + np.sin(turn) * dy, -np.sin(turn) * dx + np.cos(turn) * dy
         high = random.uniform(0.5, 2.3)
         ragged = 0.22 * undulation(random, x, y, 1.1)
-        cone = high - repose * np.abs(np.hypot(u * stretch, v) + ragged)
+        cone = high - repose * np.maximum(np.hypot(u * stretch, v) + ragged, 0.0)
         rounded = np.minimum(cone, high * 0.85 + 0.15 * cone)
         np.maximum(z, base + rounded, out=z)
     covered = np.asarray(z > base + 0.01, np.bool_)

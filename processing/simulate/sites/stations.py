@@ -14,7 +14,7 @@ from processing.simulate.sites.layout import Layout
 
 _CANDIDATES, _TARGETS = 48, 700
 _CLEAR_M = 2.2
-_STEEPEST = 0.35
+_STEEPEST = 0.6
 _GOOD_M = 30.0  # beyond it the ground is seen at too flat an angle to count fully
 
 

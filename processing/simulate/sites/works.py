@@ -161,10 +161,12 @@ def progress_of(random: Generator, lie: Lie, plan: Plan) -> tuple[Progress, Prog
         worked = np.ones(worked.shape, np.bool_)
     low = float(min(plan.natural[worked].min(), plan.design[worked].min()))
     high = float(max(plan.natural[worked].max(), plan.design[worked].max()))
+    ragged = random.uniform(0.0, 0.9) * undulation(random, lie.x, lie.y, 4.0)
+    u = lie.u + ragged  # fronts of work are no straight lines
     dates = []
     for shares in (first, second):
-        down = _stepped(lie.u, high - shares * (high - low), edges, ramps)
-        up = _stepped(lie.u, low + shares * (high - low), edges, ramps)
+        down = _stepped(u, high - shares * (high - low), edges, ramps)
+        up = _stepped(u, low + shares * (high - low), edges, ramps)
         dates.append(Progress(down, up))
     return dates[0], dates[1]
 
