@@ -91,6 +91,8 @@ class Mover:
     course : (n, 2) float64 or None
         Times and chainages that its own chainage counts from, of those that keep their distance
         from the recording vehicle.
+    kind : str
+        In a word: ``car``, ``bus``, ``person``.
     """
 
     mesh: Mesh
@@ -107,6 +109,7 @@ class Mover:
     surge_s: float = 1.0
     phase_rad: float = 0.0
     course: Floats | None = None
+    kind: str = "car"
 
     def way_at(self, time_s: ArrayLike) -> tuple[Floats, Floats]:
         """Chainages and offsets at times of the pass, m: (...) float64 each."""

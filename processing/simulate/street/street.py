@@ -21,10 +21,21 @@ from processing.simulate.street.section import Section
 from processing.simulate.street.styles import Style
 from processing.simulate.street.surfaces import add_ground
 from processing.simulate.things import THINGS_PER_SECTION, Built, Mover, Thing, TrueFeature
+from processing.simulate.traffic.parked import add_parked
 
 Maker = Callable[[Section, Built], None]
-MAKERS: tuple[Maker, ...] = (add_ground, add_junctions, add_ends, add_gutters, add_furniture)
-"""What builds a section, in this order; each draws from streams of its own."""
+MAKERS: tuple[Maker, ...] = (
+    add_ground,
+    add_junctions,
+    add_ends,
+    add_gutters,
+    add_furniture,
+    add_parked,
+)
+"""What builds a section, in this order; each draws from streams of its own.
+
+What is parked comes last: it needs free room.
+"""
 
 _KEPT_SECTIONS = 24
 _LOWEST_INDEX = -100

@@ -1,0 +1,62 @@
+"""The kinds of what drives and stands in streets, with the most room each takes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+from numpy.random import Generator
+
+from processing.simulate.traffic.bodies import Body
+from processing.simulate.traffic.people_shapes import bicycle, motorcycle, person
+from processing.simulate.traffic.vehicle_shapes import (
+    bus,
+    kei_car,
+    saloon,
+    small_truck,
+    truck,
+    van,
+)
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Something that drives, walks or stands.
+
+    Attributes
+    ----------
+    drawn : callable
+        Its body, as it moves.
+    drawn_at_rest : callable
+        Its body where it is parked.
+    length_m, width_m : float
+        At most, without mirrors.
+    """
+
+    name: str
+    drawn: Callable[[Generator], Body]
+    drawn_at_rest: Callable[[Generator], Body]
+    length_m: float
+    width_m: float
+
+
+def _alike(name: str, drawn: Callable[[Generator], Body], size: tuple[float, float]) -> Kind:
+    return Kind(name, drawn, drawn, *size)
+
+
+KINDS = {
+    one.name: one
+    for one in (
+        _alike("kei_car", kei_car, (3.43, 1.48)),
+        _alike("saloon", saloon, (4.98, 1.88)),
+        _alike("van", van, (5.33, 1.88)),
+        _alike("small_truck", small_truck, (6.34, 2.0)),
+        _alike("truck", truck, (12.03, 2.49)),
+        _alike("bus", bus, (11.94, 2.49)),
+        Kind("motorcycle", motorcycle, partial(motorcycle, is_ridden=False), 2.2, 0.74),
+        Kind("bicycle", bicycle, partial(bicycle, is_ridden=False), 2.0, 0.6),
+        Kind("person", person, partial(person, is_walking=False), 2.6, 1.2),
+    )
+}
+"""By name."""

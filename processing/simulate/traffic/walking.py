@@ -1,0 +1,95 @@
+"""Where people walk and cycle: lanes on the walks, broken where something is parked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.simulate.chance import chance
+from processing.simulate.mesh import Floats
+from processing.simulate.street.plan import LEFT, SIDES, SectionPlan
+from processing.simulate.street.styles import HIGHWAY, URBAN, Style
+from processing.simulate.traffic.kinds import KINDS
+from processing.simulate.traffic.lanes import Lane
+from processing.simulate.traffic.parking import ParkingPlace, parking_places
+
+_LANES = 5
+_APART_M = 1.3
+_HALF_M = 0.4  # of a person, for whom the walk must have room
+_BUSY = {"urban": (0.03, 0.5), "rural": (0.0, 0.08)}
+_ROOM_M = 0.9  # between a walker's middle and what is parked, along the road
+
+
+class Walks:
+    """The walks of a street, as those see them who walk.
+
+    Parameters
+    ----------
+    plans : sequence of SectionPlan
+        In their order.
+    """
+
+    def __init__(self, seed: int, plans: Sequence[SectionPlan]) -> None:
+        self._seed, self._plans = seed, plans
+        self._starts = np.array([one.start_m for one in plans])
+        self._places: dict[int, list[ParkingPlace]] = {}
+
+    def has_room(self, lane: Lane, chainages: Floats) -> NDArray[np.bool_]:
+        """Whether the walk carries a lane at chainages, and nothing may be parked on it."""
+        rows = np.searchsorted(self._starts, chainages, "right") - 1
+        free = np.zeros(chainages.size, np.bool_)
+        for row in np.unique(rows[rows >= 0]).tolist():
+            here = rows == row
+            free[here] = self._is_free(row, lane, chainages[here])
+        return free
+
+    def _is_free(self, row: int, lane: Lane, chainages: Floats) -> NDArray[np.bool_]:
+        plan = self._plans[row]
+        side = LEFT if lane.offset_m > 0 else -LEFT
+        away = abs(lane.offset_m)
+        walk = plan.side(side).band("walk")
+        if walk is None or not walk.inner_m + _HALF_M <= away <= walk.outer_m - _HALF_M:
+            return np.zeros(chainages.size, np.bool_)
+        free = (chainages > plan.start_m) & (chainages < plan.end_m)
+        for low, high in self._taken(row, side, away):
+            free &= (chainages < low) | (chainages > high)
+        return np.asarray(free)
+
+    def _taken(self, row: int, side: int, away: float) -> Iterator[tuple[float, float]]:
+        """Chainages between which something may be parked in the way."""
+        if row not in self._places:
+            self._places[row] = parking_places(self._seed, self._plans[row])
+        for one in self._places[row]:
+            reach = one.across_m / 2 + 2 * _HALF_M
+            if one.side == side and abs(abs(one.offset_m) - away) <= reach:
+                half = one.along_m / 2 + _ROOM_M
+                yield one.chainage_m - half, one.chainage_m + half
+
+
+def walking_lanes(seed: int, style: Style, plan: SectionPlan, number: int) -> list[Lane]:
+    """Lanes beside the road on which people walk, stand and cycle in a pass."""
+    if style is HIGHWAY:
+        return []
+    lanes = []
+    busy = float(chance(seed, "busy", number).uniform(*_BUSY[style.id]))
+    for side in SIDES:
+        inner = plan.side(side).edge_m + float(chance(seed, "walks", side).uniform(0.6, 1.6))
+        for place in range(_LANES):
+            random = chance(seed, "walkers' lane", number, side, place)
+            way = 1.0 if random.random() < 0.5 else -1.0
+            kind = "bicycle" if style is URBAN and random.random() < 0.25 else "person"
+            speed = way * float(
+                random.uniform(2.5, 4.5) if kind == "bicycle" else random.uniform(0.7, 1.7)
+            )
+            if kind == "person" and random.random() < 0.12:
+                speed = 0.0
+            slot = KINDS[kind].length_m + 2.6 + float(random.exponential(6.0))
+            lanes.append(
+                Lane(
+                    "walkers", 10 * (side == LEFT) + place, side * (inner + place * _APART_M),
+                    speed, 0.0 if way > 0 else np.pi, slot, busy, {kind: 1.0}, _APART_M,
+                )
+            )  # fmt: skip
+    return lanes
