@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from processing.simulate.border.barriers import add_barriers
 from processing.simulate.border.lots import add_lots
 from processing.simulate.roadside.bollards import add_bollards
 from processing.simulate.roadside.hedges import add_hedges
@@ -31,6 +32,7 @@ KINDS = (
     add_bollards,
     add_hedges,
     add_weeds,
+    add_barriers,
 )
 """In this order: what comes first chooses its places first."""
 

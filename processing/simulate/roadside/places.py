@@ -6,6 +6,7 @@ nothing stands on the carriageway, on a gutter's lids or in a side street.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -97,6 +98,21 @@ class Places:
     def block(self, chainages_m: tuple[float, float], offsets_m: tuple[float, float]) -> None:
         """Give a rectangle away, from and to along and across the road: a building, a wall."""
         self._blocked.append((*chainages_m, *offsets_m))
+
+    def standing_near(self, offset_m: float, room_m: float) -> Iterator[tuple[float, float]]:
+        """Chainages from and to where something stands within a distance of a line.
+
+        Parameters
+        ----------
+        offset_m : float
+            Of the line, m to the left of the centre.
+        """
+        for chainage, offset, radius in self._taken:
+            if abs(offset - offset_m) < radius + room_m:
+                yield chainage - radius - room_m, chainage + radius + room_m
+        for low, high, near, far in self._blocked:
+            if near - room_m < offset_m < far + room_m:
+                yield low - room_m, high + room_m
 
     def where(self, spot: Spot) -> Floats:
         """The place on the ground: (3,) float64, m, the street's frame."""
