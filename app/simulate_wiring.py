@@ -71,8 +71,8 @@ class Simulations(QObject):
             forecast = ORDERS[asked.order].forecast(asked.wish)
             return forecast, shutil.disk_usage(_there(asked.folder)).free
 
-        self._parts.jobs.cancel(self._forecast)
         title = Text("Forecast", "見積もり")
+        # The last one counts; the others are worked out in a moment.
         self._forecast = self._parts.jobs.start(title, work, lane=Lane.AT_HAND)
 
     def _on_form_simulation_requested(self, asked: SimulationWish) -> None:

@@ -151,16 +151,19 @@ def _add_simulate(commands: _Commands[_Parser]) -> None:
     simulating = commands.add_parser(
         "simulate",
         help="a street or a site with its truth",
-        epilog="street takes --seed N --length M --style S --sensor S "
-        "--set NAME=VALUE --out DIR; it tells more by its own --help",
+        epilog="street and site take --seed N --length M --style S --sensor S "
+        "--set NAME=VALUE --out DIR; each tells more by its own --help",
     )
     whats = simulating.add_subparsers(
-        metavar="street|density", required=True, parser_class=_OrderParser
+        metavar="street|site|density", required=True, parser_class=_OrderParser
     )
-    for what, told in (("street", "a street, recorded by a vehicle"),):
+    for what, told in (
+        ("street", "a street, recorded by a vehicle"),
+        ("site", "an earthwork site of two dates, scanned from tripods"),
+    ):
         making = whats.add_parser(what, help=told)
         making.what = what
-        making.add_argument("--seed", metavar="N", help="the same number gives the same street")
+        making.add_argument("--seed", metavar="N", help="the same number gives the same")
         making.add_argument("--length", metavar="M")
         making.add_argument("--style", metavar="S")
         making.add_argument("--sensor", metavar="S")

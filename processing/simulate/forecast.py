@@ -7,16 +7,18 @@ from dataclasses import dataclass
 
 from processing.simulate.scanning.density import DensityMap, density_map, survey_of
 from processing.simulate.scanning.sensors import sensor_of
+from processing.simulate.sites.recording import duration_s, pattern_of
+from processing.simulate.sites.stations import count_for
 from processing.simulate.street.styles import Style, style_of
 from processing.simulate.wishes import SiteWish, StreetWish
 
 _KM_H = 3.6
 _SECONDS_OF_WAITS = 8.0
 # Recordings of made streets and of the sample: the rest goes to the sky or comes back too weak.
-_RETURNS_PER_PULSE = 0.6
-_BYTES_PER_POINT = 10.0  # of LAZ, labels and instances
+_RETURNS_PER_PULSE = 0.55  # of a street
+_SITE_RETURNS_PER_PULSE = 0.3
+_BYTES_PER_POINT = 9.0  # of LAZ, labels and what else is told of each
 _BYTES_PER_IMAGE, _IMAGE_EVERY_M, _CAMERAS = 90_000, 10.0, 3
-_USUAL_STATIONS = 5
 _SPACING_AT_M = 10.0
 _HIGHEST_DEG, _LOWEST_DEG = 90.0, -60.0
 _EPOCHS = 2
@@ -78,6 +80,7 @@ def forecast_site(wish: SiteWish) -> Forecast:
     sensor = sensor_of(wish.sensor, "standing")
     step_deg = math.degrees(wish.spacing_m / _SPACING_AT_M)
     pulses = (360.0 / step_deg) * ((_HIGHEST_DEG - _LOWEST_DEG) / step_deg)
-    pulses *= _EPOCHS * (wish.stations or _USUAL_STATIONS)
-    points = round(pulses * _RETURNS_PER_PULSE)
-    return Forecast(points, round(points * _BYTES_PER_POINT), pulses / sensor.rate_hz)
+    stations = _EPOCHS * count_for(wish.length_m, wish.stations)
+    points = round(stations * pulses * _SITE_RETURNS_PER_PULSE)
+    seconds = duration_s(pattern_of(sensor, wish.spacing_m), stations)
+    return Forecast(points, round(points * _BYTES_PER_POINT), seconds)

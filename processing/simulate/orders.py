@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from processing.monitor import Monitor
-from processing.simulate.forecast import Forecast, forecast_street
+from processing.simulate.forecast import Forecast, forecast_site, forecast_street
 from processing.simulate.simulated import Simulated
-from processing.simulate.wishes import StreetWish
+from processing.simulate.wishes import SiteWish, StreetWish
 from processing.text import Text
 
 
@@ -42,6 +42,13 @@ def _make_street(wish: StreetWish, folder: Path, monitor: Monitor) -> Simulated:
     return simulate_street(wish, folder, monitor)
 
 
+def _make_site(wish: SiteWish, folder: Path, monitor: Monitor) -> Simulated:
+    from processing.simulate.site import simulate_site
+
+    return simulate_site(wish, folder, monitor)
+
+
 ORDERS: Mapping[str, Order] = {
     "street": Order("street", Text("Street", "道路"), StreetWish, forecast_street, _make_street),
+    "site": Order("site", Text("Earthwork site", "土工現場"), SiteWish, forecast_site, _make_site),
 }

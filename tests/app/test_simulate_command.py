@@ -90,7 +90,7 @@ def test_help_lists_what_can_be_set_with_units_and_defaults(
 
 
 def test_ctrl_c_ends_a_simulation_as_cancelled_with_nothing_left(tmp_path: Path) -> None:
-    arguments = ["simulate", "street", "--length", "5000", "--out", str(tmp_path / "street")]
+    arguments = ["simulate", "street", "--length", "600", "--out", str(tmp_path / "street")]
     with subprocess.Popen(
         [sys.executable, "-m", "app", *arguments],
         cwd=ROOT,

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import QLocale, Qt, Signal
-from PySide6.QtGui import QKeySequence, QShortcut
+from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import (
     QDialog,
     QDialogButtonBox,
@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
     QVBoxLayout,
     QWidget,
 )
+from typing_extensions import override
 
 from processing.simulate.forecast import Forecast
 from processing.simulate.orders import ORDERS
@@ -109,7 +110,6 @@ class SimulateForm(QDialog):
         self._buttons.accepted.connect(self._on_buttons_accepted)
         self._buttons.rejected.connect(self.close)
         self._buttons.helpRequested.connect(self.help_requested)
-        QShortcut(QKeySequence("F1"), self).activated.connect(self.help_requested)
         self._what.currentChanged.connect(self._on_what_changed)
 
     @property
@@ -163,6 +163,13 @@ class SimulateForm(QDialog):
             survey = forecast.density.survey
             gap, speed = 100 * survey.between_turns_m, _KM_H * survey.speed_m_s
             self._lines.setText(told.format(gap=f"{gap:.1f}", speed=f"{speed:.0f}"))
+
+    @override
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() == Qt.Key.Key_F1:
+            self.help_requested.emit()
+        else:
+            super().keyPressEvent(event)
 
     def _lay_out(self) -> None:
         choose = QPushButton(self.tr("Choose…"), self)
