@@ -9,13 +9,14 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats, grid
+from processing.simulate.mesh import Floats, Integers, grid
 from processing.simulate.street.plan import LEFT, RIGHT
 from processing.simulate.street.section import Section
 from processing.simulate.things import Built
 
 GUTTER = 11
 
+_STEP_M = 0.5
 _STRIPS = 9  # rim, face, seat, wall, floor, wall, seat, face, rim
 _FLOOR = 4
 _EDGE_M = 0.003  # the least that a rim shows
@@ -57,14 +58,23 @@ def beds_of(section: Section) -> Iterator[Bed]:
     for number, strip in enumerate(ground.strips):
         if strip.has_surface or strip.kind not in ("drain", "lids"):
             continue
+        rows = _thinned(ground.nodes)
+        nodes = ground.nodes[rows]
         places = section.alignment.at(
-            np.broadcast_to(ground.nodes[:, None], (ground.nodes.size, 2)),
-            ground.offsets[:, number : number + 2],
-            ground.heights[:, number : number + 2],
+            np.broadcast_to(nodes[:, None], (nodes.size, 2)),
+            ground.offsets[rows, number : number + 2],
+            ground.heights[rows, number : number + 2],
         )
         side = LEFT if ground.offsets[:, number].mean() > 0 else RIGHT
         near, far = (0, 1) if side == LEFT else (1, 0)
-        yield Bed(side, ground.nodes, places[:, near], places[:, far])
+        yield Bed(side, nodes, places[:, near], places[:, far])
+
+
+def _thinned(nodes: Floats) -> Integers:
+    """Rows of nodes about half a metre apart, with both ends: the ground has them at each stone."""
+    steps = np.floor((nodes - nodes[0]) / _STEP_M)
+    rows = np.flatnonzero(np.diff(steps, prepend=-1.0) > 0)
+    return np.unique(np.append(rows, nodes.size - 1))
 
 
 @dataclass(frozen=True)

@@ -85,15 +85,17 @@ def test_a_barrier_leaves_dropped_curbs_and_poles_open() -> None:
     assert seen > 3
 
 
-def test_delineators_are_poles_of_the_truth_on_the_ground() -> None:
+def test_rubber_poles_are_poles_of_the_truth_on_the_ground() -> None:
     found = 0
-    for section in _sections(0, HIGHWAY) + _sections(3, RURAL):
+    for section in [one for seed in range(6) for one in _sections(seed, URBAN)]:
         built = Built(1)
         add_barriers(Places(section), built)
+        mesh = built.mesh.mesh()
         for one in built.truth:
-            foot = section.place(one.chainage_m, 0.0)
             assert one.file == "poles"
-            assert np.linalg.norm(one.xyz[0, :2] - foot[:2]) > free_from_m(section.plan.left) - 1
+            of_it = mesh.vertices[mesh.triangles[mesh.instance == one.instance]].reshape(-1, 3)
+            assert np.ptp(of_it[:, 2]) == pytest.approx(float(one.facts["height_m"]) + 0.3)
+            assert of_it[:, 2].max() - one.xyz[0, 2] == pytest.approx(one.facts["height_m"])
             found += 1
     assert found > 0
 
