@@ -9,6 +9,7 @@ matters.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -44,7 +45,7 @@ TOLERANCE_M = 0.10
 FOUND_SHARE = 0.5
 """A section is found, or false, if most of it is."""
 
-_STEP_M = 0.05  # judged places along a line: 40 a section
+_STEP_M = 0.1  # judged places along a line: 20 a section
 _NAME = Text("curbs", "縁石")
 
 
@@ -188,8 +189,9 @@ def _false_sections(
     features: Sequence[MappedFeature], true_lines: Lines, lines: Lines, tolerance_m: float
 ) -> int:
     """Sections of result lines that no true line, seen or not, accounts for."""
-    pieces = [part for one in features for part in pieces_of(one.xyz)]
-    owner = np.repeat(np.arange(len(features)), [len(pieces_of(one.xyz)) for one in features])
+    parts = [pieces_of(one.xyz) for one in features]
+    owner = np.repeat(np.arange(len(parts)), [len(one) for one in parts])
+    pieces = list(itertools.chain.from_iterable(parts))
     at, of = _all_places(pieces)
     true = true_lines.nearest(at, tolerance_m)
     is_right = true.line >= 0

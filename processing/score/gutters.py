@@ -56,6 +56,7 @@ class _Pieces:
     result: Sequence[MappedFeature]
     truth: Sequence[MappedFeature]
     is_asked: NDArray[np.bool_]
+    is_on_unseen: NDArray[np.bool_]  # of the result: most of it lies on lids that nobody can see
     pairs: tuple[tuple[int, int], ...]
 
     def counts(self, kind: str | None = None) -> TwoByTwo:
@@ -68,8 +69,9 @@ class _Pieces:
             self.is_asked[j] and is_of(self.truth[j]) and is_of(self.result[i])
             for i, j in self.pairs
         )
-        unasked = {i for i, j in self.pairs if not self.is_asked[j]}
-        given = sum(is_of(one) for i, one in enumerate(self.result) if i not in unasked)
+        left_out = {*np.flatnonzero(self.is_on_unseen).tolist()} - {i for i, _ in self.pairs}
+        left_out |= {i for i, j in self.pairs if not self.is_asked[j]}
+        given = sum(is_of(one) for i, one in enumerate(self.result) if i not in left_out)
         wanted = sum(is_of(one) for j, one in enumerate(self.truth) if self.is_asked[j])
         return TwoByTwo(int(hits), int(given - hits), int(wanted - hits), 0)
 
@@ -85,7 +87,13 @@ def gutter_score(result: MappedFile, truth: MappedFile) -> FileScore:
     found, true = _covers(result), _covers(truth)
     found_areas, true_areas = areas_of(found), areas_of(true)
     asked = np.array([is_seen(truth, one) for one in true], np.bool_)
-    pieces = _Pieces(found, true, asked, _paired(found_areas, true_areas))
+    pieces = _Pieces(
+        found,
+        true,
+        asked,
+        _mostly_on(found_areas, true_areas[~asked]),
+        _paired(found_areas, true_areas),
+    )
     runs = runs_of(truth, true)
     slots, found_runs, asked_runs = _slot_counts(runs, found, found_areas)
     right = [(found[i], true[j]) for i, j in pieces.pairs if asked[j]]
@@ -140,6 +148,17 @@ def _paired(found: Areas, true: Areas) -> tuple[tuple[int, int], ...]:
     gains = iou[is_enough] - LEAST_IOU + 1e-6
     pairs = best_pairs(i[is_enough], j[is_enough], gains)
     return tuple(zip(*(one.tolist() for one in pairs), strict=True))
+
+
+def _mostly_on(found: Areas, unseen: Areas) -> NDArray[np.bool_]:
+    """(n,) which covers lie mostly on some that no points show, wherever their joints are."""
+    import shapely
+
+    i, j = shapely.STRtree(unseen).query(found, predicate="intersects")
+    shared = np.bincount(
+        i, weights=shapely.area(shapely.intersection(found[i], unseen[j])), minlength=len(found)
+    )
+    return np.asarray(shared > shapely.area(found) / 2)
 
 
 def _slot_counts(

@@ -100,7 +100,7 @@ def places_of(features: Sequence[MappedFeature]) -> Floats:
 
 def is_in_span(feature: MappedFeature) -> bool:
     """Whether the vehicle passed it; true where the truth doesn't say."""
-    return feature.facts.get("in_span") is not False
+    return feature.facts.get("in_span") in (None, True)  # 1 in a GeoPackage
 
 
 def shows_enough(truth: MappedFile, feature: MappedFeature, name: str, least: float) -> bool:

@@ -147,7 +147,7 @@ def _is_seen(truth: MappedFile, sign: MappedFeature) -> bool:
 
 
 def _is_supplementary(sign: MappedFeature) -> bool:
-    return sign.facts.get("supplementary") is True
+    return sign.facts.get("supplementary") in (True,)  # 1 in a GeoPackage
 
 
 def _off_centre(truth: MappedFile, signs: list[Partner]) -> Floats:

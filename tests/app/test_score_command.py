@@ -107,6 +107,26 @@ def test_a_perfect_result_scores_one_and_undefined_figures_are_null(
     assert "–" in capsys.readouterr().out
 
 
+def test_all_classes_are_scored_each_against_the_others_and_by_their_mean(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    truth = np.array([2, 2, 2, 2, 11, 11, 65, 65, 0, 18], np.uint8)
+    codes = np.array([2, 2, 2, 11, 11, 11, 65, 1, 5, 18], np.uint8)
+    result = write_las(tmp_path / "result.las", places(), codes)
+    np.save(tmp_path / "left.labels.npy", truth)
+    told = scored(capsys, "classify", result, tmp_path / "left.labels.npy")
+    assert told["points"] == 9
+    f = {code: one["f"] for code, one in told["classes"].items()}
+    assert f == pytest.approx(
+        {"1": 0, "2": 6 / 7, "11": 0.8, "18": 1, "65": 2 / 3, "ground_and_road": 1}
+    )
+    assert told["figures"]["mean_f"] == pytest.approx((6 / 7 + 0.8 + 2 / 3) / 3)
+    assert told["figures"]["mean_f_ground_joined"] == pytest.approx((1 + 2 / 3) / 2)
+    assert told["shares"]["right"]["points"] == 7
+    truth_of_points = write_las(tmp_path / "truth.laz", places(), truth)
+    assert scored(capsys, "classify", result, truth_of_points)["figures"] == told["figures"]
+
+
 def test_text_of_the_isprs_test_has_ground_0_and_object_1(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -120,6 +120,18 @@ def test_what_the_points_do_not_show_counts_neither_way() -> None:
     }
 
 
+def test_lids_guessed_over_hidden_ones_are_not_held_against_a_result() -> None:
+    truth = changed(
+        TRUTH, lambda one: replace(one, facts={**one.facts, "scanned": float(one.number > 5)})
+    )
+    # Half a lid off: no joint of the hidden ones is right.
+    guessed = [lid(0.6 * number + 0.3) for number in range(4)]
+    seen = changed(TRUTH, lambda one: one if one.number > 5 else None)
+    score = gutter_score(with_more(seen, *guessed), truth)
+    assert score.counts_of("pieces") == TwoByTwo(23, 0, 0, 0)
+    assert score.counts_of("slots") == TwoByTwo(23, 0, 0, 2)
+
+
 def test_a_street_without_gutters_makes_all_that_is_found_false() -> None:
     nothing = map_of([])
     assert gutter_score(TRUTH, nothing).counts_of("pieces") == TwoByTwo(0, 28, 0, 0)
