@@ -31,6 +31,7 @@ from processing.formats.las_records import (
 )
 from processing.formats.point_files import is_las, read_chunks, read_info
 from processing.formats.safe_write import written_safely
+from processing.formats.told_writes import ToldWrites, failures_told
 from processing.monitor import Monitor
 from processing.text import Text
 
@@ -212,7 +213,8 @@ def _write_points(
     file.write(
         plan.frame.start(plan.point_size, bytes(laz.record_data()) if is_compressed else None)
     )
-    compressor = lazrs.ParLasZipCompressor(file, laz) if is_compressed else None
+    told = ToldWrites(file)
+    compressor = lazrs.ParLasZipCompressor(told, laz) if is_compressed else None
     of_return = np.zeros(16, dtype=np.int64)
     start = 0
     for source_records in plan.records:
@@ -223,11 +225,13 @@ def _write_points(
         if compressor is None:
             file.write(records.data)
         else:
-            compressor.compress_many(records.reshape(-1))
+            with failures_told(told):
+                compressor.compress_many(records.reshape(-1))
         start = stop
         monitor.report(start / plan.count, Text("Writing the points", "点群を書き込み中"))
     if compressor is not None:
-        compressor.done()
+        with failures_told(told):
+            compressor.done()
     return of_return
 
 

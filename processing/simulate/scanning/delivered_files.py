@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pyproj import CRS
 
+from processing.formats.told_writes import ToldWrites, failures_told
 from processing.simulate.mesh import Floats
 
 CRS_NAME = "EPSG:6677"
@@ -64,8 +65,9 @@ class PointFile:
         header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
         header.add_crs(CRS.from_user_input(CRS_NAME))
         self._header, self.count = header, 0
-        self._writer = laspy.open(
-            path, "w", header=header, laz_backend=laspy.LazBackend.LazrsParallel
+        self._file = ToldWrites(path.open("wb"))
+        self._writer = laspy.LasWriter(
+            self._file, header, do_compress=True, laz_backend=laspy.LazBackend.LazrsParallel
         )
 
     def write(self, points: DeliveredPoints) -> None:
@@ -76,7 +78,8 @@ class PointFile:
         record["gps_time"], record["intensity"] = points.time_s, points.intensity
         record["return_number"], record["number_of_returns"] = points.number, points.count
         record["point_source_id"] = np.full(points.time_s.size, points.source_id)
-        self._writer.write_points(record)
+        with failures_told(self._file):
+            self._writer.write_points(record)
         self.count += points.time_s.size
 
     def __enter__(self) -> PointFile:
@@ -88,7 +91,10 @@ class PointFile:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._writer.close()
+        if error is None:
+            with failures_told(self._file):
+                self._writer.close()
+        self._file.close()
 
 
 class ArrayFile:
@@ -114,8 +120,9 @@ class ArrayFile:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._file.seek(0)
-        self._write_head()
+        if error is None:
+            self._file.seek(0)
+            self._write_head()
         self._file.close()
 
     def _write_head(self) -> None:
