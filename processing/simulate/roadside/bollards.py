@@ -7,7 +7,7 @@ import numpy as np
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import placed
-from processing.simulate.roadside.places import Places, Spot, free_from_m
+from processing.simulate.roadside.places import Places, Spot
 from processing.simulate.roadside.posts import add_post, post_on
 from processing.simulate.roadside.rods import rods
 from processing.simulate.roadside.signs import against_traffic_rad
@@ -38,7 +38,7 @@ def _add_row(places: Places, built: Built, side: int) -> None:
     diameter = float(random.choice([0.0605, 0.0763, 0.1143, 0.1143, 0.1398, 0.2]))
     high = float(random.uniform(0.6, 0.9))
     pitch = float(random.uniform(1.2, 2.0))
-    away = free_from_m(section.plan.side(side)) + _GAP_M + diameter / 2
+    away = places.near_m(side) + _GAP_M + diameter / 2
     at = float(random.uniform(section.plan.start_m, section.plan.end_m))
     material = Material.STEEL if random.random() < 0.5 else Material.PAINTED_METAL
     for each in range(int(random.integers(2, 9))):
@@ -60,7 +60,7 @@ def _add_delineators(places: Places, built: Built, side: int) -> None:
     plan = section.plan
     for number in range(int(np.ceil(plan.start_m / pitch)), int(plan.end_m / pitch) + 1):
         random = section.chance("delineator", number * side)
-        away = free_from_m(plan.side(side)) + 0.15 + diameter / 2
+        away = places.near_m(side) + 0.15 + diameter / 2
         spot = Spot(number * pitch + float(random.normal(0, 0.4)), side * away)
         if random.random() < 0.1 or not places.take(spot, diameter / 2 + 0.03):
             continue

@@ -13,16 +13,18 @@ from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, grid
 from processing.simulate.roadside.crowns import scattered_leaves
 from processing.simulate.roadside.places import Places
+from processing.simulate.street.dropped_curbs import drops_of
 from processing.simulate.street.plan import SIDES
 from processing.simulate.street.section import Section
 from processing.simulate.street.styles import URBAN
 from processing.simulate.things import Built
 
 SHRUB = 4
-_STEP_M = 0.4
+_STEP_M = 0.22
 _END_GAP_M = 0.4
 _MEDIAN_END_GAP_M = 4.0  # noses of islands
-_MOST_LEAVES = 400
+_MOST_LEAVES = 800
+_LEAST_M = 1.0
 # Across a hedge, as shares of half its width and of its height: up one face, over, down the other.
 _PROFILE = np.array(
     [[-0.8, 0.0], [-1, 0.25], [-1.0, 0.8], [-0.75, 1], [0, 1.04], [0.75, 1], [1, 0.8], [1, 0.25],
@@ -79,8 +81,14 @@ def _pieces(section: Section, random: Generator, like: _Hedge) -> Iterator[_Hedg
     """Hedges of 1.5 to 14 m with gaps, over a part of the section."""
     at = section.plan.start_m + _END_GAP_M + float(random.exponential(3.0))
     end = section.plan.end_m - _END_GAP_M
+    drops = drops_of(section.seed, section.plan, 1 if like.offset_m > 0 else -1)
     while at + 1.0 < end:
-        long = min(float(random.uniform(1.5, 14.0)), end - at)
+        drop = next((one for one in drops if one.to_m + 0.2 > at), None)
+        if drop is not None and drop.from_m - 0.2 < at + _LEAST_M:
+            at = drop.to_m + 0.3
+            continue
+        last = end if drop is None else min(end, drop.from_m - 0.2)
+        long = min(float(random.uniform(1.5, 14.0)), last - at)
         high = like.high_m * float(random.uniform(0.9, 1.1))
         yield _Hedge(at, at + long, like.offset_m, like.wide_m, high)
         at += long + float(random.exponential(1.5)) + 0.3
@@ -105,8 +113,8 @@ def _add_hedge(section: Section, built: Built, hedge: _Hedge, random: Generator)
     rows[[0, -1], :, :2] = rows[[0, -1], :, :2].mean(axis=1, keepdims=True)
     instance = built.thing("hedge")
     built.mesh.add(grid(rows), Material.LEAVES, SHRUB, instance)
-    centres = _on(random, rows, int(min(_MOST_LEAVES, 40 * (hedge.end_m - hedge.start_m))))
-    leaves = scattered_leaves(random, centres, float(random.uniform(0.04, 0.08)))
+    centres = _on(random, rows, int(min(_MOST_LEAVES, 60 * (hedge.end_m - hedge.start_m))))
+    leaves = scattered_leaves(random, centres, float(random.uniform(0.05, 0.1)))
     built.mesh.add(leaves, Material.LEAVES, SHRUB, instance)
 
 
@@ -117,5 +125,5 @@ def _on(random: Generator, rows: Floats, count: int) -> Floats:
     one, other = random.random((count, 1)), random.random((count, 1))
     low = rows[row, place] * (1 - one) + rows[row + 1, place] * one
     high = rows[row, place + 1] * (1 - one) + rows[row + 1, place + 1] * one
-    places: Floats = low * (1 - other) + high * other + random.normal(0, 0.02, (count, 3))
+    places: Floats = low * (1 - other) + high * other + random.normal(0, 0.035, (count, 3))
     return places

@@ -8,16 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.random import Generator
 
 from processing.simulate.mesh import Floats
-from processing.simulate.street.plan import LEFT, RIGHT, SidePlan
+from processing.simulate.roadside.neighbours import neighbour
+from processing.simulate.street.dropped_curbs import Drop, drops_of
+from processing.simulate.street.plan import LEFT, RIGHT, SIDES, SidePlan
 from processing.simulate.street.section import Section
 
 _KERB_GAP_M = 0.12  # between the rear of a curb or lid and what stands behind it
 _WALL_GAP_M = 0.15
+_FRONT_M = 1.3  # of a walk: what stands within would block an entrance
 
 
 @dataclass(frozen=True)
@@ -41,13 +45,25 @@ class Spot:
         return LEFT if self.offset_m > 0 else RIGHT
 
 
-def free_from_m(side: SidePlan) -> float:
-    """Distance from the road's centre where the ground behind gutter and curb begins."""
+def free_from_m(side: SidePlan, *beside: SidePlan | None) -> float:
+    """Distance from the road's centre where the ground behind gutter and curb begins.
+
+    Parameters
+    ----------
+    beside : SidePlan or None
+        The same side of the neighbouring sections: widths change gently towards theirs.
+    """
     away = side.edge_m
     for band in side.bands():
         if band.name in ("drain", "curb"):
             away = band.outer_m
-    return away
+    others = [(away + free_from_m(one)) / 2 for one in beside if one is not None]
+    return max([away, *others])
+
+
+def is_entrance(drops: tuple[Drop, ...], chainage_m: float, radius_m: float) -> bool:
+    """Whether a curb is lowered somewhere within a radius: nobody sets up a post there."""
+    return any(one.from_m - radius_m < chainage_m < one.to_m + radius_m for one in drops)
 
 
 def free_to_m(side: SidePlan) -> float:
@@ -75,7 +91,10 @@ class Places:
         away = abs(spot.offset_m)
         if not plan.start_m + radius_m <= spot.chainage_m <= plan.end_m - radius_m:
             return False
-        if away - radius_m < free_from_m(side) + _KERB_GAP_M or away + radius_m > free_to_m(side):
+        near, drops = self._edges[spot.side]
+        if away - radius_m < near + _KERB_GAP_M or away + radius_m > free_to_m(side):
+            return False
+        if away - radius_m < near + _FRONT_M and is_entrance(drops, spot.chainage_m, radius_m):
             return False
         if any(
             low - radius_m < spot.chainage_m < high + radius_m
@@ -87,6 +106,22 @@ class Places:
             np.hypot(spot.chainage_m - s, spot.offset_m - o) > radius_m + r
             for s, o, r in self._taken
         )
+
+    def near_m(self, side: int) -> float:
+        """Distance from the road's centre where a side's free ground begins."""
+        return self._edges[side][0]
+
+    @cached_property
+    def _edges(self) -> dict[int, tuple[float, tuple[Drop, ...]]]:
+        """Of each side: where its free ground begins, and its lowered curbs."""
+        plan = self.section.plan
+        beside = [neighbour(self.section, step) for step in (-1, 1)]
+        edges = {}
+        for side in SIDES:
+            others = [None if one is None else one.side(side) for one in beside]
+            near = free_from_m(plan.side(side), *others)
+            edges[side] = (near, drops_of(self.section.seed, plan, side))
+        return edges
 
     def take(self, spot: Spot, radius_m: float) -> bool:
         """Give a place away; False where it isn't free."""
@@ -123,7 +158,7 @@ class Places:
     ) -> Spot | None:
         """Where posts are set up at a chainage: behind the curb, or at the walk's far edge."""
         plan = self.section.plan.side(side)
-        near = free_from_m(plan) + _KERB_GAP_M + radius_m
+        near = self.near_m(side) + _KERB_GAP_M + radius_m
         walk = plan.band("walk")
         away = near + float(random.uniform(0.0, 0.45))
         if walk is not None and random.random() < 0.25:

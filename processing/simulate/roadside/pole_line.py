@@ -17,6 +17,7 @@ from processing.simulate.mesh import Floats
 from processing.simulate.roadside.neighbours import driven_m, plans
 from processing.simulate.roadside.places import Spot, free_from_m, free_to_m
 from processing.simulate.street.alignment import Alignment
+from processing.simulate.street.dropped_curbs import drops_of
 from processing.simulate.street.plan import LEFT, RIGHT, SectionPlan
 from processing.simulate.street.section import Section
 from processing.simulate.street.styles import HIGHWAY, URBAN, Style
@@ -25,6 +26,7 @@ from processing.simulate.street.styles import HIGHWAY, URBAN, Style
 TAPER = 1 / 75
 _END_GAP_M = 0.7  # from the ends of a section
 _MOST_CABLES = 12
+_KERB_GAP_M = 0.12
 
 
 @dataclass(frozen=True)
@@ -127,7 +129,10 @@ def _pole_line(seed: int, style: Style, length_m: float) -> PoleLine:
         if side in plan.junctions:
             step = -1 if at - plan.start_m < plan.end_m - at else 1
             plan = by_number.get(plan.index + step, plan)
-        pole = _pole(seed, number, plan, _Wish(side, at, high, of_walk))
+        beside = [by_number.get(plan.index + one) for one in (-1, 1)]
+        sides = [None if one is None else one.side(side) for one in beside]
+        near = free_from_m(plan.side(side), *sides)
+        pole = _pole(seed, number, plan, _Wish(side, at, high, of_walk, near))
         if pole is not None:
             poles.append(pole)
     return PoleLine(tuple(poles), cables)
@@ -139,6 +144,7 @@ class _Wish:
     chainage_m: float
     high_m: float
     walk_share: float
+    near_m: float
 
 
 def _pole(seed: int, number: int, plan: SectionPlan, wish: _Wish) -> LinePole | None:
@@ -148,7 +154,14 @@ def _pole(seed: int, number: int, plan: SectionPlan, wish: _Wish) -> LinePole | 
     high = wish.high_m + float(random.normal(0, 0.35))
     top = float(random.choice([0.14, 0.17, 0.19, 0.19, 0.22]))
     radius = (top + high * TAPER) / 2 + 0.05
-    near, far = free_from_m(side) + 0.12 + radius, free_to_m(side) - radius
+    near, far = wish.near_m + _KERB_GAP_M + radius, free_to_m(side) - radius
+    verge = side.band("verge")
+    if verge is not None:
+        far = max(near, min(far, verge.outer_m - radius))
+    for drop in drops_of(seed, plan, wish.side):
+        if drop.from_m - radius < at < drop.to_m + radius:
+            is_early = at - drop.from_m < drop.to_m - at
+            at = drop.from_m - radius - 0.1 if is_early else drop.to_m + radius + 0.1
     walk = side.band("walk")
     away = near + float(random.uniform(0.0, 0.25))
     if walk is not None and random.random() < wish.walk_share * 0.8:

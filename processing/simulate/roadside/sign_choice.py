@@ -46,7 +46,8 @@ def plate_of(random: Generator, shape: PlateShape, style: Style) -> Plate:
     """A plate of a shape in one of its sizes."""
     if shape == "rectangle":
         wide = float(random.choice([0.4, 0.5, 0.6, 0.9, 1.2]))
-        return Plate("rectangle", wide, wide * float(random.choice([0.4, 0.5, 0.7, 1.5])))
+        high = wide * float(random.choice([0.4, 0.5, 0.7] if wide > 0.6 else [0.4, 0.5, 0.7, 1.5]))
+        return Plate("rectangle", wide, high)
     sizes = _WIDE_CIRCLES_M if style is HIGHWAY and shape == "circle" else _SIZES[shape]
     shares = [one[1] for one in sizes]
     return Plate(shape, sizes[int(random.choice(len(sizes), p=shares))][0])

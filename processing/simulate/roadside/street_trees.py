@@ -25,8 +25,8 @@ from processing.simulate.street.plan import SIDES, SectionPlan, SidePlan
 from processing.simulate.street.styles import HIGHWAY, URBAN
 from processing.simulate.things import Built
 
-_LEAVES_IN_A_SECTION = 20_000
-_MOST_LEAVES = 2_400
+_TRIANGLES, _BARK_TRIANGLES = 36_000, 2_000  # of all trees of a section, of one tree's wood
+_LEAST_LEAVES, _MOST_LEAVES = 250, 3_500
 _ROOM_M = 0.35  # about a trunk
 _MOST_WOOD_TREES = 26
 _WOOD_DEEP_M = 24.0
@@ -52,7 +52,8 @@ def add_street_trees(places: Places, built: Built) -> None:
         if row is not None:
             wishes += _in_row(places, random, row)
         wishes += _in_yards(places, random, side)
-    leaves = min(_MOST_LEAVES, _LEAVES_IN_A_SECTION // max(1, len(wishes)))
+    count = max(1, len(wishes))
+    leaves = int(np.clip(_TRIANGLES // count - _BARK_TRIANGLES, _LEAST_LEAVES, _MOST_LEAVES))
     for number, wish in enumerate(wishes):
         own = places.section.chance("tree", number)
         add_tree(places, built, replace(wish, leaves=leaves), own)
@@ -145,7 +146,7 @@ def _add_wood(places: Places, built: Built, side: int) -> None:
         own = section.chance("tree of a wood", number * side)
         high = float(own.uniform(*growth.high_m))
         if abs(spot.offset_m) - plan.edge_m <= TRUTH_WITHIN_M:
-            add_tree(places, built, TreeWish(growth, spot, high, "wild", 500), own)
+            add_tree(places, built, TreeWish(growth, spot, high, "wild", 350), own)
         else:
             _add_coarse_tree(places, built, TreeWish(growth, spot, high, "wild", 200), own)
 

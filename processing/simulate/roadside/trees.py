@@ -36,7 +36,7 @@ TRUNK, CROWN, SHRUB = 66, 5, 4
 TRUTH_WITHIN_M = 8.0
 """Of the carriageway's edge: trees farther off are not asked for."""
 
-_MANY_LEAVES = 1_500
+_MANY_LEAVES, _FEW_LEAVES = 1_500, 600
 _COVER = 1.1  # area of all leaves by that of the crown as seen from beside
 _WIDEST_LEAF_M = 0.16
 _CLEAR_OVER_ROAD_M = 4.2  # 建築限界: 4.5 m over carriageways, trees a little in arrears
@@ -159,7 +159,7 @@ def _crown_wish(random: Generator, wish: TreeWish, share: float) -> CrownWish:
     wide = (
         wish.high_m * float(random.uniform(*growth.crown)) * (0.5 if wish.age == "young" else 1.0)
     )
-    most = 24 if wish.leaves > _MANY_LEAVES else 13
+    most = 24 if wish.leaves > _MANY_LEAVES else 13 if wish.leaves > _FEW_LEAVES else 9
     branches = int(np.clip(wish.high_m * random.uniform(1.5, 3.0), 5, most))
     leaves = int(wish.leaves * share * np.clip(wide * wish.high_m / 24, 0.25, 1.0))
     cover = _COVER * wide * (wish.high_m - base) * float(random.uniform(0.6, 1.3))

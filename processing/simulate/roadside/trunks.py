@@ -83,7 +83,7 @@ class StemWish:
 
 def stem_of(random: Generator, wish: StemWish) -> Stem:
     """A stem with chance bends, flare, burrs and section."""
-    upper = np.arange(4.0, wish.high_m, 0.9)
+    upper = np.arange(4.0, wish.high_m - 0.3, max(0.9, wish.high_m / 8))
     levels = np.array([one for one in _LEVELS_M if one < wish.high_m - 0.1])
     levels = np.concatenate([levels, upper, [wish.high_m]])
     share = np.clip(levels / wish.high_m, 0.0, 1.0)
