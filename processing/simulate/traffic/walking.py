@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,11 +11,21 @@ from numpy.typing import NDArray
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats
 from processing.simulate.street.plan import LEFT, SIDES, SectionPlan
-from processing.simulate.street.styles import HIGHWAY, URBAN, Style
+from processing.simulate.street.styles import HIGHWAY, URBAN
+from processing.simulate.things import Mover
 from processing.simulate.traffic.kinds import KINDS
-from processing.simulate.traffic.lanes import Lane
+from processing.simulate.traffic.lanes import (
+    Lane,
+    kind_drawn,
+    slot_chance,
+    slots_near,
+    stretches_of,
+    swing_of,
+)
 from processing.simulate.traffic.parking import ParkingPlace, parking_places
+from processing.simulate.traffic.recorded import BODIES, Order, Recorded
 
+_SWAY_M = {"person": 0.04, "bicycle": 0.08}
 _LANES = 5
 _APART_M = 1.3
 _HALF_M = 0.4  # of a person, for whom the walk must have room
@@ -68,14 +79,17 @@ class Walks:
                 yield one.chainage_m - half, one.chainage_m + half
 
 
-def walking_lanes(seed: int, style: Style, plan: SectionPlan, number: int) -> list[Lane]:
+def walking_lanes(recorded: Recorded) -> list[Lane]:
     """Lanes beside the road on which people walk, stand and cycle in a pass."""
+    seed, style, number = recorded.seed, recorded.style, recorded.number
     if style is HIGHWAY:
         return []
     lanes = []
     busy = float(chance(seed, "busy", number).uniform(*_BUSY[style.id]))
     for side in SIDES:
-        inner = plan.side(side).edge_m + float(chance(seed, "walks", side).uniform(0.6, 1.6))
+        inner = recorded.plan.side(side).edge_m + float(
+            chance(seed, "walks", side).uniform(0.6, 1.6)
+        )
         for place in range(_LANES):
             random = chance(seed, "walkers' lane", number, side, place)
             way = 1.0 if random.random() < 0.5 else -1.0
@@ -93,3 +107,38 @@ def walking_lanes(seed: int, style: Style, plan: SectionPlan, number: int) -> li
                 )
             )  # fmt: skip
     return lanes
+
+
+def walkers_of(recorded: Recorded, lane: Lane, walks: Walks) -> list[Order]:
+    """Those who walk or cycle along, wherever the walk has their lane."""
+    orders = []
+    for slot in slots_near(lane, recorded.course):
+        random = slot_chance(recorded.seed, recorded.number, lane, slot)
+        if random is None:
+            continue
+        kind = kind_drawn(random, lane.kinds)
+        body, mesh = recorded.bodies.one(kind, int(random.integers(BODIES)))
+        swing = swing_of(random, lane, body.length_m)
+        mover = Mover(
+            mesh,
+            slot.middle_m + swing.from_middle_m,
+            lane.offset_m,
+            lane.speed_m_s,
+            -np.inf,
+            np.inf,
+            turn_rad=lane.turn_rad + (0.0 if lane.speed_m_s else float(random.normal(0, 0.1))),
+            sway_m=_SWAY_M.get(kind, 0.0) if lane.speed_m_s else 0.0,
+            sway_s=float(random.uniform(0.9, 1.3) if kind == "person" else random.uniform(2, 4)),
+            surge_m=swing.surge_m,
+            surge_s=swing.surge_s,
+            phase_rad=swing.phase_rad,
+            kind=body.kind,
+        )
+        times = recorded.course[slot.first : slot.last + 1, 0]
+        at, _ = mover.way_at(times)
+        inside = walks.has_room(lane, at)
+        for first, last in stretches_of(inside):
+            start, end = recorded.span(slot.first + first, slot.first + last)
+            one = replace(mover, from_s=start, to_s=end)
+            orders.append(Order(max(0.0, one.from_s), f"walkers {lane.number}", slot.number, one))
+    return orders

@@ -113,7 +113,7 @@ def test_people_walk_on_walks_only() -> None:
         street = Street(seed, URBAN, 60.0)
         driven = pass_along(street)
         for one in movers_of(street, driven):
-            if one.kind not in ("person", "bicycle"):
+            if one.kind not in ("person", "bicycle") or one.aside_m_s:
                 continue
             times = np.linspace(max(0, one.from_s), min(driven.duration_s, one.to_s), 9)
             at, aside = one.way_at(times)
@@ -124,3 +124,21 @@ def test_people_walk_on_walks_only() -> None:
                 assert walk.inner_m < abs(o) < walk.outer_m
                 walkers += 1
     assert walkers > 50
+
+
+def test_people_cross_the_whole_road_when_nothing_comes() -> None:
+    crossing = 0
+    for seed in range(6):
+        street = Street(seed, URBAN, 120.0)
+        driven = pass_along(street)
+        plan = street.plans[0]
+        for one in movers_of(street, driven):
+            if one.aside_m_s:
+                crossing += 1
+                _, aside = one.way_at([one.from_s, one.to_s])
+                assert sorted(np.sign(aside).tolist()) == [-1, 1]
+                assert np.abs(aside).max() < max(plan.left.edge_m, plan.right.edge_m)
+                times = np.linspace(one.from_s, min(one.to_s, driven.duration_s), 9)
+                away = np.abs(driven.chainage_at(times) - one.way_at(times)[0])
+                assert away.min() > 5
+    assert crossing > 3
