@@ -14,13 +14,21 @@ from processing.bench.import_cases import measure_import, measure_import_memory
 from processing.bench.label_case import measure_labels
 from processing.bench.noise_cases import measure_noise
 from processing.bench.peer_cases import measure_normals, measure_searchable
+from processing.bench.simulate_case import measure_simulate
 
 LITTLE = BenchWish(most_points=20_000, share=0.2)
 
 
 @pytest.mark.parametrize(
     "measure",
-    [measure_import, measure_searchable, measure_image, measure_switch, measure_labels],
+    [
+        measure_import,
+        measure_searchable,
+        measure_image,
+        measure_switch,
+        measure_labels,
+        measure_simulate,
+    ],
 )
 def test_a_benchmark_gives_one_positive_figure(measure: object) -> None:
     assert callable(measure)
