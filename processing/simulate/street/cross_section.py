@@ -176,7 +176,8 @@ def _mouth_profile(mouth: Mouth, course: Course) -> Profile:
     for beside in (*near, *np.arange(_MOUTH_NEAR_M, DEEP_M, 2.0)):
         depths = mouth.inside_m(nodes, np.full(nodes.size, beside))
         inside = np.maximum(depths[0], depths[1])
-        level = np.where(inside <= 0, 0.0, np.interp(inside, inwards, levels))
+        crown = mouth.crown(nodes, np.full(nodes.size, beside))
+        level = np.where(inside <= 0, crown, np.interp(inside, inwards, levels))
         profile.line(course.side.edge_m + beside, level, bare)
     return profile
 

@@ -23,6 +23,8 @@ DEEP_M = 35.0
 _LEAST_RADIUS_M = 1.5
 _CLEAR_M = 1.2
 _BEND_M = 8.0
+_CROWN = 0.015  # as the road's own camber
+_CROWN_FROM_M = 6.0
 
 
 @dataclass(frozen=True)
@@ -127,6 +129,14 @@ class Mouth:
             arc = radius - np.hypot(radius - beside, radius - behind)
             depths.append(np.where(in_arc, arc, np.minimum(beside, behind)))
         return depths[0], depths[1]
+
+    def crown(self, chainage: Floats, beside: Floats) -> Floats:
+        """How much the side street's asphalt is raised between its edges, m."""
+        depths = self.inside_m(chainage, beside)
+        from_edge = np.clip(-np.maximum(depths[0], depths[1]) / self.half_m, 0.0, 1.0)
+        part = np.clip(beside / _CROWN_FROM_M, 0.0, 1.0)
+        crown: Floats = _CROWN * self.half_m * (1 - (1 - from_edge) ** 2) * part
+        return crown
 
 
 def mouth_of(seed: int, plan: SectionPlan, side: int) -> Mouth:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from processing.simulate.mesh import Floats, grid
+from processing.simulate.street.corner_track import CornerTrack
 from processing.simulate.street.junction_shape import Mouth
 from processing.simulate.street.layout import CornerLayout
 from processing.simulate.street.profile import ROAD
@@ -18,6 +20,7 @@ _UNDER_M = 0.05
 _BELOW_M = 0.008
 """The side street's asphalt reaches under the road's, so that no beam passes between them."""
 
+_LAND_ACROSS_M, _LAND_ALONG_M = 0.8, 2.0
 _SKIRT_M = 0.4
 """How far the land reaches down where the next section's, made of wider pieces, meets it."""
 
@@ -44,20 +47,35 @@ def _add_land(section: Section, corner: CornerLayout, built: Built) -> None:
     is_road = np.arange(from_end.size) <= track.last
     columns, picked = np.unique(from_end[is_road], return_index=True)
     low = beside[is_road][picked]
-    start = low[-1]
-    up = np.unique(np.append(beside[beside > start + 1e-9], [start, top]))
-    share = (up - start) / (top - start)
+    kept = _thinned(columns, _LAND_ACROSS_M) | (picked >= track.first)
+    columns, low, road_level = columns[kept], low[kept], above[is_road][picked][kept]
+    up = np.unique(np.append(beside[beside > low[-1] + 1e-9], [low[-1], top]))
+    up = up[_thinned(up, _LAND_ALONG_M)]
+    share = (up - low[-1]) / (top - low[-1])
+    # One row and one column more reach under the lines that the thinned ones only follow.
+    share, columns = np.append(0.0, share), np.append(columns, columns[-1] + _UNDER_M)
+    low, road_level = np.append(low, low[-1]), np.append(road_level, road_level[-1])
     rows_beside = low[None, :] + share[:, None] * (top - low[None, :])
+    rows_beside[0] -= _UNDER_M
     rows_from_end = np.broadcast_to(columns, rows_beside.shape)
     chainage, offset = track.placed(track.chainages(rows_from_end), rows_beside)
     level = float(np.median(above))
-    road_level = above[is_road][picked]
     height = section.layout.terrain.height(chainage, offset)
     height = height + road_level[None, :] + share[:, None] * (level - road_level[None, :])
+    height[0] -= _UNDER_M
+    height[1:, -1] -= _UNDER_M
     rows = section.alignment.at(chainage, offset, height)
     built.mesh.add(grid(rows), corner.land.material, corner.land.label, NO_THING)
     skirt = np.stack([rows[:, 0], rows[:, 0] - [0.0, 0.0, _SKIRT_M]], axis=1)
     built.mesh.add(grid(skirt), corner.land.material, corner.land.label, NO_THING)
+
+
+def _thinned(places: Floats, least_m: float) -> NDArray[np.bool_]:
+    """Rising places, the first and last always, no closer than this where more are there."""
+    steps = np.floor((places - places[0]) / least_m)
+    kept = np.append(True, np.diff(steps) > 0)
+    kept[-1] = True
+    return kept
 
 
 def street_sides(corners: tuple[CornerLayout, ...], beside: Floats) -> tuple[Floats, Floats]:
@@ -70,6 +88,14 @@ def street_sides(corners: tuple[CornerLayout, ...], beside: Floats) -> tuple[Flo
         rising = np.maximum.accumulate(depth[kept])
         limits.append(track.chainages(np.interp(beside, rising, from_end[kept])))
     return limits[0], limits[1]
+
+
+def street_height(
+    section: Section, mouth: Mouth, track: CornerTrack, along: Floats, beside: Floats
+) -> Floats:
+    """Height of a side street's asphalt, z in m, at places of the square frame."""
+    chainage, offset = track.placed(along, beside)
+    return section.layout.terrain.height(chainage, offset) + mouth.crown(chainage, beside)
 
 
 def _add_carriageway(
@@ -85,10 +111,7 @@ def _add_carriageway(
     along = low[:, None] + share * (high - low)[:, None]
     deep = np.broadcast_to(beside[:, None], along.shape)
     chainage, offset = corners[0].track.placed(along, deep)
-    height = section.layout.terrain.height(chainage, offset)
-    # A crown of 1.5 % of half the width, as the road's own camber, vanishing at its edges.
-    crown = 0.015 * mouth.half_m * (1 - (2 * share - 1) ** 2)
-    height = height + crown[None, :] * np.clip(deep / 6.0, 0.0, 1.0)
+    height = street_height(section, mouth, corners[0].track, along, deep)
     rows = section.alignment.at(chainage, offset, height)
     under_s, under_o = corners[0].track.placed(along[:1], deep[:1] - _UNDER_M)
     below = section.layout.terrain.height(under_s, under_o) - _BELOW_M

@@ -16,6 +16,8 @@ from processing.simulate.street.alignment import Alignment, alignment_of
 from processing.simulate.street.cross_section import section_of
 from processing.simulate.street.ends import add_ends
 from processing.simulate.street.junctions import add_junctions
+from processing.simulate.street.markings import add_markings
+from processing.simulate.street.pavement import add_pavement
 from processing.simulate.street.plan import SectionPlan, plans_of
 from processing.simulate.street.section import Section
 from processing.simulate.street.styles import Style
@@ -28,6 +30,8 @@ MAKERS: tuple[Maker, ...] = (
     add_ground,
     add_junctions,
     add_ends,
+    add_markings,
+    add_pavement,
     add_gutters,
     add_furniture,
     add_parked,
