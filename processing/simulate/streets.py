@@ -13,6 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import Monitor, PartMonitor
+from processing.simulate.cameras.photographs import Frame, write_image_list, write_images
+from processing.simulate.cameras.rigs import poses_of_pass, rig_of
+from processing.simulate.cameras.seen_street import SeenStreet
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats
 from processing.simulate.scanning.beams import Spin
@@ -38,12 +41,14 @@ from processing.simulate.simulated import Simulated
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import style_of
 from processing.simulate.things import Mover, Thing, TrueFeature
+from processing.simulate.traffic.moving import movers_of
 from processing.simulate.truth import Seen, write_rough_positions, write_things, write_truth
 from processing.simulate.whole_folder import made_whole
 from processing.simulate.wishes import StreetWish
 from processing.text import Text
 
 _DRY_SHARE = 0.65
+_POINTS_SHARE = 0.4  # of the progress of a pass; the rest is photographs
 _SHOWN_M = 40.0  # of truth before the beginning and behind the end
 _KMH = 3.6
 _TRUTH_SHARE = 0.97  # of the progress; the rest is truth
@@ -81,7 +86,7 @@ def simulate_street(wish: StreetWish, folder: Path, monitor: Monitor) -> Simulat
         folder,
         tuple(folder / name for name in work.point_files),
         tuple(folder / name for name in work.trajectories),
-        (),
+        tuple(folder / name for name in work.image_lists),
         folder / "truth",
         CRS_NAME,
         sum(work.counts.values()),
@@ -120,6 +125,7 @@ class _Work:
         self.evidence = Evidence()
         self.point_files: list[str] = []
         self.trajectories: list[str] = []
+        self.image_lists: list[str] = []
         self.counts: dict[str, int] = {}
         self.things: dict[int, Thing] = {}
         self.truth: dict[tuple[int, str, int], TrueFeature] = {}
@@ -129,10 +135,11 @@ class _Work:
         """Drive once and write what was recorded."""
         monitor.report(0.0, Text("Recording", "計測中"))
         driven = pass_of(self.street, number, self.driving)
-        movers: list[Mover] = []
+        movers = movers_of(self.street, driven)
         recording = Recording(self.street, self.setup, driven, MovingScene(self.street, movers))
+        points_share = _POINTS_SHARE if self.wish.images else 1.0
         with self._files(number) as files:
-            for stretch in recording.stretches(monitor):
+            for stretch in recording.stretches(PartMonitor(monitor, 0.0, points_share)):
                 self._write(driven, number, stretch, files[stretch.head.name])
         for section in recording.sections():
             monitor.check()
@@ -141,6 +148,8 @@ class _Work:
                 if -_SHOWN_M < one.chainage_m < self.wish.length_m + _SHOWN_M:
                     self.truth[one.instance, one.file, place] = one
         self._write_trajectory(driven, number)
+        if self.wish.images:
+            self._photograph(driven, movers, PartMonitor(monitor, points_share, 1.0))
         self.passes.append(driven)
 
     def finish(self) -> None:
@@ -217,6 +226,21 @@ class _Work:
         before = sum(one.duration_s for one in self.passes[:number])
         return self.start_s + before + 600.0 * number
 
+    def _photograph(self, driven: Pass, movers: list[Mover], monitor: Monitor) -> None:
+        frame = Frame(self.origin, self._times(driven.number), _prefix(driven.number))
+        images = write_images(
+            self.folder,
+            poses_of_pass(driven),
+            SeenStreet(self.street, movers).at,
+            monitor,
+            seed=self.wish.seed,
+            rig=rig_of(self.wish.seed),
+            frame=frame,
+        )
+        name = f"{_numbered('images', driven.number)}.csv"
+        write_image_list(self.folder / name, images)
+        self.image_lists.append(name)
+
     def _write_trajectory(self, driven: Pass, number: int) -> None:
         name = f"{_numbered('trajectory', number)}.csv"
         places: Floats = driven.places + driven.errors + self.origin
@@ -231,6 +255,10 @@ class _Work:
             encoding="utf-8",
         )
         self.trajectories.append(name)
+
+
+def _prefix(number: int) -> str:
+    return "" if number == 0 else f"pass{number + 1}_"
 
 
 def _numbered(name: str, number: int) -> str:

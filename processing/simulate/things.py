@@ -125,7 +125,7 @@ class Mover:
 
 @dataclass
 class Built:
-    """What makers add to: triangles, things, truth and movers of one section of a street.
+    """What makers add to: triangles, things and truth of one section of a street.
 
     Attributes
     ----------
@@ -137,7 +137,6 @@ class Built:
     mesh: MeshBuilder = field(default_factory=MeshBuilder)
     things: list[Thing] = field(default_factory=list)
     truth: list[TrueFeature] = field(default_factory=list)
-    movers: list[Mover] = field(default_factory=list)
 
     def thing(self, kind: str) -> int:
         """A new thing; its instance."""

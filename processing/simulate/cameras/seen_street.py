@@ -11,6 +11,7 @@ from processing.simulate.cameras.rigs import Pose
 from processing.simulate.mesh import Mesh, placed
 from processing.simulate.scanning.casting import Scene
 from processing.simulate.scanning.moving import poses_of
+from processing.simulate.scanning.surroundings import scene_around
 from processing.simulate.street.street import Street
 from processing.simulate.things import Mover
 
@@ -36,19 +37,11 @@ class SeenStreet:
         """The scenes around a pose at its time: what stands, and what moves."""
         row = self._street.within(pose.chainage_m, pose.chainage_m)[0]
         if self._standing is None or row != self._row:
-            self._standing, self._row = self._scene(row), row
+            self._standing, self._row = scene_around(self._street, row, _REACH_M), row
         meshes = [self._placed(one, pose) for one in self._movers if self._is_near(one, pose)]
         if not meshes:
             return [self._standing]
         return [self._standing, Scene(Mesh.joined(meshes), pose.place)]
-
-    def _scene(self, row: int) -> Scene:
-        plan = self._street.plans[row]
-        near = self._street.within(plan.start_m - _REACH_M, plan.end_m + _REACH_M)
-        mesh = Mesh.joined(self._street.section(one).mesh for one in near)
-        middle = (plan.start_m + plan.end_m) / 2
-        level = self._street.alignment.carriageway_height(middle, 0.0)
-        return Scene(mesh, self._street.alignment.at(middle, 0.0, level))
 
     def _is_near(self, mover: Mover, pose: Pose) -> bool:
         if not mover.from_s <= pose.time_s <= mover.to_s:

@@ -16,7 +16,7 @@ import numpy as np
 
 from processing.monitor import Monitor
 from processing.simulate.chance import chance
-from processing.simulate.mesh import Floats, Integers, Mesh
+from processing.simulate.mesh import Floats, Integers
 from processing.simulate.scanning.beams import Spin, beams_of
 from processing.simulate.scanning.casting import Scene
 from processing.simulate.scanning.moving import MovingScene
@@ -30,6 +30,7 @@ from processing.simulate.scanning.returns import (
 )
 from processing.simulate.scanning.scanner_noise import NoiseSource, Recorded
 from processing.simulate.scanning.sensors import Head, Sensor
+from processing.simulate.scanning.surroundings import scene_around
 from processing.simulate.street.street import BuiltSection, Street
 
 _STRETCH = 1 << 17
@@ -100,13 +101,14 @@ class Recording:
         """
         spans = self._spans()
         with ThreadPoolExecutor(_WORKERS) as pool:
-            coming = pool.submit(self._scene, spans[0][0])
+            coming = pool.submit(scene_around, self._street, spans[0][0], _REACH_M)
             waiting: deque[Future[Stretch]] = deque()
             try:
                 for number, (_, pulses) in enumerate(spans):
                     scene = coming.result()
                     if number + 1 < len(spans):
-                        coming = pool.submit(self._scene, spans[number + 1][0])
+                        row = spans[number + 1][0]
+                        coming = pool.submit(scene_around, self._street, row, _REACH_M)
                     for head, part in self._tasks(pulses):
                         waiting.append(pool.submit(self._record, scene, head, part))
                         while len(waiting) > 2 * _WORKERS:
@@ -148,16 +150,6 @@ class Recording:
             for head in range(len(self._spins)):
                 yield head, range(start, stop)
             start = stop
-
-    def _scene(self, row: int) -> Scene:
-        plan = self._street.plans[row]
-        near = self._street.within(plan.start_m - _REACH_M, plan.end_m + _REACH_M)
-        mesh = Mesh.joined(self._street.section(one).mesh for one in near)
-        middle = (plan.start_m + plan.end_m) / 2
-        origin = self._street.alignment.at(
-            middle, 0.0, self._street.alignment.carriageway_height(middle, 0.0)
-        )
-        return Scene(mesh, origin)
 
     def _record(self, scene: Scene, number: int, pulses: range) -> Stretch:
         setup, head = self._setup, self._setup.sensor.heads[number]

@@ -22,7 +22,7 @@ from processing.simulate.street.plan import SectionPlan, plans_of
 from processing.simulate.street.section import Section
 from processing.simulate.street.styles import Style
 from processing.simulate.street.surfaces import add_ground
-from processing.simulate.things import THINGS_PER_SECTION, Built, Mover, Thing, TrueFeature
+from processing.simulate.things import THINGS_PER_SECTION, Built, Thing, TrueFeature
 from processing.simulate.traffic.parked import add_parked
 
 Maker = Callable[[Section, Built], None]
@@ -53,7 +53,6 @@ class BuiltSection:
     mesh: Mesh
     things: tuple[Thing, ...]
     truth: tuple[TrueFeature, ...]
-    movers: tuple[Mover, ...]
 
 
 class Street:
@@ -109,6 +108,4 @@ class Street:
         built = Built((plan.index - _LOWEST_INDEX) * THINGS_PER_SECTION + 1)
         for add in MAKERS:
             add(section, built)
-        return BuiltSection(
-            plan, built.mesh.mesh(), tuple(built.things), tuple(built.truth), tuple(built.movers)
-        )
+        return BuiltSection(plan, built.mesh.mesh(), tuple(built.things), tuple(built.truth))
