@@ -177,15 +177,16 @@ def _survey(site: _Site, date: str, monitor: Monitor) -> Survey:
     wish = site.wish
     sensor = sensor_of(wish.sensor, "standing")
     pattern = pattern_of(sensor, wish.spacing_m)
-    layout = layout_of(wish.seed, date, site.terrain)
+    layout = layout_of(wish.seed, date, site.terrain, monitor.check)
     monitor.check()
     mesh = scene_mesh(layout)
+    monitor.check()
     middle = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
     scene = Scene(mesh, middle)
     monitor.check()
     random = chance(wish.seed, "stations", date)
     count = count_for(wish.length_m, wish.stations)
-    stations = stations_of(random, layout, scene, count)
+    stations = stations_of(random, layout, scene, count, monitor.check)
     seconds = duration_s(pattern, len(stations))
     moving = chance(wish.seed, "moving", date)
     tracks = tracks_of(moving, layout, seconds)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
@@ -17,7 +18,7 @@ from processing.simulate.sites.machines import MACHINES
 from processing.simulate.sites.relief import wander
 from processing.simulate.sites.small_things import batter_board, bush, survey_pole, worker
 from processing.simulate.sites.stores import STORES
-from processing.simulate.sites.terrain import Ground, Terrain
+from processing.simulate.sites.terrain import Check, Ground, Terrain
 
 GROUND = 2
 _PANEL_M = 1.8
@@ -61,23 +62,32 @@ class Layout:
 
     def is_free(self, x: float, y: float, radius_m: float) -> bool:
         """Whether nothing large stands there."""
-        return all(np.hypot(one.x - x, one.y - y) > radius_m + one.radius_m for one in self.things)
+        return all(
+            math.hypot(one.x - x, one.y - y) > radius_m + one.radius_m for one in self.things
+        )
 
     def kinds(self) -> Integers:
         """Kind of every instance: (instances + 1,) int64."""
         return np.array([int(Kind.TERRAIN), *(int(one.kind) for one in self.things)], np.int64)
 
 
-def layout_of(seed: int, date: str, terrain: Terrain) -> Layout:
-    """Everything that stands still on one date."""
+def layout_of(seed: int, date: str, terrain: Terrain, check: Check) -> Layout:
+    """Everything that stands still on one date.
+
+    Parameters
+    ----------
+    check : callable
+        Called for every few things; raises to stop.
+    """
     ground = terrain.before if date == "before" else terrain.after
     layout = Layout(ground)
     layout.mesh.add(ground.heights.shape(), ground.triangle_materials(), GROUND, 0)
-    furnish = _Furnisher(layout, chance(seed, "things", date), *ground.heights.size_m)
+    check()
+    furnish = _Furnisher(layout, chance(seed, "things", date), check, *ground.heights.size_m)
     furnish.large()
     furnish.fences()
     furnish.small()
-    _plants(seed, layout, terrain)
+    _plants(seed, layout, terrain, check)
     return layout
 
 
@@ -121,6 +131,7 @@ def stood_on(
 class _Furnisher:
     layout: Layout
     random: Generator
+    check: Check
     east_m: float
     north_m: float
 
@@ -141,6 +152,7 @@ class _Furnisher:
         """Rows of panels, now and then with one missing."""
         for _ in range(self._count(1, 3)):
             path = wander(self.random, self._place(), self._place(), 1.0)
+            self.check()
             look = int(self.random.integers(1 << 30))
             row = _along(path, _PANEL_M, most=24)
             free = [self.layout.is_free(x, y, 0.3) for x, y, _ in row]
@@ -153,6 +165,7 @@ class _Furnisher:
     def small(self) -> None:
         """Cones in rows, batter boards across slopes, poles, people who stand."""
         for _ in range(self._count(0, 3)):
+            self.check()
             path = wander(self.random, self._place(), self._place(), 2.0)
             for x, y, heading in _along(path, self.random.uniform(1.5, 4), most=12):
                 if self.layout.is_free(x, y, 0.2):
@@ -169,6 +182,7 @@ class _Furnisher:
 
     def _put(self, make: Callable[[Generator], Body], uneven_m: float) -> None:
         """Put a body where there is room and the ground is even enough for it, or nowhere."""
+        self.check()
         body = make(self.random)
         radius = body.radius_m
         heights = self.layout.ground.heights
@@ -203,7 +217,7 @@ def _along(path: Floats, every_m: float, *, most: int) -> list[tuple[float, floa
     return list(zip(x.tolist(), y.tolist(), np.arctan2(dy, dx).tolist(), strict=True))
 
 
-def _plants(seed: int, layout: Layout, terrain: Terrain) -> None:
+def _plants(seed: int, layout: Layout, terrain: Terrain, check: Check) -> None:
     """Bushes where grass grows; the same on both dates where the ground is the same."""
     random = chance(seed, "plants")
     east, north = layout.ground.heights.size_m
@@ -218,6 +232,7 @@ def _plants(seed: int, layout: Layout, terrain: Terrain) -> None:
         stays = abs(float(terrain.after.heights.z[j, i] - terrain.before.heights.z[j, i])) < 0.05
         is_left = layout.ground is terrain.before or stays
         if grows and is_left and layout.is_free(x, y, 0.4):
+            check()
             layout.add(bush(chance(seed, "bush", number)), float(x), float(y), 0.0)
 
 

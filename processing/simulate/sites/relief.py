@@ -14,6 +14,7 @@ from processing.simulate.mesh import Floats
 Mask = NDArray[np.bool_]
 
 _NEAR_M = 4.0
+_SPREAD = 0.45  # of a cubic B-spline through independent numbers of spread 1
 
 
 def undulation(random: Generator, x: Floats, y: Floats, wave_m: float) -> Floats:
@@ -24,17 +25,25 @@ def undulation(random: Generator, x: Floats, y: Floats, wave_m: float) -> Floats
     x, y : (rows, columns) float64
         m; a regular grid.
     """
-    from scipy.ndimage import map_coordinates
-
     wide, high = float(np.ptp(x)), float(np.ptp(y))
     shape = (int(high / wave_m) + 6, int(wide / wave_m) + 6)
     lattice = random.normal(size=shape)
     shift = random.uniform(1.5, 2.5, 2)
-    places = np.stack(
-        [(y - y.min()) / wave_m + shift[0], (x - x.min()) / wave_m + shift[1]], axis=0
-    )
-    smooth: Floats = map_coordinates(lattice, places, order=3, prefilter=False)
-    return smooth / 0.45  # of B-splines over independent numbers: the spread of their sum
+    rows, of_rows = _spline((y[:, 0] - y[0, 0]) / wave_m + shift[0])
+    columns, of_columns = _spline((x[0] - x[0, 0]) / wave_m + shift[1])
+    partly = sum(of_rows[k][:, None] * lattice[rows + k] for k in range(4))
+    smooth = np.zeros(x.shape)
+    for k in range(4):
+        smooth += of_columns[k] * np.take(partly, columns + k, axis=1)
+    return smooth / _SPREAD
+
+
+def _spline(places: Floats) -> tuple[NDArray[np.int64], Floats]:
+    """First of four lattice points about each place, and the weights of a cubic B-spline."""
+    whole = np.floor(places).astype(np.int64)
+    t = places - whole
+    weights = [(1 - t) ** 3, 3 * t**3 - 6 * t**2 + 4, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3]
+    return whole - 1, np.stack(weights) / 6
 
 
 def distance_to_path(x: Floats, y: Floats, path: Floats) -> tuple[Floats, Floats]:
@@ -74,6 +83,13 @@ def distance_to_path(x: Floats, y: Floats, path: Floats) -> tuple[Floats, Floats
     return signed, along
 
 
+def _near_path(x: Floats, y: Floats, path: Floats) -> tuple[Mask, Floats, Floats]:
+    """Nodes near a path, and of these alone their distances from it and along it."""
+    signed, along = distance_to_path(x, y, path)
+    near = np.isfinite(signed)
+    return near, signed[near], along[near]
+
+
 def wander(random: Generator, start: ArrayLike, end: ArrayLike, sway: float) -> Floats:
     """A path between two places that swings from side to side: (n, 2) float64."""
     first, last = np.asarray(start, np.float64), np.asarray(end, np.float64)
@@ -92,25 +108,27 @@ def ruts(random: Generator, z: Floats, x: Floats, y: Floats, path: Floats) -> Ma
     """Two wheel tracks along a path, pressed into the heights; gives where the track is."""
     gauge, wide = random.uniform(1.6, 2.2), random.uniform(0.25, 0.55)
     deep = random.uniform(0.02, 0.14)
-    away, along = distance_to_path(x, y, path)
+    near, away, along = _near_path(x, y, path)
     wave = 1 + 0.5 * np.sin(along / random.uniform(1.5, 5)) * np.sin(along / random.uniform(3, 9))
     fade = np.clip(along / 2, 0, 1)
     for side in (-1, 1):
         beside = np.abs(away - side * gauge / 2) / wide
         pressed = np.exp(-((beside / 0.55) ** 4))
         bank = np.exp(-(((beside - 1.0) / 0.3) ** 2))  # what was pressed out lies beside it
-        z -= deep * wave * fade * (pressed - 0.3 * bank)
-    return np.asarray(np.abs(away) < gauge / 2 + wide, np.bool_)
+        z[near] -= deep * wave * fade * (pressed - 0.3 * bank)
+    track = np.zeros(z.shape, np.bool_)
+    track[near] = np.abs(away) < gauge / 2 + wide
+    return track
 
 
 def crawled(random: Generator, z: Floats, x: Floats, y: Floats, path: Floats) -> None:
     """The prints of a crawler's two chains: shallow with ribs square to the way."""
     gauge, wide = random.uniform(1.8, 2.6), random.uniform(0.5, 0.7)
     deep, rib = random.uniform(0.01, 0.04), random.uniform(0.3, 0.45)
-    away, along = distance_to_path(x, y, path)
+    near, away, along = _near_path(x, y, path)
     for side in (-1, 1):
         under = np.abs(away - side * gauge / 2) < wide / 2
-        z -= np.where(under, deep * (1 + 0.6 * np.sign(np.sin(2 * np.pi * along / rib))), 0.0)
+        z[near] -= np.where(under, deep * (1 + 0.6 * np.sign(np.sin(2 * np.pi * along / rib))), 0)
 
 
 def heap(random: Generator, z: Floats, x: Floats, y: Floats, where: Sequence[float]) -> Mask:
@@ -138,15 +156,17 @@ def ditch(random: Generator, z: Floats, x: Floats, y: Floats, path: Floats) -> M
     """A trench with battered sides along a path, its soil beside it now and then."""
     deep, half = random.uniform(0.3, 1.1), random.uniform(0.2, 0.5)
     batter = random.uniform(0.1, 0.7)
-    away, along = distance_to_path(x, y, path)
+    near, away, along = _near_path(x, y, path)
     ends = np.clip((along - 0.01) / 0.2, 0, 1)
     dug = np.clip((half + deep * batter - np.abs(away)) / batter, 0, deep) * ends
-    z -= dug
+    z[near] -= dug
     if random.random() < 0.5:
         side = random.choice([-1.0, 1.0]) * (half + deep * batter + random.uniform(0.6, 1.2))
         bank = np.clip(0.45 * deep - 0.65 * np.abs(away - side), 0, None)
-        z += bank * ends * (1 + 0.3 * np.sin(along * 1.7))
-    return np.asarray(dug > 0.02, np.bool_)
+        z[near] += bank * ends * (1 + 0.3 * np.sin(along * 1.7))
+    trench = np.zeros(z.shape, np.bool_)
+    trench[near] = dug > 0.02
+    return trench
 
 
 def step(random: Generator, z: Floats, x: Floats, y: Floats, where: Sequence[float]) -> None:

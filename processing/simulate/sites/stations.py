@@ -11,6 +11,7 @@ from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats
 from processing.simulate.scanning.casting import Scene
 from processing.simulate.sites.layout import Layout
+from processing.simulate.sites.terrain import Check
 
 _CANDIDATES, _TARGETS = 48, 700
 _CLEAR_M = 2.2
@@ -42,23 +43,30 @@ class Station:
 
 def count_for(length_m: float, wanted: int) -> int:
     """How many stations: as wished, or three to eight by the site's size."""
-    return wanted or int(np.clip(round(2.2 + length_m / 45), 3, 8))
+    return wanted or int(np.clip(round(2.6 + length_m / 30), 3, 8))
 
 
-def stations_of(random: Generator, layout: Layout, scene: Scene, count: int) -> list[Station]:
+def stations_of(
+    random: Generator, layout: Layout, scene: Scene, count: int, check: Check
+) -> list[Station]:
     """Stations one after the other, each where it adds most to what is seen.
 
     Parameters
     ----------
     scene : Scene
         All triangles of the date.
+    check : callable
+        Called for every candidate; raises to stop.
     """
     heights = layout.ground.heights
     east, north = heights.size_m
     places = _candidates(random, layout)
     x, y = random.uniform((0, 0), (east, north), (_TARGETS, 2)).T
     targets = np.column_stack([x, y, heights.height(x, y) + 0.05])
-    seen = np.stack([_seen_from(scene, place, targets) for place in places])
+    seen = np.zeros((len(places), _TARGETS))
+    for row, place in enumerate(places):
+        check()
+        seen[row] = _seen_from(scene, place, targets)
     chosen: list[int] = []
     best = np.zeros(_TARGETS)
     for _ in range(min(count, len(places))):

@@ -83,21 +83,26 @@ def terrain_of(seed: int, style: str, length_m: float, check: Check) -> Terrain:
     columns, rows = round(length_m / res) + 1, round(wide / res) + 1
     x, y = np.meshgrid(np.arange(columns) * res, np.arange(rows) * res)
     lie = lie_of(random, x, y)
+    check()
     plan = PLANS[style](random, lie)
     lowest = random.uniform(1.0, 60.0) - min(float(plan.natural.min()), float(plan.design.min()))
     plan = Plan(plan.natural + lowest, plan.design + lowest)
     check()
     first, second = progress_of(random, lie, plan)
+    check()
     states = [plan.built(one.down_to, one.up_to) for one in (first, second)]
     grown = undulation(random, x, y, 6.0) > random.uniform(-0.6, 0.9)
     field = _Field(seed, lie, check)
+    check()
     rough = 0.003 * random.normal(size=x.shape) + 0.006 * undulation(random, x, y, 0.35)
     before, material = field.weathered("before", states[0], plan, grown)
     before += rough
+    check()
     after, later = field.weathered("after", states[1], plan, grown)
     moved = np.abs(states[1] - states[0]) > 0.01
     other = 0.004 * random.normal(size=x.shape) + 0.009 * undulation(random, x, y, 0.4)
     after += np.where(moved, other, rough)
+    check()
     active = _active(random, lie)
     after = before + active * (after - before)
     later = np.where(active > 0, later, material).astype(np.uint8)
