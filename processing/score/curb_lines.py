@@ -161,7 +161,7 @@ def _edge_score(
             [result.number(features[j], "height_m") - asked[i].step_m for i, j in found.items()]
         ),
         sum(kind_of(features[line]) == asked[section].kind for section, line in found.items()),
-        len(sections) - len(asked),
+        sum(section.kind != "back" for section in sections) - len(asked),
     )
 
 

@@ -121,8 +121,23 @@ def test_rear_edges_are_not_asked_for_and_lines_on_them_not_held_against_a_resul
     rear = [replace(one, facts={**one.facts, "type": "back"}) for one in back]
     truth = with_more(TRUTH, *rear)
     assert curb_score(TRUTH, truth).counts_of("all") == TwoByTwo(40, 0, 0, 0)
+    assert curb_score(TRUTH, truth).left_out == {"unseen_sections": 0}
     assert curb_score(with_more(TRUTH, *back), truth).counts_of("all") == TwoByTwo(40, 0, 0, 0)
     assert curb_score(truth, TRUTH).counts_of("all") == TwoByTwo(40, 0, 0, 0)
+
+
+def test_kinds_of_the_map_say_the_edge_and_corners_may_be_anywhere() -> None:
+    drawn = []
+    for one in TRUTH.features:
+        ends = one.xyz[[0, -1]]
+        kind = f"curb_{one.facts['edge']}"
+        drawn.append(replace(one, xyz=ends, facts={"kind": kind, "type": one.facts["type"]}))
+    score = curb_score(map_of(drawn), TRUTH)
+    assert score.counts_of("all") == TwoByTwo(40, 0, 0, 0)
+    # A map has no steps of curbs, so none is compared.
+    assert score.errors_of("upper_step").count == 0
+    # Lines that an operator drew are a truth too, seen everywhere.
+    assert curb_score(TRUTH, map_of(drawn)).counts_of("all") == TwoByTwo(40, 0, 0, 0)
 
 
 def test_lines_that_do_not_say_their_edge_and_other_shapes_are_refused() -> None:
