@@ -10,10 +10,18 @@ from processing.simulate.roadside.rods import joined, rod, rods
 from processing.simulate.roadside.trunks import Stem
 
 _SUNK_M = 0.3
+_FRAME_ROOM_M, _TRIPOD_ROOM_M = 0.6, 1.15
 
 
-def stakes_of(random: Generator, stem: Stem, heading_rad: float) -> tuple[Shape, Shape, int]:
+def stakes_of(
+    random: Generator, stem: Stem, heading_rad: float, room_m: float
+) -> tuple[Shape, Shape, int]:
     """Stakes about a stem, in the tree's frame.
+
+    Parameters
+    ----------
+    room_m : float
+        How far they may reach across the road's way: curbs and gutters lie beyond.
 
     Kinds after 公園緑地工事標準図 of the ministry: 二脚鳥居 and 四脚鳥居 (posts and bars beside the
     trunk), 八ツ掛 (three poles that lean on it), 一本支柱 (a single cane).
@@ -28,9 +36,9 @@ def stakes_of(random: Generator, stem: Stem, heading_rad: float) -> tuple[Shape,
     radius = float(random.uniform(0.025, 0.045))
     chance = random.random()
     turn = heading_rad + float(random.normal(0, 0.1))
-    if chance < 0.4:
+    if chance < 0.4 or room_m < _FRAME_ROOM_M:
         return _gate(random, stem, turn, radius)
-    if chance < 0.7:
+    if chance < 0.7 and room_m > _TRIPOD_ROOM_M:
         return _tripod(random, stem, turn, radius * 0.8)
     if chance < 0.85:
         return _frame(random, stem, turn, radius)

@@ -25,8 +25,8 @@ from processing.simulate.street.plan import SIDES, SectionPlan, SidePlan
 from processing.simulate.street.styles import HIGHWAY, URBAN
 from processing.simulate.things import Built
 
-_TRIANGLES, _BARK_TRIANGLES = 36_000, 2_000  # of all trees of a section, of one tree's wood
-_LEAST_LEAVES, _MOST_LEAVES = 250, 3_500
+_TRIANGLES, _BARK_TRIANGLES = 44_000, 2_000  # of all trees of a section, of one tree's wood
+_LEAST_LEAVES, _MOST_LEAVES = 250, 4_500
 _ROOM_M = 0.35  # about a trunk
 _MOST_WOOD_TREES = 26
 _WOOD_DEEP_M = 24.0

@@ -23,6 +23,7 @@ from processing.simulate.roadside.places import Places, Spot
 from processing.simulate.roadside.stakes import stakes_of
 from processing.simulate.roadside.trunks import (
     HIGH_PIECE,
+    TAPE_M,
     Stem,
     StemWish,
     girth_of_stem_m,
@@ -38,9 +39,10 @@ TRUTH_WITHIN_M = 8.0
 
 _MANY_LEAVES, _FEW_LEAVES = 1_500, 600
 _COVER = 1.1  # area of all leaves by that of the crown as seen from beside
-_WIDEST_LEAF_M = 0.16
+_WIDEST_LEAF_M = 0.17
 _CLEAR_OVER_ROAD_M = 4.2  # 建築限界: 4.5 m over carriageways, trees a little in arrears
-_STAKED = {"young": 0.9, "grown": 0.28, "wild": 0.0}
+_STAKED = {"young": 0.9, "grown": 0.36, "wild": 0.0}
+_STAKED_TO_M = 0.22  # thicker trunks stand by themselves
 _SEVERAL_STEMS = 0.7  # of the sum of their girths: how street trees of several stems are measured
 
 
@@ -95,7 +97,8 @@ def add_tree(places: Places, built: Built, wish: TreeWish, random: Generator) ->
     )
     built.mesh.add((leaves[0] + foot, leaves[1]), Material.LEAVES, CROWN, instance)
     stakes = 0
-    if len(stems) == 1 and random.random() < _STAKED[wish.age]:
+    is_thin = len(stems) == 1 and stems[0].radius_m(TAPE_M) < _STAKED_TO_M / 2
+    if is_thin and random.random() < _STAKED[wish.age]:
         stakes = _add_stakes(places, built, wish, stems[0])
     _add_undergrowth(built, random, stems[0], foot)
     if abs(spot.offset_m) - section.plan.side(spot.side).edge_m > TRUTH_WITHIN_M:
@@ -187,7 +190,8 @@ def _add_stakes(places: Places, built: Built, wish: TreeWish, stem: Stem) -> int
     section, spot = places.section, wish.spot
     random = section.chance("stakes", int(spot.chainage_m * 100) * spot.side)
     foot = places.where(spot)
-    wood, straps, count = stakes_of(random, stem, section.heading(spot.chainage_m))
+    room = abs(spot.offset_m) - places.near_m(spot.side)
+    wood, straps, count = stakes_of(random, stem, section.heading(spot.chainage_m), room)
     instance = built.thing("stake")
     built.mesh.add((wood[0] + foot, wood[1]), Material.WOOD, TRUNK, instance)
     built.mesh.add((straps[0] + foot, straps[1]), Material.CLOTH, TRUNK, instance)
