@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from processing.simulate.border.barriers import add_barriers
+from processing.simulate.border.boxes import add_boxes
+from processing.simulate.border.land import add_land
 from processing.simulate.border.lots import add_lots
 from processing.simulate.roadside.bollards import add_bollards
 from processing.simulate.roadside.hedges import add_hedges
@@ -21,6 +23,7 @@ from processing.simulate.things import Built
 
 KINDS = (
     add_lots,
+    add_land,
     add_utility_poles,
     add_signals,
     add_overhead_signs,
@@ -32,6 +35,7 @@ KINDS = (
     add_bollards,
     add_hedges,
     add_weeds,
+    add_boxes,
     add_barriers,
 )
 """In this order: what comes first chooses its places first."""
