@@ -70,6 +70,7 @@ class Street:
         self.plans = tuple(plans_of(seed, style, length_m))
         self._starts = np.array([one.start_m for one in self.plans])
         self._built: OrderedDict[int, BuiltSection] = OrderedDict()
+        self._bare: OrderedDict[int, Section] = OrderedDict()
         self._lock = threading.RLock()
 
     def within(self, from_m: float, to_m: float) -> range:
@@ -89,8 +90,14 @@ class Street:
             return self._built[row]
 
     def bare_section(self, row: int) -> Section:
-        """Plan and ground of a section, without building what stands on it."""
-        return section_of(self.seed, self.plans, row, self.alignment)
+        """Plan and ground of a section, without building what stands on it; a few are kept."""
+        with self._lock:
+            if row not in self._bare:
+                self._bare[row] = section_of(self.seed, self.plans, row, self.alignment)
+            self._bare.move_to_end(row)
+            while len(self._bare) > _KEPT_SECTIONS:
+                self._bare.popitem(last=False)
+            return self._bare[row]
 
     def ground_height(self, chainages: Floats, offsets: Floats) -> Floats:
         """Height of the ground, z in m: (n,) float64 of (n,) places beside the road."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.street.section import Section
@@ -41,12 +40,12 @@ def add_parked(section: Section, built: Built) -> None:
     places = parking_places(section.seed, section.plan)
     if not places:
         return
-    hindrance = _hindrance(built.mesh.mesh())
+    hindrance = _Hindrance(built.mesh.mesh())
     taken: list[Footprint] = []
     for one in places:
         body = KINDS[one.kind].drawn_at_rest(section.chance("parked", one.number))
         standing = _standing(section, one, body)
-        if standing is None or _is_hindered(hindrance, standing, body):
+        if standing is None or hindrance.hinders(standing, body):
             continue
         footprint = _footprint(standing, body)
         if any(footprint.touches(other) for other in taken):
@@ -85,24 +84,26 @@ def _footprint(standing: _Standing, body: Body) -> Footprint:
     return Footprint(x, y, heading, body.length_m / 2 + _ROOM_M / 2, body.width_m / 2 + _ROOM_M / 2)
 
 
-def _hindrance(mesh: Mesh) -> tuple[Floats, NDArray[np.bool_]]:
-    """Corners of what stands, (m, 3, 3), and which belong to buildings."""
-    rows = np.flatnonzero(np.isin(mesh.label, _HINDERING))
-    return mesh.vertices[mesh.triangles[rows]], mesh.label[rows] == _BUILDING
+class _Hindrance:
+    """What stands in a section already, and hinders parking."""
 
+    def __init__(self, mesh: Mesh) -> None:
+        rows = np.flatnonzero(np.isin(mesh.label, _HINDERING))
+        self._corners = mesh.vertices[mesh.triangles[rows]]
+        self._is_building = mesh.label[rows] == _BUILDING
+        flat = self._corners[:, :, :2]
+        self._low, self._high = flat.min(axis=1), flat.max(axis=1)
 
-def _is_hindered(
-    hindrance: tuple[Floats, NDArray[np.bool_]], standing: _Standing, body: Body
-) -> bool:
-    """Whether something stands where the body would be, or a roof is above it."""
-    corners, is_building = hindrance
-    reach = float(np.hypot(body.length_m, body.width_m)) / 2 + _ROOM_M
-    low, high = corners[:, :, :2].min(axis=1), corners[:, :, :2].max(axis=1)
-    place = standing.place[:2]
-    near = np.flatnonzero(((low < place + reach) & (high > place - reach)).all(axis=1))
-    local = (corners[near] - standing.place) @ standing.turn
-    low, high = local.min(axis=1), local.max(axis=1)
-    half = np.array([body.length_m / 2 + _ROOM_M, body.width_m / 2 + _ROOM_M])
-    within = ((low[:, :2] < half) & (high[:, :2] > -half)).all(axis=1)
-    within &= (high[:, 2] > _LOWEST_M) & ((low[:, 2] < body.height_m + 0.2) | is_building[near])
-    return bool(within.any())
+    def hinders(self, standing: _Standing, body: Body) -> bool:
+        """Whether something stands where the body would be, or a roof is above it."""
+        reach = float(np.hypot(body.length_m, body.width_m)) / 2 + _ROOM_M
+        place = standing.place[:2]
+        is_near = (self._low < place + reach) & (self._high > place - reach)
+        near = np.flatnonzero(is_near[:, 0] & is_near[:, 1])
+        local = (self._corners[near] - standing.place) @ standing.turn
+        low, high = local.min(axis=1), local.max(axis=1)
+        half = np.array([body.length_m / 2 + _ROOM_M, body.width_m / 2 + _ROOM_M])
+        within = ((low[:, :2] < half) & (high[:, :2] > -half)).all(axis=1)
+        is_low = low[:, 2] < body.height_m + 0.2
+        within &= (high[:, 2] > _LOWEST_M) & (is_low | self._is_building[near])
+        return bool(within.any())
