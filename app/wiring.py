@@ -85,6 +85,7 @@ def _connect_intentions(parts: WindowParts, wiring: _Wiring) -> None:
     parts.project_tree.drive_chosen.connect(wiring.on_tree_drive_chosen)
     parts.processing_panel.run_requested.connect(wiring.on_processing_run_requested)
     parts.jobs_panel.cancel_requested.connect(parts.jobs.cancel)
+    parts.status_line.cancel_requested.connect(parts.jobs.cancel)
     parts.image_bar.everything_requested.connect(parts.image_views.show_everything)
     parts.start_page.recent_chosen.connect(document.open)
     parts.start_page.forget_requested.connect(wiring.on_start_page_forget_requested)

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QFont
-from PySide6.QtWidgets import QLabel, QStatusBar, QWidget
+from PySide6.QtWidgets import QLabel, QStatusBar, QToolButton, QWidget
 
 from processing.text import Language, Text
 from widgets.panels.jobs_panel import JobView, time_left
@@ -26,7 +26,14 @@ class StatusLine(QStatusBar):
     source : MapSource
     shared : SharedState
     language : Language
+
+    Signals
+    -------
+    cancel_requested(job: str)
+        The button beside the job that runs.
     """
+
+    cancel_requested = Signal(str)
 
     def __init__(
         self,
@@ -45,12 +52,19 @@ class StatusLine(QStatusBar):
         self._progress.setTextVisible(False)
         self._progress.setFixedSize(88, 8)
         self._job_words = QLabel(self)
+        self._cancel = QToolButton(self)
+        self._cancel.setText("✕")
+        self._cancel.setToolTip(self.tr("Cancel this job"))
+        self._cancel.setAutoRaise(True)
+        self._cancel.setFixedSize(20, 20)
+        self._cancel.clicked.connect(self._on_cancel_clicked)
         self._place = QLabel(self)
         self._place.setFont(_digits_of(self))
         self._place.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self._crs = QLabel(self)
         self.addPermanentWidget(self._progress)
         self.addPermanentWidget(self._job_words)
+        self.addPermanentWidget(self._cancel)
         self.addPermanentWidget(self._place)
         self.addPermanentWidget(self._crs)
         shared.cursor.moved.connect(self._on_cursor_changed)
@@ -78,6 +92,7 @@ class StatusLine(QStatusBar):
         self._job = job
         self._progress.setVisible(job is not None)
         self._job_words.setVisible(job is not None)
+        self._cancel.setVisible(job is not None)
         if job is None:
             self._job_words.clear()
             return
@@ -90,6 +105,10 @@ class StatusLine(QStatusBar):
             words.format(title=job.title, percent=int(job.fraction * 100), left=left)
         )
         self._job_words.setToolTip(job.text)
+
+    def _on_cancel_clicked(self) -> None:
+        if self._job is not None:
+            self.cancel_requested.emit(self._job.id)
 
     def _on_cursor_changed(self) -> None:
         place: Place | None = self._cursor.hover or self._cursor.place

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QLabel
+from PySide6.QtWidgets import QLabel, QToolButton
 from pytestqt.qtbot import QtBot
 
 from processing.points.drive import Drive
@@ -84,3 +84,15 @@ def test_the_wheel_over_a_form_changes_no_number(qtbot: QtBot) -> None:
     field = NumberField(0.0, 10.0)
     qtbot.addWidget(field)
     assert field.focusPolicy() == Qt.FocusPolicy.StrongFocus
+
+
+def test_the_button_beside_a_job_cancels_just_that_one(qtbot: QtBot, line: StatusLine) -> None:
+    button = line.findChild(QToolButton)
+    assert isinstance(button, QToolButton)
+    assert not button.isVisible()
+    line.show_job(JobView("7", "模擬計測", 0.3, "", None, "running", ""))
+    with qtbot.waitSignal(line.cancel_requested) as asked:
+        qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+    assert asked.args == ["7"]
+    line.show_job(None)
+    assert not button.isVisible()
