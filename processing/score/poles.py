@@ -25,7 +25,7 @@ WITHIN_M = 0.5
 LEAST_POINTS = 20
 """Fewer are a few scan lines of anything."""
 
-_NAME = Text("poles", "柱")
+_NAME = Text("poles", "柱状物")
 
 
 def pole_score(result: MappedFile, truth: MappedFile) -> FileScore:
@@ -48,7 +48,7 @@ def pole_score(result: MappedFile, truth: MappedFile) -> FileScore:
         (Counts("poles", _NAME, found.counts),),
         (
             named_share(
-                "type", ("found with the right type", "種類も正しい柱"), len(right), len(typed)
+                "type", ("found with the right type", "種類も正しい柱状物"), len(right), len(typed)
             ),
         ),
         (
@@ -56,7 +56,7 @@ def pole_score(result: MappedFile, truth: MappedFile) -> FileScore:
                 "place", ("foot in plan", "根元の水平位置"), "m", np.hypot(off[:, 0], off[:, 1])
             ),
             errors_of("foot_height", ("height of the foot", "根元の標高"), "m", off[:, 2]),
-            differences.of("height_m", ("height of the pole", "柱の高さ")),
+            differences.of("height_m", ("height of the pole", "高さ")),
             differences.of("diameter_m", ("diameter", "直径")),
         ),
         left_out=found.left_out,

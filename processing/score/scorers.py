@@ -63,7 +63,7 @@ FEATURE_SCORERS = (
     FeatureScorer("gutters", Text("Covered gutters", "蓋付き側溝"), gutter_score),
     FeatureScorer("trees", Text("Street trees", "街路樹"), tree_score),
     FeatureScorer("signs", Text("Road signs", "道路標識"), sign_score),
-    FeatureScorer("poles", Text("Poles", "柱"), pole_score),
+    FeatureScorer("poles", Text("Poles", "柱状物"), pole_score),
 )
 VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
 SCORERS: Mapping[str, Scorer] = {

@@ -130,10 +130,10 @@ def _successes(
             ("place, shape and size right", "位置・形・寸法が正しい"),
             is_placed & has_shape & has_size,
         ),
-        ("shape", ("found, shape right", "検出し形が正しい"), has_shape),
+        ("shape", ("found, shape right", "検出・形が正しい"), has_shape),
         (
             "shape_size",
-            ("found, shape and size right", "検出し形・寸法が正しい"),
+            ("found, shape and size right", "検出・形・寸法が正しい"),
             has_shape & has_size,
         ),
     )

@@ -62,7 +62,7 @@ def volume_score(result: Mapping[str, float], truth: Mapping[str, float]) -> Fil
         shares=(
             named_share(
                 "within_uncertainty",
-                ("volumes within the stated uncertainty", "表示された不確かさの範囲内の土量"),
+                ("volumes within the stated uncertainty", "結果に示された不確かさの範囲内の土量"),
                 sum(stated),
                 len(stated),
             ),
