@@ -22,7 +22,10 @@ from processing.simulate.roadside.poles import (
     SUNK_M,
     pole_truth,
 )
+from processing.simulate.roadside.posts import Post
 from processing.simulate.roadside.rods import joined, rod, rods
+from processing.simulate.roadside.sign_choice import plates_of
+from processing.simulate.roadside.signs import against_traffic_rad, hang_plates
 from processing.simulate.street.plan import LEFT, RIGHT, SIDES
 from processing.simulate.street.section import Section
 from processing.simulate.street.styles import HIGHWAY, RURAL
@@ -30,6 +33,7 @@ from processing.simulate.things import Built
 
 _SHARES = {"urban": 0.75, "rural": 0.25, "highway": 0.75}
 _BREAST_M = 1.2
+_SIGNED = 0.15  # of lamp posts carry signs
 
 
 @dataclass(frozen=True)
@@ -114,6 +118,13 @@ def _add_lamp_post(
         hatch = box((-0.06, kind.foot_m * 0.35, 0.5), (0.06, kind.foot_m / 2 + 0.02, 0.85))
         parts.append(placed(hatch, foot, turn))
     built.mesh.add(joined(parts), material, POLE, instance, piece=FITTING_PIECE)
+    if random.random() < _SIGNED:
+        way = np.array([lean[0], lean[1], 1.0])
+        radius = (kind.foot_m + slope * _BREAST_M) / 2
+        post = Post(spot, foot, way / np.linalg.norm(way), radius, float(foot[2]))
+        looks = against_traffic_rad(places, spot) + float(random.normal(0, 0.1))
+        plates = plates_of(random, section.plan.style)[:2]
+        hang_plates(built, random, post, plates, (looks, float(random.uniform(2.0, 2.9))))
     pole_truth(
         built,
         spot,

@@ -26,6 +26,8 @@ from processing.simulate.street.styles import HIGHWAY, URBAN, Style
 TAPER = 1 / 75
 _END_GAP_M = 0.7  # from the ends of a section
 _MOST_CABLES = 12
+# Cables over roads hang 5 m high (電気設備技術基準の解釈, article 68), their sag included.
+_LOWEST_CABLE_M = 6.0
 _KERB_GAP_M = 0.12
 
 
@@ -118,6 +120,7 @@ def _pole_line(seed: int, style: Style, length_m: float) -> PoleLine:
     pitch = float(random.uniform(25.0, 35.0))
     high = float(random.uniform(8.5, 13.0))
     of_walk = float(random.random())
+    cables[:, 0] *= min(1.0, (high - _LOWEST_CABLE_M) / float(cables[:, 0].max()))
     by_number = plans(seed, style, length_m)
     order = [by_number[index] for index in sorted(by_number)]
     starts = [one.start_m for one in order]

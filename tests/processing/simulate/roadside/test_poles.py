@@ -8,6 +8,7 @@ import pytest
 from processing.simulate.mesh import Mesh
 from processing.simulate.roadside.places import free_from_m
 from processing.simulate.roadside.pole_line import cable_ends, pole_line
+from processing.simulate.roadside.wires import hanging
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import RURAL, URBAN
 from processing.simulate.things import TrueFeature
@@ -85,6 +86,20 @@ def test_cables_of_neighbouring_sections_meet_on_their_pole(street: Street) -> N
             assert gaps.max() < 0.03
         joints += 1
     assert joints >= 1
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_cables_of_the_line_hang_high_enough_for_lorries(seed: int) -> None:
+    made = Street(seed, URBAN, 60.0)
+    line = pole_line(made.bare_section(8))
+    for before, pole in zip(line.poles, line.poles[1:], strict=False):
+        starts = cable_ends(made.alignment, before, line)
+        ends = cable_ends(made.alignment, pole, line)
+        span = float(np.linalg.norm(ends[0] - starts[0]))
+        lowest = hanging(starts, ends, line.cables[:, 3] * (span / 30) ** 2)[..., 2].min()
+        at = np.linspace(before.spot.chainage_m, pole.spot.chainage_m, 9)
+        road = made.alignment.carriageway_height(at, pole.spot.offset_m)
+        assert span > 50 or lowest > road.min() + 4.4
 
 
 def test_a_section_is_the_same_whatever_is_built_first() -> None:
