@@ -12,6 +12,9 @@ from processing.simulate.street.alignment import Alignment
 from processing.simulate.street.plan import LEFT, SectionPlan
 from processing.simulate.street.unevenness import Unevenness
 
+_FLAT_M = 0.1
+"""The road's cross fall ends this much before its drawn edge, which the laid edge swings about."""
+
 
 @dataclass(frozen=True)
 class Grade:
@@ -58,7 +61,7 @@ class Terrain:
     def height(self, chainage: ArrayLike, offset: ArrayLike) -> Floats:
         """z, m: (...) float64, the arguments broadcast against each other."""
         s, o = np.broadcast_arrays(np.asarray(chainage, np.float64), np.asarray(offset, np.float64))
-        edges = np.clip(o, -self.plan.right.edge_m, self.plan.left.edge_m)
+        edges = np.clip(o, _FLAT_M - self.plan.right.edge_m, self.plan.left.edge_m - _FLAT_M)
         high: Floats = self.alignment.carriageway_height(s, edges)
         high = high + self.unevenness.settled.at(s, o) - self.unevenness.rut(self.plan, s, o)
         for grade in self.grades:

@@ -1,0 +1,176 @@
+"""Curbs: their truth lies on the mesh, dropped parts are as low as they were built, runs meet."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from processing.simulate.mesh import Floats, Mesh
+from processing.simulate.street.ends import add_ends
+from processing.simulate.street.junctions import add_junctions
+from processing.simulate.street.plan import SIDES
+from processing.simulate.street.section import Section
+from processing.simulate.street.street import Street
+from processing.simulate.street.styles import HIGHWAY, URBAN, Style
+from processing.simulate.street.surfaces import add_ground
+from processing.simulate.street.sweep import PIECE_M, Sweep
+from processing.simulate.things import Built, TrueFeature
+
+CLOSE_M = 1e-4
+
+
+def _built(section: Section) -> tuple[Mesh, list[TrueFeature]]:
+    built = Built(1)
+    for add in (add_ground, add_junctions, add_ends):
+        add(section, built)
+    return built.mesh.mesh(), built.truth
+
+
+def _street(seed: int, style: Style = URBAN) -> list[Section]:
+    street = Street(seed, style, 150.0)
+    return [street.bare_section(row) for row in street.within(-20, 170)]
+
+
+@pytest.fixture(scope="module", params=[4, 6])
+def sections(request: pytest.FixtureRequest) -> list[Section]:
+    return _street(request.param)
+
+
+@pytest.fixture(scope="module")
+def built(sections: list[Section]) -> list[tuple[Section, Mesh, list[TrueFeature]]]:
+    return [(one, *_built(one)) for one in sections]
+
+
+Whole = list[tuple[Section, Mesh, list[TrueFeature]]]
+
+
+def _nearest(places: Floats, vertices: Floats) -> Floats:
+    from scipy.spatial import cKDTree
+
+    found: Floats = cKDTree(vertices).query(places)[0]
+    return found
+
+
+def test_lower_edges_are_edges_of_the_mesh(built: Whole) -> None:
+    for _, mesh, truth in built:
+        for one in truth:
+            if one.facts["edge"] == "lower":
+                own = mesh.triangles[mesh.instance == one.instance]
+                vertices = mesh.vertices[np.unique(own)]
+                assert _nearest(one.xyz, vertices).max() < CLOSE_M
+
+
+def test_upper_edges_without_chamfer_are_edges_of_the_mesh(built: Whole) -> None:
+    found = 0
+    for _, mesh, truth in built:
+        for one in truth:
+            if one.facts["edge"] == "upper" and one.facts["chamfer_m"] == 0:
+                assert _nearest(one.xyz, mesh.vertices).max() < CLOSE_M
+                found += 1
+    assert found
+
+
+def _crossing(sweep: Sweep, foot: int, top: int) -> tuple[Floats, Floats]:
+    """Where the planes of a stone's face and top meet, from the mesh's own lines."""
+    away = np.column_stack(sweep.profile.away)
+    step = 1 if top > foot else -1
+    f0, f1, t0, t1 = foot, foot + step, foot + 2 * step, top
+    height = sweep.heights
+    with np.errstate(divide="ignore", invalid="ignore"):
+        face = (away[:, f1] - away[:, f0]) / (height[:, f1] - height[:, f0])
+        level = (height[:, t1] - height[:, t0]) / (away[:, t1] - away[:, t0])
+        start = away[:, f0] - away[:, t0]
+        rise = (height[:, t0] + level * start - height[:, f0]) / (1 - level * face)
+    return away[:, f0] + face * rise, height[:, f0] + rise
+
+
+def test_upper_edges_of_chamfered_stones_are_where_face_and_top_meet(
+    sections: list[Section],
+) -> None:
+    found = 0
+    for section in sections:
+        for side in SIDES:
+            sweep = section.layout.sides[side].sweep
+            for edge in sweep.profile.edges:
+                if edge.role != "road":
+                    continue
+                away, height = _crossing(sweep, edge.foot, edge.top)
+                stands = edge.above - sweep.profile.above[edge.foot] > 0.03
+                place = sweep.edge_places(section.alignment, edge)
+                assert np.abs(edge.away - away)[stands].max() < CLOSE_M
+                assert np.abs(place[:, 2] - height)[stands].max() < CLOSE_M
+                found += 1
+    assert found
+
+
+def test_dropped_curbs_are_as_low_and_as_long_as_they_were_built(built: Whole) -> None:
+    found = 0
+    for section, _, truth in built:
+        for side in SIDES:
+            for drop in section.layout.sides[side].drops:
+                runs = [
+                    one
+                    for one in truth
+                    if one.facts["type"] == "dropped"
+                    and one.facts["side"] == ("left" if side > 0 else "right")
+                    and abs(one.chainage_m - (drop.from_m + drop.to_m) / 2) < 1.0
+                ]
+                upper, lower = (
+                    next(one.xyz for one in runs if one.facts["edge"] == edge)
+                    for edge in ("upper", "lower")
+                )
+                steps = upper[:, 2] - lower[:, 2]
+                length = np.linalg.norm(np.diff(lower, axis=0), axis=1).sum()
+                assert abs(float(np.median(steps)) - drop.high_m) < 0.02
+                assert length == pytest.approx(drop.to_m - drop.from_m - drop.ramp_m, rel=0.25)
+                found += 1
+    assert found > 3
+
+
+def test_vertices_are_close_and_both_edges_have_the_same_number(built: Whole) -> None:
+    for _, _, truth in built:
+        pairs: dict[object, dict[object, Floats]] = {}
+        for one in truth:
+            pairs.setdefault(one.facts["run"], {})[one.facts["edge"]] = one.xyz
+            steps = np.linalg.norm(np.diff(one.xyz, axis=0), axis=1)
+            assert steps.max() < PIECE_M * 1.6
+        for lines in pairs.values():
+            if "lower" in lines:
+                assert lines["lower"].shape == lines["upper"].shape
+
+
+def test_pieces_count_half_metres_along_the_upper_edge(built: Whole) -> None:
+    for _, mesh, truth in built:
+        for one in truth:
+            if one.facts["edge"] == "upper":
+                length = np.linalg.norm(np.diff(one.xyz, axis=0), axis=1).sum()
+                pieces = mesh.piece[mesh.instance == one.instance]
+                assert abs(int(pieces.max()) - length / PIECE_M) <= 2
+
+
+def _meets(one: Section, other: Section, side: int) -> bool:
+    return side not in one.plan.junctions + other.plan.junctions and (
+        one.plan.side(side).curb == other.plan.side(side).curb != "none"
+        and one.plan.side(side).drain == other.plan.side(side).drain
+        and (one.plan.side(side).strip_m > 0) == (other.plan.side(side).strip_m > 0)
+    )
+
+
+@pytest.mark.parametrize("style", [URBAN, HIGHWAY])
+def test_curbs_of_neighbouring_sections_meet(style: Style) -> None:
+    found = 0
+    for seed in (4, 6, 9):
+        for one, other in pairwise(_street(seed, style)):
+            for side in SIDES:
+                if not _meets(one, other, side):
+                    continue
+                ends = []
+                for section, node in ((one, -1), (other, 0)):
+                    sweep = section.layout.sides[side].sweep
+                    edge = next(each for each in sweep.profile.edges if each.role == "road")
+                    ends.append(sweep.edge_places(section.alignment, edge)[node])
+                assert np.linalg.norm(ends[0] - ends[1]) < 1e-3
+                found += 1
+    assert found
