@@ -38,6 +38,9 @@ _PALETTES: dict[Material, list[tuple[int, int, int]]] = {
     Material.PLASTIC: [(226, 112, 40), (214, 60, 44), (230, 190, 40), (226, 112, 40)],
 }  # fmt: skip
 
+_VEHICLES = 64
+_LAMPS = np.array([(186, 30, 34), (196, 40, 36), (170, 26, 30), (222, 116, 40)], np.float32)
+
 _LINEAR = ((np.arange(256) / 255.0) ** _GAMMA).astype(np.float32)
 _SHOWN = np.round(255 * (np.arange(4096) / 4095.0) ** (1 / _GAMMA)).astype(np.uint8)
 
@@ -64,6 +67,8 @@ def colours_of(mesh: Mesh, triangles: Integers, places: Floats) -> Singles:
         rows = np.flatnonzero(material == kind)
         table = np.array(palette, np.float32)
         colours[rows] = table[mixed[rows] % len(table)]
+    is_lamp = (material == Material.PLASTIC) & (mesh.label[triangles] == _VEHICLES)
+    colours[is_lamp] = _LAMPS[mixed[is_lamp] % len(_LAMPS)]
     paint_signs(mesh, triangles, places, colours)
     stains = 0.6 * grain(places, _COARSE_M) + 0.7 * grain(places, _FINE_M)
     bright = 1 + _SPREADS[material] * stains

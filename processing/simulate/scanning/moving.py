@@ -14,7 +14,7 @@ from processing.simulate.things import Mover
 
 _STEP_S = 0.05
 _REACH_M = 130.0
-_MOST_WAY_M = 70.0  # that anything drives while one stretch of pulses is sent
+_FASTEST_M_S = 90.0  # of anything towards the recording vehicle
 
 
 class MovingScene:
@@ -37,11 +37,10 @@ class MovingScene:
         first, last = float(beams.time_s[0]), float(beams.time_s[-1])
         middle = beams.origins.mean(axis=0)
         for number, mover in enumerate(self._movers):
-            if (
-                last < mover.from_s
-                or first > mover.to_s
-                or not self._may_be_near(mover, first, middle)
-            ):
+            if last < mover.from_s or first > mover.to_s:
+                continue
+            reach = _REACH_M + _FASTEST_M_S * (last - first)
+            if not self._may_be_near(mover, first, middle, reach):
                 continue
             times = np.arange(np.floor(first / _STEP_S), np.ceil(last / _STEP_S) + 2) * _STEP_S
             places, headings = poses_of(mover, self._street, times)
@@ -49,11 +48,11 @@ class MovingScene:
                 continue
             self._meet_one(beams, met, number, (times, places, headings))
 
-    def _may_be_near(self, mover: Mover, time_s: float, place: Floats) -> bool:
+    def _may_be_near(self, mover: Mover, time_s: float, place: Floats, reach_m: float) -> bool:
         """Whether it is worth to work out where it stands: that takes the ground's height."""
         at, offset = mover.way_at(time_s)
         away = self._street.alignment.at(at, offset, place[2]) - place
-        return bool(np.linalg.norm(away) < _REACH_M + _MOST_WAY_M)
+        return bool(np.linalg.norm(away) < reach_m)
 
     def _meet_one(
         self, beams: Beams, met: Met, number: int, poses: tuple[Floats, Floats, Floats]
