@@ -15,10 +15,11 @@ from processing.simulate.wishes import SiteWish, StreetWish
 _KM_H = 3.6
 _SECONDS_OF_WAITS = 8.0
 # Recordings of made streets and of the sample: the rest goes to the sky or comes back too weak.
-_RETURNS_PER_PULSE = 0.55  # of a street
+_RETURNS_PER_PULSE = 0.6  # of a street
 _SITE_RETURNS_PER_PULSE = 0.3
 _BYTES_PER_POINT = 9.0  # of LAZ, labels and what else is told of each
-_BYTES_PER_IMAGE, _IMAGE_EVERY_M, _CAMERAS = 90_000, 10.0, 3
+_BYTES_PER_IMAGE, _IMAGE_EVERY_M = 80_000, 10.0
+_CAMERAS = 2  # one to three, by the seed
 _SPACING_AT_M = 10.0
 _HIGHEST_DEG, _LOWEST_DEG = 90.0, -60.0
 _EPOCHS = 2
