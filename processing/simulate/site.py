@@ -31,7 +31,7 @@ from processing.simulate.sites.delivery import (
 )
 from processing.simulate.sites.layout import Layout, layout_of, scene_mesh
 from processing.simulate.sites.movement import MovingThings, dust_of, tracks_of
-from processing.simulate.sites.recording import Survey, duration_s, pattern_of, recorded
+from processing.simulate.sites.recording import Survey, pattern_of, recorded, scans_at
 from processing.simulate.sites.stations import count_for, stations_of
 from processing.simulate.sites.terrain import Terrain, terrain_of
 from processing.simulate.sites.volumes import SEEN_CELL_M, cut_and_fill
@@ -187,9 +187,9 @@ def _survey(site: _Site, date: str, monitor: Monitor) -> Survey:
     random = chance(wish.seed, "stations", date)
     count = count_for(wish.length_m, wish.stations)
     stations = stations_of(random, layout, scene, count, monitor.check)
-    seconds = duration_s(pattern, len(stations))
+    starts = scans_at(pattern, len(stations))
     moving = chance(wish.seed, "moving", date)
-    tracks = tracks_of(moving, layout, seconds)
+    tracks = tracks_of(moving, layout, starts[-1] + pattern.scan_s)
     weather = Weather(
         float(moving.uniform(0, 0.6)) if moving.random() < 0.5 else 0.0,
         float(moving.uniform(0.4, 1.0)),
@@ -204,7 +204,7 @@ def _survey(site: _Site, date: str, monitor: Monitor) -> Survey:
         layout,
         scene,
         MovingThings(tracks, layout),
-        dust_of(moving, layout, seconds),
+        dust_of(moving, layout, starts, pattern.scan_s),
         _kinds(layout, [track.body.kind for track in tracks]),
     )
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Shape, grid, tube
+from processing.simulate.mesh import Shape, grid, plate, tube
 from processing.simulate.sites.bodies import Body, Kind, Part, beam, block, moved, turned
 
 _PIPE_RADIUS_M = 0.0243  # 単管パイプ 48.6 mm (JIS G 3444)
@@ -109,6 +109,9 @@ def hut(random: Generator) -> Body:
             Material.PAINTED_METAL,
         ),
     ]
+    for x in (-long / 2, long / 2):
+        gable = np.array([[x, -wide / 2, high], [x, wide / 2, high], [x, 0.0, high + 0.25]])
+        parts.append((plate(gable), Material.PAINTED_METAL))
     for x in (-long / 2, long / 2 - 0.4):
         parts += [
             block((x, y, -0.25), (x + 0.4, y + 0.2, 0.15), Material.CONCRETE)

@@ -29,8 +29,10 @@ _MIRRORS = {
 }
 _FARTHEST_MIRRORED_M = 60.0
 _NEAR_MACHINE_M = 2.5
-_TWICE_NEAR_MACHINE = 0.012
-_TWICE_ON_WET = 0.0008
+_TWICE_NEAR_MACHINE = 0.03
+_TWICE_ON_WET = 0.002
+_TAIL = 0.12  # of the beams at an edge, on a usual day
+_LONGEST_TAIL_M = 6.0
 _IN_THE_AIR = 1.5e-5
 _PHASE_IN_THE_SKY = 4e-4
 
@@ -132,6 +134,7 @@ def ghosts_of(
     parts = [_dust(random, beams, met, cloud) for cloud in haunts.dust]
     parts.append(_mirrored(random, beams, met, *seen))
     parts.append(_twice(random, beams, met, haunts))
+    parts.append(_tails(random, beams, met, haunts))
     parts.append(_in_the_air(random, met, haunts))
     parts += [_arc(random, beams, arc) for arc in haunts.arcs]
     rays = np.concatenate([one.rays for one in parts])
@@ -237,6 +240,22 @@ def _twice(random: Generator, beams: Beams, met: Met, haunts: Haunts) -> Ghosts:
     longer = 0.1 + random.exponential(0.7, rays.size)
     ranges = met.ranges[rays] + longer
     return _ghosts(rays, ranges, 0.03 * (10 / ranges) ** 2)
+
+
+def _tails(random: Generator, beams: Beams, met: Met, haunts: Haunts) -> Ghosts:
+    """Ranges between an edge and what lies behind it, of beams that meet both."""
+    here, beside = met.ranges[:-1], met.ranges[1:]
+    rays = np.flatnonzero(np.isfinite(here) & np.isfinite(beside))
+    near = np.minimum(here[rays], beside[rays])
+    gap = np.abs(beside[rays] - here[rays])
+    apart = np.linalg.norm(np.cross(beams.ways[rays], beams.ways[rays + 1]), axis=1)
+    # On one and the same surface neighbours differ by this much, however flat the beam meets it.
+    same = near * apart / np.maximum(np.minimum(met.cosines[rays], met.cosines[rays + 1]), 0.01)
+    drawn = random.random(rays.size) < _TAIL * min(haunts.restless, 3.0)
+    keep = drawn & (gap > 0.08 + 3 * same) & (gap < _LONGEST_TAIL_M)
+    share = random.beta(0.7, 0.7, int(keep.sum()))
+    ranges = near[keep] + share * gap[keep]
+    return _ghosts(rays[keep], ranges, 0.1 * (10 / np.maximum(ranges, 2)) ** 2)
 
 
 def _in_the_air(random: Generator, met: Met, haunts: Haunts) -> Ghosts:

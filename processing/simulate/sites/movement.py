@@ -106,14 +106,22 @@ def _to_and_fro(
     return Track(body, instance, times, x, y, np.unwrap(np.arctan2(dy, dx))[order])
 
 
-def dust_of(random: Generator, layout: Layout, seconds: float) -> list[Cloud]:
-    """Dust that drifts over the site for some seconds or minutes."""
+def dust_of(random: Generator, layout: Layout, scans_at: list[float], scan_s: float) -> list[Cloud]:
+    """Dust that drifts over the site for some seconds or minutes.
+
+    Parameters
+    ----------
+    scans_at : list of float
+        When the scans begin, s.
+    scan_s : float
+        How long each of them takes.
+    """
     heights = layout.ground.heights
     clouds = []
     for _ in range(int(random.integers(0, 4))):
         x, y = random.uniform(0.05, 0.95, 2) * heights.size_m
         radii = random.uniform((1.0, 1.0, 0.5), (5.0, 5.0, 1.8))
-        start = random.uniform(-20, max(seconds, 1.0))
+        start = scans_at[int(random.integers(len(scans_at)))] + random.uniform(-20, 0.8 * scan_s)
         clouds.append(
             Cloud(
                 np.array([x, y, float(heights.height(x, y)) + 0.7 * radii[2]]),

@@ -150,6 +150,11 @@ def duration_s(pattern: Pattern, stations: int) -> float:
     return stations * (pattern.scan_s + _BETWEEN_STATIONS_S)
 
 
+def scans_at(pattern: Pattern, stations: int) -> list[float]:
+    """When the scans begin, s, with time for carrying the tripod between them."""
+    return [number * (pattern.scan_s + _BETWEEN_STATIONS_S) for number in range(stations)]
+
+
 def _rows(survey: Survey, station: Station) -> Floats:
     """Elevations of the rows, downwards to upwards, as far up as anything stands."""
     vertices = survey.scene.mesh.vertices
@@ -168,7 +173,7 @@ def _beams(survey: Survey, number: int, columns: range, rows: Floats) -> Beams:
     elevation = np.tile(rows, ids.size)
     flat = np.cos(elevation)
     ways = np.column_stack([flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation)])
-    start = number * (pattern.scan_s + _BETWEEN_STATIONS_S)
+    start = scans_at(pattern, number + 1)[-1]
     row_s = np.arange(rows.size) * pattern.pulse_s
     time_s = start + (ids[:, None] * pattern.column_s + row_s).ravel()
     first = (number * pattern.columns + columns.start) * rows.size

@@ -150,7 +150,7 @@ class _Field:
                 material[track] = int(Material.GRAVEL if is_paved else Material.SOIL)
             self.check()
         self._dug(random, z, material)
-        for _ in range(self._count(random, 1, 7)):
+        for _ in range(self._count(random, 2, 10)):
             where = self._place(random)
             self._local(z, where, 4.0, partial(_wet, random), material)
             self.check()
