@@ -17,6 +17,7 @@ from processing.simulate.things import Built
 GUTTER = 11
 
 _STEP_M = 0.5
+_CHANGES_M = 0.025
 _STRIPS = 9  # rim, face, seat, wall, floor, wall, seat, face, rim
 _FLOOR = 4
 _EDGE_M = 0.003  # the least that a rim shows
@@ -45,10 +46,32 @@ class Bed:
         """Where the strip is narrowest."""
         return float(np.linalg.norm(self.outer - self.inner, axis=1).min())
 
-    def line(self, across_m: float) -> Floats:
-        """Places at a distance from the inner edge, one at each node."""
+    @property
+    def widths_m(self) -> Floats:
+        """At the nodes: (n,) float64."""
+        widths: Floats = np.linalg.norm(self.outer - self.inner, axis=1)
+        return widths
+
+    @property
+    def usual_width_m(self) -> float:
+        """What it has but near its ends, where it may change to its neighbour's width."""
+        widths = self.widths_m
+        return float(widths[widths > np.median(widths) - _CHANGES_M].min())
+
+    def usual_nodes(self) -> tuple[int, int]:
+        """First and last node of the stretch around its middle that is nowhere narrower."""
+        narrow = np.flatnonzero(self.widths_m < self.usual_width_m)
+        middle = int(np.flatnonzero(self.widths_m >= np.median(self.widths_m))[0])
+        before, behind = narrow[narrow < middle], narrow[narrow > middle]
+        first = int(before[-1]) + 1 if before.size else 0
+        last = int(behind[0]) - 1 if behind.size else self.chainages.size - 1
+        return first, last
+
+    def line(self, across_m: float | Floats) -> Floats:
+        """Places at a distance (m, or (n,) float64) from the inner edge, one at each node."""
         ways = self.outer - self.inner
-        places: Floats = self.inner + across_m * ways / np.linalg.norm(ways, axis=1)[:, None]
+        share = np.asarray(across_m) / np.linalg.norm(ways, axis=1)
+        places: Floats = self.inner + share[:, None] * ways
         return places
 
 
@@ -118,6 +141,12 @@ def channel_of(random: Generator, wide_m: float, opening_m: float) -> Channel:
     )
 
 
+def squeezed_to(bed: Bed, end_m: float) -> Floats:
+    """By how much a channel's cross section is narrowed at each node, so that it fits: (n,)."""
+    share: Floats = np.minimum(1.0, (bed.widths_m - _EDGE_M) / end_m)
+    return share
+
+
 def add_channel(
     built: Built, bed: Bed, channel: Channel, floor: Floats, made_of: tuple[Material, Material]
 ) -> int:
@@ -137,8 +166,9 @@ def add_channel(
     inside, outside = start + channel.seat_m, end - channel.seat_m
     across = [0.0, start, start, inside, inside, outside, outside, end, end]
     levels = [flat, flat, seat, seat, deep, deep, seat, seat, flat]
+    squeezed = squeezed_to(bed, end)
     lines = [
-        bed.line(one) + np.column_stack([flat, flat, level])
+        bed.line(one * squeezed) + np.column_stack([flat, flat, level])
         for one, level in zip(across, levels, strict=True)
     ]
     rows = np.stack([*lines, bed.outer], axis=1)

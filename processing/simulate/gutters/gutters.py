@@ -7,7 +7,7 @@ Things: ``gutter`` (the channel with its rims), ``lid`` and ``grating`` (pieces:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.random import Generator
@@ -20,6 +20,7 @@ from processing.simulate.gutters.beds import (
     add_channel,
     beds_of,
     channel_of,
+    squeezed_to,
 )
 from processing.simulate.gutters.covers import (
     HoleRow,
@@ -80,7 +81,7 @@ def add_gutters(section: Section, built: Built) -> None:
     for bed in beds_of(section):
         random = section.chance("gutters", bed.side)
         gutter = _gutter(section, bed)
-        places = places_of(random, gutter.habit, float(gutter.arcs[-1]), _bend(gutter))
+        places = _places(random, gutter)
         floor, silt = _silt(random, gutter, places)
         run = add_channel(built, bed, gutter.channel, floor, (gutter.worn, silt))
         heaps = add_heaps(random, built, bed, gutter.arcs)
@@ -130,7 +131,7 @@ def _gutter(section: Section, bed: Bed) -> _Gutter:
     """What a gutter keeps along all sections whose side is alike."""
     plan = section.plan.side(bed.side)
     own = chance(section.seed, "gutter", bed.side, round(plan.drain_m * 1e6))
-    wide = bed.least_width_m
+    wide = bed.usual_width_m
     habit = habit_of(own, wide, 1.0 / max(_line_bend(bed.chainages, bed.inner), 1e-6))
     lid = wide_m(habit, wide)
     channel = channel_of(own, wide, lid + 2 * habit.gap_m)
@@ -140,6 +141,14 @@ def _gutter(section: Section, bed: Bed) -> _Gutter:
     is_worn = own.random() < 0.3 + 0.5 * habit.wear
     worn = Material.OLD_CONCRETE if is_worn else Material.CONCRETE
     return _Gutter(bed, habit, channel, lid, arcs, worn)
+
+
+def _places(random: Generator, gutter: _Gutter) -> list[Place]:
+    """The covers of a gutter, where its bed is as wide as they need."""
+    first, last = gutter.bed.usual_nodes()
+    start, end = float(gutter.arcs[first]), float(gutter.arcs[last])
+    places = places_of(random, gutter.habit, end - start, _bend(gutter))
+    return [replace(one, start_m=one.start_m + start) for one in places]
 
 
 def _bend(gutter: _Gutter) -> float:
@@ -175,10 +184,13 @@ def _add_slabs(built: Built, gutter: _Gutter, places: list[Place]) -> None:
     """Add what is cast in concrete in place of lids, and the rest at the run's end."""
     stretches = [(one.start_m, one.start_m + one.long_m) for one in places if one.what == "slab"]
     last = places[-1].start_m + places[-1].long_m if places else 0.0
+    if places and places[0].start_m > _CAST_M:
+        stretches.append((0.0, places[0].start_m))
     if gutter.arcs[-1] - last > _CAST_M:
         stretches.append((last, float(gutter.arcs[-1])))
     start, end = gutter.channel.lid_at_m, gutter.channel.lid_at_m + gutter.channel.opening_m
-    edges = gutter.bed.line(start), gutter.bed.line(end)
+    squeezed = squeezed_to(gutter.bed, end)
+    edges = gutter.bed.line(start * squeezed), gutter.bed.line(end * squeezed)
     deep = np.array([0.0, 0.0, gutter.channel.thick_m])
     for low, high in stretches:
         along = np.concatenate(

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
 
+from processing.simulate.gutters.beds import Bed, squeezed_to
 from processing.simulate.gutters.gutters import add_gutters
 from processing.simulate.gutters.lid_shapes import LID_KINDS, Lid, lid_pieces
-from processing.simulate.mesh import Floats
+from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.street.section import Section
-from processing.simulate.street.street import BuiltSection, Street
+from processing.simulate.street.street import Street
 from processing.simulate.street.styles import RURAL
 from processing.simulate.things import Built, TrueFeature
 
 
-def _covered(seed: int) -> tuple[Section, BuiltSection]:
+@dataclass(frozen=True)
+class _Gutters:
+    mesh: Mesh
+    truth: tuple[TrueFeature, ...]
+
+
+def _covered(seed: int) -> tuple[Section, _Gutters]:
     """A section of a country road with covered gutters, with nothing but them."""
     street = Street(seed, RURAL, 400.0)
     for row, plan in enumerate(street.plans):
@@ -25,9 +32,7 @@ def _covered(seed: int) -> tuple[Section, BuiltSection]:
             section = street.bare_section(row)
             built = Built(1)
             add_gutters(section, built)
-            return section, BuiltSection(
-                plan, built.mesh.mesh(), tuple(built.things), tuple(built.truth), ()
-            )
+            return section, _Gutters(built.mesh.mesh(), tuple(built.truth))
     raise ValueError("no covered gutter")
 
 
@@ -35,18 +40,18 @@ SEEDS = [0, 5]
 
 
 @pytest.fixture(scope="module", params=SEEDS)
-def built(request: pytest.FixtureRequest) -> BuiltSection:
+def built(request: pytest.FixtureRequest) -> _Gutters:
     return _covered(request.param)[1]
 
 
-def _runs(built: BuiltSection) -> dict[object, list[TrueFeature]]:
+def _runs(built: _Gutters) -> dict[object, list[TrueFeature]]:
     runs: dict[object, list[TrueFeature]] = {}
     for one in built.truth:
         runs.setdefault(one.facts["run"], []).append(one)
     return runs
 
 
-def test_covers_of_a_run_follow_each_other_without_overlap(built: BuiltSection) -> None:
+def test_covers_of_a_run_follow_each_other_without_overlap(built: _Gutters) -> None:
     for covers in _runs(built).values():
         assert [one.facts["order"] for one in covers] == list(range(len(covers)))
         for one, after in pairwise(covers):
@@ -57,7 +62,7 @@ def test_covers_of_a_run_follow_each_other_without_overlap(built: BuiltSection) 
             assert min(front[0] @ along, front[3] @ along) > edge
 
 
-def test_corners_of_the_truth_are_corners_of_the_mesh(built: BuiltSection) -> None:
+def test_corners_of_the_truth_are_corners_of_the_mesh(built: _Gutters) -> None:
     mesh = built.mesh
     for one in built.truth:
         of_it = mesh.vertices[np.unique(mesh.triangles[mesh.instance == one.instance])]
@@ -65,7 +70,7 @@ def test_corners_of_the_truth_are_corners_of_the_mesh(built: BuiltSection) -> No
         assert away.max() < 1e-4
 
 
-def test_a_cover_is_as_long_and_wide_as_its_facts_say(built: BuiltSection) -> None:
+def test_a_cover_is_as_long_and_wide_as_its_facts_say(built: _Gutters) -> None:
     for one in built.truth:
         ring = one.xyz
         np.testing.assert_allclose(ring[0], ring[4])
@@ -87,7 +92,7 @@ def test_lids_lie_on_the_grounds_height_but_for_accidents() -> None:
     assert max(away) < 0.06
 
 
-def _depths(built: BuiltSection, places: Floats) -> Floats:
+def _depths(built: _Gutters, places: Floats) -> Floats:
     import open3d as o3d
 
     scene = o3d.t.geometry.RaycastingScene()
@@ -156,3 +161,17 @@ def test_a_lids_top_is_its_rectangle_less_its_notches(holes: int) -> None:
 
 def test_moulds_shares_are_those_of_the_survey() -> None:
     assert sum(one.share for one in LID_KINDS) == pytest.approx(1.0, abs=0.002)
+
+
+def test_lids_are_left_out_where_the_bed_grows_narrow() -> None:
+    """A bed that changes to its neighbour's width is cast in concrete there, never overlapped."""
+    along = np.linspace(0.0, 20.0, 41)
+    wide = np.interp(along, [0.0, 16.0, 20.0], [0.6, 0.6, 0.45])
+    inner = np.column_stack([along, np.full(41, 3.0), np.zeros(41)])
+    bed = Bed(1, along, inner, inner + np.column_stack([np.zeros(41), wide, np.zeros(41)]))
+    assert bed.usual_width_m > 0.57
+    first, last = bed.usual_nodes()
+    assert first == 0
+    assert 15.5 <= along[last] <= 17.0
+    end = bed.line(0.57 * squeezed_to(bed, 0.57))
+    assert (end[:, 1] < bed.outer[:, 1]).all()
