@@ -103,8 +103,8 @@ def test_cables_of_the_line_hang_high_enough_for_lorries(seed: int) -> None:
 
 
 def test_a_section_is_the_same_whatever_is_built_first() -> None:
-    forwards, backwards = Street(5, RURAL, 120.0), Street(5, RURAL, 120.0)
-    rows = list(forwards.within(0.0, 120.0))
+    forwards, backwards = Street(5, RURAL, 80.0), Street(5, RURAL, 80.0)
+    rows = list(forwards.within(0.0, 80.0))
     for row in rows:
         forwards.section(row)
     for row in rows[::-1]:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from processing.simulate.mesh import Mesh
+from processing.simulate.roadside.places import Places
 from processing.simulate.roadside.sign_plates import (
     BACK_PIECE,
     FRONT_PIECE,
@@ -15,6 +16,7 @@ from processing.simulate.roadside.sign_plates import (
     centre_and_normal,
     outline,
 )
+from processing.simulate.roadside.signs import add_signs
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import URBAN
 from processing.simulate.things import Built, TrueFeature
@@ -84,11 +86,13 @@ def test_signs_of_a_street_hang_clear_of_the_ground_and_beside_the_road() -> Non
     street = Street(3, URBAN, 200.0)
     signs = 0
     for row in street.within(0.0, 200.0):
-        built = street.section(row)
+        built = Built(1)
+        add_signs(Places(street.bare_section(row)), built)
+        mesh = built.mesh.mesh()
         for sign in built.truth:
             if sign.file != "signs":
                 continue
-            centre, normal = _side(built.mesh, sign.instance, FRONT_PIECE)
+            centre, normal = _side(mesh, sign.instance, FRONT_PIECE)
             np.testing.assert_allclose(sign.xyz[0], centre, atol=1e-6)
             turn = np.rad2deg(np.arctan2(normal[0], normal[1])) % 360
             assert turn == pytest.approx(sign.facts["facing_deg"])
