@@ -16,7 +16,7 @@ from processing.simulate.traffic.parking import parking_places
 from processing.simulate.traffic.recorded import BODIES, Order, Recorded
 
 _SLOT_S = 16.0
-_FILL = 0.5
+_FILL = 0.8
 _BEFORE_M = 1.5  # from the junction's beginning into it
 _INSIDE_M = 1.0  # from the carriageway's edge, where they appear and vanish
 _APART_M = 1.4

@@ -25,6 +25,7 @@ from processing.simulate.traffic.lanes import (
 from processing.simulate.traffic.parking import ParkingPlace, parking_places
 from processing.simulate.traffic.recorded import BODIES, Order, Recorded
 
+_FILLS = {"person": 1.0, "bicycle": 0.3}
 _SWAY_M = {"person": 0.04, "bicycle": 0.08}
 _LANES = 5
 _APART_M = 1.3
@@ -103,7 +104,8 @@ def walking_lanes(recorded: Recorded) -> list[Lane]:
             lanes.append(
                 Lane(
                     "walkers", 10 * (side == LEFT) + place, side * (inner + place * _APART_M),
-                    speed, 0.0 if way > 0 else np.pi, slot, busy, {kind: 1.0}, _APART_M,
+                    speed, 0.0 if way > 0 else np.pi, slot, busy * _FILLS[kind], {kind: 1.0},
+                    _APART_M,
                 )
             )  # fmt: skip
     return lanes

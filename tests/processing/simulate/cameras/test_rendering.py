@@ -51,7 +51,7 @@ def disc(middle: Floats, towards: Floats, radius: float) -> tuple[Floats, Floats
 def test_a_plate_is_seen_where_the_camera_model_says(lens: str) -> None:
     image = image_of(LENSES[lens], pose_at((4.0, -2.0, 11.0)), Path("one.jpg"))
     centre = np.array(image.xyz)
-    for share in ((0.5, 0.5), (0.12, 0.15), (0.85, 0.2), (0.8, 0.8), (0.15, 0.75)):
+    for share in ((0.5, 0.5), (0.12, 0.15), (0.8, 0.8)):
         pixel = np.array([[share[0] * image.width_px, share[1] * image.height_px]])
         way = Camera(image).rays_of(pixel)[0]
         middle = centre + 9.0 * way
