@@ -12,7 +12,7 @@ from processing.simulate.street.layout import CornerLayout
 from processing.simulate.street.profile import ROAD
 from processing.simulate.street.section import Section
 from processing.simulate.street.surfaces import asphalt_of
-from processing.simulate.street.sweep import add_runs, add_surfaces
+from processing.simulate.street.sweep import SKIRT_M, add_runs, add_surfaces
 from processing.simulate.things import NO_THING, Built
 
 _COLUMNS = 9
@@ -21,8 +21,6 @@ _BELOW_M = 0.008
 """The side street's asphalt reaches under the road's, so that no beam passes between them."""
 
 _LAND_ACROSS_M, _LAND_ALONG_M = 0.8, 2.0
-_SKIRT_M = 0.4
-"""How far the land reaches down where the next section's, made of wider pieces, meets it."""
 
 
 def add_junctions(section: Section, built: Built) -> None:
@@ -66,7 +64,7 @@ def _add_land(section: Section, corner: CornerLayout, built: Built) -> None:
     height[1:, -1] -= _UNDER_M
     rows = section.alignment.at(chainage, offset, height)
     built.mesh.add(grid(rows), corner.land.material, corner.land.label, NO_THING)
-    skirt = np.stack([rows[:, 0], rows[:, 0] - [0.0, 0.0, _SKIRT_M]], axis=1)
+    skirt = np.stack([rows[:, 0], rows[:, 0] - [0.0, 0.0, SKIRT_M]], axis=1)
     built.mesh.add(grid(skirt), corner.land.material, corner.land.label, NO_THING)
 
 

@@ -38,42 +38,59 @@ def add_markings(section: Section, built: Built) -> None:
     random = section.chance("markings")
     habits = chance(section.seed, "markings")
     wear = 0.3 * float(habits.random()) ** 2
-    rectangles = [*_lines(section, habits)]
+    crossing: list[Rectangle] = []
+    if section.plan.style is URBAN and not section.plan.junctions and random.random() < 0.3:
+        crossing = [*_crossing(section, random)]
+    rectangles = [*_lines(section, habits, crossing)]
     if section.plan.junctions:
         add_paint(section, built, rectangles, random, wear)
         for side in section.plan.junctions:
             _add_side_street(section, built, side, random, wear)
         return
-    if section.plan.style is URBAN and random.random() < 0.3:
-        rectangles += _crossing(section, random)
-    elif random.random() < 0.5:
+    if not crossing and random.random() < 0.5:
         rectangles += _symbols(section, random)
-    add_paint(section, built, rectangles, random, wear)
+    add_paint(section, built, rectangles + crossing, random, wear)
 
 
-def _lines(section: Section, habits: Generator) -> Iterator[Rectangle]:
+def _lines(section: Section, habits: Generator, crossing: list[Rectangle]) -> Iterator[Rectangle]:
     plan = section.plan
     start, end = plan.start_m, plan.end_m
-    half = plan.lanes * plan.lane_m + plan.median_m / 2
     has_edges = plan.style is not RURAL or habits.random() < 0.7
     is_solid = habits.random() < 0.4
     pattern = (5.0, 5.0) if habits.random() < 0.5 else (6.0, 9.0)
     breaks = [one.mouth for one in section.layout.sides.values() if one.mouth is not None]
     whole = _whole(start, end, breaks)
+    if crossing:
+        low, high = min(one[0] for one in crossing), max(one[1] for one in crossing)
+        whole = [(start, low), (high, end)]
     if plan.median_m <= 0 and plan.lane_m >= _NARROW_M:
         for low, high in whole:
             yield from _line(low, high, 0.0, None if is_solid or plan.lanes > 1 else pattern)
     for side in SIDES:
         for lane in range(1, plan.lanes):
             offset = side * (plan.median_m / 2 + lane * plan.lane_m)
-            yield from _line(start, end, offset, (6.0, 9.0))
-        if has_edges:
-            own = [one for one in breaks if one.side == side]
-            for low, high in _whole(start, end, own):
-                yield from _line(low, high, side * half, None)
-        if plan.median_m > 0:
-            for low, high in whole:
-                yield from _line(low, high, side * (plan.median_m / 2 + 0.25), None)
+            for low, high in whole if crossing else [(start, end)]:
+                yield from _line(low, high, offset, (6.0, 9.0))
+        own = [one for one in breaks if one.side == side]
+        yield from _borders(section, side, (whole, _whole(start, end, own)), has_edges=has_edges)
+
+
+def _borders(
+    section: Section,
+    side: int,
+    stretches: tuple[list[tuple[float, float]], list[tuple[float, float]]],
+    *,
+    has_edges: bool,
+) -> Iterator[Rectangle]:
+    """The lines along the median and along the road's edge."""
+    plan = section.plan
+    if plan.median_m > 0:
+        for low, high in stretches[0]:
+            yield from _line(low, high, side * (plan.median_m / 2 + 0.25), None)
+    if has_edges:
+        half = plan.lanes * plan.lane_m + plan.median_m / 2
+        for low, high in stretches[1]:
+            yield from _line(low, high, side * half, None)
 
 
 def _whole(start: float, end: float, mouths: list[Mouth]) -> list[tuple[float, float]]:

@@ -6,7 +6,7 @@ bands; else each keeps its own and the step is closed by a face.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,6 +18,8 @@ from processing.simulate.street.plan import SidePlan
 
 _CHANGE_M = 5.0
 """Over how many metres widths change to those of the next section."""
+
+_LAND_CHANGE_M = 15.0
 
 
 @dataclass(frozen=True)
@@ -176,10 +178,23 @@ def measures_along(
     """
     before, side, after = sides
     change = min(_CHANGE_M, float(ends[1] - ends[0]) / 3)
-    own = measures_of(seed, side)
+    near = _changed(seed, (before, side, after), along, ends, change)
+    slow = min(_LAND_CHANGE_M, float(ends[1] - ends[0]) / 2.2)
+    land = _changed(seed, (before, side, after), along, ends, slow)
+    return replace(near, run=land.run, rise=land.rise)
+
+
+def _changed(
+    seed: int,
+    sides: tuple[SidePlan | None, SidePlan, SidePlan | None],
+    along: Floats,
+    ends: Floats,
+    change: float,
+) -> Measures:
+    before, side, after = sides
     near_start = np.clip(1 - (along - ends[0]) / change, 0, 1)
     near_end = np.clip(1 - (ends[1] - along) / change, 0, 1)
     smooth_start = near_start**2 * (3 - 2 * near_start)
     smooth_end = near_end**2 * (3 - 2 * near_end)
-    first = own.mixed(meeting(seed, side, before), smooth_start)
+    first = measures_of(seed, side).mixed(meeting(seed, side, before), smooth_start)
     return first.mixed(meeting(seed, side, after), smooth_end)

@@ -49,6 +49,8 @@ def median_of(
     nose = float(random.choice([plan.median_m / 2, 3.0]))
     tops = ((Material.GRASS, GRASS), (Material.PAVING, GROUND), (Material.OLD_CONCRETE, GROUND))
     top, label = tops[int(random.integers(3))]
+    if opening[1] > opening[0]:
+        nose = min(nose, opening[0] - plan.start_m, plan.end_m - opening[1])
     before = (opening[0] - nodes) / nose
     behind = (nodes - opening[1]) / nose
     within = np.clip(np.where(nodes <= opening[0], before, behind), 0.0, 1.0)

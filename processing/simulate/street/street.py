@@ -15,6 +15,7 @@ from processing.simulate.roadside.furniture import add_furniture
 from processing.simulate.street.alignment import Alignment, alignment_of
 from processing.simulate.street.cross_section import section_of
 from processing.simulate.street.ends import add_ends
+from processing.simulate.street.islands import add_islands
 from processing.simulate.street.junctions import add_junctions
 from processing.simulate.street.markings import add_markings
 from processing.simulate.street.pavement import add_pavement
@@ -29,6 +30,7 @@ Maker = Callable[[Section, Built], None]
 MAKERS: tuple[Maker, ...] = (
     add_ground,
     add_junctions,
+    add_islands,
     add_ends,
     add_markings,
     add_pavement,

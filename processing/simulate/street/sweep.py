@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats, Shape, grid
+from processing.simulate.mesh import Floats, grid
 from processing.simulate.street.alignment import Alignment
 from processing.simulate.street.profile import CURB, Edge, Profile
 from processing.simulate.street.terrain import Terrain
@@ -26,6 +26,11 @@ _LONGEST_RUN_M = 120.0
 _SHORTEST_RUN_M = 0.05
 _LEAST_REAR_M = 0.015
 """A stone's rear edge that stands less above the walk is no edge."""
+
+_LAND_STEP_M = 0.02
+SKIRT_M = 0.4
+"""How far land reaches down at its ends, where the next section's is made of other pieces."""
+
 
 _CURB, _DROPPED, _NOTHING = 0, 1, 2
 
@@ -109,7 +114,13 @@ def add_surfaces(sweep: Sweep, alignment: Alignment, built: Built, walk: Materia
         if number in taken or not strip.has_surface:
             continue
         pair = slice(number, number + 2)
-        shape = _grid(sweep, alignment, pair)
+        rows = _rows(sweep, alignment, pair)
+        if strip.kind == "land":
+            rows = rows[_apart(sweep.chainages[:, number])]
+            for end in (rows[0], rows[-1]):
+                skirt = grid(np.stack([end, end - [0.0, 0.0, SKIRT_M]]))
+                built.mesh.add(skirt, strip.material, strip.label, NO_THING)
+        shape = grid(rows)
         material: Material | NDArray[np.uint8] = strip.material
         if strip.kind == "strip" and lowered is not None:
             paved = np.maximum(lowered[1:], lowered[:-1]) > 0
@@ -188,5 +199,8 @@ def _rows(sweep: Sweep, alignment: Alignment, lines: slice) -> Floats:
     return alignment.at(sweep.chainages[:, lines], sweep.offsets[:, lines], sweep.heights[:, lines])
 
 
-def _grid(sweep: Sweep, alignment: Alignment, lines: slice) -> Shape:
-    return grid(_rows(sweep, alignment, lines))
+def _apart(chainages: Floats) -> NDArray[np.bool_]:
+    """One node of each joint: triangles tens of metres long have to be wider than a joint."""
+    kept = np.append(True, np.diff(chainages) > _LAND_STEP_M)
+    kept[-1] = True
+    return kept

@@ -8,6 +8,7 @@ import pytest
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Mesh
 from processing.simulate.street.ends import add_ends
+from processing.simulate.street.islands import add_islands
 from processing.simulate.street.junctions import add_junctions
 from processing.simulate.street.markings import add_markings
 from processing.simulate.street.pavement import add_pavement
@@ -18,7 +19,7 @@ from processing.simulate.street.styles import HIGHWAY, RURAL, URBAN, Style
 from processing.simulate.street.surfaces import add_ground
 from processing.simulate.things import Built, TrueFeature
 
-MAKERS = (add_ground, add_junctions, add_ends, add_markings, add_pavement)
+MAKERS = (add_ground, add_junctions, add_islands, add_ends, add_markings, add_pavement)
 SKY_M = 300.0
 
 

@@ -9,6 +9,7 @@ import pytest
 
 from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.street.ends import add_ends
+from processing.simulate.street.islands import add_islands
 from processing.simulate.street.junctions import add_junctions
 from processing.simulate.street.plan import SIDES
 from processing.simulate.street.section import Section
@@ -23,7 +24,7 @@ CLOSE_M = 1e-4
 
 def _built(section: Section) -> tuple[Mesh, list[TrueFeature]]:
     built = Built(1)
-    for add in (add_ground, add_junctions, add_ends):
+    for add in (add_ground, add_junctions, add_islands, add_ends):
         add(section, built)
     return built.mesh.mesh(), built.truth
 
