@@ -14,6 +14,7 @@ from processing.simulate.things import Mover
 
 _STEP_S = 0.05
 _REACH_M = 130.0
+_KEPT_S = 20.0  # stretches are recorded side by side: an earlier one may still need a mover
 _FASTEST_M_S = 90.0  # of anything towards the recording vehicle
 
 
@@ -38,6 +39,8 @@ class MovingScene:
         middle = beams.origins.mean(axis=0)
         for number, mover in enumerate(self._movers):
             if last < mover.from_s or first > mover.to_s:
+                if first > mover.to_s + _KEPT_S:
+                    self._scenes.pop(number, None)
                 continue
             reach = _REACH_M + _FASTEST_M_S * (last - first)
             if not self._may_be_near(mover, first, middle, reach):
