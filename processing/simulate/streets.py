@@ -136,6 +136,9 @@ class _Work:
         monitor.report(0.0, Text("Recording", "計測中"))
         driven = pass_of(self.street, number, self.driving)
         movers = movers_of(self.street, driven)
+        for mover in movers:
+            instance = int(mover.mesh.instance[0])
+            self.things[instance] = Thing(instance, mover.kind)
         recording = Recording(self.street, self.setup, driven, MovingScene(self.street, movers))
         points_share = _POINTS_SHARE if self.wish.images else 1.0
         with self._files(number) as files:

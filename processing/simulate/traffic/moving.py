@@ -18,8 +18,8 @@ from processing.simulate.traffic.recorded import recorded_by
 from processing.simulate.traffic.vehicles import companions_of, vehicle_lanes, vehicles_of
 from processing.simulate.traffic.walking import Walks, walkers_of, walking_lanes
 
-MOST_INSTANCES = 18_000
-"""Movers have the numbers 1 to this; beyond it the first numbers come again."""
+MOST_INSTANCES = 4500
+"""So many numbers has each pass for its movers, from 1 on; beyond them the first come again."""
 
 
 def movers_of(street: Street, driven: Pass) -> list[Mover]:
@@ -36,7 +36,8 @@ def movers_of(street: Street, driven: Pass) -> list[Mover]:
     for lane in walking_lanes(recorded):
         orders += walkers_of(recorded, lane, walks)
     orders.sort(key=lambda one: (one.first_s, one.lane, one.number))
-    return [_numbered(one.mover, row % MOST_INSTANCES + 1) for row, one in enumerate(orders)]
+    first = driven.number * MOST_INSTANCES + 1
+    return [_numbered(one.mover, first + row % MOST_INSTANCES) for row, one in enumerate(orders)]
 
 
 def _numbered(mover: Mover, instance: int) -> Mover:
