@@ -23,9 +23,9 @@ def add_bollards(places: Places, built: Built) -> None:
     """Add rows of bollards on walks, delineators elsewhere."""
     plan = places.section.plan
     for side in SIDES:
-        if plan.side(side).walk_m > 1.5:
+        if plan.side(side).walk_m > 1.5 and plan.side(side).strip_m == 0:
             _add_row(places, built, side)
-        elif plan.style is not URBAN:
+        elif plan.style is not URBAN and plan.side(side).walk_m == 0:
             _add_delineators(places, built, side)
 
 
