@@ -194,7 +194,9 @@ class _Furnisher:
             z = heights.height(x + reach * np.cos(around), y + reach * np.sin(around))
             bend = np.abs(z[:6] + z[6:] - 2 * heights.height(x, y)).max()
             rough = float(np.ptp(z)) if not any(body.footing_m) else float(bend)
-            if rough < uneven_m and np.ptp(z) < reach and self.layout.is_free(x, y, radius):
+            # Machines and stacks stand on slopes of 1:3 at most.
+            steepest = 0.65 * reach if any(body.footing_m) else reach
+            if rough < uneven_m and np.ptp(z) < steepest and self.layout.is_free(x, y, radius):
                 self.layout.add(body, x, y, heading)
                 return
 
