@@ -230,6 +230,18 @@ def flats(random: Generator, plot: Plot) -> list[Part]:
     return parts
 
 
+def second_row(random: Generator, plot: Plot) -> list[Part]:
+    """A plain building behind the plot, as it is seen through the gaps of the first row."""
+    y = plot.deep_m + float(random.uniform(2.5, 8.0))
+    body = Block(
+        (-plot.half_m + 0.5, plot.half_m - 0.5),
+        (y, y + float(random.uniform(6.0, 11.0))),
+        (-2 * BELOW_M, float(random.choice([3.0, 5.8, 5.8, 8.7, 14.0]))),
+    )
+    wall = _WALLS[int(random.integers(len(_WALLS)))]
+    return [(body.shape(), wall), *_roof(random, body, wall)]
+
+
 def hall(random: Generator, plot: Plot) -> list[Part]:
     """A workshop, store or barn: a low pitch over a long body, a wide gate."""
     wide = plot.wide_m - float(random.uniform(1.0, 4.0))

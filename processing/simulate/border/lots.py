@@ -19,6 +19,7 @@ from processing.simulate.border.houses import (
     greenhouse,
     hall,
     house,
+    second_row,
     shop,
 )
 from processing.simulate.border.parts import Part
@@ -140,6 +141,10 @@ def _add_lot(random: Generator, places: Places, built: Built, lot: Lot) -> None:
     if parts:
         _add_parts(built, parts, where, heading, "building")
         _block(places, lot, parts)
+    if lot.back_m == 0.0 and random.random() < (0.5 if section.plan.style is URBAN else 0.1):
+        behind = second_row(random, lot.plot)
+        _add_parts(built, behind, where, heading, "building")
+        _block(places, lot, behind)
     front = float(parts[0][0][0][:, 1].min()) if parts else lot.plot.deep_m
     for name, part in yard_parts(random, lot.plot, kind, parts, front_m=front):
         _add_parts(built, [part], where, heading, name)
