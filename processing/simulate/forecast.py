@@ -59,7 +59,7 @@ def forecast_street(wish: StreetWish) -> Forecast:
     OutOfRange
         There is no such sensor or style.
     """
-    sensor = sensor_of(wish.sensor, "mobile")
+    sensor = sensor_of(wish.sensor, "mobile", wish.own_sensor)
     speed = wish.speed_km_h or usual_speed_km_h(style_of(wish.style))
     survey = survey_of(sensor, speed, pulses=wish.pulses, turns_per_s=wish.turns_per_s)
     seconds = wish.passes * (wish.length_m * _KM_H / speed + wish.stops * _SECONDS_OF_WAITS)
@@ -78,7 +78,7 @@ def forecast_site(wish: SiteWish) -> Forecast:
     OutOfRange
         There is no such sensor.
     """
-    sensor = sensor_of(wish.sensor, "standing")
+    sensor = sensor_of(wish.sensor, "standing", wish.own_sensor)
     step_deg = math.degrees(wish.spacing_m / _SPACING_AT_M)
     pulses = (360.0 / step_deg) * ((_HIGHEST_DEG - _LOWEST_DEG) / step_deg)
     stations = _EPOCHS * count_for(wish.length_m, wish.stations)

@@ -175,7 +175,7 @@ def _record(
 
 def _survey(site: _Site, date: str, monitor: Monitor) -> Survey:
     wish = site.wish
-    sensor = sensor_of(wish.sensor, "standing")
+    sensor = sensor_of(wish.sensor, "standing", wish.own_sensor)
     pattern = pattern_of(sensor, wish.spacing_m)
     layout = layout_of(wish.seed, date, site.terrain, monitor.check)
     monitor.check()

@@ -73,7 +73,7 @@ def simulate_street(wish: StreetWish, folder: Path, monitor: Monitor) -> Simulat
     Cancelled
     """
     style = style_of(wish.style)
-    sensor = sensor_of(wish.sensor, "mobile")
+    sensor = sensor_of(wish.sensor, "mobile", wish.own_sensor)
     with made_whole(folder) as hidden:
         (hidden / "truth").mkdir()
         work = _Work(wish, Street(wish.seed, style, wish.length_m), sensor, hidden)

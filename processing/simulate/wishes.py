@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from processing.simulate.scanning.sensors import SENSORS
 from processing.simulate.street.styles import STYLES
 from processing.text import Text
-from processing.tools.parameters import Choice, choice, count, length, ratio, switch
+from processing.tools.parameters import Choice, choice, count, file, length, ratio, switch
 
 _SEED = Text("Seed", "シード値")
 _SEED_MEANING = Text(
@@ -16,6 +16,11 @@ _SEED_MEANING = Text(
 )
 _STYLE = Text("Style", "種類")
 _SENSOR = Text("Sensor", "センサー")
+_OWN_SENSOR = Text("Own sensor file", "独自のセンサー定義ファイル")
+_OWN_SENSOR_MEANING = Text(
+    "Rates, beam and mounting of another sensor, in the form of the program's sensors.toml.",
+    "別のセンサーの計測レート・ビーム・取付けを、付属のsensors.tomlの書式で指定します。",
+)
 
 
 def _sensors(kind: str) -> tuple[Choice, ...]:
@@ -28,6 +33,8 @@ class StreetWish:
 
     Attributes
     ----------
+    own_sensor : str
+        A file that describes another sensor; empty for none.
     speed_km_h : float
         0 for what is usual in this style.
     pulses, turns_per_s : int, float
@@ -50,6 +57,7 @@ class StreetWish:
         "urban", choices=tuple(Choice(one.id, one.name) for one in STYLES.values()), name=_STYLE
     )
     sensor: str = choice("vq250", choices=_sensors("mobile"), name=_SENSOR)
+    own_sensor: str = file(name=_OWN_SENSOR, explanation=_OWN_SENSOR_MEANING)
     speed_km_h: float = ratio(
         0.0,
         low=0.0,
@@ -137,6 +145,7 @@ class SiteWish:
         name=_STYLE,
     )
     sensor: str = choice("p40", choices=_sensors("standing"), name=_SENSOR)
+    own_sensor: str = file(name=_OWN_SENSOR, explanation=_OWN_SENSOR_MEANING)
     stations: int = count(
         0,
         low=0,

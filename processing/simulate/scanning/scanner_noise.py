@@ -33,6 +33,9 @@ _LEAST_M = 0.6
 _MIRRORS = (Material.GLASS, Material.MIRROR, Material.WATER)
 _MIRRORED_SHARE = 0.25
 _LEVEL = 0.7  # of a normal's z: water and wet ground rather than windows
+_WEAK = 0.02  # of the power that a white surface 10 m away gives
+_JUMPING_SHARE = 0.02
+_FINER_WAVES = 60.0  # in the range of unambiguity
 _OWN_LIKE_M = 0.05  # noise that falls so near to the true surface is none
 
 
@@ -113,6 +116,7 @@ class NoiseSource:
         ranges = np.full(met.ranges.size, np.nan)
         self._arcs(beams, ranges)
         self._folded(beams, met, ranges)
+        self._jumps(recorded, ranges)
         self._streaks(beams, met, ranges)
         self._drops(beams, met, ranges)
         is_level = self._mirrored(recorded, ranges)
@@ -161,6 +165,16 @@ class NoiseSource:
         rows = np.flatnonzero((met.ranges > most) & (met.ranges < 2 * most))
         rows = self._chosen(beams, rows, self._wish.folded, 100)
         ranges[rows] = met.ranges[rows] - most + 0.01 * self._normal(beams, rows, 110)
+
+    def _jumps(self, recorded: Recorded, ranges: Floats) -> None:
+        """Weak returns of phase-based scanners whose finer wave is counted wrongly."""
+        if self._sensor.measures_by != "phase":
+            return
+        returns, met = recorded.returns, recorded.met
+        rows = returns.pulse[returns.strength < _WEAK] - recorded.beams.first
+        rows = self._chosen(recorded.beams, rows, _JUMPING_SHARE, 600)
+        waves = np.round(2 * self._normal(recorded.beams, rows, 610))
+        ranges[rows] = met.ranges[rows] + waves * self._sensor.most_m / _FINER_WAVES
 
     def _streaks(self, beams: Beams, met: Met, ranges: Floats) -> None:
         """Ranges spread along the beam at plates that shine back too strongly."""

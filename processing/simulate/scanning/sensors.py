@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import tomllib
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal
 
-from processing.errors import OutOfRange
+from processing.errors import BadFile, OutOfRange, told_as_user_error
 from processing.text import Text
 from resources import path_of
 
@@ -57,7 +58,6 @@ class Sensor:
     returns : int
         Most returns of one pulse.
     heads : tuple of Head
-
         As usually mounted; empty for one on a tripod.
     """
 
@@ -80,35 +80,48 @@ class Sensor:
         return self.turns_per_s * self.pulses
 
 
-def _read_sensors() -> dict[str, Sensor]:
-    table = tomllib.loads(path_of("catalogue/sensors.toml").read_text(encoding="utf-8"))
+def _sensors_in(text: str) -> dict[str, Sensor]:
+    table = tomllib.loads(text)
     mounts = {
-        name: tuple(Head(**{**head, "lever_m": tuple(head["lever_m"])}) for head in heads)
-        for name, heads in table["mount"].items()
+        name: tuple(Head(**{**head, "lever_m": _place(head["lever_m"])}) for head in heads)
+        for name, heads in table.get("mount", {}).items()
     }
     sensors = {}
     for one in table["sensor"]:
-        name = Text.same(one.pop("name"))
-        heads = mounts.get(one.pop("mount", ""), ())
-        sensors[one["id"]] = Sensor(**one, name=name, heads=heads)
+        facts = dict(one)
+        name, mount = Text.same(facts.pop("name")), facts.pop("mount", None)
+        heads = () if mount is None else mounts[mount]
+        sensors[facts["id"]] = Sensor(**facts, name=name, heads=heads)
     return sensors
 
 
-SENSORS = _read_sensors()
+def _place(numbers: list[float]) -> tuple[float, float, float]:
+    forward, left, up = (float(one) for one in numbers)
+    return forward, left, up
 
 
-def sensor_of(name: str, kind: str) -> Sensor:
+SENSORS = _sensors_in(path_of("catalogue/sensors.toml").read_text(encoding="utf-8"))
+
+
+def sensor_of(name: str, kind: str, own: str = "") -> Sensor:
     """The sensor of a name.
 
     Parameters
     ----------
     kind : {"mobile", "standing"}
+    own : str
+        Path of a file of sensors and mountings in the form of ``sensors.toml``; its first sensor
+        of this kind is taken in place of the one of the name. Empty for none.
 
     Raises
     ------
     OutOfRange
         There is none of this kind; names those there are.
+    BadFile, MissingInput, NoSpace
+        The file can't be read, or doesn't describe a sensor of this kind.
     """
+    if own:
+        return _own_sensor(Path(own), kind)
     known = [one.id for one in SENSORS.values() if one.kind == kind]
     if name not in known:
         raise OutOfRange(
@@ -119,3 +132,51 @@ def sensor_of(name: str, kind: str) -> Sensor:
             ),
         )
     return SENSORS[name]
+
+
+def _own_sensor(path: Path, kind: str) -> Sensor:
+    with told_as_user_error(path):
+        content = path.read_bytes()
+    try:
+        sensors = _sensors_in(content.decode("utf-8"))
+        sensor = next(one for one in sensors.values() if one.kind == kind)
+        _check(sensor)
+    except (StopIteration, KeyError, TypeError, ValueError, AttributeError) as error:
+        raise BadFile(
+            Text(
+                "The file doesn't describe a sensor for this ({why}).",
+                "この用途に使えるセンサーの記述がありません（{why}）。",
+            ).filled(why=str(error) or kind),
+            Text.same(str(path)),
+            Text(
+                "Write it like the program's own sensors.toml: a sensor, and for a vehicle the "
+                "heads of its mounting.",
+                "プログラム付属のsensors.tomlにならって、センサーと、"
+                "車載の場合は取付けの各ヘッドを記述してください。",
+            ),
+        ) from error
+    return sensor
+
+
+def _check(sensor: Sensor) -> None:
+    """Refuse what no scanner is.
+
+    Raises
+    ------
+    ValueError
+    """
+    positive = {
+        "turns_per_s": sensor.turns_per_s,
+        "pulses": sensor.pulses,
+        "most_m": sensor.most_m,
+        "noise_m": sensor.noise_m,
+        "divergence_rad": sensor.divergence_rad,
+        "returns": sensor.returns,
+    }
+    for name, value in positive.items():
+        if not value > 0:
+            raise ValueError(f"{name} = {value}")
+    if sensor.measures_by not in ("pulse", "phase"):
+        raise ValueError(f"measures_by = {sensor.measures_by}")
+    if sensor.kind == "mobile" and not sensor.heads:
+        raise ValueError("mount")

@@ -155,3 +155,18 @@ def test_points_in_a_window_are_told_to_be_noise() -> None:
     assert behind.sum() > 2000
     assert (noisy.label[behind] == 18).all()
     assert noisy.xyz[behind, 0] == pytest.approx(13.0, abs=0.3)
+
+
+def test_weak_returns_of_a_phase_scanner_jump_by_whole_waves() -> None:
+    mesh, beams = _floor(Material.RUBBER).mesh(), _fan(40_000, 70, 84)
+    scene = Scene(mesh, np.zeros(3))
+    met = Met.of(scene.cast(beams.origins, beams.ways), mesh)
+    scanner = scanner_numbers(_PHASE, 5080, Weather(0.0, 0.5))
+    returns, truths = returns_of(beams, met, scene, scanner, 99)
+    noise = NoiseSource(3, (0, 0), _PHASE, Spin(5080, 200.0, 0.0))
+    noisy = noise.added(Recorded(beams, met, returns, scene))
+    off = np.linalg.norm(noisy.xyz - beams.origins[0], axis=1) - truths[noisy.pulse - beams.first]
+    waves = off * 60.0 / _PHASE.most_m
+    jumped = (np.abs(waves - np.round(waves)) < 0.05) & (np.abs(np.round(waves)) >= 1)
+    assert jumped.sum() > 100
+    assert set(noisy.label[jumped].tolist()) <= {7, 18}
