@@ -194,6 +194,11 @@ def _add_curb(profile: Profile, course: Course) -> None:
         profile.edges.append(Edge("rear", last, line - 1, rear, top, nominal, share))
 
 
+def _laid_high(course: Course) -> Floats:
+    """How far single stones stand out of the walk that is level with them."""
+    return course.laid.upwards * (course.side.curb == "raised")
+
+
 def _walk_level(course: Course, level: Floats) -> Floats:
     """Height of the walk behind a planting strip, over the asphalt's edge."""
     measures, share = course.measures, course.lowering.share
@@ -204,7 +209,7 @@ def _walk_level(course: Course, level: Floats) -> Floats:
 
 def _add_strip(profile: Profile, course: Course) -> None:
     measures, share = course.measures, course.lowering.share
-    start, level = profile.away[-1], profile.above[-1]
+    start, level = profile.away[-1], profile.above[-1] - _laid_high(course)
     walk = _walk_level(course, level)
     end = start + measures.strip
     wide, high = measures.edging_wide, measures.edging_high * (1 - share)
@@ -224,6 +229,8 @@ def _add_strip(profile: Profile, course: Course) -> None:
 def _add_walk(profile: Profile, course: Course) -> None:
     measures, share = course.measures, course.lowering.share
     start, level = profile.away[-1], profile.above[-1]
+    if course.side.strip_m <= 0:
+        level = level - _laid_high(course)
     low = np.minimum(measures.behind, course.lowering.high)
     nearness = np.clip(1 - measures.strip / 1.5, 0.0, 1.0)
     whole = level + (measures.behind - low) * share * nearness
