@@ -19,13 +19,14 @@ from processing.simulate.traffic.vehicles import companions_of, vehicle_lanes, v
 from processing.simulate.traffic.walking import Walks, walkers_of, walking_lanes
 
 MOST_INSTANCES = 4500
-"""So many numbers has each pass for its movers, from 1 on; beyond them the first come again."""
+"""Numbers that each pass has for its movers; beyond them its first ones come again."""
 
 
 def movers_of(street: Street, driven: Pass) -> list[Mover]:
     """All that moves, or waits, around the recording vehicle during a pass.
 
-    Each has an instance of its own, from 1, in the order in which they come near.
+    Each has an instance of its own in the order in which they come near; those of pass ``n``
+    begin behind ``n * MOST_INSTANCES``.
     """
     recorded = recorded_by(street, driven)
     orders = companions_of(recorded)

@@ -91,6 +91,8 @@ def test_every_mover_has_its_own_number_and_label() -> None:
     assert numbers == [[row] for row in range(1, len(movers) + 1)]
     assert len(movers) < MOST_INSTANCES
     assert all((one.mesh.label == 64).all() for one in movers)
+    back = movers_of(street, pass_along(street, 1))
+    assert min(int(one.mesh.instance[0]) for one in back) == MOST_INSTANCES + 1
 
 
 def test_companions_wait_with_the_recording_vehicle() -> None:
