@@ -12,13 +12,13 @@ import numpy as np
 from processing.simulate.gutters.gutters import add_gutters
 from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.roadside.furniture import add_furniture
+from processing.simulate.roadway.ends import add_ends
+from processing.simulate.roadway.islands import add_islands
+from processing.simulate.roadway.junctions import add_junctions
+from processing.simulate.roadway.markings import add_markings
+from processing.simulate.roadway.pavement import add_pavement
 from processing.simulate.street.alignment import Alignment, alignment_of
 from processing.simulate.street.cross_section import section_of
-from processing.simulate.street.ends import add_ends
-from processing.simulate.street.islands import add_islands
-from processing.simulate.street.junctions import add_junctions
-from processing.simulate.street.markings import add_markings
-from processing.simulate.street.pavement import add_pavement
 from processing.simulate.street.plan import SectionPlan, plans_of
 from processing.simulate.street.section import Section
 from processing.simulate.street.styles import Style

@@ -7,11 +7,11 @@ import pytest
 
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Mesh
-from processing.simulate.street.ends import add_ends
-from processing.simulate.street.islands import add_islands
-from processing.simulate.street.junctions import add_junctions
-from processing.simulate.street.markings import add_markings
-from processing.simulate.street.pavement import add_pavement
+from processing.simulate.roadway.ends import add_ends
+from processing.simulate.roadway.islands import add_islands
+from processing.simulate.roadway.junctions import add_junctions
+from processing.simulate.roadway.markings import add_markings
+from processing.simulate.roadway.pavement import add_pavement
 from processing.simulate.street.plan import SIDES
 from processing.simulate.street.section import Section
 from processing.simulate.street.street import Street

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from processing.simulate.mesh import Floats, Mesh
-from processing.simulate.street.ends import add_ends
-from processing.simulate.street.islands import add_islands
-from processing.simulate.street.junctions import add_junctions
+from processing.simulate.roadway.ends import add_ends
+from processing.simulate.roadway.islands import add_islands
+from processing.simulate.roadway.junctions import add_junctions
 from processing.simulate.street.plan import SIDES
 from processing.simulate.street.section import Section
 from processing.simulate.street.street import Street

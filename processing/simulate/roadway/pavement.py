@@ -10,7 +10,7 @@ import numpy as np
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, grid
-from processing.simulate.street.paint import add_sheet
+from processing.simulate.roadway.paint import add_sheet
 from processing.simulate.street.plan import SIDES
 from processing.simulate.street.profile import GROUND, ROAD
 from processing.simulate.street.section import Section

@@ -10,10 +10,10 @@ from numpy.random import Generator
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import grid
+from processing.simulate.roadway.junctions import street_height, street_sides
+from processing.simulate.roadway.paint import Rectangle, add_paint, dashes
 from processing.simulate.street.corner_track import CornerTrack
 from processing.simulate.street.junction_shape import Mouth
-from processing.simulate.street.junctions import street_height, street_sides
-from processing.simulate.street.paint import Rectangle, add_paint, dashes
 from processing.simulate.street.plan import LEFT, RIGHT, SIDES
 from processing.simulate.street.profile import ROAD
 from processing.simulate.street.section import Section

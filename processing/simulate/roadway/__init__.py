@@ -1,0 +1,1 @@
+"""What is laid on a road and beside it once its lines are known: side streets, islands, paint."""
