@@ -37,7 +37,8 @@ def command(arguments: argparse.Namespace) -> int:
 
 
 def _write_density(arguments: argparse.Namespace) -> int:
-    sensor = sensor_of(arguments.sensor, "mobile")
+    own = arguments.sensor if arguments.sensor.endswith(".toml") else ""
+    sensor = sensor_of(arguments.sensor, "mobile", own)
     survey = survey_of(sensor, arguments.speed)
     title = sensor.name.en.replace("×", "x")
     title += f", {arguments.speed:g} km/h, {survey.between_turns_m:.3g} m from line to line"

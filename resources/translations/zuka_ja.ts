@@ -354,6 +354,41 @@ kept</source>
         </message>
     </context>
     <context>
+        <name>DensityView</name>
+        <message>
+            <source>Road, {side} m to the left: {density} points/m², {gap} cm between points</source>
+            <translation>路面、左へ{side} m: {density} 点/m²、点間隔 {gap} cm</translation>
+        </message>
+        <message>
+            <source>Road, {side} m to the right: {density} points/m², {gap} cm between points</source>
+            <translation>路面、右へ{side} m: {density} 点/m²、点間隔 {gap} cm</translation>
+        </message>
+        <message>
+            <source>Wall {side} m to the left, {up} m up: {density} points/m²</source>
+            <translation>左へ{side} mの壁、高さ{up} m: {density} 点/m²</translation>
+        </message>
+        <message>
+            <source>Wall {side} m to the right, {up} m up: {density} points/m²</source>
+            <translation>右へ{side} mの壁、高さ{up} m: {density} 点/m²</translation>
+        </message>
+        <message>
+            <source>Here the vehicle drives.</source>
+            <translation>車両の走行位置です。</translation>
+        </message>
+        <message>
+            <source>Walls along the road, by distance and height</source>
+            <translation>道路沿いの壁（距離と高さ）</translation>
+        </message>
+        <message>
+            <source>Road, by distance from the vehicle</source>
+            <translation>路面（車両からの距離）</translation>
+        </message>
+        <message>
+            <source>points/m²</source>
+            <translation>点/m²</translation>
+        </message>
+    </context>
+    <context>
         <name>DrawingBar</name>
         <message>
             <source>What is drawn: choose by name (Ctrl+K) or number key</source>
@@ -1624,6 +1659,60 @@ kept</source>
         </message>
     </context>
     <context>
+        <name>SimulateForm</name>
+        <message>
+            <source>Simulate a recording</source>
+            <translation>模擬計測データの作成</translation>
+        </message>
+        <message>
+            <source>Create</source>
+            <translation>作成</translation>
+        </message>
+        <message>
+            <source>About {points} points, {size}, from {time} of recording.</source>
+            <translation>約{points}点、{size}、計測時間は約{time}です。</translation>
+        </message>
+        <message>
+            <source>The disk has only {free} left.</source>
+            <translation>ディスクの空き容量が{free}しかありません。</translation>
+        </message>
+        <message>
+            <source>Scan lines every {gap} cm at {speed} km/h. What is hidden, and pulses that don't come back, are not counted.</source>
+            <translation>走査線の間隔は{gap} cm（{speed} km/h）。物の陰や、反射が戻らないパルスは考慮していません。</translation>
+        </message>
+        <message>
+            <source>Choose…</source>
+            <translation>選択…</translation>
+        </message>
+        <message>
+            <source>Folder</source>
+            <translation>フォルダ</translation>
+        </message>
+        <message>
+            <source>{seconds} s</source>
+            <translation>{seconds}秒</translation>
+        </message>
+        <message>
+            <source>{minutes} min</source>
+            <translation>{minutes}分</translation>
+        </message>
+        <message>
+            <source>Give a folder for the files.</source>
+            <translation>ファイルを作成するフォルダを指定してください。</translation>
+        </message>
+        <message>
+            <source>The folder is not empty; give the name of a new one.</source>
+            <translation>フォルダが空ではありません。新しいフォルダ名を指定してください。</translation>
+        </message>
+    </context>
+    <context>
+        <name>Simulations</name>
+        <message>
+            <source>Open</source>
+            <translation>開く</translation>
+        </message>
+    </context>
+    <context>
         <name>SlabForm</name>
         <message>
             <source>To the left</source>
@@ -1680,9 +1769,17 @@ kept</source>
             <source>Sample street</source>
             <translation>サンプル街路</translation>
         </message>
+        <message>
+            <source>Simulate a recording…</source>
+            <translation>模擬計測データの作成…</translation>
+        </message>
     </context>
     <context>
         <name>StatusLine</name>
+        <message>
+            <source>Cancel this job</source>
+            <translation>このジョブを中止</translation>
+        </message>
         <message>
             <source>{title} {percent} %, {left} left</source>
             <translation>{title} {percent} %、残り{left}</translation>

@@ -90,7 +90,7 @@ def pass_of(street: Street, number: int, driving: Driving) -> Pass:
     records = np.arange(0.0, times[-1], 1.0 / RECORDS_PER_S)
     at = np.interp(records, times, chainages)
     beside = way * (
-        _lane_m(street, at) + 0.2 * _swaying(random, at, (15.0, 120.0)) + random.normal(0, 0.1)
+        _lane_m(street, at) + 0.12 * _swaying(random, at, (15.0, 120.0)) + random.normal(0, 0.08)
     )
     high = float(random.uniform(*REFERENCE_HIGH_M)) + 0.006 * _swaying(random, records, (0.6, 2))
     places = street.alignment.at(at, beside, street.alignment.carriageway_height(at, beside) + high)

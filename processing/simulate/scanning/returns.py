@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -250,10 +250,12 @@ class _Echoes:
 def _beside(
     beams: Beams, met: Met, seconds: Floats, others: Integers, strengths: Floats
 ) -> list[Returns]:
-    """Second returns at edges."""
+    """Second returns at edges, where the neighbouring beam met what is beside."""
     rays = np.flatnonzero(~np.isnan(seconds))
     there = _Echoes(rays, seconds, strengths * 0.4, met.label[others], met.evidence[others])
-    return [there.of_all(beams)]
+    returns = there.of_all(beams)
+    ways = beams.ways[others[rays]]
+    return [replace(returns, xyz=beams.origins[rays] + ways * seconds[rays, None])]
 
 
 def _behind(
