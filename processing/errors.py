@@ -6,11 +6,14 @@ The window, the terminal and the log print the same three parts: what, where, wh
 from __future__ import annotations
 
 import errno
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TypeVar
 
 from processing.text import Language, Text
+
+ValueT = TypeVar("ValueT")
 
 
 class UserError(Exception):
@@ -68,6 +71,31 @@ class Interrupted(Cancelled):
 
 
 UNCHANGED = Text("The project is unchanged.", "プロジェクトは変更されていません。")
+
+
+def use_one_of(names: Iterable[str]) -> Text:
+    """The remedy for a word that isn't known."""
+    return Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
+        names=", ".join(names) or "-"
+    )
+
+
+def named(known: Mapping[str, ValueT], name: str, what: Text) -> ValueT:
+    """What has a name.
+
+    Parameters
+    ----------
+    what : Text
+        Said where nothing has it.
+
+    Raises
+    ------
+    OutOfRange
+        Nothing has it; tells the names that are known.
+    """
+    if name not in known:
+        raise OutOfRange(what, Text.same(name), use_one_of(known))
+    return known[name]
 
 
 @contextmanager

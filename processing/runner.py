@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import OutOfRange, Unsuitable, told_as_user_error
+from processing.errors import Unsuitable, named, told_as_user_error
 from processing.image.point_image import PointCloudImage
 from processing.monitor import Monitor
 from processing.points.columns import Columns
@@ -162,15 +162,7 @@ def tool_of(name: str) -> Tool:
     OutOfRange
         There is none.
     """
-    if name not in TOOLS:
-        raise OutOfRange(
-            Text("There is no such tool.", "そのようなツールはありません。"),
-            Text.same(name),
-            Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
-                names=", ".join(TOOLS)
-            ),
-        )
-    return TOOLS[name]
+    return named(TOOLS, name, Text("There is no such tool.", "そのようなツールはありません。"))
 
 
 def check_needs(tool: Tool, drive: Drive) -> None:

@@ -20,7 +20,7 @@ from processing.bench.review_case import measure_review
 from processing.bench.simulate_case import measure_simulate
 from processing.bench.start_case import measure_start
 from processing.bench.table import Circumstances, described, load_now, number, write_table
-from processing.errors import OutOfRange
+from processing.errors import OutOfRange, use_one_of
 from processing.text import Text
 
 CASES: Mapping[str, Case] = {
@@ -51,9 +51,7 @@ def command(arguments: argparse.Namespace) -> int:
             raise OutOfRange(
                 Text("There is no such benchmark.", "そのようなベンチマークはありません。"),
                 Text.same(name),
-                Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
-                    names=", ".join(CASES)
-                ),
+                use_one_of(CASES),
             )
     for points in (arguments.points, arguments.most_points):
         if points is not None and points < _LEAST_POINTS:

@@ -7,7 +7,7 @@ import argparse
 from app.cli.opened import terminal_monitor
 from app.cli.output import print_lines
 from app.language import system_language
-from processing.errors import OutOfRange
+from processing.errors import OutOfRange, use_one_of
 from processing.project.export import FORMATS, ExportRequest, export
 from processing.project.project import Project
 from processing.text import Text
@@ -20,9 +20,7 @@ def command(arguments: argparse.Namespace) -> int:
             raise OutOfRange(
                 Text("There is no such format.", "そのような形式はありません。"),
                 Text.same(name),
-                Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
-                    names=", ".join(FORMATS)
-                ),
+                use_one_of(FORMATS),
             )
     project = Project.open(arguments.project, writing=False)
     project.find_sources()

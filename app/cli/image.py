@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from app.cli.opened import opened_input, terminal_monitor
 from app.cli.output import print_lines
-from processing.errors import OutOfRange
+from processing.errors import named
 from processing.formats.png import MOST_PIXELS, MOST_ROWS, write_png
 from processing.image.attributes import ATTRIBUTES, colours
 from processing.image.kinds import ImageKind
@@ -96,12 +96,4 @@ def _path_of(output: Path, number: int, drive: Drive) -> Path:
 
 
 def _word(word: str, known: dict[str, WordT]) -> WordT:
-    if word not in known:
-        raise OutOfRange(
-            Text("There is no such image.", "そのような画像はありません。"),
-            Text.same(word),
-            Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
-                names=", ".join(known)
-            ),
-        )
-    return known[word]
+    return named(known, word, Text("There is no such image.", "そのような画像はありません。"))

@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 from typing_extensions import override
 
-from processing.errors import OutOfRange, Unsuitable
+from processing.errors import OutOfRange, Unsuitable, use_one_of
 from processing.formats.dxf_labels import LABEL_HEIGHT_M, label_of
 from processing.formats.dxf_symbols import add_symbol_block
 from processing.formats.dxf_text import dxf_strings, dxf_text, label_text
@@ -326,9 +326,7 @@ def _check_one_of(value: str, allowed: Iterable[str]) -> None:
         raise OutOfRange(
             Text("DXF files are not written like this.", "このようなDXFは書き出せません。"),
             Text.same(value),
-            Text("Use one of: {words}.", "次のいずれかを指定してください: {words}").filled(
-                words=", ".join(allowed)
-            ),
+            use_one_of(allowed),
         )
 
 

@@ -8,7 +8,7 @@ from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
 
-from processing.errors import OutOfRange, Unsuitable
+from processing.errors import OutOfRange, Unsuitable, use_one_of
 from processing.formats.dxf import DxfVersion, write_dxf
 from processing.formats.geojson import write_geojson
 from processing.formats.geopackage import write_geopackage
@@ -233,9 +233,7 @@ def _no_such(value: str, allowed: Sequence[str]) -> OutOfRange:
     return OutOfRange(
         Text("The export can't be written like this.", "この指定では書き出せません。"),
         Text.same(value or "–"),
-        Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
-            names=", ".join(allowed)
-        ),
+        use_one_of(allowed),
     )
 
 

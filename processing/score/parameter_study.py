@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import OutOfRange, Unsuitable
+from processing.errors import OutOfRange, Unsuitable, use_one_of
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
 from processing.runner import RunRequest, drives_of, run_together, tool_of
@@ -307,7 +307,5 @@ def _gives_no_classes(tool: str) -> OutOfRange:
             "There is no truth to judge this tool by.", "このツールは真値による評価の対象外です。"
         ),
         Text.same(tool),
-        Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
-            names=", ".join(ASKED)
-        ),
+        use_one_of(ASKED),
     )

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from processing.errors import OutOfRange
+from processing.errors import named
 from processing.score.class_scores import class_score
 from processing.score.curb_lines import curb_score
 from processing.score.file_scores import FeatureScorer, VolumeScorer
@@ -79,12 +79,8 @@ def scorer_of(tool: str) -> Scorer:
     OutOfRange
         There is none; names those there are.
     """
-    if tool not in SCORERS:
-        raise OutOfRange(
-            Text("Results of this tool can't be scored.", "このツールの結果は評価できません。"),
-            Text.same(tool),
-            Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
-                names=", ".join(SCORERS)
-            ),
-        )
-    return SCORERS[tool]
+    return named(
+        SCORERS,
+        tool,
+        Text("Results of this tool can't be scored.", "このツールの結果は評価できません。"),
+    )

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar, cast
 
-from processing.errors import OutOfRange
+from processing.errors import OutOfRange, use_one_of
 from processing.text import Text
 
 ParameterKind = Literal["number", "count", "choice", "switch", "file"]
@@ -127,9 +127,7 @@ def filled_in(parameters: type[ParametersT], values: Mapping[str, Value | str]) 
             raise OutOfRange(
                 Text("There is no such parameter.", "そのようなパラメータはありません。"),
                 Text.same(name),
-                Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
-                    names=", ".join(known) or "-"
-                ),
+                use_one_of(known),
             )
         checked[name] = _checked(known[name], value)
     return parameters(**checked)
@@ -175,10 +173,7 @@ def _read(parameter: Parameter, value: Value) -> Value | None:
 
 def _allowed(parameter: Parameter) -> Text:
     if parameter.kind == "choice":
-        words = ", ".join(option.value for option in parameter.choices)
-        return Text("Use one of: {words}.", "次のいずれかを指定してください: {words}").filled(
-            words=words
-        )
+        return use_one_of(option.value for option in parameter.choices)
     if parameter.kind == "switch":
         return Text("Use yes or no.", "yes または no を指定してください。")
     return Text(

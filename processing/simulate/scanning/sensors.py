@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from processing.errors import BadFile, OutOfRange, told_as_user_error
+from processing.errors import BadFile, named, told_as_user_error
 from processing.text import Text
 from resources import path_of
 
@@ -122,16 +122,9 @@ def sensor_of(name: str, kind: str, own: str = "") -> Sensor:
     """
     if own:
         return _own_sensor(Path(own), kind)
-    known = [one.id for one in SENSORS.values() if one.kind == kind]
-    if name not in known:
-        raise OutOfRange(
-            Text("There is no such sensor for this.", "この用途に使えるセンサーではありません。"),
-            Text.same(name),
-            Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
-                names=", ".join(known)
-            ),
-        )
-    return SENSORS[name]
+    known = {one.id: one for one in SENSORS.values() if one.kind == kind}
+    nothing = Text("There is no such sensor for this.", "この用途に使えるセンサーではありません。")
+    return named(known, name, nothing)
 
 
 def _own_sensor(path: Path, kind: str) -> Sensor:

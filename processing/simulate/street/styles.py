@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from processing.errors import OutOfRange
+from processing.errors import named
 from processing.text import Text
 
 Range = tuple[float, float]
@@ -110,12 +110,6 @@ def style_of(name: str) -> Style:
     OutOfRange
         There is none; names those there are.
     """
-    if name not in STYLES:
-        raise OutOfRange(
-            Text("There is no such style of street.", "この道路種別はありません。"),
-            Text.same(name),
-            Text("Use one of: {names}.", "次のいずれかを指定してください: {names}").filled(
-                names=", ".join(STYLES)
-            ),
-        )
-    return STYLES[name]
+    return named(
+        STYLES, name, Text("There is no such style of street.", "この道路種別はありません。")
+    )
