@@ -3,22 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
-import shutil
-import uuid
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from processing.errors import InUse, told_as_user_error
 from processing.monitor import Monitor, PartMonitor
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats, Integers
 from processing.simulate.scanning.casting import Scene
 from processing.simulate.scanning.returns import Weather
-from processing.simulate.scanning.sensors import sensor_of
+from processing.simulate.scanning.sensors import Sensor, sensor_of
 from processing.simulate.simulated import Simulated
 from processing.simulate.sites.bodies import NAMES, Kind
 from processing.simulate.sites.delivery import (
@@ -35,6 +30,7 @@ from processing.simulate.sites.recording import Survey, pattern_of, recorded, sc
 from processing.simulate.sites.stations import count_for, stations_of
 from processing.simulate.sites.terrain import Terrain, terrain_of
 from processing.simulate.sites.volumes import SEEN_CELL_M, cut_and_fill
+from processing.simulate.whole_folder import made_whole
 from processing.simulate.wishes import SiteWish
 from processing.text import Text
 from processing.tools.parameters import filled_in
@@ -67,37 +63,14 @@ def simulate_site(
         What the operating system says; `Cancelled`.
     """
     wish = filled_in(SiteWish, dataclasses.asdict(wish))
-    with _made_whole(folder) as hidden:
-        count = _write(wish, hidden, monitor, registration_m)
+    sensor = sensor_of(wish.sensor, "standing", wish.own_sensor)
+    with made_whole(folder) as hidden:
+        for part in ("in", "truth"):
+            (hidden / part).mkdir()
+        count = _write(wish, sensor, hidden, (monitor, registration_m))
     monitor.report(1.0)
     points = tuple(folder / "in" / f"{date}.laz" for date in DATES)
     return Simulated(folder, points, (), (), folder / "truth", CRS, count)
-
-
-@contextmanager
-def _made_whole(folder: Path) -> Iterator[Path]:
-    """A hidden folder beside a folder, which takes its name when all is written."""
-    folder = folder.absolute()
-    hidden = folder.with_name(f".{folder.name}-{uuid.uuid4().hex[:8]}")
-    with told_as_user_error(folder):
-        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-            raise InUse(
-                Text("This folder is not empty.", "このフォルダは空ではありません。"),
-                Text.same(str(folder)),
-                Text(
-                    "Choose a new or an empty folder; nothing was written.",
-                    "新しいフォルダか空のフォルダを指定してください。何も書き込まれていません。",
-                ),
-            )
-        try:
-            for part in ("in", "truth"):
-                (hidden / part).mkdir(parents=True)
-            yield hidden
-            if folder.exists():
-                folder.rmdir()
-            hidden.rename(folder)
-        finally:
-            shutil.rmtree(hidden, ignore_errors=True)
 
 
 @dataclass(frozen=True)
@@ -105,6 +78,7 @@ class _Site:
     """What both dates have in common."""
 
     wish: SiteWish
+    sensor: Sensor
     terrain: Terrain
     place: Place
     polygon: Floats
@@ -116,12 +90,14 @@ class _Site:
         return -(-(rows - 1) // per_cell), -(-(columns - 1) // per_cell)
 
 
-def _write(wish: SiteWish, hidden: Path, monitor: Monitor, registration_m: float) -> int:
+def _write(wish: SiteWish, sensor: Sensor, hidden: Path, work: tuple[Monitor, float]) -> int:
+    """Write all files; gives how many points there are."""
+    monitor, registration_m = work
     random = chance(wish.seed, "place")
     terrain = terrain_of(wish.seed, wish.style, wish.length_m, monitor.check)
     east, north = np.round(random.uniform((-30_000, -60_000), (10_000, -20_000)))
     place = Place(float(east), float(north))
-    site = _Site(wish, terrain, place, _polygon(wish.seed, terrain.before.heights.size_m))
+    site = _Site(wish, sensor, terrain, place, _polygon(wish.seed, terrain.before.heights.size_m))
     starts = [_FIRST_S + float(random.integers(0, 30_000)) * 1000.0]
     starts.append(starts[0] + round(float(random.uniform(5, 60))) * _DAY_S)
     common = chance(wish.seed, "registration").normal(0, 1, 3) * registration_m
@@ -174,8 +150,7 @@ def _record(
 
 
 def _survey(site: _Site, date: str, monitor: Monitor) -> Survey:
-    wish = site.wish
-    sensor = sensor_of(wish.sensor, "standing", wish.own_sensor)
+    wish, sensor = site.wish, site.sensor
     pattern = pattern_of(sensor, wish.spacing_m)
     layout = layout_of(wish.seed, date, site.terrain, monitor.check)
     monitor.check()

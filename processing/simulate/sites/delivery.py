@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.formats.told_writes import ToldWrites, failures_told
 from processing.simulate.mesh import Floats
 from processing.simulate.sites.heights import HeightGrid
 from processing.simulate.sites.recording import Points
@@ -70,10 +71,11 @@ class GrowingArray:
         self._file.write(np.ascontiguousarray(values, self._kind).tobytes())
         self.count += values.size
 
-    def close(self) -> None:
-        """Note the length."""
-        self._file.seek(0)
-        self._head()
+    def close(self, *, is_whole: bool) -> None:
+        """Note the length, unless nobody will read it."""
+        if is_whole:
+            self._file.seek(0)
+            self._head()
         self._file.close()
 
     def _head(self) -> None:
@@ -107,7 +109,13 @@ class CloudFile:
         self._kinds = GrowingArray(truth / f"kinds_{path.stem}.npy", np.dtype(np.int8))
         self._header = _header(place)
         self._laspy: Any = laspy  # laspy has no types
-        self._writer: Any = laspy.open(path, mode="w", header=self._header, do_compress=True)
+        self._file = ToldWrites(path.open("wb"))
+        self._writer: Any = laspy.LasWriter(
+            self._file,
+            self._header,
+            do_compress=True,
+            laz_backend=laspy.LazBackend.LazrsParallel,
+        )
 
     def __enter__(self) -> CloudFile:
         return self
@@ -115,9 +123,13 @@ class CloudFile:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
     ) -> None:
-        self._writer.close()
-        self._labels.close()
-        self._kinds.close()
+        is_whole = error is None
+        if is_whole:
+            with failures_told(self._file):
+                self._writer.close()
+        self._file.close()
+        self._labels.close(is_whole=is_whole)
+        self._kinds.close(is_whole=is_whole)
 
     def write(self, points: Points) -> None:
         """Add points behind those that are there."""
@@ -132,7 +144,8 @@ class CloudFile:
         record.return_number, record.number_of_returns = points.number, points.count
         record.gps_time = self._starts_s + points.time_s
         record.point_source_id = np.full(points.time_s.size, points.station, np.uint16)
-        self._writer.write_points(record)
+        with failures_told(self._file):
+            self._writer.write_points(record)
         self._labels.add(points.label)
         self._kinds.add(points.kind)
         self.of_label += np.bincount(points.label, minlength=256)

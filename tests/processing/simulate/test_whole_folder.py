@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 
 from processing.errors import Cancelled, InUse
 from processing.simulate.whole_folder import made_whole
+
+ROOT = Path(__file__).parents[3]
 
 
 def test_it_takes_its_name_when_it_is_whole(tmp_path: Path) -> None:
@@ -42,3 +47,59 @@ def test_an_empty_folder_is_taken(tmp_path: Path) -> None:
     with made_whole(tmp_path / "one") as hidden:
         (hidden / "file").write_text("x")
     assert (tmp_path / "one" / "file").exists()
+
+
+def test_what_a_killed_program_left_is_removed_by_the_next_one(tmp_path: Path) -> None:
+    script = (
+        "import os, signal, sys\n"
+        "from pathlib import Path\n"
+        "from processing.simulate.whole_folder import made_whole\n"
+        "with made_whole(Path(sys.argv[1])) as hidden:\n"
+        "    (hidden / 'half').write_text('x')\n"
+        "    os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    folder = tmp_path / "通り"
+    killed = subprocess.run([sys.executable, "-c", script, str(folder)], cwd=ROOT, check=False)
+    assert killed.returncode == -signal.SIGKILL
+    assert len(list(tmp_path.iterdir())) == 2  # what it had written, and its lock
+    with made_whole(folder) as hidden:
+        assert not list(hidden.iterdir())
+    assert [one.name for one in tmp_path.iterdir()] == ["通り"]
+
+
+def test_a_folder_that_is_being_made_is_refused_and_made_all_the_same(tmp_path: Path) -> None:
+    with made_whole(tmp_path / "one") as hidden:
+        (hidden / "file").write_text("x")
+        with pytest.raises(InUse, match="Another simulation"), made_whole(tmp_path / "one"):
+            pass
+        with made_whole(tmp_path / "other"):
+            pass
+    assert (tmp_path / "one" / "file").read_text() == "x"
+    assert sorted(one.name for one in tmp_path.iterdir()) == ["one", "other"]
+
+
+@pytest.mark.parametrize("name", ["字" * 85, "x" * 255, ".hidden", "a b's $c"])
+def test_any_name_that_a_disk_takes_will_do(tmp_path: Path, name: str) -> None:
+    with made_whole(tmp_path / name):
+        pass
+    assert [one.name for one in tmp_path.iterdir()] == [name]
+
+
+def test_the_folder_a_user_is_in_and_links_to_empty_ones_are_taken(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link").symlink_to("real")
+    with made_whole(tmp_path / "link") as hidden:
+        (hidden / "file").write_text("x")
+    assert (tmp_path / "real" / "file").exists()
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
+    with made_whole(Path()) as hidden:
+        (hidden / "file").write_text("x")
+    assert (tmp_path / "here" / "file").exists()
+
+
+def test_a_disk_itself_is_refused_before_anything_is_made() -> None:
+    with pytest.raises(InUse), made_whole(Path("/")):
+        pass
