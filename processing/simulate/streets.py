@@ -115,7 +115,9 @@ class _Work:
         self.start_s = float(np.round(random.uniform(3.5e8, 4.2e8), 3))
         wet = random.random() > _DRY_SHARE
         self.weather = Weather(
-            float(random.uniform(0.05, 0.7)) if wet else 0.0, float(random.uniform(0.3, 0.9))
+            float(random.uniform(0.05, 0.7)) if wet else 0.0,
+            float(random.uniform(0.3, 0.9)),
+            float(random.choice([0.0, 0.5, 0.9])),
         )
         self.spin = Spin(wish.pulses or sensor.pulses, wish.turns_per_s or sensor.turns_per_s, 0.0)
         self.setup = Setup(sensor, self.spin, self.weather)

@@ -19,12 +19,14 @@ Integers = NDArray[np.int64]
 # Columns of a surface's numbers.
 REFLECTANCE, SPREAD, ROUGHNESS, GRAIN, SHINE, RETRO, STANDS, OPEN = range(8)
 # Numbers of a scanner.
-NOISE, EXIT, DIVERGENCE, TURN_RAD, MOST_RETURNS, IS_PHASE, WEAKEST, DAMPING, WETNESS, LENGTH = (
+NOISE, EXIT, DIVERGENCE, TURN_RAD, MOST_RETURNS, IS_PHASE, WEAKEST, LEVELLED, WETNESS, LENGTH = (
     range(10)
 )
 
 TRUE, MIXED = 0, 1
 _BASE_M = 10.0
+# Grains of the surface within a beam make its echo stronger or weaker.
+_LEAST_SPECKLE, _MOST_SPECKLE, _SPECKLE_PER_M = 0.05, 0.2, 80.0
 _NEAR_M = 8.0  # nearer than this a receiver sees its own beam only in part
 
 
@@ -72,6 +74,13 @@ def relief(x: float, y: float, salt: int) -> float:
 
 
 @kernel
+def _spreading(reach: float) -> float:
+    """How much less light comes back from a range than from 10 m."""
+    spread: float = (reach * reach + _NEAR_M * _NEAR_M) / (_BASE_M * _BASE_M + _NEAR_M * _NEAR_M)
+    return spread
+
+
+@kernel
 def _strength(surface: Floats, reach: float, cosine: float, light: tuple[float, float]) -> float:
     """Power that comes back, 1 being that of a white surface 10 m away at right angles."""
     spread, wet = light
@@ -81,8 +90,7 @@ def _strength(surface: Floats, reach: float, cosine: float, light: tuple[float, 
     diffuse = part * (1.0 - shine) * cosine
     mirrored: float = shine * cosine**60
     back = surface[RETRO] * math.sqrt(cosine)
-    away = (reach * reach + _NEAR_M * _NEAR_M) / (_BASE_M * _BASE_M + _NEAR_M * _NEAR_M)
-    power: float = (diffuse + mirrored + back) / away
+    power: float = (diffuse + mirrored + back) / _spreading(reach)
     return power
 
 
@@ -138,7 +146,9 @@ def first_returns(
         fuzz = math.sqrt(fuzz * fuzz + (0.05 * tilted) ** 2)
         truths[ray] = truth
         ranges[ray] = truth + fuzz * normal_of(number, key + 3)
-        strengths[ray] = power * math.exp(0.06 * normal_of(number, key + 4))
+        power *= _spreading(reach) ** scanner[LEVELLED]
+        speckle = _LEAST_SPECKLE + min(_MOST_SPECKLE, _SPECKLE_PER_M * surface[ROUGHNESS])
+        strengths[ray] = power * math.exp(speckle * normal_of(number, key + 4))
 
 
 @kernel

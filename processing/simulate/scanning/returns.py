@@ -37,11 +37,14 @@ class Weather:
     wetness : float
         Share of the ground that is wet, 0 to 1.
     damping : float
-        Exponent of intensity over received power: 1 as received, less where the maker evens out.
+        Exponent of intensity over power: 1 in proportion, less where the maker evens out.
+    levelled : float
+        How far the maker takes out what the range does: 0 not at all, 1 wholly.
     """
 
     wetness: float
     damping: float
+    levelled: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -56,7 +59,7 @@ class Returns:
     xyz : (n, 3) float64
         m, the street's frame.
     strength : (n,) float64
-        Received power; 1 for a white surface 10 m away.
+        Power as the scanner tells it; 1 for a white surface 10 m away.
     number, count : (n,) uint8
         Which return of how many of its pulse.
     label : (n,) uint8
@@ -167,7 +170,7 @@ def scanner_numbers(sensor: Sensor, pulses: int, weather: Weather) -> Floats:
             sensor.returns,
             float(sensor.measures_by == "phase"),
             weakest,
-            weather.damping,
+            weather.levelled,
             weather.wetness,
             _PULSE_LENGTH_M,
         ]
