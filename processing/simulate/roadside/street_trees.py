@@ -13,10 +13,12 @@ from processing.simulate.roadside.crowns import scattered_leaves
 from processing.simulate.roadside.growth import CEDAR, GROWTHS, YARD_GROWTHS, Growth
 from processing.simulate.roadside.places import Places, Spot, free_from_m
 from processing.simulate.roadside.rods import rods
+from processing.simulate.roadside.tree_pits import PitHabit, add_pit, pit_habit, take_pit
 from processing.simulate.roadside.trees import (
     CROWN,
     TRUNK,
     TRUTH_WITHIN_M,
+    Age,
     TreeWish,
     add_tree,
     leaf_share,
@@ -30,17 +32,20 @@ _LEAST_LEAVES, _MOST_LEAVES = 250, 4_500
 _ROOM_M = 0.35  # about a trunk
 _MOST_WOOD_TREES = 26
 _WOOD_DEEP_M = 24.0
+_GONE_SHARE = 0.08  # of the trees of a row
+_EMPTY_PIT_SHARE = 0.6  # of the pits whose trees are gone, the others were paved
 
 
 @dataclass(frozen=True)
 class _Row:
-    """Where trees of one row stand: distance from the road's centre, and their kind."""
+    """Where trees of one row stand: distance from the road's centre, their kind, their pits."""
 
     side: int
     away_m: float
     growth: Growth
     pitch_m: float
     high_m: float
+    pits: PitHabit | None
 
 
 def add_street_trees(places: Places, built: Built) -> None:
@@ -50,7 +55,7 @@ def add_street_trees(places: Places, built: Built) -> None:
         random = places.section.chance("trees", side)
         row = _row(places, random, side)
         if row is not None:
-            wishes += _in_row(places, random, row)
+            wishes += _in_row(places, built, random, row)
         wishes += _in_yards(places, random, side)
     count = max(1, len(wishes))
     leaves = int(np.clip(_TRIANGLES // count - _BARK_TRIANGLES, _LEAST_LEAVES, _MOST_LEAVES))
@@ -73,8 +78,13 @@ def _row(places: Places, random: Generator, side: int) -> _Row | None:
     away = _row_away_m(section.plan, plan, random)
     if away is None:
         return None
+    walk = plan.band("walk")
+    is_in_walk = walk is not None and walk.inner_m < away < walk.outer_m
+    pits = pit_habit(section, side) if is_in_walk else None
+    if pits is not None:
+        away = pits.middle_m(places.near_m(side))
     low, top = growth.high_m
-    return _Row(side, away, growth, pitch, low + high * (top - low))
+    return _Row(side, away, growth, pitch, low + high * (top - low), pits)
 
 
 def _row_away_m(section: SectionPlan, plan: SidePlan, random: Generator) -> float | None:
@@ -89,21 +99,34 @@ def _row_away_m(section: SectionPlan, plan: SidePlan, random: Generator) -> floa
     return None
 
 
-def _in_row(places: Places, random: Generator, row: _Row) -> list[TreeWish]:
-    plan = places.section.plan
-    wishes = []
-    at = plan.start_m + float(random.uniform(0.5, row.pitch_m))
+def _in_row(places: Places, built: Built, random: Generator, row: _Row) -> list[TreeWish]:
+    plan, pits = places.section.plan, row.pits
+    wishes: list[TreeWish] = []
+    at, number = plan.start_m + float(random.uniform(0.5, row.pitch_m)), 0
     while at < plan.end_m - 0.5:
-        away = row.away_m + float(random.normal(0, 0.06))
-        spot = Spot(at, row.side * away)
-        fate = random.random()
-        if fate > 0.08 and places.take(spot, _ROOM_M):
-            is_young = fate < 0.18
+        off = float(random.normal(0, 0.06))
+        fate, number = random.random(), number + 1
+        own = places.section.chance("pit", row.side * number)
+        has_tree = fate > _GONE_SHARE
+        is_free, above = False, 0.0
+        if pits is None:
+            spot = Spot(at, row.side * (row.away_m + off))
+            is_free = has_tree and places.take(spot, _ROOM_M)
+        else:
+            middle = Spot(at, row.side * row.away_m)
+            spot = Spot(at + 0.5 * off, row.side * (row.away_m + 0.5 * off))
+            is_left = has_tree or own.random() < _EMPTY_PIT_SHARE
+            if is_left and take_pit(places, middle, pits):
+                add_pit(places.section, built, middle, pits, own)
+                is_free, above = has_tree, pits.soil_m
+        if is_free:
+            is_young = fate < _GONE_SHARE + 0.1
             low, top = row.growth.high_m
             high = float(np.clip(row.high_m * random.normal(1.0, 0.14), low * 0.85, top * 1.1))
             if is_young:
                 high = float(random.uniform(2.6, 4.2))
-            wishes.append(TreeWish(row.growth, spot, high, "young" if is_young else "grown", 0))
+            age: Age = "young" if is_young else "grown"
+            wishes.append(TreeWish(row.growth, spot, high, age, 0, above))
         at += row.pitch_m * float(random.uniform(0.75, 1.3))
     return wishes
 

@@ -60,6 +60,8 @@ class TreeWish:
         ``young``: newly planted, thin and staked; ``wild``: of a wood, never staked.
     leaves : int
         At most; fewer as the season has it.
+    above_m : float
+        How high the soil of its pit lies over the walk.
     """
 
     growth: Growth
@@ -67,6 +69,7 @@ class TreeWish:
     high_m: float
     age: Age
     leaves: int
+    above_m: float = 0.0
 
 
 def leaf_share(section: Section, growth: Growth) -> float:
@@ -80,7 +83,7 @@ def leaf_share(section: Section, growth: Growth) -> float:
 def add_tree(places: Places, built: Built, wish: TreeWish, random: Generator) -> None:
     """Add a tree at a place that was taken for it."""
     section, growth, spot = places.section, wish.growth, wish.spot
-    foot = places.where(spot)
+    foot = places.where(spot) + np.array([0.0, 0.0, wish.above_m])
     instance = built.thing("tree")
     stems = _stems(random, wish)
     girths = []
@@ -189,7 +192,7 @@ def _clear_of_road(section: Section, spot: Spot) -> Keeps:
 def _add_stakes(places: Places, built: Built, wish: TreeWish, stem: Stem) -> int:
     section, spot = places.section, wish.spot
     random = section.chance("stakes", int(spot.chainage_m * 100) * spot.side)
-    foot = places.where(spot)
+    foot = places.where(spot) + np.array([0.0, 0.0, wish.above_m])
     room = abs(spot.offset_m) - places.near_m(spot.side)
     wood, straps, count = stakes_of(random, stem, section.heading(spot.chainage_m), room)
     instance = built.thing("stake")

@@ -19,6 +19,7 @@ from processing.simulate.street.styles import URBAN
 from processing.simulate.things import TrueFeature
 
 TRUNK = 66
+SOIL_OF_PITS_M = 0.035
 
 
 @pytest.fixture(scope="module")
@@ -105,7 +106,7 @@ def test_trees_stand_on_the_ground_and_reach_their_height(
     trees: list[tuple[TrueFeature, Mesh, float]],
 ) -> None:
     for tree, mesh, ground in trees:
-        assert tree.xyz[0, 2] == pytest.approx(ground, abs=0.02)
+        assert ground - 0.02 < tree.xyz[0, 2] < ground + SOIL_OF_PITS_M
         places = mesh.vertices[np.unique(mesh.triangles[mesh.instance == tree.instance])]
         assert places[:, 2].max() - tree.xyz[0, 2] == pytest.approx(tree.facts["height_m"])
         assert places[:, 2].min() < tree.xyz[0, 2] - 0.1
