@@ -20,10 +20,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.formats.safe_write import written_safely
+from processing.formats.trajectory_csv import read_trajectory_csv
 from processing.monitor import SilentMonitor
 from processing.score.disturbed_truths import disturbed_rows
 from processing.score.filter_tables import markdown_table
 from processing.score.filters import with_section
+from processing.simulate.scanning.density import road_density, survey_of
+from processing.simulate.scanning.sensors import sensor_of
 from processing.simulate.streets import simulate_street
 from processing.simulate.wishes import StreetWish
 
@@ -37,13 +40,15 @@ _HEAD = (
     "style, sensor, seed",
     "points",
     "pulses/s: measured − true (ppm)",
+    "points on the road, of those told",
     "curb steps (mm)",
     "trunk diameters (mm)",
     "plates, along their normal (mm)",
     "plates, turned (°)",
 )
 
-_POLE, _SIGN, _CURB = 66, 65, 67
+_POLE, _SIGN, _CURB, _ROAD = 66, 65, 67, 11
+_DENSE_M = (0.5, 1.0)
 _FEWEST_POINTS = 30
 _STONE_M = 0.1  # of the top behind the upper edge, and of the apron before the lower one
 _BESIDE_M = 0.25
@@ -172,6 +177,37 @@ def plate_distances(cloud: Cloud, truth: Path) -> tuple[Errors, Errors]:
     return Errors.of(away), Errors.of(turned)
 
 
+def density_share(cloud: Cloud, folder: Path, wish: StreetWish) -> float:
+    """Points counted on the road half a metre to a metre beside the path, of those told.
+
+    The vehicle's height is taken from the points, as a density map doesn't know it.
+    """
+    from scipy.spatial import cKDTree
+
+    driven = read_trajectory_csv(folder / "trajectory.csv")
+    middle = slice(driven.time.size // 4, 3 * driven.time.size // 4)
+    path = driven.xyz[middle, :2]
+    long = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+    seconds = float(driven.time[middle][-1] - driven.time[middle][0])
+    ways = np.gradient(path, axis=0)
+    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    road = cloud.xyz[cloud.label == _ROAD]
+    tree: Any = cKDTree(path)  # its stub gives a scalar or an array
+    _, nearest = tree.query(road[:, :2], distance_upper_bound=_DENSE_M[1] + 0.5)
+    near = nearest < len(path)
+    road, nearest = road[near], nearest[near]
+    off, way = road[:, :2] - path[nearest], ways[nearest]
+    ahead = np.einsum("ij,ij->i", off, way)
+    aside = np.abs(off[:, 0] * way[:, 1] - off[:, 1] * way[:, 0])
+    counted = (aside > _DENSE_M[0]) & (aside < _DENSE_M[1]) & (np.abs(ahead) < 0.5)
+    high = float(np.median(driven.xyz[middle, 2][nearest[counted]] - road[counted, 2]))
+    survey = survey_of(sensor_of(wish.sensor, "mobile"), 3.6 * long / seconds)
+    survey = replace(survey, height_m=high)
+    places = np.linspace(*_DENSE_M, 21)
+    told = float(road_density(survey, np.r_[-places, places]).mean())
+    return float(counted.sum()) / (2 * long * (_DENSE_M[1] - _DENSE_M[0])) / told
+
+
 def pulse_rate(path: Path) -> float:
     """Pulses per second from the times of a file's points alone."""
     times = np.unique(np.asarray(laspy.read(path).gps_time))
@@ -211,7 +247,7 @@ def tables_of(seeds: Sequence[int] = SEEDS, length_m: float = _LENGTH_M) -> Tabl
         with tempfile.TemporaryDirectory(prefix="zuka-") as place:
             folder = Path(place) / "street"
             simulate_street(wish, folder, SilentMonitor())
-            tables.streets.append([f"{style}, {sensor}, {seed}", *_cells(folder)])
+            tables.streets.append([f"{style}, {sensor}, {seed}", *_cells(folder, wish)])
             if number < len(_STYLES):
                 head, *rows = disturbed_rows(folder / "truth")
                 tables.disturbed += [] if tables.disturbed else [["street", *head]]
@@ -239,7 +275,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return 0
 
 
-def _cells(folder: Path) -> list[str]:
+def _cells(folder: Path, wish: StreetWish) -> list[str]:
     truth = folder / "truth"
     scene = json.loads((truth / "scene.json").read_text("utf-8"))
     cloud = cloud_of(folder)
@@ -249,6 +285,7 @@ def _cells(folder: Path) -> list[str]:
     return [
         f"{cloud.label.size:,}",
         f"{1e6 * (rate / true_rate - 1):+.0f}",
+        f"{density_share(cloud, folder, wish):.3f}",
         curb_heights(cloud, truth).cell(1000),
         trunk_diameters(cloud, truth).cell(1000),
         away.cell(1000),
