@@ -20,7 +20,8 @@ class Strip:
     kind : str
         In a word: ``road``, ``curb``, ``walk``, ``apron``.
     has_surface : bool
-        False where other bodies take its place (the lids of a gutter, an island).
+        False where other bodies take its place (the lids of a gutter, an apron's
+        blocks, an island).
     """
 
     kind: str

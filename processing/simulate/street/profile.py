@@ -133,7 +133,8 @@ def _add_drain(profile: Profile, course: Course) -> None:
     wide, drain = measures.drain, course.side.drain
     gutter = course.looks.gutter
     if drain == "apron":
-        profile.line(edge + wide, -measures.fall * wide, Strip("apron", gutter, ROAD))
+        apron = Strip("apron", gutter, ROAD, has_surface=False)
+        profile.line(edge + wide, -measures.fall * wide, apron)
     elif drain == "lids":
         profile.line(edge + wide, 0.0, Strip("drain", gutter, ROAD, has_surface=False))
     elif drain == "open":

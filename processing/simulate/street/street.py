@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from processing.simulate.gutters.aprons import add_aprons
 from processing.simulate.gutters.gutters import add_gutters
 from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.roadside.furniture import add_furniture
@@ -34,6 +35,7 @@ MAKERS: tuple[Maker, ...] = (
     add_ends,
     add_markings,
     add_pavement,
+    add_aprons,
     add_gutters,
     add_furniture,
     add_parked,

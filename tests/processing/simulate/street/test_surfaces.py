@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from processing.simulate.gutters.aprons import add_aprons
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Mesh
 from processing.simulate.roadway.ends import add_ends
@@ -19,7 +20,9 @@ from processing.simulate.street.styles import HIGHWAY, RURAL, URBAN, Style
 from processing.simulate.street.surfaces import add_ground
 from processing.simulate.things import Built, TrueFeature
 
-MAKERS = (add_ground, add_junctions, add_islands, add_ends, add_markings, add_pavement)
+MAKERS = (
+    add_ground, add_junctions, add_islands, add_ends, add_markings, add_pavement, add_aprons,
+)  # fmt: skip
 SKY_M = 300.0
 
 
@@ -140,7 +143,7 @@ def test_side_streets_have_curbs_round_both_corners() -> None:
             if section.plan.side(side).curb == "none":
                 continue
             edge = section.plan.side(side).edge_m
-            truth = [one for one in _built(section)[1] if one.facts["edge"] == "upper"]
+            truth = [one for one in _built(section)[1] if one.facts.get("edge") == "upper"]
             far = 0.0
             for one in truth:
                 middle = street.alignment.at(one.chainage_m, 0.0, 0.0)
