@@ -199,7 +199,7 @@ def density_share(cloud: Cloud, folder: Path, wish: StreetWish) -> float:
     off, way = road[:, :2] - path[nearest], ways[nearest]
     ahead = np.einsum("ij,ij->i", off, way)
     aside = np.abs(off[:, 0] * way[:, 1] - off[:, 1] * way[:, 0])
-    counted = (aside > _DENSE_M[0]) & (aside < _DENSE_M[1]) & (np.abs(ahead) < 0.5)
+    counted = (aside > _DENSE_M[0]) & (aside < _DENSE_M[1]) & (np.abs(ahead) < 0.1)
     high = float(np.median(driven.xyz[middle, 2][nearest[counted]] - road[counted, 2]))
     survey = survey_of(sensor_of(wish.sensor, "mobile"), 3.6 * long / seconds)
     survey = replace(survey, height_m=high)
