@@ -18,6 +18,7 @@ from processing.simulate.roadside.signs import add_signs
 from processing.simulate.roadside.street_trees import add_street_trees
 from processing.simulate.roadside.weeds import add_weeds
 from processing.simulate.roadside.wires import add_wires
+from processing.simulate.roadway.box_lids import box_lids_of
 from processing.simulate.street.section import Section
 from processing.simulate.things import Built
 
@@ -44,5 +45,11 @@ KINDS = (
 def add_furniture(section: Section, built: Built) -> None:
     """Add poles, wires, lights, signals, signs and plants of a section."""
     places = Places(section)
+    for lid in box_lids_of(section):
+        half = lid.long_m / 2, lid.wide_m / 2
+        places.block(
+            (lid.chainage_m - half[0], lid.chainage_m + half[0]),
+            (lid.offset_m - half[1], lid.offset_m + half[1]),
+        )
     for add in KINDS:
         add(places, built)

@@ -23,6 +23,7 @@ from processing.simulate.street.measures import looks_of
 from processing.simulate.street.profile import CURB, GRASS, GROUND, Edge, Profile
 from processing.simulate.street.section import Section
 from processing.simulate.street.sweep import Sweep, add_runs, add_surfaces
+from processing.simulate.street.walk_lines import walk_lines
 from processing.simulate.things import Built
 
 # 0.9 to 1.5 m inside walks that keep a metre free (道路緑化技術基準, 1988; 道路構造令, article 11).
@@ -121,15 +122,10 @@ def take_pit(places: Places, spot: Spot, habit: PitHabit) -> bool:
 
 
 def _is_paved(section: Section, spot: Spot, habit: PitHabit) -> bool:
-    sweep = section.layout.sides[spot.side].sweep
-    walks = [row for row, one in enumerate(sweep.profile.strips) if one.kind == "walk"]
-    if not walks:
+    lines = walk_lines(section, spot.side)
+    if lines is None:
         return False
-    at = spot.chainage_m + habit.long_m * np.array([-0.5, 0.0, 0.5])
-    inner, outer = (
-        np.interp(at, sweep.chainages[:, line], np.abs(sweep.offsets[:, line]))
-        for line in (walks[0], walks[-1] + 1)
-    )
+    inner, outer = lines.between(spot.chainage_m + habit.long_m * np.array([-0.5, 0.0, 0.5]))
     away, half = abs(spot.offset_m), habit.wide_m / 2
     return bool((away - half > inner).all() and (away + half < outer - _KERB_GAP_M).all())
 

@@ -1,6 +1,6 @@
-"""What lies in the pavement: patches, manholes, lids of boxes, tactile blocks on walks.
+"""What lies in the pavement: patches, manholes, tactile blocks on walks.
 
-Things: ``manhole``, ``box_lid``; no truth.
+Things: ``manhole``; no truth.
 """
 
 from __future__ import annotations
@@ -11,16 +11,19 @@ from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, grid
 from processing.simulate.roadway.paint import add_sheet
+from processing.simulate.street.layout import CornerLayout
 from processing.simulate.street.plan import SIDES
 from processing.simulate.street.profile import GROUND, ROAD
 from processing.simulate.street.section import Section
 from processing.simulate.street.styles import HIGHWAY, URBAN
 from processing.simulate.street.surfaces import asphalt_of
+from processing.simulate.street.walk_lines import first_of_walk, walk_lines
 from processing.simulate.things import NO_THING, Built
 
 _DISC_SIDES = 24
 _BLOCK_M = 0.3  # 視覚障害者誘導用ブロック, JIS T 9251: 30 cm squares, dots and bars 5 mm high
 _BLOCK_HIGH_M = 0.003
+_FROM_CURB_M = 0.3
 _CLEAR_M = 0.4
 
 
@@ -31,6 +34,8 @@ def add_pavement(section: Section, built: Built) -> None:
     for side in SIDES:
         if side not in section.plan.junctions:
             _add_tactile(section, side, built)
+        for number, corner in enumerate(section.layout.sides[side].corners):
+            _add_tactile_of_corner(section, corner, (side, number), built)
 
 
 def _add_patches(section: Section, built: Built) -> None:
@@ -86,24 +91,13 @@ def _add_disc(
     built.mesh.add(grid(rows), Material.STEEL, ROAD, built.thing("manhole"))
 
 
-def _walk_lines(section: Section, side: int) -> tuple[Floats, Floats, Floats, Floats] | None:
-    """Chainages, and the walk's beginning, bend and end (m from the centre) at each of them."""
-    sweep = section.layout.sides[side].sweep
-    walks = [row for row, one in enumerate(sweep.profile.strips) if one.kind == "walk"]
-    if not walks:
-        return None
-    first = walks[0]
-    lines = [side * sweep.offsets[:, first + step] for step in range(3)]
-    return sweep.chainages[:, 0], lines[0], lines[1], lines[2]
-
-
 def _add_tactile(section: Section, side: int, built: Built) -> None:
     """Blocks along the walk where it is wide enough, and across it at crossings."""
-    lines = _walk_lines(section, side)
+    lines = walk_lines(section, side)
     random = section.chance("tactile", side)
     if lines is None or not section.plan.side(side).has_tactile:
         return
-    chainages, inner, bend, outer = lines
+    chainages, inner, bend, outer = lines.chainages, lines.inner, lines.bend, lines.outer
     beside = float(chance(section.seed, "tactile", side).uniform(0.15, 0.4))
     fits = bend + beside + _BLOCK_M < outer - 0.1
     for first, last in _stretches(fits):
@@ -117,10 +111,45 @@ def _add_tactile(section: Section, side: int, built: Built) -> None:
         there = np.flatnonzero(
             (chainages >= drop.from_m + drop.ramp_m) & (chainages <= drop.to_m - drop.ramp_m)
         )
-        if there.size < 2 or float((bend - inner)[there].min()) < 0.3 + 2 * _BLOCK_M:
+        if there.size < 2 or float((bend - inner)[there].min()) < _FROM_CURB_M + 2 * _BLOCK_M:
             continue
-        near = inner[there] + 0.3
+        near = inner[there] + _FROM_CURB_M
         _add_blocks(section, built, (chainages[there], near, near + 2 * _BLOCK_M), side)
+
+
+def _add_tactile_of_corner(
+    section: Section, corner: CornerLayout, where: tuple[int, int], built: Built
+) -> None:
+    """Blocks with dots before a corner's lowered curb, as wide as it is."""
+    side, number = where
+    first = first_of_walk(corner.sweep)
+    random = section.chance("tactile of a corner", side * (number + 1))
+    if first is None or not section.plan.side(side).has_tactile or random.random() < 0.2:
+        return
+    sweep, along = corner.sweep, corner.track.along
+    near, far = (
+        section.alignment.at(
+            sweep.chainages[:, line], sweep.offsets[:, line], sweep.heights[:, line]
+        )
+        for line in (first, first + 1)
+    )
+    wide = np.linalg.norm(far - near, axis=1)
+    for drop in corner.drops:
+        low, high = drop.from_m + drop.ramp_m, drop.to_m - drop.ramp_m
+        long = min(float(random.uniform(1.8, 4.0)), high - low)
+        # Towards the side street, which is what people cross there.
+        start = low + float(random.uniform(0.5, 1.0)) * (high - low - long)
+        is_low = (along >= start) & (along <= start + long)
+        for first_node, last in _stretches(is_low & (wide >= _FROM_CURB_M + _BLOCK_M)):
+            there = slice(first_node, last)
+            if last - first_node < 3:
+                continue
+            blocks = 2 if wide[there].min() >= _FROM_CURB_M + 2 * _BLOCK_M else 1
+            ways = (far - near)[there] / wide[there, None]
+            starts = near[there] + _FROM_CURB_M * ways + np.array([0.0, 0.0, _BLOCK_HIGH_M])
+            steps = np.linspace(0.0, blocks * _BLOCK_M, blocks + 1)
+            rows = starts[:, None] + steps[:, None] * ways[:, None]
+            built.mesh.add(grid(rows), Material.TACTILE, GROUND, NO_THING)
 
 
 def _add_blocks(

@@ -13,6 +13,7 @@ from processing.simulate.gutters.aprons import add_aprons
 from processing.simulate.gutters.gutters import add_gutters
 from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.roadside.furniture import add_furniture
+from processing.simulate.roadway.box_lids import add_box_lids
 from processing.simulate.roadway.ends import add_ends
 from processing.simulate.roadway.islands import add_islands
 from processing.simulate.roadway.junctions import add_junctions
@@ -35,6 +36,7 @@ MAKERS: tuple[Maker, ...] = (
     add_ends,
     add_markings,
     add_pavement,
+    add_box_lids,
     add_aprons,
     add_gutters,
     add_furniture,
