@@ -236,7 +236,7 @@ class _Work:
         images = write_images(
             self.folder,
             poses_of_pass(driven),
-            SeenStreet(self.street, movers).at,
+            SeenStreet(self.street, movers, monitor.check).at,
             monitor,
             seed=self.wish.seed,
             rig=rig_of(self.wish.seed),

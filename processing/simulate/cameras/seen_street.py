@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,10 +26,12 @@ class SeenStreet:
     street : Street
     movers : sequence of Mover
         Of the pass.
+    check : callable
+        Raises when the work shall end.
     """
 
-    def __init__(self, street: Street, movers: Sequence[Mover]) -> None:
-        self._street, self._movers = street, movers
+    def __init__(self, street: Street, movers: Sequence[Mover], check: Callable[[], None]) -> None:
+        self._street, self._movers, self._check = street, movers, check
         self._row = -1
         self._standing: Scene | None = None
 
@@ -37,7 +39,8 @@ class SeenStreet:
         """The scenes around a pose at its time: what stands, and what moves."""
         row = self._street.within(pose.chainage_m, pose.chainage_m)[0]
         if self._standing is None or row != self._row:
-            self._standing, self._row = scene_around(self._street, row, _REACH_M), row
+            self._standing = scene_around(self._street, row, _REACH_M, self._check)
+            self._row = row
         meshes = [self._placed(one, pose) for one in self._movers if self._is_near(one, pose)]
         if not meshes:
             return [self._standing]

@@ -9,11 +9,14 @@ from __future__ import annotations
 import os
 from collections import deque
 from collections.abc import Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import dataclass
+from threading import Event
+from typing import TypeVar
 
 import numpy as np
 
+from processing.errors import Cancelled
 from processing.monitor import Monitor
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats, Integers
@@ -35,7 +38,10 @@ from processing.simulate.street.street import BuiltSection, Street
 
 _STRETCH = 1 << 17
 _REACH_M = 110.0
+_PATIENCE_S = 0.05  # between questions whether to stop
 _WORKERS = max(2, min(8, os.cpu_count() or 2))
+
+Found = TypeVar("Found")
 
 
 @dataclass(frozen=True)
@@ -100,23 +106,30 @@ class Recording:
         Cancelled
         """
         spans = self._spans()
+        ended = Event()
+
+        def check() -> None:
+            if ended.is_set():
+                raise Cancelled
+
         with ThreadPoolExecutor(_WORKERS) as pool:
-            coming = pool.submit(scene_around, self._street, spans[0][0], _REACH_M)
+            coming = pool.submit(scene_around, self._street, spans[0][0], _REACH_M, check)
             waiting: deque[Future[Stretch]] = deque()
             try:
                 for number, (_, pulses) in enumerate(spans):
-                    scene = coming.result()
+                    scene = _result(coming, monitor)
                     if number + 1 < len(spans):
                         row = spans[number + 1][0]
-                        coming = pool.submit(scene_around, self._street, row, _REACH_M)
+                        coming = pool.submit(scene_around, self._street, row, _REACH_M, check)
                     for head, part in self._tasks(pulses):
                         waiting.append(pool.submit(self._record, scene, head, part))
                         while len(waiting) > 2 * _WORKERS:
-                            yield _next(waiting, monitor)
+                            yield _result(waiting.popleft(), monitor)
                     monitor.report(pulses.stop / max(1, self.pulses))
                 while waiting:
-                    yield _next(waiting, monitor)
+                    yield _result(waiting.popleft(), monitor)
             finally:
+                ended.set()
                 coming.cancel()
                 for one in waiting:
                     one.cancel()
@@ -163,9 +176,12 @@ class Recording:
         return Stretch(head, noisy)
 
 
-def _next(waiting: deque[Future[Stretch]], monitor: Monitor) -> Stretch:
+def _result(coming: Future[Found], monitor: Monitor) -> Found:
+    """What a worker finds; whoever waits for it can be stopped meanwhile."""
     monitor.check()
-    return waiting.popleft().result()
+    while not wait((coming,), _PATIENCE_S).done:
+        monitor.check()
+    return coming.result()
 
 
 class Evidence:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from processing.simulate.mesh import Mesh
 from processing.simulate.scanning.casting import Scene
 from processing.simulate.street.street import Street
 
 
-def scene_around(street: Street, row: int, reach_m: float) -> Scene:
+def scene_around(street: Street, row: int, reach_m: float, check: Callable[[], None]) -> Scene:
     """Everything within a reach of a section.
 
     Parameters
@@ -16,10 +18,17 @@ def scene_around(street: Street, row: int, reach_m: float) -> Scene:
         Of the street's plans.
     reach_m : float
         Along the road, from the section's ends.
+    check : callable
+        Raises when the work shall end; asked before each section.
     """
     plan = street.plans[row]
     near = street.within(plan.start_m - reach_m, plan.end_m + reach_m)
-    mesh = Mesh.joined(street.section(one).mesh for one in near)
+    meshes = []
+    for one in near:
+        check()
+        meshes.append(street.section(one).mesh)
+    mesh = Mesh.joined(meshes)
+    check()
     middle = (plan.start_m + plan.end_m) / 2
     level = street.alignment.carriageway_height(middle, 0.0)
     return Scene(mesh, street.alignment.at(middle, 0.0, level))

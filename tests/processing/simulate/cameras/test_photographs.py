@@ -80,7 +80,7 @@ def test_the_same_seed_gives_the_same_bytes_and_a_street_is_in_them(
 ) -> None:
     contents, street = [], Street(3, RURAL, 40.0)
     for name in ("one", "other"):
-        seen = SeenStreet(street, [])
+        seen = SeenStreet(street, [], SilentMonitor().check)
         write_images(
             tmp_path / name, poses[:1], seen.at, SilentMonitor(),
             seed=3, rig=SMALL[:1], frame=Frame(ORIGIN, 0.0),
