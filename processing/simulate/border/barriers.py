@@ -59,7 +59,8 @@ def add_barriers(places: Places, built: Built) -> None:
                 draws = chance(section.seed, "barrier shape", side, round(plan.drain_m * 1e6))
                 BARRIERS[kind](draws, section, built, stretch)
         _add_noise_barrier(alike, places, built, side)
-        _add_rubber_poles(random, places, built, side)
+        if not kind:  # rubber poles stand on the line of a barrier's posts
+            _add_rubber_poles(random, places, built, side)
     _add_in_median(section, built)
 
 

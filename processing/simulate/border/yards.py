@@ -18,6 +18,7 @@ from processing.simulate.things import Built
 OTHER = 1
 
 _WALLS = (Material.CONCRETE, Material.OLD_CONCRETE, Material.BRICK, Material.PLASTER)
+_BEHIND_WALL_M = 0.25  # walls along front lines are up to 0.2 m thick
 _NO_WALL_SHARE = {"shop": 0.9, "parking": 0.45, "empty": 0.5, "greenhouse": 0.7, "hall": 0.4}
 
 
@@ -44,7 +45,10 @@ def add_boundary(
     at = float(random.uniform(start + 0.3, end - 0.3 - gate))
     choice, wall_kind = random.random(), _WALLS[int(random.integers(len(_WALLS)))]
     high, thick = float(random.uniform(0.6, 2.0)), float(random.uniform(0.1, 0.2))
-    for low, far in ((start, at), (at + gate, end)):
+    has_posts = choice < 0.5 and kind == "house"
+    wide, tall = float(random.uniform(0.25, 0.5)), float(random.uniform(1.1, 1.7))
+    room = wide if has_posts else 0.0  # posts stand at the ends of the wall, not in it
+    for low, far in ((start, at - room), (at + gate + room, end)):
         if far - low < 0.5:
             continue
         along = stations(low, far)
@@ -58,8 +62,8 @@ def add_boundary(
             add_bars(random, section, built, (low, far, offset_m + 0.05), (base, high * 0.6))
         else:
             add_mesh_fence(section, built, (low, far, offset_m), high + 0.2)
-    if choice < 0.5 and kind == "house":
-        _add_gate_posts(random, section, built, (at, at + gate, offset_m))
+    if has_posts:
+        _add_gate_posts(section, built, (at, at + gate, offset_m), (wide, tall))
 
 
 def add_mesh_fence(
@@ -113,10 +117,13 @@ def add_bars(
 
 
 def _add_gate_posts(
-    random: Generator, section: Section, built: Built, line: tuple[float, float, float]
+    section: Section,
+    built: Built,
+    line: tuple[float, float, float],
+    size: tuple[float, float],
 ) -> None:
-    wide, high = float(random.uniform(0.25, 0.5)), float(random.uniform(1.1, 1.7))
     low, far, offset = line
+    wide, high = size
     for at in (low - wide, far):
         shape = swept(section, stations(at, at + wide), offset, wall(0.35, high))
         built.mesh.add(shape, Material.BRICK, OTHER, built.thing("gate"))
@@ -154,7 +161,7 @@ def _machines(random: Generator, plot: Plot) -> Iterator[tuple[str, Part]]:
         wide = float(random.uniform(0.9, 1.2))
         if x + wide > plot.half_m:
             return
-        body = block((x, x + wide), (0.15, 0.9), (-BELOW_M, 1.83))
+        body = block((x, x + wide), (_BEHIND_WALL_M, 1.0), (-BELOW_M, 1.83))
         yield "vending_machine", (body, Material.PAINTED_METAL)
         x += wide + float(random.uniform(0.02, 0.12))
 

@@ -23,6 +23,8 @@ _LAMPS = 3
 _SHARE, _RURAL_SHARE = 0.55, 0.25
 # Lamps of 25 and 30 cm, lower edge 4.7 m above the road or more (信号機設置の指針).
 _LOWEST_M = 4.75
+_NAME_AT = 0.35  # of the arm's reach: where the plate with the junction's name hangs
+_HALF_HOUSING_M = 0.68  # of three lamps of 30 cm, and some room
 
 
 def has_signals(seed: int, plan: SectionPlan) -> bool:
@@ -74,8 +76,9 @@ def _add_signal(
     built.mesh.add(placed(body, where, looks_rad), Material.PAINTED_METAL, OTHER, instance)
     built.mesh.add(placed(lenses, where, looks_rad), Material.GLASS, OTHER, instance)
     if random.random() < 0.3:
-        plate = Plate("rectangle", float(random.uniform(0.9, 1.5)), 0.35)
-        middle = start + towards * (reach * 0.35) + look * 0.07 - [0.0, 0.0, 0.3]
+        most = 2 * ((1 - _NAME_AT) * reach - _HALF_HOUSING_M)
+        plate = Plate("rectangle", min(float(random.uniform(0.9, 1.5)), most), 0.35)
+        middle = start + towards * (reach * _NAME_AT) + look * 0.07 - [0.0, 0.0, 0.3]
         where_hung = Hung(middle, looks_rad, ground_m=post.ground_m)
         add_plate(built, plate, where_hung, post.spot.chainage_m)
     if random.random() < 0.7:

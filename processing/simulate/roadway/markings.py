@@ -48,7 +48,7 @@ def add_markings(section: Section, built: Built) -> None:
             _add_side_street(section, built, side, random, wear)
         return
     if not crossing and random.random() < 0.5:
-        rectangles += _symbols(section, random)
+        rectangles += symbols_of(section, random)
     add_paint(section, built, rectangles + crossing, random, wear)
 
 
@@ -136,18 +136,18 @@ def _crossing(section: Section, random: Generator) -> Iterator[Rectangle]:
     yield high + _STOP_BEFORE_M, high + _STOP_BEFORE_M + _STOP_M, right, -0.1
 
 
-def _symbols(section: Section, random: Generator) -> Iterator[Rectangle]:
-    """An arrow or a speed in each lane of one direction."""
+def symbols_of(section: Section, random: Generator) -> Iterator[Rectangle]:
+    """An arrow or a speed in each lane of one direction; arrows tell lanes of a town apart."""
     plan = section.plan
     if plan.length_m < 16 or plan.lane_m < _NARROW_M:
         return
     side = LEFT if random.random() < 0.6 else RIGHT
     at = plan.start_m + float(random.uniform(4.0, plan.length_m - 10.0))
-    is_speed = random.random() < 0.5
+    has_arrows = random.random() >= 0.5 and plan.style is URBAN and plan.lanes > 1
     first = "3456"[int(random.integers(4))]
     for lane in range(plan.lanes):
         offset = plan.lane_offset_m(lane)
-        shapes = _speed(first) if is_speed else _arrow()
+        shapes = _arrow() if has_arrows else _speed(first)
         for low, high, right, left in shapes:
             if side == LEFT:
                 yield at + low, at + high, offset + right, offset + left

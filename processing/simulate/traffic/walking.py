@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats
-from processing.simulate.street.plan import LEFT, SIDES, SectionPlan
+from processing.simulate.roadside.places import free_from_m
+from processing.simulate.street.plan import LEFT, SIDES, SectionPlan, SidePlan
 from processing.simulate.street.styles import HIGHWAY, URBAN
 from processing.simulate.things import Mover
 from processing.simulate.traffic.kinds import KINDS
@@ -31,6 +32,8 @@ _LANES = 5
 _APART_M = 1.3
 _HALF_M = 0.4  # of a person, for whom the walk must have room
 _BUSY = {"urban": (0.03, 0.5), "rural": (0.0, 0.08)}
+_POSTS_M, _BACK_M = 1.35, 0.85  # kept clear of a wide walk: posts, trees and boxes stand there
+_FREE_M = 0.3  # what has to be left of a walk between them
 _ROOM_M = 0.9  # between a walker's middle and what is parked, along the road
 
 
@@ -61,12 +64,12 @@ class Walks:
         plan = self._plans[row]
         side = LEFT if lane.offset_m > 0 else -LEFT
         away = abs(lane.offset_m)
-        walk = plan.side(side).band("walk")
-        if walk is None or not walk.inner_m + _HALF_M <= away <= walk.outer_m - _HALF_M:
+        low, far = _walked(plan.side(side))
+        if not low <= away <= far:
             return np.zeros(chainages.size, np.bool_)
         free = (chainages > plan.start_m) & (chainages < plan.end_m)
-        for low, high in self._taken(row, side, away):
-            free &= (chainages < low) | (chainages > high)
+        for start, end in self._taken(row, side, away):
+            free &= (chainages < start) | (chainages > end)
         return np.asarray(free)
 
     def _taken(self, row: int, side: int, away: float) -> Iterator[tuple[float, float]]:
@@ -78,6 +81,22 @@ class Walks:
             if one.side == side and abs(abs(one.offset_m) - away) <= reach:
                 half = one.along_m / 2 + _ROOM_M
                 yield one.chainage_m - half, one.chainage_m + half
+
+
+def _walked(side: SidePlan) -> tuple[float, float]:
+    """From and to which distance of the road's centre people walk; from > to where they don't.
+
+    Wide walks leave room between what stands behind the curb and what stands at their far edge.
+    """
+    walk = side.band("walk")
+    if walk is None:
+        return np.inf, -np.inf
+    low, far = walk.inner_m + _HALF_M, walk.outer_m - _HALF_M
+    behind_posts = max(low, free_from_m(side) + _POSTS_M)
+    if far - behind_posts < _FREE_M:
+        return low, far
+    before_back = walk.outer_m - _BACK_M
+    return behind_posts, before_back if before_back - behind_posts >= _FREE_M else far
 
 
 def walking_lanes(recorded: Recorded) -> list[Lane]:

@@ -120,3 +120,18 @@ def test_posts_have_the_girth_of_their_radius() -> None:
     assert np.hypot(*vertices[:, :2].T) == pytest.approx(0.1)
     assert vertices[:, 2].max() == 2.0
     assert triangles.max() < len(vertices)
+
+
+def test_rubber_poles_do_not_stand_in_the_line_of_a_barrier() -> None:
+    poles = 0
+    for seed in (205, 208, 0, 5):
+        for section in _sections(seed, URBAN):
+            built = Built(1)
+            add_barriers(Places(section), built)
+            mesh = built.mesh.mesh()
+            barriers = mesh.vertices[np.unique(mesh.triangles[mesh.label == 1])][:, :2]
+            for one in built.truth:
+                poles += 1
+                away = np.linalg.norm(barriers - one.xyz[0, :2], axis=1)
+                assert away.min(initial=np.inf) > 0.6
+    assert poles > 3

@@ -15,6 +15,7 @@ from processing.simulate.border.houses import (
     shop,
 )
 from processing.simulate.border.lots import add_lots, lots_of
+from processing.simulate.border.yards import yard_parts
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Mesh
 from processing.simulate.roadside.places import Places, Spot
@@ -115,3 +116,35 @@ def test_buildings_are_built_quickly_and_of_few_triangles() -> None:
 def test_a_section_has_the_same_lots_when_it_is_built_again() -> None:
     one, other = _sections(6, URBAN)[2], _sections(6, URBAN)[2]
     np.testing.assert_array_equal(_built(one)[0].vertices, _built(other)[0].vertices)
+
+
+def test_posts_of_a_gate_stand_beside_its_walls_not_in_them() -> None:
+    gates = 0
+    for section in _sections(205, URBAN):
+        mesh, built = _built(section)
+        of = {one.instance: one.kind for one in built.things}
+        places = {one: mesh.vertices[mesh.triangles[mesh.instance == one]] for one in of}
+        walls = [places[one].reshape(-1, 3)[:, :2] for one in of if of[one] == "wall"]
+        for gate in (places[one].reshape(-1, 3)[:, :2] for one in of if of[one] == "gate"):
+            gates += 1
+            middle = section.heading((section.plan.start_m + section.plan.end_m) / 2)
+            way = gate[np.linalg.norm(gate - gate[0], axis=1).argmax()] - gate[0]
+            along = np.array([np.cos(middle), np.sin(middle)])
+            along = along * np.sign(along @ way)
+            low, high = np.sort(gate @ along)[[0, -1]]
+            for wall in walls:
+                if np.linalg.norm(wall - gate.mean(axis=0), axis=1).min() < 1.5:
+                    first, last = (wall @ along).min(), (wall @ along).max()
+                    assert min(high, last) - max(low, first) < 0.1
+    assert gates > 3
+
+
+def test_vending_machines_stand_behind_the_wall_of_their_lot() -> None:
+    machines = 0
+    for number in range(200):
+        parts = yard_parts(chance(number, "yard"), Plot(12.0, 15.0), "shop", [], front_m=5.0)
+        for kind, (shape, _) in parts:
+            machines += 1
+            assert kind == "vending_machine"
+            assert shape[0][:, 1].min() > 0.2
+    assert machines > 20

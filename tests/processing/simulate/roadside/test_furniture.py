@@ -120,3 +120,23 @@ def test_guide_signs_over_the_road_leave_five_metres_free() -> None:
             assert low > road + 4.3
             found += 1
     assert found >= 1
+
+
+def test_the_plate_with_a_junctions_name_does_not_reach_into_its_lights() -> None:
+    plates = 0
+    for seed in (208, 210, 213):
+        made = Street(seed, URBAN, 250.0)
+        for row in made.within(-100.0, 250.0):
+            built = Built(1)
+            add_signals(Places(made.bare_section(row)), built)
+            mesh = built.mesh.mesh()
+            lights = [one.instance for one in built.things if one.kind == "signal"]
+            used = mesh.vertices[np.unique(mesh.triangles[np.isin(mesh.instance, lights)])]
+            for plate in (one for one in built.truth if one.file == "signs"):
+                plates += 1
+                high = used[used[:, 2] > plate.xyz[0, 2] - 0.2]
+                away = np.linalg.norm(high[:, :2] - plate.xyz[0, :2], axis=1).min()
+                wide = plate.facts["size_m"]
+                assert isinstance(wide, float)
+                assert away > wide / 2
+    assert plates > 0

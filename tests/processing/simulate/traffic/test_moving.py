@@ -13,7 +13,9 @@ from processing.simulate.street.street import Street
 from processing.simulate.street.styles import HIGHWAY, RURAL, STYLES, URBAN
 from processing.simulate.things import Mover
 from processing.simulate.traffic.footprints import Footprint
+from processing.simulate.traffic.lanes import Lane
 from processing.simulate.traffic.moving import MOST_INSTANCES, movers_of
+from processing.simulate.traffic.walking import Walks
 
 OWN_HALF_M = (2.4, 0.9)
 
@@ -144,3 +146,20 @@ def test_people_cross_the_whole_road_when_nothing_comes() -> None:
                 away = np.abs(driven.chainage_at(times) - one.way_at(times)[0])
                 assert away.min() > 5
     assert crossing > 1
+
+
+def test_people_keep_clear_of_posts_and_trees_on_wide_walks() -> None:
+    wide = 0
+    for seed in range(12):
+        street = Street(seed, URBAN, 60.0)
+        walks = Walks(seed, street.plans)
+        for plan in street.plans:
+            walk = plan.left.band("walk")
+            if walk is None or plan.left.strip_m or walk.outer_m - walk.inner_m < 2.6:
+                continue
+            wide += 1
+            middle = np.array([(plan.start_m + plan.end_m) / 2])
+            for offset in (walk.inner_m + 0.7, walk.inner_m + 1.0, walk.outer_m - 0.5):
+                lane = Lane("walkers", 0, offset, 1.0, 0.0, 3.0, 1.0, {"person": 1.0}, 1.3)
+                assert not walks.has_room(lane, middle).any()
+    assert wide > 3
