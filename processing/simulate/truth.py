@@ -17,6 +17,7 @@ from processing.simulate.mesh import Floats, Integers
 from processing.simulate.scanning.delivered_files import CRS_NAME
 from processing.simulate.scanning.passes import Pass
 from processing.simulate.scanning.recording import Evidence
+from processing.simulate.street.sweep import FACE_PIECE
 from processing.simulate.things import Thing, TrueFeature
 
 TRUTH_FILES = ("curbs", "gutters", "trees", "signs", "poles")
@@ -131,7 +132,13 @@ def _member(one: TrueFeature, seen: Seen, origin: Floats) -> Facts:
 
 
 def _curb(one: TrueFeature, pieces: Integers, seen: Seen) -> Facts:
-    """Stretches of 2 m with the points on them, and the share of half metres that have any."""
+    """Stretches of 2 m with the points on them, and the share of half metres that have any.
+
+    Points on the top of a stone show its upper edge only: at the far side of a median, say, no
+    point is near the lower one.
+    """
+    faces, tops = pieces[FACE_PIECE:], pieces[:FACE_PIECE]
+    pieces = faces if one.facts["edge"] == "lower" else faces + tops
     steps = np.linalg.norm(np.diff(one.xyz, axis=0), axis=1)
     along = np.r_[0.0, np.cumsum(steps)]
     long = float(along[-1])

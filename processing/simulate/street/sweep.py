@@ -1,8 +1,9 @@
 """A profile led along a track: its places, its triangles, and the curbs' truth.
 
-Each run of a curb is a thing of its own (kind ``curb``). The triangles of its face and of the
-first 10 cm of its top carry its instance; their piece is the number of half metres along its upper
-edge. A run is one curb of one type: a dropped part reaches from ramp's middle to ramp's middle.
+Each run of a curb is a thing of its own (kind ``curb``). The triangles of its face and of the first
+10 cm of its top carry its instance; their piece is the number of half metres along its upper edge,
+and `FACE_PIECE` more on the face, so that truth knows where the foot shows. A run is one curb of
+one type: a dropped part reaches from ramp's middle to ramp's middle.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ from processing.simulate.street.terrain import Terrain
 from processing.simulate.things import NO_THING, Built, TrueFeature
 
 PIECE_M = 0.5
-_LONGEST_RUN_M = 120.0
+FACE_PIECE = 128
+_LONGEST_RUN_M = 63.0  # pieces of tops and faces are told apart within a byte
 _SHORTEST_RUN_M = 0.05
 _LEAST_REAR_M = 0.015
 """A stone's rear edge that stands less above the walk is no edge."""
@@ -146,7 +148,9 @@ def add_runs(sweep: Sweep, alignment: Alignment, built: Built) -> None:
                 continue
             run = built.thing("curb")
             middles = (along[first:last] + along[first + 1 : last + 1]) / 2 - along[first]
-            piece = np.repeat((middles / PIECE_M).astype(np.int64), 2 * len(strips))
+            is_face = np.arange(len(strips)) == (0 if edge.foot < edge.top else len(strips) - 1)
+            piece = (middles / PIECE_M).astype(np.int64)[:, None] + FACE_PIECE * is_face
+            piece = np.repeat(piece.ravel(), 2)
             built.mesh.add(grid(piece_rows), material, CURB, run, piece=piece)
             lines = (upper[first : last + 1], lower[first : last + 1])
             chainage = float(np.mean(sweep.chainages[first : last + 1, edge.foot]))

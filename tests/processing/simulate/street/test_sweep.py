@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.roadway.ends import add_ends
@@ -16,7 +17,7 @@ from processing.simulate.street.section import Section
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import HIGHWAY, URBAN, Style
 from processing.simulate.street.surfaces import add_ground
-from processing.simulate.street.sweep import PIECE_M, Sweep
+from processing.simulate.street.sweep import FACE_PIECE, PIECE_M, Sweep
 from processing.simulate.things import Built, TrueFeature
 
 CLOSE_M = 1e-4
@@ -148,7 +149,25 @@ def test_pieces_count_half_metres_along_the_upper_edge(built: Whole) -> None:
             if one.facts["edge"] == "upper":
                 length = np.linalg.norm(np.diff(one.xyz, axis=0), axis=1).sum()
                 pieces = mesh.piece[mesh.instance == one.instance]
-                assert abs(int(pieces.max()) - length / PIECE_M) <= 2
+                for part in (pieces[pieces < FACE_PIECE], pieces[pieces >= FACE_PIECE]):
+                    assert abs(int(part.max() % FACE_PIECE) - length / PIECE_M) <= 2
+
+
+def test_faces_are_told_from_tops_so_that_truth_knows_where_a_foot_shows(built: Whole) -> None:
+    faces = 0
+    for _, mesh, truth in built:
+        for one in truth:
+            if one.facts["edge"] == "lower":
+                own = mesh.instance == one.instance
+                corners = mesh.vertices[mesh.triangles[own & (mesh.piece >= FACE_PIECE)]]
+                places = cKDTree(corners.reshape(-1, 3))
+                away, _ = places.query(one.xyz)
+                assert away.max() < 0.002
+                tops = mesh.triangles[own & (mesh.piece < FACE_PIECE)]
+                higher = mesh.vertices[tops][..., 2].max() - one.xyz[:, 2].min()
+                assert higher > 0
+                faces += 1
+    assert faces > 5
 
 
 def _meets(one: Section, other: Section, side: int) -> bool:
