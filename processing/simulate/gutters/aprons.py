@@ -254,19 +254,34 @@ def _add_grating(
     )
     x, y = habit.grating_m / 2, wide / 2
     ring = np.array([[-x, -y, 0], [x, -y, 0], [x, y, 0], [-x, y, 0], [-x, -y, 0]])
-    facts: dict[str, Fact] = {
+    facts = grating_facts((wide, habit.grating_m), (basin, 0), side)
+    built.truth.append(
+        TrueFeature("gutters", "Polygon", middle + ring @ axes, facts, instance, chainage)
+    )
+
+
+def grating_facts(
+    size_m: tuple[float, float], place: tuple[int, int], side: int
+) -> dict[str, Fact]:
+    """What the truth tells of a grating.
+
+    Parameters
+    ----------
+    size_m : (float, float)
+        Across its gutter and along it.
+    place : (int, int)
+        Its run, and which it is there.
+    """
+    return {
         "kind": "gutter",
         "type": "grating",
-        "width_m": round(wide, 4),
-        "length_m": round(habit.grating_m, 4),
-        "run": basin,
-        "order": 0,
+        "width_m": round(size_m[0], 4),
+        "length_m": round(size_m[1], 4),
+        "run": place[0],
+        "order": place[1],
         "holes": 0,
         "hole_length_m": 0.0,
         "hole_width_m": 0.0,
         "side": "left" if side == LEFT else "right",
         "uncovered": 1.0,
     }
-    built.truth.append(
-        TrueFeature("gutters", "Polygon", middle + ring @ axes, facts, instance, chainage)
-    )

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.simulate.mesh import Floats, grid
+from processing.simulate.roadway.transverse import transverse_of
 from processing.simulate.street.corner_track import CornerTrack
 from processing.simulate.street.junction_shape import Mouth
 from processing.simulate.street.layout import CornerLayout
@@ -15,11 +16,14 @@ from processing.simulate.street.surfaces import asphalt_of
 from processing.simulate.street.sweep import SKIRT_M, add_runs, add_surfaces
 from processing.simulate.things import NO_THING, Built
 
-_COLUMNS = 9
+CARRIAGEWAY_COLUMNS = 9
+"""Nodes across a side street."""
+
 _UNDER_M = 0.05
 _BELOW_M = 0.008
 """The side street's asphalt reaches under the road's, so that no beam passes between them."""
 
+_LEAST_ROW_M = 0.02
 _LAND_ACROSS_M, _LAND_ALONG_M = 0.8, 2.0
 
 
@@ -103,9 +107,13 @@ def _add_carriageway(
     top = min(float(one[-1]) for one in depths)
     beside = np.unique(np.concatenate([[0.0, top], *depths]))
     beside = beside[(beside >= 0) & (beside <= top)]
-    beside = beside[np.append(True, np.diff(beside) > 0.02)]
+    beside = beside[np.append(True, np.diff(beside) > _LEAST_ROW_M)]
+    gutter = transverse_of(section, mouth)
+    if gutter is not None:
+        apart = (beside < gutter[0] - _LEAST_ROW_M) | (beside > gutter[1] + _LEAST_ROW_M)
+        beside = np.sort(np.concatenate([beside[apart], gutter]))
     low, high = street_sides(corners, beside)
-    share = np.linspace(0.0, 1.0, _COLUMNS)
+    share = np.linspace(0.0, 1.0, CARRIAGEWAY_COLUMNS)
     along = low[:, None] + share * (high - low)[:, None]
     deep = np.broadcast_to(beside[:, None], along.shape)
     chainage, offset = corners[0].track.placed(along, deep)
@@ -114,4 +122,7 @@ def _add_carriageway(
     under_s, under_o = corners[0].track.placed(along[:1], deep[:1] - _UNDER_M)
     below = section.layout.terrain.height(under_s, under_o) - _BELOW_M
     rows = np.concatenate([section.alignment.at(under_s, under_o, below), rows])
-    built.mesh.add(grid(rows), asphalt_of(section.seed), ROAD, NO_THING)
+    opening = len(rows) if gutter is None else int(np.searchsorted(beside, gutter[0])) + 2
+    for part in (rows[:opening], rows[opening:]):
+        if len(part) > 1:
+            built.mesh.add(grid(part), asphalt_of(section.seed), ROAD, NO_THING)

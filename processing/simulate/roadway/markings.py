@@ -12,6 +12,7 @@ from processing.simulate.materials import Material
 from processing.simulate.mesh import grid
 from processing.simulate.roadway.junctions import street_height, street_sides
 from processing.simulate.roadway.paint import Rectangle, add_paint, dashes
+from processing.simulate.roadway.transverse import transverse_of
 from processing.simulate.street.corner_track import CornerTrack
 from processing.simulate.street.junction_shape import Mouth
 from processing.simulate.street.plan import LEFT, RIGHT, SIDES
@@ -191,8 +192,11 @@ def _add_side_street(
     deepest = max(one.radius_m for one in part.mouth.corners)
     wide = float(random.uniform(2.5, 3.5))
     first = deepest * float(random.uniform(0.6, 1.0)) + 0.4
-    has_zebra = random.random() < 0.6
+    gutter = transverse_of(section, part.mouth)
+    has_zebra = random.random() < 0.6 and gutter is None
     stop = first + (wide + 1.0 if has_zebra else 0.0)
+    if gutter is not None:
+        stop = gutter[1] + 0.5
     track = part.corners[0].track
     low, high = street_sides(part.corners, np.array([first + wide, stop]))
     if has_zebra:

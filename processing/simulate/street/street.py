@@ -11,6 +11,7 @@ import numpy as np
 
 from processing.simulate.gutters.aprons import add_aprons
 from processing.simulate.gutters.gutters import add_gutters
+from processing.simulate.gutters.transverse_gutters import add_transverse_gutters
 from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.roadside.furniture import add_furniture
 from processing.simulate.roadway.box_lids import add_box_lids
@@ -39,6 +40,7 @@ MAKERS: tuple[Maker, ...] = (
     add_box_lids,
     add_aprons,
     add_gutters,
+    add_transverse_gutters,
     add_furniture,
     add_parked,
 )

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from processing.simulate.gutters.aprons import add_aprons
+from processing.simulate.gutters.transverse_gutters import add_transverse_gutters
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Mesh
 from processing.simulate.roadway.ends import add_ends
@@ -22,6 +23,7 @@ from processing.simulate.things import Built, TrueFeature
 
 MAKERS = (
     add_ground, add_junctions, add_islands, add_ends, add_markings, add_pavement, add_aprons,
+    add_transverse_gutters,
 )  # fmt: skip
 SKY_M = 300.0
 
