@@ -18,7 +18,7 @@ from processing.simulate.things import Built
 LONGEST_SPAN_M = 75.0
 _STEPS = 12
 _USUAL_SPAN_M = 30.0
-_THINNEST_M = 0.004  # radius: beams are spread and must meet it
+_SEEN_WIDER_M = 0.004  # a beam 15 m away is as wide as a wire, and returns from its edge too
 
 
 def hanging(starts: Floats, ends: Floats, sags: Floats, steps: int = _STEPS) -> Floats:
@@ -48,7 +48,7 @@ def add_wires(places: Places, built: Built) -> None:
         sags = (
             line.cables[:, 3] * (span / _USUAL_SPAN_M) ** 2 * random.uniform(0.8, 1.25, len(ends))
         )
-        radii = np.maximum(line.cables[:, 2], _THINNEST_M)[:, None]
+        radii = (line.cables[:, 2] + _SEEN_WIDER_M)[:, None]
         instance = built.thing("wire")
         built.mesh.add(
             rods(hanging(starts, ends, sags), np.repeat(radii, _STEPS + 1, 1), 5, is_closed=False),

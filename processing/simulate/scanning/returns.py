@@ -158,9 +158,13 @@ def surface_table() -> Floats:
     )
 
 
+def weakest_of(sensor: Sensor) -> float:
+    """The weakest echo that a scanner takes for one; 1 is that of a white surface 10 m away."""
+    return _WEAKEST_SHARE * (10.0 / (0.25 * sensor.most_m)) ** 2
+
+
 def scanner_numbers(sensor: Sensor, pulses: int, weather: Weather) -> Floats:
     """The numbers of a scanner for the kernels: (10,) float64."""
-    weakest = _WEAKEST_SHARE * (10.0 / (0.25 * sensor.most_m)) ** 2
     return np.array(
         [
             sensor.noise_m,
@@ -169,7 +173,7 @@ def scanner_numbers(sensor: Sensor, pulses: int, weather: Weather) -> Floats:
             2 * np.pi / pulses,
             sensor.returns,
             float(sensor.measures_by == "phase"),
-            weakest,
+            weakest_of(sensor),
             weather.levelled,
             weather.wetness,
             _PULSE_LENGTH_M,

@@ -24,6 +24,7 @@ from processing.simulate.scanning.returns import (
     Returns,
     numbered,
     shares_of,
+    weakest_of,
 )
 from processing.simulate.scanning.sensors import Sensor
 
@@ -32,6 +33,7 @@ _SLOT_S = 1.0
 _LEAST_M = 0.6
 _MIRRORS = (Material.GLASS, Material.MIRROR, Material.WATER)
 _MIRRORED_SHARE = 0.25
+_MIRRORED_POWER = 0.008  # of a white surface seen in a pane, twice through a tenth of the light
 _LEVEL = 0.7  # of a normal's z: water and wet ground rather than windows
 _WEAK = 0.02  # of the power that a white surface 10 m away gives
 _JUMPING_SHARE = 0.02
@@ -206,7 +208,10 @@ class NoiseSource:
         ways = beams.ways[rows]
         turned = ways - 2 * np.einsum("ij,ij->i", ways, normals)[:, None] * normals
         beyond = scene.cast(places + 0.01 * turned, turned).ranges
-        is_back = np.isfinite(beyond) & (met.ranges[rows] + beyond < self._sensor.most_m)
+        away = np.where(np.isfinite(beyond), met.ranges[rows] + beyond, NOWHERE)
+        lucky = 0.5 + shares_of(beams.first + rows, self._key + 401)
+        is_back = _MIRRORED_POWER * (10.0 / away) ** 2 > weakest_of(self._sensor) * lucky
+        is_back &= away < self._sensor.most_m
         ranges[rows[is_back]] = met.ranges[rows[is_back]] + beyond[is_back]
         return rows[is_back & (np.abs(normals[:, 2]) > _LEVEL)]
 
