@@ -89,8 +89,8 @@ class Recording:
 
     @property
     def pulses(self) -> int:
-        """Of one head, in all."""
-        return int(self._driven.duration_s * self._setup.spin.rate_hz)
+        """Of one head, in all; one at least, however short the pass."""
+        return max(1, int(self._driven.duration_s * self._setup.spin.rate_hz))
 
     def sections(self) -> Iterator[BuiltSection]:
         """The sections that are seen, in their order along the street; built when asked for."""

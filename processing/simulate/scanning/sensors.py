@@ -2,14 +2,26 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Literal, cast
 
 from processing.errors import BadFile, named, told_as_user_error
 from processing.text import Text
 from resources import path_of
+
+_LIMITS = {
+    "turns_per_s": (0.1, 1000.0),
+    "pulses": (1, 50_000),
+    "most_m": (1.0, 5000.0),
+    "noise_m": (1e-6, 1.0),
+    "exit_m": (0.0, 1.0),
+    "divergence_rad": (1e-6, 0.1),
+    "returns": (1, 15),  # as many as LAS 1.4 can count
+}
+"""What any scanner lies within, by far: own files are refused beyond."""
 
 
 @dataclass(frozen=True)
@@ -158,18 +170,31 @@ def _check(sensor: Sensor) -> None:
     ------
     ValueError
     """
-    positive = {
-        "turns_per_s": sensor.turns_per_s,
-        "pulses": sensor.pulses,
-        "most_m": sensor.most_m,
-        "noise_m": sensor.noise_m,
-        "divergence_rad": sensor.divergence_rad,
-        "returns": sensor.returns,
-    }
-    for name, value in positive.items():
-        if not value > 0:
-            raise ValueError(f"{name} = {value}")
+    for name, (low, high) in _LIMITS.items():
+        _check_number(name, getattr(sensor, name), low, high)
     if sensor.measures_by not in ("pulse", "phase"):
         raise ValueError(f"measures_by = {sensor.measures_by}")
     if sensor.kind == "mobile" and not sensor.heads:
         raise ValueError("mount")
+    for head in sensor.heads:
+        _check_head(head)
+    if len({head.name for head in sensor.heads}) < len(sensor.heads):
+        raise ValueError("mount.name")
+
+
+def _check_head(head: Head) -> None:
+    # Files are named after it.
+    if not isinstance(head.name, str) or not re.fullmatch(r"[\w-]+", head.name):
+        raise ValueError(f"mount.name = {head.name}")
+    _check_number("mount.source_id", head.source_id, 0, 65_535)
+    for angle in (head.yaw_deg, head.pitch_deg):
+        _check_number("mount.yaw_deg, pitch_deg", angle, -360, 360)
+    for place in head.lever_m:
+        _check_number("mount.lever_m", place, -20, 20)
+
+
+def _check_number(name: str, value: object, low: float, high: float) -> None:
+    is_whole = name in ("pulses", "returns", "mount.source_id")
+    is_number = isinstance(value, int if is_whole else (int, float)) and value is not True
+    if not is_number or not low <= cast("float", value) <= high:
+        raise ValueError(f"{name} = {value} ({low:g} … {high:g})")

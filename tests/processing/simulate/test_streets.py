@@ -147,6 +147,12 @@ def test_phase_scanners_record_too(made: Maker) -> None:
     assert len(points.points) > 5000
 
 
+def test_the_shortest_and_fastest_pass_of_the_slowest_sensor_is_recorded(made: Maker) -> None:
+    wish = replace(_WISH, style="highway", length_m=10.0, speed_km_h=130.0, pulses=1)
+    folder = made(replace(wish, turns_per_s=0.5))
+    assert len(laspy.read(folder / "left.laz").points) <= 4
+
+
 def test_a_stopped_simulation_leaves_nothing(tmp_path: Path) -> None:
     class Stopping(SilentMonitor):
         calls = 0

@@ -8,6 +8,7 @@ import pytest
 
 from processing.errors import BadFile, MissingInput, OutOfRange
 from processing.simulate.scanning.sensors import SENSORS, sensor_of
+from resources import path_of
 
 _OWN = """
 [[mount.mine]]
@@ -49,6 +50,14 @@ def test_an_own_sensor_is_taken_from_its_file(tmp_path: Path) -> None:
     assert sensor.heads[0].lever_m == (-1.0, 0.2, 0.9)
 
 
+@pytest.mark.parametrize("language", ["en", "ja"])
+def test_the_manuals_example_is_a_sensor(tmp_path: Path, language: str) -> None:
+    page = path_of(f"manual/{language}") / "simulate.html"
+    _, example = page.read_text(encoding="utf-8").split("<pre><code>")
+    sensor = sensor_of("", "mobile", _file(tmp_path, example.split("</code>")[0]))
+    assert sensor.name.en == "MMS-3"
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
     [
@@ -61,6 +70,17 @@ def test_an_own_sensor_is_taken_from_its_file(tmp_path: Path) -> None:
         ("[[sensor]]", "[[sensor"),
         ('"pulse"', '"sonar"'),
         ("[-1.0, 0.2, 0.9]", "[-1.0, 0.2]"),
+        ("[-1.0, 0.2, 0.9]", "[-1.0, 0.2, nan]"),
+        ("pulses = 900", "pulses = 900.5"),
+        ("pulses = 900", "pulses = 100000000000"),
+        ("turns_per_s = 60.0", "turns_per_s = inf"),
+        ("most_m = 90.0", "most_m = nan"),
+        ("noise_m = 0.01", "noise_m = true"),
+        ("exit_m = 0.01", "exit_m = -1.0"),
+        ("returns = 2", "returns = 300"),
+        ("source_id = 1", "source_id = 70000"),
+        ("yaw_deg = 170.0", "yaw_deg = 'left'"),
+        ('"rear"', "'../../rear'"),
     ],
 )
 def test_a_file_that_describes_none_is_told(tmp_path: Path, old: str, new: str) -> None:
