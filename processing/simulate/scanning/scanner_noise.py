@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
@@ -222,13 +223,15 @@ class NoiseSource:
             return returns
         is_below = np.isin(met.label[rows], _GROUND_LABELS) & (ranges[rows] > met.ranges[rows])
         is_below |= np.isin(rows, is_level)
+        places = beams.origins[rows] + beams.ways[rows] * ranges[rows, None]
+        is_below |= _under_ground(recorded.scene, places)
         label = np.where(is_below, LOW_NOISE, HIGH_NOISE).astype(np.uint8)
         weak = 10.0 ** (-3.0 + 2.5 * shares_of(beams.first + rows, self._key + 500))
         ones = np.ones(rows.size, np.uint8)
         noise = Returns(
             beams.first + rows,
             beams.time_s[rows],
-            beams.origins[rows] + beams.ways[rows] * ranges[rows, None],
+            places,
             weak,
             ones,
             ones,
@@ -240,3 +243,12 @@ class NoiseSource:
         kept = returns.chosen(~is_replaced[returns.pulse - beams.first])
         joined = Returns.joined([kept, noise])
         return numbered(joined.chosen(np.argsort(joined.pulse, kind="stable")))
+
+
+def _under_ground(scene: Scene, places: Floats) -> NDArray[np.bool_]:
+    """Whether ground is the first thing above places: what panes mirror may seem to lie there."""
+    hits = scene.cast(places, np.broadcast_to([0.0, 0.0, 1.0], places.shape))
+    is_hit = hits.triangles >= 0
+    under: NDArray[np.bool_] = np.zeros(is_hit.size, np.bool_)
+    under[is_hit] = np.isin(scene.mesh.label[hits.triangles[is_hit]], _GROUND_LABELS)
+    return under

@@ -170,3 +170,20 @@ def test_weak_returns_of_a_phase_scanner_jump_by_whole_waves() -> None:
     jumped = (np.abs(waves - np.round(waves)) < 0.05) & (np.abs(np.round(waves)) >= 1)
     assert jumped.sum() > 100
     assert set(noisy.label[jumped].tolist()) <= {7, 18}
+
+
+def test_what_a_pane_mirrors_from_the_ground_is_noise_below_the_ground() -> None:
+    built = _floor(Material.ASPHALT)
+    pane = np.array([[[7.95, -5.0, 0.5], [7.95, 5.0, 0.5]], [[8.05, -5.0, 2.4], [8.05, 5.0, 2.4]]])
+    built.add(grid(pane), Material.GLASS, 6, 9)
+    mesh = built.mesh()
+    scene, beams = Scene(mesh, np.zeros(3)), _fan(6000, 75.0, 89.0)
+    met = Met.of(scene.cast(beams.origins, beams.ways), mesh)
+    quiet = replace(_PULSE, noise_m=0.0)
+    returns = returns_of(beams, met, scene, scanner_numbers(quiet, 3000, Weather(0.0, 0.5)), 99)[0]
+    noisy = NoiseSource(3, (0, 0), quiet, Spin(3000, 100.0, 0.0)).added(
+        Recorded(beams, met, returns, scene)
+    )
+    is_low = noisy.xyz[:, 2] < -0.1
+    assert is_low.sum() > 20
+    assert (noisy.label[is_low] == 7).all()
