@@ -86,8 +86,12 @@ def disturbed_rows(folder: Path) -> Iterator[list[str]]:
         for place, counted in enumerate(scores[0].counts):
             values = [one.counts[place].counts.f_measure for one in scores]
             if not np.isnan(values[0]):
-                yield [scorer.tool, counted.name.en, *(f"{value:.3f}" for value in values)]
+                yield [scorer.tool, counted.name.en, *map(_cell, values)]
         for place, share in enumerate(scores[0].shares):
             values = [one.shares[place].share.value for one in scores]
             if not np.isnan(values[0]):
-                yield [scorer.tool, f"share: {share.name.en}", *(f"{one:.3f}" for one in values)]
+                yield [scorer.tool, f"share: {share.name.en}", *map(_cell, values)]
+
+
+def _cell(value: float) -> str:
+    return "–" if np.isnan(value) else f"{value:.3f}"

@@ -89,10 +89,17 @@ def test_help_lists_what_can_be_set_with_units_and_defaults(
     assert "--set style=urban urban | rural | highway" in told
 
 
+# What runs in the background of a shell is started deaf to Ctrl-C.
+_HEARING = (
+    "import runpy, signal; signal.signal(signal.SIGINT, signal.default_int_handler);"
+    "runpy.run_module('app', run_name='__main__')"
+)
+
+
 def test_ctrl_c_ends_a_simulation_as_cancelled_with_nothing_left(tmp_path: Path) -> None:
     arguments = ["simulate", "street", "--length", "600", "--out", str(tmp_path / "street")]
     with subprocess.Popen(
-        [sys.executable, "-m", "app", *arguments],
+        [sys.executable, "-c", _HEARING, *arguments],
         cwd=ROOT,
         env={**os.environ, "HOME": str(tmp_path.parent)},
         stderr=subprocess.PIPE,
