@@ -219,7 +219,7 @@ class _Work:
                 strength,
                 returns.number,
                 returns.count,
-                stretch.head.source_id,
+                stretch.head.source_id + number * len(self.sensor.heads),
             )
         )
         files.labels.write(returns.label)

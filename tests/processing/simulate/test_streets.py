@@ -135,6 +135,8 @@ def test_a_second_pass_is_another_delivery_of_the_same_street(made: Maker) -> No
         "left_2.laz",
         "right_2.laz",
     }
+    ids = {one.name: set(laspy.read(one).point_source_id.tolist()) for one in folder.glob("*.laz")}
+    assert sorted(ids.values(), key=min) == [{1}, {2}, {3}, {4}]  # each is a drive of its own
     first, second = (read_trajectory_csv(folder / f"trajectory{end}.csv") for end in ("", "_2"))
     assert second.time[0] > first.time[-1]
     assert np.linalg.norm(first.xyz[0, :2] - second.xyz[-1, :2]) < 15
