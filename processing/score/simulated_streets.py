@@ -22,6 +22,8 @@ from numpy.typing import NDArray
 from processing.formats.safe_write import written_safely
 from processing.formats.trajectory_csv import read_trajectory_csv
 from processing.monitor import SilentMonitor
+from processing.points.point_source import PointColumns
+from processing.points.pulse_clock import estimate_clock
 from processing.score.disturbed_truths import disturbed_rows
 from processing.score.filter_tables import markdown_table
 from processing.score.filters import with_section
@@ -218,16 +220,18 @@ def density_share(cloud: Cloud, folder: Path, wish: StreetWish) -> float:
 
 
 def pulse_rate(path: Path) -> float:
-    """Pulses per second from the times of a file's points alone."""
-    times = np.unique(np.asarray(laspy.read(path).gps_time))
-    steps = np.diff(times)
-    step = float(np.median(steps[steps < 2 * np.percentile(steps, 5)]))
-    window = 4
-    while window < times.size:  # the step known so far must count a window without a mistake
-        since = times[:window] - times[0]
-        step *= float(np.polyfit(np.round(since / step), since / step, 1)[0])
-        window *= 3
-    return 1.0 / step
+    """Pulses per second as an import finds them from a file's times; NaN where it finds none."""
+    points = laspy.read(path)
+    sample = PointColumns(
+        np.column_stack([points.X, points.Y, points.Z]),
+        tuple(points.header.scales),
+        tuple(points.header.offsets),
+        np.asarray(points.gps_time),
+        np.asarray(points.return_number),
+        np.asarray(points.number_of_returns),
+    )
+    clock = estimate_clock([sample])
+    return np.nan if clock is None else 1.0 / clock.interval_s
 
 
 @dataclass
