@@ -94,6 +94,8 @@ class Simulations(QObject):
             self._tell_truth(self._importing.pop(job))
 
     def _on_jobs_failed(self, job: str, error: UserError) -> None:
+        if job == self._forecast and self._form is not None:
+            self._form.show_refusal(error.line(self._parts.language))
         if job in self._making:
             self._parts.message_bar.show_error(error)
         self._on_jobs_cancelled(job)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from PySide6.QtWidgets import QApplication, QToolButton
+from PySide6.QtWidgets import QApplication, QLabel, QPushButton, QToolButton
 
 from app.application import build_window, make_application
 from app.settings import Settings
@@ -106,6 +106,19 @@ def test_the_form_tells_what_its_last_values_give(qtbot, parts) -> None:
     assert not parts.jobs.statuses
     form.close()
     QApplication.processEvents()
+
+
+def test_the_form_tells_what_is_wrong_with_an_own_sensor(qtbot, parts, tmp_path) -> None:
+    own = tmp_path / "センサー.toml"
+    own.write_text("[[sensor]]\n", encoding="utf-8")
+    form = form_of(parts)
+    wish = StreetWish(own_sensor=str(own))
+    form.forecast_wanted.emit(SimulationWish("street", wish, tmp_path / "a"))
+    told = form.findChildren(QLabel)
+    qtbot.waitUntil(lambda: any(own.name in one.text() for one in told), timeout=WAIT_MS)
+    create = next(one for one in form.findChildren(QPushButton) if one.text() == "Create")
+    assert not create.isEnabled()
+    form.close()
 
 
 def test_the_form_is_shown_once(parts) -> None:

@@ -164,6 +164,12 @@ class SimulateForm(QDialog):
             gap, speed = 100 * survey.between_turns_m, _KM_H * survey.speed_m_s
             self._lines.setText(told.format(gap=f"{gap:.1f}", speed=f"{speed:.0f}"))
 
+    def show_refusal(self, told: str) -> None:
+        """Tell why nothing can be made of the values."""
+        self._estimate.clear()
+        self._say(told)
+        self._make.setEnabled(False)
+
     @override
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.key() == Qt.Key.Key_F1:
