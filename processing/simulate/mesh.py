@@ -140,8 +140,8 @@ def tube(path: Floats, radii: Floats, sides: int, *, is_closed: bool = True) -> 
     """
     ways = np.gradient(path, axis=0)
     ways /= np.linalg.norm(ways, axis=1)[:, None]
-    helper = np.where(np.abs(ways[:, 2:]) > 0.9, [[1.0, 0.0, 0.0]], [[0.0, 0.0, 1.0]])
-    first = np.cross(ways, helper)
+    aside = np.where(np.abs(ways[:, 2:]) > 0.9, [[1.0, 0.0, 0.0]], [[0.0, 0.0, 1.0]])
+    first = np.cross(ways, aside)
     first /= np.linalg.norm(first, axis=1)[:, None]
     second = np.cross(ways, first)
     angles = np.linspace(0, 2 * np.pi, sides + 1)
