@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
-from typing import Any
 
 import laspy
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from app.cli.terminal import BAD_INPUT, DONE, run_in_terminal
+from app.cli.terminal import DONE, run_in_terminal
+from tests.app.score_answers import refused, scored
 
 OFFSET = (-11_000.0, -35_000.0, 100.0)
 TRUTH = np.array([0, 0, 0, 0, 0, 0, 7, 7, 18, 18], np.uint8)
@@ -34,22 +33,6 @@ def write_las(
     las.classification = codes
     las.write(path)
     return path
-
-
-def scored(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict[str, Any]:
-    assert run_in_terminal(["score", *map(str, arguments), "--json"]) == DONE
-    told: dict[str, Any] = json.loads(capsys.readouterr().out)
-    return told
-
-
-def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
-    assert run_in_terminal(["score", *map(str, arguments)]) == BAD_INPUT
-    written = capsys.readouterr()
-    assert written.out == ""
-    # Progress comes before it; what is wrong is the last line, and one line.
-    line = written.err.rstrip("\n").splitlines()[-1]
-    assert line.count(" | ") == 2
-    return line
 
 
 def test_noise_is_scored_by_both_classes_with_what_doing_nothing_would_give(

@@ -8,7 +8,8 @@ from typing import Any
 
 import pytest
 
-from app.cli.terminal import BAD_INPUT, DONE, run_in_terminal
+from app.cli.terminal import DONE, run_in_terminal
+from tests.app.score_answers import refused, scored
 from tests.processing.score.small_maps import ORIGIN, gutter, street_curbs
 
 TREES = [
@@ -38,21 +39,6 @@ def shifted(places: Any) -> Any:
     if isinstance(places[0], list):
         return [shifted(one) for one in places]
     return [one + float(origin) for one, origin in zip(places, ORIGIN, strict=True)]
-
-
-def scored(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict[str, Any]:
-    assert run_in_terminal(["score", *map(str, arguments), "--json"]) == DONE
-    told: dict[str, Any] = json.loads(capsys.readouterr().out)
-    return told
-
-
-def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:
-    assert run_in_terminal(["score", *map(str, arguments)]) == BAD_INPUT
-    written = capsys.readouterr()
-    assert written.out == ""
-    line = written.err.rstrip("\n").splitlines()[-1]
-    assert line.count(" | ") == 2
-    return line
 
 
 def test_the_json_has_every_count_error_and_limit(

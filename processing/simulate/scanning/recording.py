@@ -82,6 +82,11 @@ class Recording:
     def __init__(self, street: Street, setup: Setup, driven: Pass, moving: MovingScene) -> None:
         self._street, self._setup, self._driven, self._moving = street, setup, driven, moving
         self._spins = [self._spin(number) for number in range(len(setup.sensor.heads))]
+        self._scanner = scanner_numbers(setup.sensor, setup.spin.pulses, setup.weather)
+        self._keys = [
+            int(chance(street.seed, "returns", driven.number, number).integers(1 << 40))
+            for number in range(len(self._spins))
+        ]
         self._noise = [
             NoiseSource(street.seed, (driven.number, number), setup.sensor, spin)
             for number, spin in enumerate(self._spins)
@@ -165,13 +170,11 @@ class Recording:
             start = stop
 
     def _record(self, scene: Scene, number: int, pulses: range) -> Stretch:
-        setup, head = self._setup, self._setup.sensor.heads[number]
+        head = self._setup.sensor.heads[number]
         beams = beams_of(self._driven, head, self._spins[number], pulses)
         met = Met.of(scene.cast(beams.origins, beams.ways), scene.mesh)
         self._moving.meet(beams, met)
-        scanner = scanner_numbers(setup.sensor, setup.spin.pulses, setup.weather)
-        random = chance(self._street.seed, "returns", self._driven.number, number)
-        returns, _ = returns_of(beams, met, scene, scanner, int(random.integers(1 << 40)))
+        returns, _ = returns_of(beams, met, scene, self._scanner, self._keys[number])
         noisy = self._noise[number].added(Recorded(beams, met, returns, scene))
         return Stretch(head, noisy)
 

@@ -12,7 +12,7 @@ from processing.simulate.materials import SURFACES, Material
 from processing.simulate.mesh import Floats, Integers, Mesh
 from processing.simulate.scanning.beams import Beams
 from processing.simulate.scanning.casting import Hits, Scene
-from processing.simulate.scanning.return_kernels import MIXED, edge_returns, first_returns
+from processing.simulate.scanning.return_kernels import MIXED, OPEN, edge_returns, first_returns
 from processing.simulate.scanning.sensors import Sensor
 
 LOW_NOISE, HIGH_NOISE = 7, 18
@@ -26,6 +26,23 @@ _PASSES_ON = 0.55
 _PULSE_LENGTH_M = 0.7
 _FEWEST_M = 1.2  # nearer is the vehicle itself
 _WEAKEST_SHARE = 0.02
+# All materials as the kernels take them.
+_SURFACES: Floats = np.array(
+    [
+        (
+            one.reflectance,
+            one.spread,
+            one.roughness_m,
+            one.grain_m,
+            one.shine,
+            one.retro,
+            one.stands_m,
+            float(one.is_open),
+        )
+        for one in (SURFACES[material] for material in Material)
+    ]
+)
+_IS_OPEN = _SURFACES[:, OPEN] > 0
 
 
 @dataclass(frozen=True)
@@ -139,25 +156,6 @@ class Met:
         self.evidence[rays] = mesh.instance[found].astype(np.int64) * PIECES + mesh.piece[found]
 
 
-def surface_table() -> Floats:
-    """The numbers of all materials for the kernels: (materials, 8) float64."""
-    return np.array(
-        [
-            (
-                one.reflectance,
-                one.spread,
-                one.roughness_m,
-                one.grain_m,
-                one.shine,
-                one.retro,
-                one.stands_m,
-                float(one.is_open),
-            )
-            for one in (SURFACES[material] for material in Material)
-        ]
-    )
-
-
 def weakest_of(sensor: Sensor) -> float:
     """The weakest echo that a scanner takes for one; 1 is that of a white surface 10 m away."""
     return _WEAKEST_SHARE * (10.0 / (0.25 * sensor.most_m)) ** 2
@@ -204,12 +202,11 @@ def returns_of(
     """
     count = met.ranges.size
     ranges, truths, strengths = np.empty(count), np.empty(count), np.empty(count)
-    surfaces = surface_table()
     met.ranges[met.ranges < _FEWEST_M] = np.inf
     first_returns(
         (beams.first, beams.origins, beams.ways),
         (met.ranges, met.cosines, met.material),
-        surfaces,
+        _SURFACES,
         scanner,
         key,
         (ranges, truths, strengths),
@@ -271,8 +268,7 @@ def _behind(
     """Later returns, from behind leaves and nets."""
     ranges, seconds, strengths = measured
     parts = []
-    is_open = np.array([SURFACES[one].is_open for one in Material])
-    rays = np.flatnonzero(~np.isnan(ranges) & np.isnan(seconds) & is_open[met.material])
+    rays = np.flatnonzero(~np.isnan(ranges) & np.isnan(seconds) & _IS_OPEN[met.material])
     reach = met.ranges
     for step in range(_MOST_LATER):
         rays = rays[shares_of(beams.first + rays, key + 20 + step) < _PASSES_ON]
@@ -295,7 +291,7 @@ def _behind(
         parts.append(
             _Echoes(rays, noisy, strengths * 0.45 ** (step + 1), labels, evidence).of_all(beams)
         )
-        rays, reach = rays[is_open[there.material]], far
+        rays, reach = rays[_IS_OPEN[there.material]], far
     return parts
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.random import Generator
 
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats, Mesh
@@ -16,6 +18,7 @@ from processing.simulate.street.styles import Style
 from processing.simulate.things import Mover
 from processing.simulate.traffic.bodies import Body
 from processing.simulate.traffic.kinds import KINDS
+from processing.simulate.traffic.lanes import Lane, Slot, kind_drawn, slot_chance, slots_near
 
 BODIES = 48
 """Bodies of each kind in one street."""
@@ -113,3 +116,12 @@ def recorded_by(street: Street, driven: Pass) -> Recorded:
         np.column_stack([times, driven.chainage_at(times)]),
         Bodies(street.seed),
     )
+
+
+def filled_slots(recorded: Recorded, lane: Lane) -> Iterator[tuple[Slot, Generator, Body, Mesh]]:
+    """The slots of a lane that hold something: their chance, the body in it and its triangles."""
+    for slot in slots_near(lane, recorded.course):
+        random = slot_chance(recorded.seed, recorded.number, lane, slot)
+        if random is not None:
+            kind = kind_drawn(random, lane.kinds)
+            yield slot, random, *recorded.bodies.one(kind, int(random.integers(BODIES)))

@@ -13,9 +13,9 @@ from processing.simulate.street.styles import HIGHWAY, RURAL
 from processing.simulate.things import Mover
 from processing.simulate.traffic.bodies import Body
 from processing.simulate.traffic.kinds import KINDS
-from processing.simulate.traffic.lanes import Lane, kind_drawn, slot_chance, slots_near, swing_of
+from processing.simulate.traffic.lanes import Lane, kind_drawn, swing_of
 from processing.simulate.traffic.parking import has_parking
-from processing.simulate.traffic.recorded import BODIES, Order, Recorded
+from processing.simulate.traffic.recorded import BODIES, Order, Recorded, filled_slots
 
 _VEHICLES = {
     "kei_car": 0.3, "saloon": 0.33, "van": 0.12, "small_truck": 0.1, "truck": 0.07, "bus": 0.03,
@@ -94,12 +94,7 @@ def vehicle_lanes(recorded: Recorded) -> list[Lane]:
 def vehicles_of(recorded: Recorded, lane: Lane) -> list[Order]:
     """The vehicles of a lane."""
     orders = []
-    for slot in slots_near(lane, recorded.course):
-        random = slot_chance(recorded.seed, recorded.number, lane, slot)
-        if random is None:
-            continue
-        kind = kind_drawn(random, lane.kinds)
-        body, mesh = recorded.bodies.one(kind, int(random.integers(BODIES)))
+    for slot, random, body, mesh in filled_slots(recorded, lane):
         swing = swing_of(random, lane, body.length_m)
         mover = Mover(
             mesh,

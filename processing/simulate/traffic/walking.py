@@ -17,14 +17,11 @@ from processing.simulate.things import Mover
 from processing.simulate.traffic.kinds import KINDS
 from processing.simulate.traffic.lanes import (
     Lane,
-    kind_drawn,
-    slot_chance,
-    slots_near,
     stretches_of,
     swing_of,
 )
 from processing.simulate.traffic.parking import ParkingPlace, parking_places
-from processing.simulate.traffic.recorded import BODIES, Order, Recorded
+from processing.simulate.traffic.recorded import Order, Recorded, filled_slots
 
 _FILLS = {"person": 1.0, "bicycle": 0.3}
 _SWAY_M = {"person": 0.04, "bicycle": 0.08}
@@ -133,12 +130,7 @@ def walking_lanes(recorded: Recorded) -> list[Lane]:
 def walkers_of(recorded: Recorded, lane: Lane, walks: Walks) -> list[Order]:
     """Those who walk or cycle along, wherever the walk has their lane."""
     orders = []
-    for slot in slots_near(lane, recorded.course):
-        random = slot_chance(recorded.seed, recorded.number, lane, slot)
-        if random is None:
-            continue
-        kind = kind_drawn(random, lane.kinds)
-        body, mesh = recorded.bodies.one(kind, int(random.integers(BODIES)))
+    for slot, random, body, mesh in filled_slots(recorded, lane):
         swing = swing_of(random, lane, body.length_m)
         mover = Mover(
             mesh,
@@ -148,8 +140,10 @@ def walkers_of(recorded: Recorded, lane: Lane, walks: Walks) -> list[Order]:
             -np.inf,
             np.inf,
             turn_rad=lane.turn_rad + (0.0 if lane.speed_m_s else float(random.normal(0, 0.1))),
-            sway_m=_SWAY_M.get(kind, 0.0) if lane.speed_m_s else 0.0,
-            sway_s=float(random.uniform(0.9, 1.3) if kind == "person" else random.uniform(2, 4)),
+            sway_m=_SWAY_M.get(body.kind, 0.0) if lane.speed_m_s else 0.0,
+            sway_s=float(
+                random.uniform(0.9, 1.3) if body.kind == "person" else random.uniform(2, 4)
+            ),
             surge_m=swing.surge_m,
             surge_s=swing.surge_s,
             phase_rad=swing.phase_rad,
