@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Iterable
+from itertools import accumulate, pairwise
 from typing import Protocol, TextIO
 
 from processing.text import Language, Text
@@ -43,11 +45,18 @@ class PartMonitor:
 
     def report(self, fraction: float, text: Text | None = None) -> None:
         """Pass the fraction on, scaled into the part."""
-        self._whole.report(self._start + fraction * (self._end - self._start), text)
+        self._whole.report((1 - fraction) * self._start + fraction * self._end, text)
 
     def check(self) -> None:
         """Ask the whole job."""
         self._whole.check()
+
+
+def parts_of(whole: Monitor, sizes: Iterable[float]) -> tuple[PartMonitor, ...]:
+    """Stretches of a job that follow each other, each as long as its size among all says."""
+    ends = list(accumulate(sizes, initial=0.0))
+    total = ends[-1] or 1.0
+    return tuple(PartMonitor(whole, low / total, high / total) for low, high in pairwise(ends))
 
 
 class TerminalMonitor:

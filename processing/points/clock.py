@@ -83,13 +83,17 @@ def is_of_week(first_s: float, last_s: float) -> bool:
     return first_s >= 0.0 and last_s <= WEEK_S
 
 
-def are_within_a_day(one: tuple[float, float], other: tuple[float, float]) -> bool:
-    """Whether no more than a day lies between two recordings, as far as their times tell.
+def are_within_days(
+    one: tuple[float, float], other: tuple[float, float], days: float = 1.0
+) -> bool:
+    """Whether no more than a few days lie between two recordings, as far as their times tell.
 
     Parameters
     ----------
     one, other : (float, float)
         First and last time, s, on one clock.
+    days : float
+        How many.
 
     Notes
     -----
@@ -100,7 +104,7 @@ def are_within_a_day(one: tuple[float, float], other: tuple[float, float]) -> bo
     apart = max(one[0], other[0]) - min(one[1], other[1])
     if is_of_week(first, last):
         apart = min(apart, WEEK_S - (last - first))
-    return apart <= DAY_S
+    return apart <= days * DAY_S
 
 
 def match_clock(

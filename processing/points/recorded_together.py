@@ -7,17 +7,32 @@ from pathlib import Path
 
 import numpy as np
 
-from processing.points.clock import are_within_a_day, is_of_week
+from processing.points.clock import are_within_days, is_of_week
 from processing.points.drive import SCAN, Drive
 
 _TIMES = 1000
+_TOGETHER_DAYS = 1.0
+_SURVEY_DAYS = 31.0  # lanes, missed streets and the way back are driven within weeks
 
 
 def recorded_together(drive: Drive, beside: Sequence[Drive]) -> tuple[Drive, ...]:
     """A drive, first, and those of the others that were recorded together with it."""
+    return _met(drive, beside, _TOGETHER_DAYS)
+
+
+def surveyed_together(drive: Drive, beside: Sequence[Drive]) -> tuple[Drive, ...]:
+    """A drive, first, and the others of its survey: the same ground within a month.
+
+    What stands along a street is mapped once from them. What was recorded later is another epoch,
+    since the street may have been rebuilt.
+    """
+    return _met(drive, beside, _SURVEY_DAYS)
+
+
+def _met(drive: Drive, beside: Sequence[Drive], days: float) -> tuple[Drive, ...]:
     together, others = [drive], list(beside)
     for one in together:
-        met = [other for other in others if _is_together(one, other)]
+        met = [other for other in others if _is_together(one, other, days)]
         together.extend(met)
         others = [other for other in others if other not in met]
     return tuple(together)
@@ -33,8 +48,8 @@ def recordings_of(drives: Sequence[Drive]) -> tuple[tuple[Drive, ...], ...]:
     return tuple(parts)
 
 
-def _is_together(one: Drive, other: Drive) -> bool:
-    """Whether two drives share a delivered file, or a day and ground; stations a folder.
+def _is_together(one: Drive, other: Drive, days: float) -> bool:
+    """Whether two drives share a delivered file, or days and ground; stations a folder.
 
     Clouds without times that come in files of their own may be two epochs, so they stay apart,
     but for stations of a standing scanner that were delivered side by side.
@@ -49,7 +64,7 @@ def _is_together(one: Drive, other: Drive) -> bool:
         both_stand = one.info.rows_by == SCAN and other.info.rows_by == SCAN
         return span is None and other_span is None and both_stand and is_side_by_side
     is_dated = not is_of_week(min(span[0], other_span[0]), max(span[1], other_span[1]))
-    return are_within_a_day(span, other_span) and (is_dated or is_side_by_side)
+    return are_within_days(span, other_span, days) and (is_dated or is_side_by_side)
 
 
 def _files(drive: Drive) -> set[str]:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from processing.errors import Unsuitable
-from processing.kernels import kernel
+from processing.points.smooth_way import apart
 from processing.points.trajectory import Trajectory
 from processing.section.cut import Cut
 from processing.text import Text
@@ -199,30 +199,7 @@ class Stations:
 
 def _apart(places: Floats, step_m: float) -> NDArray[np.int64]:
     """Indices of places that are so far apart in plan; the last place ends the line."""
-    marked = np.zeros(len(places), dtype=np.bool_)
-    _mark_kernel(np.ascontiguousarray(places), step_m, marked)
-    kept = np.flatnonzero(marked)
+    kept = apart(places, step_m)
     if kept.size > 1:
         kept[-1] = len(places) - 1
     return kept
-
-
-@kernel
-def _mark_kernel(xyz: Floats, step_m: float, marked: NDArray[np.bool_]) -> None:
-    """Mark the first place and each that is so far from the one marked before.
-
-    A vehicle at rest trembles: what counts is how far it gets, not how far it wanders.
-    """
-    last = -1
-    for i in range(xyz.shape[0]):
-        if last >= 0:
-            east, north = xyz[i, 0] - xyz[last, 0], xyz[i, 1] - xyz[last, 1]
-            if east * east + north * north < step_m * step_m:
-                continue
-        marked[i] = True
-        last = i
-
-
-def warm_up() -> None:
-    """Compile the kernel."""
-    _mark_kernel(np.zeros((2, 3)), 1.0, np.zeros(2, np.bool_))

@@ -24,7 +24,7 @@ from processing.monitor import SilentMonitor
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
 from processing.points.drive_info import DriveInfo, SourceFile, write_drive_info
-from processing.points.recorded_together import recorded_together, recordings_of
+from processing.points.recorded_together import recorded_together, recordings_of, surveyed_together
 from processing.runner import RunRequest, run_together
 from processing.text import Text
 from processing.tools.ground import GroundParameters
@@ -138,6 +138,9 @@ def test_epochs_are_never_one_recording_and_a_day_at_one_place_is(tmp_path: Path
     away = drive_at(tmp_path / "away", xyz + np.array([500.0, 0.0, 0.0]), file="4.laz")
     shared = drive_at(tmp_path / "shared", xyz, file="3.laz", time_s=3.5e8 + 33 * _DAY_S)
     assert recorded_together(here, (later, away, soon, shared)) == (here, soon)
+    assert surveyed_together(here, (away, later)) == (here, later)
+    next_year = drive_at(tmp_path / "next year", xyz, file="9.laz", time_s=3.5e8 + 400 * _DAY_S)
+    assert surveyed_together(here, (next_year, soon)) == (here, soon)
     parts = recordings_of((here, later, away, soon, shared))
     assert parts == ((here, soon), (later, shared), (away,))
     saturday = drive_at(tmp_path / "saturday", xyz, file="5.laz", time_s=7 * _DAY_S - 900.0)

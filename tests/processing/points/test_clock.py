@@ -11,7 +11,7 @@ from processing.points.clock import (
     DAY_S,
     WEEK_S,
     ClockKind,
-    are_within_a_day,
+    are_within_days,
     kind_of,
     match_clock,
 )
@@ -130,5 +130,5 @@ def test_no_times_tell_no_clock():
 )
 def test_times_tell_whether_more_than_a_day_lies_between(one, other, within):
     spans = (one, one + 100.0), (other, other + 100.0)
-    assert are_within_a_day(*spans) is within
-    assert are_within_a_day(*spans[::-1]) is within
+    assert are_within_days(*spans) is within
+    assert are_within_days(*spans[::-1]) is within
