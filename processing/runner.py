@@ -18,7 +18,7 @@ from processing.monitor import Monitor
 from processing.points.columns import Columns
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
-from processing.points.recorded_together import recorded_together
+from processing.points.recorded_together import recorded_together, surveyed_together
 from processing.text import Text
 from processing.tools.blocks import POINTS_PER_BLOCK, JoinedResults, blocks_of
 from processing.tools.registry import TOOLS
@@ -98,6 +98,8 @@ def run(
     result: RunResult
     if tool.find is not None:
         result = tool.find(request.drive, request.parameters, monitor)
+    elif tool.find_together is not None:
+        result = tool.find_together(drives_of(request), request.parameters, monitor)
     elif tool.mark_together is not None:
         result, *others = _marked_together(request, monitor, into, points_per_block).columns
         for other in others:
@@ -111,14 +113,21 @@ def run(
 def drives_of(request: RunRequest) -> tuple[Drive, ...]:
     """The drives that one run is about: the request's, and for some tools those recorded with it.
 
+    A tool that finds things on several drives gets those of the survey that have what it needs.
+
     Raises
     ------
     OutOfRange
         There is no such tool.
     """
-    if tool_of(request.tool).mark_together is None:
+    tool = tool_of(request.tool)
+    if tool.mark_together is not None:
+        return recorded_together(request.drive, request.beside)
+    if tool.find_together is None:
         return (request.drive,)
-    return recorded_together(request.drive, request.beside)
+    is_met, _, _ = _NEEDS[tool.needs]
+    suited = tuple(drive for drive in request.beside if is_met(drive))
+    return surveyed_together(request.drive, suited)
 
 
 def run_together(

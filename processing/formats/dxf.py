@@ -13,9 +13,11 @@ from io import TextIOWrapper
 from pathlib import Path
 from typing import Any, Literal
 
+import numpy as np
 from typing_extensions import override
 
 from processing.errors import OutOfRange, Unsuitable, use_one_of
+from processing.formats.dxf_bodies import BODY_SUFFIX, add_body
 from processing.formats.dxf_labels import LABEL_HEIGHT_M, label_of
 from processing.formats.dxf_symbols import add_symbol_block
 from processing.formats.dxf_text import dxf_strings, dxf_text, label_text
@@ -23,6 +25,7 @@ from processing.formats.safe_write import written_safely
 from processing.monitor import Monitor, SilentMonitor
 from processing.project.catalogue import LINE_TYPES, Catalogue, FeatureKind, Geometry
 from processing.project.feature import AttributeValue, Feature, Position, Status
+from processing.project.solids import solid_of, thickness_of
 from processing.text import Text
 
 DxfVersion = Literal["R2000", "R2018"]
@@ -54,6 +57,8 @@ def write_dxf(
     never: Iterable[Path] = (),
 ) -> None:
     r"""Draw features: 3D polylines, closed ones for areas, points with their symbol.
+
+    Areas of a kind that has a thickness are bodies of 3D faces besides, on a layer of their own.
 
     Parameters
     ----------
@@ -176,7 +181,20 @@ class _Drawing:
             case Geometry.LINE:
                 return [self._space.add_polyline3d(positions, dxfattribs=attributes)]
             case Geometry.AREA:
-                return [self._space.add_polyline3d(positions, close=True, dxfattribs=attributes)]
+                outline = self._space.add_polyline3d(positions, close=True, dxfattribs=attributes)
+                return [outline, *self._body(kind, feature, positions, looks)]
+
+    def _body(
+        self, kind: FeatureKind, feature: Feature, positions: list[Position], looks: _Looks
+    ) -> list[Any]:
+        thickness_m = thickness_of(kind, feature)
+        solid = solid_of(np.array(positions), thickness_m) if thickness_m else None
+        if solid is None:
+            return []
+        layer = looks.layer + BODY_SUFFIX
+        self._need_layer(layer, kind)
+        self._lowest[2] = min(self._lowest[2], float(solid.places[:, 2].min()))
+        return add_body(self._space, solid, {**looks.own, "layer": layer, "linetype": "BYLAYER"})
 
     def _looks(self, kind: FeatureKind, feature: Feature) -> _Looks:
         layer = kind.layer

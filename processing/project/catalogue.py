@@ -92,6 +92,8 @@ class FeatureKind:
         Name of ``resources/symbols/<symbol>.svg`` for points; empty without one.
     key : str
         The number key that chooses the kind, or empty.
+    thickness_m : float
+        Of areas that are the top of a body, such as lids: what is usual; 0 for areas without one.
     """
 
     id: str
@@ -105,6 +107,7 @@ class FeatureKind:
     symbol: str = ""
     attributes: tuple[AttributeField, ...] = ()
     key: str = ""
+    thickness_m: float = 0.0
 
     def attribute(self, id: str) -> AttributeField | None:  # noqa: A002 (the field's own name)
         """The attribute with this id, or None."""

@@ -24,13 +24,14 @@ from processing.text import Text
 from resources import path_of
 
 _LARGEST_BYTES = 4 << 20
+_THICKEST_M = 10.0
 _ID = re.compile(r"[a-z][a-z0-9_]*")
 _COLOUR = re.compile(r"#[0-9a-fA-F]{6}")
 _DM_CODE = re.compile(r"[0-9]{4}")
 _NOT_IN_LAYERS = re.compile(r"[<>/\\\":;?*|=,'`^\x00-\x1f\x7f]")
 _KIND_KEYS = frozenset(
     {"id", "ja", "en", "geometry", "dm_code", "layer", "colour", "aci", "line_type", "symbol"}
-    | {"attributes", "key"}
+    | {"attributes", "key", "thickness_m"}
 )
 _ATTRIBUTE_KEYS = frozenset({"id", "ja", "en", "type", "unit", "choices"})
 
@@ -261,7 +262,16 @@ def _read_kind(table: _Table, attributes: Mapping[str, AttributeField]) -> Featu
         symbol=table.one_of("symbol", ("", *symbol_names()), default=""),
         attributes=_chosen_attributes(table, attributes),
         key=table.one_of("key", ("", *"1234567890"), default=""),
+        thickness_m=_read_thickness(table),
     )
+
+
+def _read_thickness(table: _Table) -> float:
+    value = table.values.get("thickness_m", 0.0)
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not is_number or not 0.0 <= value <= _THICKEST_M:
+        raise table.not_allowed("thickness_m", value, Text.same(f"0–{_THICKEST_M:g}"))
+    return float(value)
 
 
 def _chosen_attributes(

@@ -101,6 +101,8 @@ def _kind_table(kind: FeatureKind, names: dict[AttributeField, str]) -> str:
         lines.append(f"attributes = [{chosen}]")
     if kind.key:
         lines.append(_setting("key", kind.key))
+    if kind.thickness_m:
+        lines.append(f"thickness_m = {kind.thickness_m!r}")
     return "\n".join(lines) + "\n"
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from processing.errors import UNCHANGED, MissingInput, OutOfRange
 from processing.formats.point_files import PointFileInfo, read_info, read_sample
 from processing.monitor import Monitor
-from processing.points.clock import are_within_a_day
+from processing.points.clock import are_within_days
 from processing.project.file_recorder import empty_points
 from processing.project.reference_system import reference_system
 from processing.text import Text
@@ -216,7 +216,7 @@ class _Group:
         if (file.scanner_column, file.has_origins) != (first.scanner_column, first.has_origins):
             return False
         # Numbers that come again on another date are other scanners, or other stations.
-        if not are_within_a_day(self.span, _span(file)):
+        if not are_within_days(self.span, _span(file)):
             return False
         self.reaching = [one for one in self.reaching if one.last_time > file.first_time]
         return not any(
@@ -253,7 +253,7 @@ def _dates_of(groups: Sequence[_Group]) -> tuple[int, ...]:
         if not np.isfinite(first):
             dates.append(0)
             continue
-        date += not are_within_a_day(reached, group.span)
+        date += not are_within_days(reached, group.span)
         reached = reached[0], max(reached[1], last)
         dates.append(date)
     return tuple(dates)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
@@ -27,6 +27,8 @@ from processing.tools.tool import Candidate, CandidateResult, Tool
 _FOUND = Text("{tool}: {count} candidates", "{tool}: 候補{count}件")
 _FOUND_ONE = Text("{tool}: 1 candidate", "{tool}: 候補1件")
 _NOTHING = Text("{tool}: nothing found", "{tool}: 何も見つかりませんでした")
+_NO_NOTE = Text("", "")
+_NOTED = Text("{summary}. {note}", "{summary}。{note}")
 _LEAST = {"point": 1, "line": 2, "area": 3}
 
 
@@ -50,7 +52,7 @@ def found_features(
     result: CandidateResult,
     tool: Tool,
     parameters: object,
-    drive: str,
+    drives: Sequence[str],
     *,
     started: datetime,
     finished: datetime,
@@ -61,8 +63,8 @@ def found_features(
     ----------
     parameters : object
         An instance of the tool's own parameter class.
-    drive : str
-        Id of the drive that ``Candidate.points`` are counted in.
+    drives : sequence of str
+        Ids of the drives that the tool got, in its order.
     started, finished : datetime
         With their time zone.
 
@@ -77,12 +79,12 @@ def found_features(
         tool=tool.id,
         version=tool.version,
         parameters=given,
-        drives=(drive,),
+        drives=tuple(drives),
         started=started,
         finished=finished,
-        summary=summary_of(tool, len(result.candidates)),
+        summary=summary_of(tool, len(result.candidates), result.note),
     )
-    features = tuple(_feature(one, run, drive) for one in result.candidates)
+    features = tuple(_feature(one, run, drives) for one in result.candidates)
     return FoundFeatures(run, Change(added=features))
 
 
@@ -92,20 +94,24 @@ def parameter_values(tool: Tool, parameters: object) -> Mapping[str, AttributeVa
     return {parameter.id: getattr(parameters, parameter.id) for parameter in declared}
 
 
-def summary_of(tool: Tool, count: int) -> Text:
-    """What came of a run: “Curbs: 214 candidates”."""
+def summary_of(tool: Tool, count: int, note: Text = _NO_NOTE) -> Text:
+    """What came of a run: “Curbs: 214 candidates”, and why there are no more."""
     text = _FOUND if count > 1 else (_FOUND_ONE if count else _NOTHING)
-    return text.filled(tool=tool.name, count=f"{count:,}")
+    summary = text.filled(tool=tool.name, count=f"{count:,}")
+    return _NOTED.filled(summary=summary, note=note) if note.en else summary
 
 
-def _feature(candidate: Candidate, run: Run, drive: str) -> Feature:
+def _feature(candidate: Candidate, run: Run, drives: Sequence[str]) -> Feature:
     xyz = np.asarray(candidate.xyz, np.float64)
     if len(xyz) < _LEAST[candidate.geometry] or not np.isfinite(xyz).all():
         message = f"{run.tool} gave a candidate without a place: {candidate.geometry} {xyz}"
         raise ValueError(message)
+    numbers = np.zeros(len(xyz), np.int64) if candidate.drives is None else candidate.drives
     vertices = tuple(
-        Vertex((x, y, z), PointReference(drive, point) if point >= 0 else None)
-        for (x, y, z), point in zip(xyz.tolist(), candidate.points.tolist(), strict=True)
+        Vertex((x, y, z), PointReference(drives[number], point) if point >= 0 else None)
+        for (x, y, z), point, number in zip(
+            xyz.tolist(), candidate.points.tolist(), numbers.tolist(), strict=True
+        )
     )
     confidence = min(max(float(candidate.confidence), 0.0), 1.0)
     return Feature(

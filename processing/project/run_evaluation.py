@@ -121,6 +121,11 @@ def evaluate_runs(
     return tuple(found)
 
 
+def within_drives(features: Iterable[Feature], run: Run, drives: Sequence[Drive]) -> list[Feature]:
+    """Those whose middle lies within the extent of a drive that a run was on."""
+    return _Drawn.of(list(features)).within((run,), drives)
+
+
 @dataclass(frozen=True)
 class _Drawn:
     """What was drawn by hand, and where."""

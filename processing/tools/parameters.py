@@ -2,6 +2,10 @@
 
 A tool's parameters are a frozen dataclass whose fields are made here. The form in the window, the
 command line, the tool list and the manual are all drawn from these fields; nothing repeats them.
+
+A field may name a picture that shows what is meant: ``picture="curb_heights"`` is
+``resources/pictures/parameters/curb_heights.svg`` (the list is in the README beside it), and
+``picture="curb_heights/lowest"`` the same with the part named ``lowest`` in the accent colour.
 """
 
 from __future__ import annotations
@@ -42,6 +46,8 @@ class Parameter:
         ``number`` is a float, ``count`` an int, ``switch`` a bool, the others are str.
     low, high : float
         Limits, both allowed; only numbers and counts have them.
+    picture : str
+        What shows its meaning, ``NAME`` or ``NAME/PART``; empty without one.
     """
 
     id: str
@@ -53,6 +59,7 @@ class Parameter:
     low: float = 0.0
     high: float = 0.0
     choices: tuple[Choice, ...] = ()
+    picture: str = ""
 
 
 # The return type is Any so that a field can be annotated with its value's type, as
@@ -62,37 +69,82 @@ def _declared(parameter: Parameter) -> Any:
 
 
 def length(
-    default: float, *, low: float, high: float, name: Text, explanation: Text = _NONE
+    default: float,
+    *,
+    low: float,
+    high: float,
+    name: Text,
+    explanation: Text = _NONE,
+    picture: str = "",
 ) -> Any:
     """A length in metres."""
-    return _declared(Parameter("", "number", default, name, explanation, "m", low, high))
+    return _declared(
+        Parameter("", "number", default, name, explanation, "m", low, high, picture=picture)
+    )
 
 
-def angle(default: float, *, low: float, high: float, name: Text, explanation: Text = _NONE) -> Any:
+def angle(
+    default: float,
+    *,
+    low: float,
+    high: float,
+    name: Text,
+    explanation: Text = _NONE,
+    picture: str = "",
+) -> Any:
     """An angle in degrees."""
-    return _declared(Parameter("", "number", default, name, explanation, "°", low, high))
+    return _declared(
+        Parameter("", "number", default, name, explanation, "°", low, high, picture=picture)
+    )
 
 
-def ratio(default: float, *, low: float, high: float, name: Text, explanation: Text = _NONE) -> Any:
+def ratio(
+    default: float,
+    *,
+    low: float,
+    high: float,
+    name: Text,
+    explanation: Text = _NONE,
+    picture: str = "",
+) -> Any:
     """A number without a unit."""
-    return _declared(Parameter("", "number", default, name, explanation, "", low, high))
+    return _declared(
+        Parameter("", "number", default, name, explanation, "", low, high, picture=picture)
+    )
 
 
-def count(default: int, *, low: int, high: int, name: Text, explanation: Text = _NONE) -> Any:
+def count(
+    default: int,
+    *,
+    low: int,
+    high: int,
+    name: Text,
+    explanation: Text = _NONE,
+    picture: str = "",
+) -> Any:
     """A whole number."""
-    return _declared(Parameter("", "count", default, name, explanation, "", low, high))
+    return _declared(
+        Parameter("", "count", default, name, explanation, "", low, high, picture=picture)
+    )
 
 
 def choice(
-    default: str, *, choices: tuple[Choice, ...], name: Text, explanation: Text = _NONE
+    default: str,
+    *,
+    choices: tuple[Choice, ...],
+    name: Text,
+    explanation: Text = _NONE,
+    picture: str = "",
 ) -> Any:
     """One word of a list."""
-    return _declared(Parameter("", "choice", default, name, explanation, choices=choices))
+    return _declared(
+        Parameter("", "choice", default, name, explanation, choices=choices, picture=picture)
+    )
 
 
-def switch(*, default: bool, name: Text, explanation: Text = _NONE) -> Any:
+def switch(*, default: bool, name: Text, explanation: Text = _NONE, picture: str = "") -> Any:
     """Yes or no."""
-    return _declared(Parameter("", "switch", default, name, explanation))
+    return _declared(Parameter("", "switch", default, name, explanation, picture=picture))
 
 
 def file(*, name: Text, explanation: Text = _NONE) -> Any:

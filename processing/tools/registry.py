@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from processing.tools.colour import COLOUR
+from processing.tools.curbs import CURBS
 from processing.tools.ground import GROUND_TOOL
+from processing.tools.gutters import GUTTERS
 from processing.tools.noise import NOISE
 from processing.tools.normals import NORMALS
 from processing.tools.segments import SEGMENTS
@@ -13,7 +15,8 @@ from processing.tools.template import TEMPLATE
 from processing.tools.tool import Tool
 
 TOOLS: Mapping[str, Tool] = {
-    tool.id: tool for tool in (NOISE, GROUND_TOOL, NORMALS, SEGMENTS, COLOUR, TEMPLATE)
+    tool.id: tool
+    for tool in (CURBS, GUTTERS, NOISE, GROUND_TOOL, NORMALS, SEGMENTS, COLOUR, TEMPLATE)
 }
 
 POINT_TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in TOOLS.values() if tool.outputs}

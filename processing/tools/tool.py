@@ -152,6 +152,12 @@ class Candidate:
         0 to 1: the share of such candidates that is expected to be right.
     attributes : mapping
         By the ids of the kind's attribute fields; others are kept too.
+    drives : (n,) int64 or None
+        Which drive each of ``points`` is of, by its place among those that the tool got; None: the
+        first.
+    is_drawing : bool
+        Drawn from other candidates, as the outline of a gutter from its lids: it goes on the map
+        and into drawings, not into files of what was found.
     """
 
     kind: str
@@ -160,24 +166,31 @@ class Candidate:
     points: NDArray[np.int64]
     confidence: float
     attributes: Mapping[str, CandidateValue] = field(default_factory=dict)
+    drives: NDArray[np.int64] | None = None
+    is_drawing: bool = False
 
 
 @dataclass(frozen=True)
 class CandidateResult:
-    """What a tool found on a drive.
+    """What a tool found on a drive, or on drives of one survey.
 
     Attributes
     ----------
     candidates : tuple of Candidate
         In the order of the street, where there is one.
+    note : Text
+        Why there is little or nothing, in a sentence; empty where nothing is to be said.
     """
 
     candidates: tuple[Candidate, ...] = ()
+    note: Text = Text("", "")
 
 
 # A tool's parameters are its own frozen dataclass, so the runner can't know their type.
 Compute = Callable[[PointBlock, Any, Monitor], PointResult]
 Find = Callable[[Drive, Any, Monitor], CandidateResult]
+# Drives of one survey, the first being the one asked for, the tool's parameters.
+FindTogether = Callable[[tuple[Drive, ...], Any, Monitor], CandidateResult]
 # A drive, the tool's parameters, an empty folder for the columns, points to hold at a time.
 Mark = Callable[[Drive, Any, Path, int, Monitor], FinishedColumns]
 # Drives recorded together, the tool's parameters, an empty folder, points to hold at a time: the
@@ -244,6 +257,9 @@ class Tool:
     find : callable or None
         Candidates on a whole drive, of which it reads a stretch at a time; None for a tool that
         says something about points. It reports its own progress.
+    find_together : callable or None
+        The same on all drives of one survey at once, for a tool that gives one result for what
+        several heads and passes measured.
     remark : callable
         What must be given so that it can run on a drive; None where nothing must.
     """
@@ -263,4 +279,10 @@ class Tool:
     mark_together: MarkTogether | None = None
     gives_classes: tuple[int, ...] = ()
     find: Find | None = None
+    find_together: FindTogether | None = None
     remark: Remark = nothing_to_remark
+
+    @property
+    def gives_candidates(self) -> bool:
+        """Whether it finds things instead of saying something about every point."""
+        return self.find is not None or self.find_together is not None

@@ -18,12 +18,18 @@ from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
+from processing.road.curb_guides import Guide, outwards_of
+from processing.road.curb_points import GuideCells
+from processing.road.gutter_notches import notches_of
+from processing.road.notches import NotchParameters
 from processing.runner import RunRequest, columns_of, run
 from processing.templates.fit import FitSettings, fit_along
 from processing.templates.fitted_lines import FittedLine, fitted_lines
 from processing.tools.blocks import JoinedResults, blocks_of
 from processing.tools.colour import COLOUR, ColourParameters
+from processing.tools.curbs import CURBS
 from processing.tools.ground import GROUND_TOOL, GroundParameters
+from processing.tools.gutters import GUTTERS
 from processing.tools.noise import NOISE, NoiseParameters
 from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.registry import POINT_TOOLS, TOOLS
@@ -61,7 +67,7 @@ IN_SPACE = (
     (GROUND_TOOL.id, GroundParameters(method="lowest", tolerance_m=0.1)),
 )
 """Tools that look around in space, whenever a neighbour was measured, by parts of their own."""
-STRETCHES = (TEMPLATE.id,)
+STRETCHES = (TEMPLATE.id, CURBS.id, GUTTERS.id)
 """Tools that find candidates, and read the street a stretch at a time."""
 
 
@@ -170,6 +176,48 @@ def test_a_template_gives_the_same_lines_whatever_is_read_at_a_time(
     for one, other in zip(whole, parts, strict=True):
         assert np.abs(one.xyz - other.xyz).max() < 0.001
         np.testing.assert_array_equal(one.points, other.points)
+
+
+@given(points_at_once=st.integers(1_000, 40_000))
+@settings(max_examples=4)
+def test_curbs_are_measured_by_the_same_points_whatever_is_read_at_a_time(
+    curb: Drive, points_at_once: int
+) -> None:
+    guide = guide_along(curb)
+    cells = GuideCells([guide], 0.4)
+    whole = cells.about(curb, SilentMonitor())
+    parts = cells.about(curb, SilentMonitor(), points_at_once)
+    assert whole.point.size > 1_000
+    np.testing.assert_array_equal(whole.point, parts.point)
+    np.testing.assert_array_equal(whole.across, parts.across)
+
+
+@given(points_at_once=st.integers(2_000, 100_000))
+@settings(max_examples=4)
+def test_dips_of_the_road_are_the_same_whatever_is_read_at_a_time(
+    curb: Drive, points_at_once: int
+) -> None:
+    whole = notches_of(curb, NotchParameters(), SilentMonitor())
+    parts = notches_of(curb, NotchParameters(), SilentMonitor(), points_at_once)
+    assert whole.point.size
+    np.testing.assert_array_equal(whole.point, parts.point)
+
+
+def guide_along(drive: Drive) -> Guide:
+    """A guide by the edge of the road, of the length that the template follows."""
+    xyz = followed(drive, 80.0)[0].xyz
+    count = len(xyz)
+    return Guide(
+        xyz,
+        outwards_of(xyz),
+        np.ones(count, np.bool_),
+        np.full(count, 0.15),
+        np.zeros(count),
+        np.zeros(count, np.bool_),
+        True,
+        np.zeros(count, np.int64),
+        0,
+    )
 
 
 def block_of(image: PointCloudImage, xyz: np.ndarray, rows: range) -> PointBlock:

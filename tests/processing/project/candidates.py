@@ -56,7 +56,7 @@ def found(result: CandidateResult, *, drive: str = "left") -> FoundFeatures:
         result,
         FINDER,
         NormalsParameters(),
-        drive,
+        (drive,),
         started=STARTED,
         finished=STARTED + timedelta(seconds=4),
     )

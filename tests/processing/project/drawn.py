@@ -7,7 +7,14 @@ from pathlib import Path
 
 from processing.project.catalogue import Geometry
 from processing.project.change import Change
-from processing.project.feature import Feature, PointReference, Provenance, Status, Vertex
+from processing.project.feature import (
+    AttributeValue,
+    Feature,
+    PointReference,
+    Provenance,
+    Status,
+    Vertex,
+)
 from processing.project.feature_rows import change_from_json
 from processing.project.project import Project
 from processing.project.reading_connection import connect
@@ -27,7 +34,7 @@ def curb(id: str, *, vertices: int = 2) -> Feature:
         for n in range(vertices)
     )
     provenance = Provenance("curbs", 3, {"step_m": 0.05, "both": True}, 0.75, "run-1")
-    attributes = {"height_m": 0.15, "note": "縁石"}
+    attributes: dict[str, AttributeValue] = {"height_m": 0.15, "note": "縁石"}
     return Feature(id, "curb_lower", Geometry.LINE, line, attributes, Status.CANDIDATE, provenance)
 
 

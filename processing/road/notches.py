@@ -1,0 +1,107 @@
+"""Notches: places where a row of a recording dips into the road, as lids of gutters let it.
+
+The thesis' feature points (mms.md, 7.3 b) with what weighs each of them. Rows are revolutions, so
+a notch is one crossing of one opening by one revolution.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+OPENING = 1
+"""Pattern 1 of the thesis (equation 7-2): the beam fell through a hole, down and aside."""
+DENT = 2
+"""Pattern 2 of the thesis (equation 7-3): it met a lid's side face, or soil in a hole."""
+LOST = 4
+"""Pulses without return within smooth road, as holes and joints leave them."""
+JOINT = 8
+"""A narrow dip or a step too small for the thesis' limits, as joints between lids make them."""
+
+
+@dataclass(frozen=True)
+class NotchParameters:
+    """What counts as a notch: values of the thesis' Table 7-3 where it has them.
+
+    Attributes
+    ----------
+    height_m, height_range_m : float
+        Scanner above the road and how far that may be off: MMS height, 2.65 ± 1.5 m.
+    bridge : int
+        Consecutive points below the road that still belong to it.
+    aside_m, down_m : float
+        h_t and z_t of equation (7-2).
+    step_m : float
+        z_t2 of equation (7-3).
+    below_m : float
+        δ: how far points beside a hole may lie below the road's median.
+    reach_m : float
+        Lids further from the vehicle's way than this are not looked for: holes are missed there.
+    noise_factor : float
+        Limits are at least this many times the ranging noise measured beside the place.
+    """
+
+    height_m: float = 2.65
+    height_range_m: float = 1.5
+    bridge: int = 5
+    aside_m: float = 0.02
+    down_m: float = 0.01
+    step_m: float = 0.10
+    below_m: float = 0.10
+    reach_m: float = 6.5
+    noise_factor: float = 3.0
+
+
+@dataclass(frozen=True)
+class Notches:
+    """Where rows of one drive dip into a smooth surface, in the order they were measured.
+
+    Attributes
+    ----------
+    xyz : (n, 3) float64
+        Middle of the opening on the lid's surface (7.3 b2), m, project CRS.
+    time_s : (n,) float64
+        When it was passed.
+    depth_m : (n,) float64
+        How far the deepest point lies below the surface; 0 where only pulses are lost.
+    width_m : (n,) float64
+        Between the last point before and the first after the opening, along the row.
+    pattern : (n,) uint8
+        Bits ``OPENING``, ``DENT``, ``LOST``, ``JOINT``.
+    strength : (n,) float64
+        0 … 1: how sure it is that the surface is open here; joints are weak, deep holes near 1.
+    row : (n,) int64
+        Revolution of the drive (``Turns``).
+    point : (n,) int64
+        Point of the drive last measured before the opening.
+    station_m, across_m : (n,) float64
+        Along the way of the vehicle (the trajectory, smoothed), and to its right.
+    stretch : (n,) int64
+        Number of the pass: stations are one axis within each.
+    direction : (n, 2) float64
+        Unit vector in plan along which the row crosses the surface.
+    """
+
+    xyz: NDArray[np.float64]
+    time_s: NDArray[np.float64]
+    depth_m: NDArray[np.float64]
+    width_m: NDArray[np.float64]
+    pattern: NDArray[np.uint8]
+    strength: NDArray[np.float64]
+    row: NDArray[np.int64]
+    point: NDArray[np.int64]
+    station_m: NDArray[np.float64]
+    across_m: NDArray[np.float64]
+    stretch: NDArray[np.int64]
+    direction: NDArray[np.float64]
+
+    @property
+    def count(self) -> int:
+        """How many there are."""
+        return len(self.time_s)
+
+    def chosen(self, which: NDArray[np.bool_] | NDArray[np.int64]) -> Notches:
+        """Some of them."""
+        return Notches(**{field.name: getattr(self, field.name)[which] for field in fields(self)})

@@ -1,0 +1,217 @@
+"""The tool GUTTERS: lids and gratings of covered gutters, with the gutters' outline."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.monitor import Monitor, PartMonitor, parts_of
+from processing.points.drive import Drive
+from processing.points.passes import passes_of
+from processing.road.curb_points import GuideCells
+from processing.road.gutter_confidence import confidences
+from processing.road.gutter_lids import POINTS_WITHIN_M, Cover, covers_of
+from processing.road.gutter_notches import notches_of
+from processing.road.gutter_outline import edge_lines
+from processing.road.gutter_runs import gutter_runs
+from processing.road.notches import Notches, NotchParameters
+from processing.text import Text
+from processing.tools.parameters import count, length, ratio
+from processing.tools.tool import Candidate, CandidateResult, Needs, Tool
+
+_FINDING = 0.8  # of the time goes into notches
+_OUTLINE_GAP_M = 6.0
+_FEW_NOTCHES = 10
+
+_LOOKING = Text("Looking for drain holes", "水抜き穴を探しています")
+_LAYING = Text("Laying the lids", "側溝蓋を配置しています")
+_NO_PASS = Text(
+    "The vehicle does not move along a road in any drive, so no gutters were looked for.",
+    "どの走行データでも車両が道路に沿って走行していないため、側溝を探索できません。",
+)
+_NO_NOTCHES = Text(
+    "No drain holes were found beside the vehicle's way: the road has no covered gutter, the holes "
+    "are filled, or the points are too sparse to fall into them.",
+    "走行軌跡の周辺に水抜き穴が見つかりません（蓋付き側溝がない、穴が土砂等で塞がっている、"
+    "または点密度が不足しています）。",
+)
+_NOT_REGULAR = Text(
+    "There are dents in the road, but nowhere at the regular spacing of lids.",
+    "路面にくぼみはありますが、側溝蓋の間隔で規則的に並ぶものはありません。",
+)
+
+
+@dataclass(frozen=True)
+class GutterParameters:
+    """What an operator may set; defaults by the thesis' Table 7-3 where it has them."""
+
+    reach_m: float = length(
+        6.5,
+        low=1.0,
+        high=12.0,
+        name=Text("Reach beside the vehicle", "探索範囲（車両からの離れ）"),
+        explanation=Text(
+            "Gutters farther from the vehicle's way are not looked for: few points fall there.",
+            "走行軌跡からこの距離より離れた側溝は探索しません（穴に入る点が少ないため）。",
+        ),
+        picture="vehicle/reach",
+    )
+    height_m: float = length(
+        2.65,
+        low=0.5,
+        high=5.0,
+        name=Text("Scanner above the road", "スキャナ高"),
+        explanation=Text(
+            "Height of the scanner above the road, within 1.5 m (MMS height of the thesis).",
+            "路面からのスキャナの高さ（±1.5mの範囲で合えば十分です）。",
+        ),
+        picture="vehicle/height",
+    )
+    aside_m: float = length(
+        0.02,
+        low=0.005,
+        high=0.2,
+        name=Text("Least jump aside (h_t)", "水平変化量の下限（h_t）"),
+        explanation=Text(
+            "How far a point that fell into a hole lies aside of its neighbours at least.",
+            "穴に入った点が前後の点から水平方向にずれる量の最小値です。",
+        ),
+        picture="hole/aside",
+    )
+    down_m: float = length(
+        0.01,
+        low=0.003,
+        high=0.2,
+        name=Text("Least drop (z_t)", "鉛直変化量の下限（z_t）"),
+        explanation=Text(
+            "How far such a point lies below its neighbours at least.",
+            "穴に入った点が前後の点より下がる量の最小値です。",
+        ),
+        picture="hole/down",
+    )
+    most_missed: int = count(
+        5,
+        low=1,
+        high=20,
+        name=Text("Lids bridged (n_max)", "補間する蓋の枚数（n_max）"),
+        explanation=Text(
+            "Fewer lids in a row without a hole are laid all the same; more break the gutter.",
+            "穴が確認できない蓋の連続がこの枚数未満であれば補間し、それ以上は途切れとします。",
+        ),
+        picture="lids/most",
+    )
+    least_confidence: float = ratio(
+        0.5,
+        low=0.0,
+        high=1.0,
+        name=Text("Least confidence", "信頼度の下限"),
+        explanation=Text(
+            "Lids that are less likely to be right are left out.",
+            "正しい見込みがこの値より低い蓋は出力しません。",
+        ),
+        picture="confidence/least",
+    )
+
+
+def find_gutters(
+    drives: tuple[Drive, ...], parameters: GutterParameters, monitor: Monitor
+) -> CandidateResult:
+    """Lids, gratings and outlines on all drives of a survey.
+
+    References
+    ----------
+    Takahashi 2022, chapter 7; mms.md, 7.3.
+    """
+    passes = [one for drive in drives for one in passes_of(drive)]
+    if not passes:
+        return CandidateResult(note=_NO_PASS)
+    monitor.report(0.0, _LOOKING)
+    notches = _notches(drives, parameters, PartMonitor(monitor, 0.0, _FINDING))
+    if sum(one.count for one in notches) < _FEW_NOTCHES:
+        return CandidateResult(note=_NO_NOTCHES)
+    monitor.report(_FINDING, _LAYING)
+    runs = gutter_runs(passes, notches, parameters.most_missed)
+    if not runs:
+        return CandidateResult(note=_NOT_REGULAR)
+    cells = GuideCells([one.axis for one in runs], POINTS_WITHIN_M)
+    laying = parts_of(PartMonitor(monitor, _FINDING, 1.0), [drive.count for drive in drives])
+    about = [cells.about(drive, part) for drive, part in zip(drives, laying, strict=True)]
+    candidates: list[Candidate] = []
+    for number, run in enumerate(runs):
+        monitor.check()
+        covers = covers_of(run, number, about)
+        sure = confidences(run, covers)
+        is_kept = sure >= parameters.least_confidence
+        kept = [one for one, keep in zip(covers, is_kept, strict=True) if keep]
+        candidates += _candidates(kept, sure[is_kept], number + 1)
+    if not candidates:
+        return CandidateResult(note=_NOT_REGULAR)
+    return CandidateResult(tuple(candidates))
+
+
+def notch_parameters(parameters: GutterParameters) -> NotchParameters:
+    """What counts as a notch by the tool's parameters."""
+    return replace(
+        NotchParameters(),
+        reach_m=parameters.reach_m,
+        height_m=parameters.height_m,
+        aside_m=parameters.aside_m,
+        down_m=parameters.down_m,
+    )
+
+
+def _notches(
+    drives: Sequence[Drive], parameters: GutterParameters, monitor: Monitor
+) -> list[Notches]:
+    wanted = notch_parameters(parameters)
+    parts = parts_of(monitor, [drive.count for drive in drives])
+    return [notches_of(drive, wanted, part) for drive, part in zip(drives, parts, strict=True)]
+
+
+def _candidates(
+    covers: Sequence[Cover], sure: NDArray[np.float64], run: int
+) -> Iterator[Candidate]:
+    for one, confidence in zip(covers, sure.tolist(), strict=True):
+        yield Candidate(
+            "gutter_grating" if one.is_grating else "gutter_lid",
+            "area",
+            one.corners,
+            np.full(4, -1, np.int64),
+            confidence,
+            {
+                "type": "grating" if one.is_grating else "lid",
+                "width_m": round(one.width_m, 3),
+                "length_m": round(one.length_m, 3),
+                "evidence": "bridged" if one.is_bridged else "seen",
+                "run": run,
+            },
+        )
+    for edge in edge_lines(covers, _OUTLINE_GAP_M):
+        yield Candidate(
+            "gutter_covered",
+            "line",
+            edge,
+            np.full(len(edge), -1, np.int64),
+            float(np.mean(sure)),
+            {"width_m": round(covers[0].width_m, 3), "run": run},
+            is_drawing=True,
+        )
+
+
+GUTTERS = Tool(
+    id="gutters",
+    name=Text("Covered gutters", "蓋付き側溝"),
+    explanation=Text(
+        "Finds the lids and gratings of covered U-shaped gutters by their drain holes and regular "
+        "joints, and draws the gutters' outline.",
+        "蓋付きU字溝の側溝蓋・グレーチングを、水抜き穴と規則的な継ぎ目から抽出し、"
+        "側溝の外形線を描きます。",
+    ),
+    group=Text("Road", "道路"),
+    needs=Needs.TRAJECTORY,
+    parameters=GutterParameters,
+    find_together=find_gutters,
+)

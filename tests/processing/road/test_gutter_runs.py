@@ -1,0 +1,192 @@
+"""Gutters from notches: made of joints that are known exactly, with noise, drop-outs and others."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from processing.points.passes import Pass, passes_of_trajectory
+from processing.points.trajectory import Trajectory
+from processing.road.curb_points import PointsAbout
+from processing.road.gutter_axis import STEP_M, GutterAxis
+from processing.road.gutter_joints import GRATING, joint_row
+from processing.road.gutter_lids import covers_of
+from processing.road.gutter_outline import edge_lines
+from processing.road.gutter_runs import GutterRun, gutter_runs
+from processing.road.notches import OPENING, Notches
+
+LID_M, JOINT_M, WIDTH_M = 0.6, 0.006, 0.38
+HOLES_M = 0.095
+ASIDE_M = 3.4
+COUNT = 60
+BEGIN_M = 10.0
+
+Floats = NDArray[np.float64]
+
+
+def way(radius_m: float) -> Pass:
+    """Sixty metres, straight or to the left."""
+    driven = np.arange(0.0, 60.0, 0.5)
+    turned = driven / radius_m
+    xyz = np.column_stack(
+        [radius_m * np.sin(turned), radius_m * (1 - np.cos(turned)), 2.0 + 0.02 * driven]
+    )
+    (found,) = passes_of_trajectory(Trajectory.from_positions(driven / 8.0, xyz + 1_000.0))
+    return found
+
+
+def joints(count: int = COUNT) -> Floats:
+    return np.arange(count + 1, dtype=np.float64) * (LID_M + JOINT_M)
+
+
+def notches_at(one: Pass, along_m: Floats, across_m: Floats, strength: float = 0.9) -> Notches:
+    """Notches whose places along the gutter are given in its own metres."""
+    station = np.arange(0.0, 58.0, 0.05)
+    line = one.xyz_at(station, np.full(station.size, ASIDE_M))
+    arcs = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))])
+    at = np.interp(along_m + BEGIN_M, arcs, station)
+    xyz = one.xyz_at(at, ASIDE_M + across_m)
+    xyz[:, 2] -= 2.5
+    empty = np.zeros(at.size)
+    return Notches(
+        xyz,
+        one.time_at(at),
+        empty + 0.2,
+        empty + 0.03,
+        np.full(at.size, OPENING, np.uint8),
+        empty + strength,
+        np.arange(at.size),
+        np.arange(at.size),
+        at,
+        ASIDE_M + across_m,
+        np.zeros(at.size, np.int64),
+        np.zeros((at.size, 2)),
+    )
+
+
+def holes_seen(random: np.random.Generator, share: float) -> tuple[Floats, Floats]:
+    """Along and across of the holes that rows fell into, each joint with two."""
+    along = np.repeat(joints(), 2)
+    across = np.tile([-HOLES_M, HOLES_M], COUNT + 1)
+    is_seen = random.random(along.size) < share
+    along = along[is_seen] + random.normal(0, 0.008, int(is_seen.sum()))
+    return along, across[is_seen] + random.uniform(-0.05, 0.05, along.size)
+
+
+@pytest.mark.parametrize("radius_m", [1e6, 40.0])
+def test_lids_are_found_by_half_of_their_holes_also_in_a_bend(radius_m: float) -> None:
+    one, random = way(radius_m), np.random.default_rng(5)
+    (run,) = gutter_runs([one], [notches_at(one, *holes_seen(random, 0.5))], 5)
+    assert run.length_m == LID_M
+    assert run.holes.type.width_m == WIDTH_M
+    assert COUNT - 2 <= run.row.starts_m.size <= COUNT + 1
+    np.testing.assert_allclose(run.row.ends_m - run.row.starts_m, LID_M, atol=0.002)
+    np.testing.assert_allclose(np.diff(run.row.starts_m), LID_M + JOINT_M, atol=0.008)
+
+
+def test_two_heads_together_find_what_neither_finds_alone() -> None:
+    one, random = way(1e6), np.random.default_rng(3)
+    heads = [notches_at(one, *holes_seen(random, 0.35)) for _ in range(2)]
+    (run,) = gutter_runs([one, one], heads, 5)
+    assert run.row.starts_m.size >= COUNT - 2
+
+
+def test_notches_by_chance_are_no_gutter() -> None:
+    one, random = way(1e6), np.random.default_rng(7)
+    along, across = random.uniform(0, 40, 300), random.uniform(-1.5, 1.5, 300)
+    found = gutter_runs([one], [notches_at(one, along, across)], 5)
+    assert sum(run.row.starts_m.size for run in found if run.holes.gain > 0.3) < 10
+
+
+def test_a_long_step_is_no_gutter() -> None:
+    one, random = way(1e6), np.random.default_rng(9)
+    along = np.arange(0.0, 40.0, 0.07) + random.normal(0, 0.01, 572)
+    found = gutter_runs([one], [notches_at(one, along, np.zeros(along.size))], 5)
+    assert sum(run.row.starts_m.size for run in found if run.row.value > 18) == 0
+
+
+def test_nothing_is_found_where_there_are_no_notches() -> None:
+    one = way(1e6)
+    assert gutter_runs([one], [], 5) == ()
+    assert gutter_runs([one], [notches_at(one, np.empty(0), np.empty(0))], 5) == ()
+
+
+def test_a_joint_that_nobody_saw_is_laid_by_its_neighbours() -> None:
+    known = np.repeat(joints(20), 3)
+    hidden = joints(20)[9:11]
+    is_seen = ~np.isin(known, hidden)
+    row = joint_row((known[is_seen], np.ones(int(is_seen.sum()))), LID_M, 12.5, 5)
+    assert row is not None
+    assert row.starts_m.size == 20
+    ends = row.ends_m[8:10] + JOINT_M / 2
+    np.testing.assert_allclose(ends, hidden, atol=0.01)
+    assert row.is_bridged.sum() == 1
+
+
+def test_more_lids_than_allowed_without_a_hole_are_a_gap() -> None:
+    known = np.repeat(joints(30), 3)
+    is_seen = (known < joints(30)[10] + 0.01) | (known > joints(30)[20] - 0.01)
+    row = joint_row((known[is_seen], np.ones(int(is_seen.sum()))), LID_M, 18.5, 3)
+    assert row is not None
+    assert np.diff(row.starts_m).max() > 3.0
+
+
+def test_a_grating_between_lids_is_one() -> None:
+    before, behind = joints(10), joints(10)[-1] + 0.506 + joints(10)
+    bars = np.arange(before[-1] + 0.01, behind[0] - 0.01, 0.03)
+    along = np.concatenate([np.repeat(before, 3), bars, np.repeat(behind, 3)])
+    row = joint_row((along, np.ones(along.size)), LID_M, float(behind[-1]) + 0.2, 5)
+    assert row is not None
+    (grating,) = np.flatnonzero(row.what == GRATING)
+    assert row.starts_m[grating] == pytest.approx(before[-1], abs=0.02)
+    assert row.ends_m[grating] - row.starts_m[grating] == pytest.approx(0.5)
+
+
+def points_on(run: GutterRun, random: np.random.Generator, sunken: int) -> PointsAbout:
+    along = random.uniform(0, run.axis.length_m, 30_000)
+    across = random.uniform(-0.4, 0.4, along.size)
+    above = 0.02 * across + random.normal(0, 0.002, along.size)
+    is_sunken = (along > run.row.starts_m[sunken]) & (along < run.row.ends_m[sunken])
+    above[is_sunken] -= 0.025
+    above[::10] += 0.05
+    return PointsAbout(
+        np.array([0, along.size]), along / STEP_M, across, above, np.arange(along.size)
+    )
+
+
+def test_lids_lie_on_their_own_tops_at_their_true_size() -> None:
+    one, random = way(1e6), np.random.default_rng(2)
+    (run,) = gutter_runs([one], [notches_at(one, *holes_seen(random, 0.9))], 5)
+    covers = covers_of(run, 0, [points_on(run, random, 10)])
+    cover = covers[20]
+    sides = np.linalg.norm(np.diff(cover.corners[:, :2], axis=0), axis=1)
+    np.testing.assert_allclose(sides, [LID_M, WIDTH_M, LID_M], atol=0.003)
+    _, across, above = run.axis.told(cover.corners, 0.5)
+    np.testing.assert_allclose(above, 0.02 * across, atol=0.004)
+    _, across, above = run.axis.told(covers[10].corners, 0.5)
+    np.testing.assert_allclose(above, 0.02 * across - 0.025, atol=0.004)
+    assert not cover.is_grating
+    (ahead_x, ahead_y), (left_x, left_y) = np.diff(cover.corners[:3, :2], axis=0)
+    assert ahead_x * left_y - ahead_y * left_x > 0
+
+
+def test_the_outline_is_both_long_edges() -> None:
+    one, random = way(1e6), np.random.default_rng(2)
+    (run,) = gutter_runs([one], [notches_at(one, *holes_seen(random, 0.9))], 5)
+    covers = covers_of(run, 0, [points_on(run, random, 10)])
+    left, right = edge_lines(covers, 6.0)
+    long_m = run.row.ends_m[-1] - run.row.starts_m[0]
+    for edge in (left, right):
+        assert np.hypot(*np.diff(edge[[0, -1], :2], axis=0)[0]) == pytest.approx(long_m, abs=0.01)
+    assert np.hypot(*(left[0] - right[0])[:2]) == pytest.approx(0.38, abs=0.005)
+
+
+def test_an_axis_tells_places_as_it_gives_them() -> None:
+    turn = np.linspace(0, 1, 60)
+    axis = GutterAxis.through(np.column_stack([30 * np.sin(turn), 30 * np.cos(turn), turn]))
+    along, across = np.linspace(1, 25, 40), np.linspace(-0.4, 0.4, 40)
+    told = axis.told(axis.places(along, across), 0.5)
+    np.testing.assert_allclose(told[0], along, atol=0.01)
+    np.testing.assert_allclose(told[1], across, atol=0.003)
+    np.testing.assert_allclose(told[2], 0.0, atol=0.003)
