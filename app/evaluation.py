@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+
 from app.document import Document
 from processing.errors import UserError
-from processing.project.feature import Feature
-from processing.project.run_evaluation import RunEvaluation, evaluate_runs
+from processing.project.feature import Feature, Status
+from processing.project.mapped_map import mapped_of
+from processing.project.run_evaluation import RunEvaluation, evaluate_runs, within_drives
+from processing.score.file_scores import FeatureScorer, FileScore
+from processing.score.mapped_features import MappedFile
+from processing.score.scorers import SCORERS
 
 
 class Evaluation:
@@ -38,3 +44,45 @@ class Evaluation:
             self._document.refused.emit(error)
         originals = {id_: one for known in self._originals.values() for id_, one in known.items()}
         return evaluate_runs(self._document.features(), runs, project.drives, originals)
+
+    def score_maps(self, take: Callable[[Mapping[str, FileScore]], None]) -> None:
+        """Hold what each run found against what a person drew or accepted, beside the window.
+
+        Parameters
+        ----------
+        take : callable
+            Gets the scores by the runs' ids, on the window's thread; those alone for which there
+            are a scorer and something that a person agreed to.
+        """
+        project = self._document.project
+        if project is None:
+            return
+        agreed = [one for one in self._document.features() if one.status is Status.ACCEPTED]
+        asked: list[tuple[str, FeatureScorer, MappedFile, MappedFile]] = []
+        for run in self._document.runs():
+            scorer = SCORERS.get(run.tool)
+            found = self._originals.get(run.id, {}).values()
+            true = within_drives(agreed, run, project.drives)
+            kinds = {one.kind for one in found}
+            if isinstance(scorer, FeatureScorer) and kinds & {one.kind for one in true}:
+                result = mapped_of(found, project.folder, project.crs)
+                truth = mapped_of(true, project.folder, project.crs)
+                asked.append((run.id, scorer, result, truth))
+
+        def work() -> dict[str, FileScore]:
+            return {one[0]: score for one in asked if (score := _scored(*one[1:])) is not None}
+
+        if asked:
+            self._document.do_at_hand(work, lambda scores: take(_as_scores(scores)))
+
+
+def _scored(scorer: FeatureScorer, found: MappedFile, true: MappedFile) -> FileScore | None:
+    """None where the map holds what can't be compared: areas drawn as lines."""
+    try:
+        return scorer.score(found, true)
+    except UserError:
+        return None
+
+
+def _as_scores(scores: object) -> Mapping[str, FileScore]:
+    return scores if isinstance(scores, dict) else {}

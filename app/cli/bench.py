@@ -17,6 +17,7 @@ from processing.bench.large_case import measure_large
 from processing.bench.noise_cases import measure_noise
 from processing.bench.peer_cases import measure_normals, measure_searchable
 from processing.bench.review_case import measure_review
+from processing.bench.road_case import measure_road
 from processing.bench.simulate_case import measure_simulate
 from processing.bench.start_case import measure_start
 from processing.bench.table import Circumstances, described, load_now, number, write_table
@@ -35,6 +36,7 @@ CASES: Mapping[str, Case] = {
     "noise": measure_noise,
     "ground": measure_ground,
     "simulate": measure_simulate,
+    "road": measure_road,
     "memory": measure_import_memory,
     "growth": measure_growth,
     "large": measure_large,

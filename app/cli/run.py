@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -28,6 +28,7 @@ from processing.tools.parameters import filled_in
 from processing.tools.tool import CandidateResult, FinishedColumns, Tool
 
 _RUNNING = 0.8
+_DRAWING = ".dxf"
 _NOTE = Text("{tool}: {note}", "{tool}: {note}")
 
 
@@ -43,7 +44,7 @@ def command(arguments: argparse.Namespace) -> int:
     ):
         _check_first(tool, opened, arguments.output, monitor)
         wish = _Wish(tool, parameters, opened, arguments.output)
-        paths = (_points if tool.find is None else _found)(wish, scratch, monitor)
+        paths = (_found if tool.gives_candidates else _points)(wish, scratch, monitor)
     print_lines(*(str(path) for path in paths))
     return 0
 
@@ -65,18 +66,37 @@ class _Wish:
 
 def _found(wish: _Wish, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
     """What a tool finds on each drive, as one file."""
+    drives, done = wish.opened.drives, set[str]()
     features: list[Feature] = []
-    share = _RUNNING / max(1, len(wish.opened.drives))
-    for number, drive in enumerate(wish.opened.drives):
-        part = PartMonitor(monitor, number * share, (number + 1) * share)
+    while left := [drive for drive in drives if drive.id not in done]:
+        request = wish.request(left[0])
+        together = [drive.id for drive in drives_of(request)]
+        ends = (len(done) / len(drives), len(done | set(together)) / len(drives))
+        part = PartMonitor(monitor, _RUNNING * ends[0], _RUNNING * ends[1])
         started = datetime.now(UTC)
-        result = run(wish.request(drive), part, into=scratch / str(number))
+        result = run(request, part, into=scratch / str(len(done)))
+        done |= set(together)
         if isinstance(result, CandidateResult):
+            _tell(wish.tool, result.note, monitor, _RUNNING * ends[1])
+            result = _for_file(result, wish.output)
             times = {"started": started, "finished": datetime.now(UTC)}
-            found = found_features(result, wish.tool, wish.parameters, drive.id, **times)
+            found = found_features(result, wish.tool, wish.parameters, together, **times)
             features.extend(found.change.added)
     writing = PartMonitor(monitor, _RUNNING, 1.0)
     return _write_features(features, wish.opened, wish.output, writing)
+
+
+def _for_file(result: CandidateResult, output: Path) -> CandidateResult:
+    """What goes into a file: a drawing has all, other files what was found."""
+    if output.suffix.lower() == _DRAWING:
+        return result
+    kept = tuple(one for one in result.candidates if not one.is_drawing)
+    return replace(result, candidates=kept)
+
+
+def _tell(tool: Tool, note: Text, monitor: Monitor, at: float) -> None:
+    if note.en:
+        monitor.report(at, _NOTE.filled(tool=tool.name, note=note))
 
 
 def _points(wish: _Wish, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
@@ -93,9 +113,7 @@ def _points(wish: _Wish, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
         ends = (len(columns) / len(drives), (len(columns) + len(together)) / len(drives))
         part = PartMonitor(monitor, _RUNNING * ends[0], _RUNNING * ends[1])
         result = run_together(request, part, into=scratch / str(len(columns)))
-        if result.note.en:
-            said = _NOTE.filled(tool=wish.tool.name, note=result.note)
-            monitor.report(_RUNNING * ends[1], said)
+        _tell(wish.tool, result.note, monitor, _RUNNING * ends[1])
         columns |= {one.id: found for one, found in zip(together, result.columns, strict=True)}
         surfaces.extend((left[0].info.name, path) for path in result.kept)
     with ExitStack() as whole:
@@ -122,10 +140,10 @@ def _check_first(tool: Tool, opened: OpenedInput, output: Path, monitor: Monitor
     """Refuse what can't come to a good end before hours of work are spent on it."""
     for drive in opened.drives:
         check_needs(tool, drive)
-    if tool.find is None:
-        check_point_output(opened.drives, output, monitor)
-    else:
+    if tool.gives_candidates:
         refuse_inputs(output, _delivered(opened))
+    else:
+        check_point_output(opened.drives, output, monitor)
 
 
 def _delivered(opened: OpenedInput) -> list[Path]:
@@ -163,7 +181,7 @@ def settings_of_words(words: list[str]) -> dict[str, str]:
 
 
 def _check_output(tool: Tool, output: Path) -> None:
-    if tool.find is not None:
+    if tool.gives_candidates:
         check_ending(output)
     elif output.suffix.lower() not in (".las", ".laz"):
         raise OutOfRange(

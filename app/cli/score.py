@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import tempfile
+from contextlib import closing
 from pathlib import Path
 
 from app.cli.file_score_words import file_score_json, file_score_lines
@@ -16,9 +17,11 @@ from processing.formats.mapped_shapes import read_mapped
 from processing.formats.number_file import read_numbers
 from processing.formats.point_codes import read_result, read_truth
 from processing.monitor import Monitor
+from processing.project.mapped_map import agreed_map, found_map
+from processing.project.project import Project, is_project
 from processing.score.coded_points import CodedFile, pairs_by_order
 from processing.score.file_scores import FeatureScorer, FileScore, VolumeScorer
-from processing.score.mapped_features import check_same_system
+from processing.score.mapped_features import MappedFile, check_same_system
 from processing.score.pairs_by_place import pairs_by_place
 from processing.score.point_scores import PointScore, PointScorer
 from processing.score.scorers import scorer_of
@@ -52,9 +55,26 @@ def _scored_file(scorer: FeatureScorer | VolumeScorer, result: Path, truth: Path
         return scorer.score(
             read_numbers(result, tuple(MEASURES)), read_numbers(truth, tuple(MEASURES))
         )
-    true, found = read_mapped(truth), read_mapped(result)
+    true = _read_truth(truth)
+    found = _read_result(result, scorer.tool)
     check_same_system(found, true)
     return scorer.score(found, true)
+
+
+def _read_truth(path: Path) -> MappedFile:
+    """A map file; or of a project what a person drew or accepted."""
+    if not is_project(path):
+        return read_mapped(path)
+    with closing(Project.open(path, writing=False)) as project:
+        return agreed_map(project, path)
+
+
+def _read_result(path: Path, tool: str) -> MappedFile:
+    """A map file; or of a project what the tool's last run found."""
+    if not is_project(path):
+        return read_mapped(path)
+    with closing(Project.open(path, writing=False)) as project:
+        return found_map(project, path, tool)
 
 
 def _scored_points(scorer: PointScorer, result: Path, truth: Path) -> tuple[PointScore, str]:

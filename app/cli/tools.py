@@ -42,7 +42,7 @@ def _described(tool: Tool) -> dict[str, object]:
 
 
 def _gives(tool: Tool) -> str:
-    return "candidates" if tool.find is not None else "columns"
+    return "candidates" if tool.gives_candidates else "columns"
 
 
 def _parameter(parameter: Parameter) -> dict[str, object]:

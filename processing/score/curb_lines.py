@@ -50,15 +50,59 @@ _NAME = Text("curbs", "縁石")
 
 
 @dataclass(frozen=True)
-class _EdgeScore:
-    """One edge, judged once with dropped curbs and once without."""
+class JudgedLine:
+    """A line of the result.
 
-    counts: dict[bool, TwoByTwo]
+    Attributes
+    ----------
+    feature : MappedFeature
+    right_share : float
+        0 to 1: how much of it lies along true edges, seen or not, as the nearest line there.
+    false : tuple of (n, 3) float64
+        Sections of it that are false, m.
+    """
+
+    feature: MappedFeature
+    right_share: float
+    false: tuple[Floats, ...]
+
+
+@dataclass(frozen=True)
+class JudgedEdge:
+    """One edge of all curbs, judged section by section.
+
+    Attributes
+    ----------
+    asked : tuple of TrueSection
+        Those that have to be found.
+    is_found : (n,) bool
+        Which of them are.
+    lines : tuple of JudgedLine
+        Those of the result.
+    plan_off, height_off, step_off : (m,) float64
+        Errors at places of found sections, and of the steps of found sections, m.
+    right_types : int
+        Found sections with the right type.
+    unseen : int
+        Sections that the points don't show.
+    """
+
+    asked: tuple[TrueSection, ...]
+    is_found: NDArray[np.bool_]
+    lines: tuple[JudgedLine, ...]
     plan_off: Floats
     height_off: Floats
     step_off: Floats
     right_types: int
     unseen: int
+
+    def counts(self, *, with_dropped: bool) -> TwoByTwo:
+        """Sections found, false and missed; dropped curbs count neither way where left out."""
+        is_dropped = np.array([one.kind == "dropped" for one in self.asked], np.bool_)
+        counted = self.is_found[with_dropped | ~is_dropped]
+        hits = int(counted.sum())
+        false = sum(len(one.false) for one in self.lines)
+        return TwoByTwo(hits, false, counted.size - hits, 0)
 
 
 def curb_score(
@@ -76,17 +120,7 @@ def curb_score(
     BadFile
         Features aren't lines of curbs, don't say which edge they are, or a measure is no number.
     """
-    found = _by_edge(result)
-    true = _by_edge(truth)
-    edges = {
-        edge: _edge_score(
-            result,
-            [one for one in found[edge] if kind_of(one) != "back"],
-            sections_of(truth, true[edge]),
-            tolerance_m,
-        )
-        for edge in EDGES
-    }
+    edges = judged_edges(result, truth, tolerance_m)
     return FileScore(
         "curbs",
         tuple(_counts(edges)),
@@ -95,7 +129,7 @@ def curb_score(
                 "type",
                 ("sections found with the right type", "種類（縁石・切下げ）も正しい区間"),
                 sum(one.right_types for one in edges.values()),
-                sum(one.counts[True].hits for one in edges.values()),
+                sum(one.counts(with_dropped=True).hits for one in edges.values()),
             ),
         ),
         tuple(error for edge in EDGES for error in _edge_errors(edge, edges[edge])),
@@ -109,19 +143,41 @@ def curb_score(
     )
 
 
-def _counts(edges: Mapping[str, _EdgeScore]) -> Iterator[Counts]:
+def judged_edges(
+    result: MappedFile, truth: MappedFile, tolerance_m: float = TOLERANCE_M
+) -> dict[str, JudgedEdge]:
+    """What was found, missed and made up of each of `EDGES`, place by place.
+
+    Raises
+    ------
+    BadFile
+        As :func:`curb_score`.
+    """
+    found, true = _by_edge(result), _by_edge(truth)
+    return {
+        edge: _judged(
+            result,
+            [one for one in found[edge] if kind_of(one) != "back"],
+            sections_of(truth, true[edge]),
+            tolerance_m,
+        )
+        for edge in EDGES
+    }
+
+
+def _counts(edges: Mapping[str, JudgedEdge]) -> Iterator[Counts]:
     """What is counted, the thesis's own way first."""
     names = {
         False: Text("2 m sections, without dropped curbs", "2m区間（切下げを除く）"),
         True: Text("2 m sections, with dropped curbs", "2m区間（切下げを含む）"),
     }
     for with_dropped, name in names.items():
-        counts = [one.counts[with_dropped] for one in edges.values()]
+        counts = [one.counts(with_dropped=with_dropped) for one in edges.values()]
         id_ = "all" if with_dropped else "without_dropped"
         yield Counts(id_, name, sum(counts, TwoByTwo(0, 0, 0, 0)))
     for edge, score in edges.items():
         name = Text(*_edge_name(edge, "2 m sections", "の2m区間"))
-        yield Counts(edge, name, score.counts[True])
+        yield Counts(edge, name, score.counts(with_dropped=True))
 
 
 def _by_edge(file: MappedFile) -> dict[str, list[MappedFeature]]:
@@ -133,28 +189,23 @@ def _by_edge(file: MappedFile) -> dict[str, list[MappedFeature]]:
     return lines
 
 
-def _edge_score(
+def _judged(
     result: MappedFile,
     features: Sequence[MappedFeature],
     sections: Sequence[TrueSection],
     tolerance_m: float,
-) -> _EdgeScore:
-    asked = [section for section in sections if section.is_asked]
+) -> JudgedEdge:
+    asked = tuple(section for section in sections if section.is_asked)
     at, of = _all_places([section.xyz for section in asked])
     lines = Lines([one.xyz for one in features])
     near = lines.nearest(at, tolerance_m)
     is_found = _mostly(near.line >= 0, of, len(asked))
-    is_dropped = np.array([one.kind == "dropped" for one in asked], np.bool_)
-    false = _false_sections(features, Lines([one.xyz for one in sections]), lines, tolerance_m)
-    counts = {}
-    for with_dropped in (True, False):
-        counted = is_found[with_dropped | ~is_dropped]
-        hits = int(counted.sum())
-        counts[with_dropped] = TwoByTwo(hits, false, counted.size - hits, 0)
     used = np.flatnonzero((near.line >= 0) & is_found[of])
     found = _lines_of(near.line[used], of[used])
-    return _EdgeScore(
-        counts,
+    return JudgedEdge(
+        asked,
+        is_found,
+        _judged_lines(features, Lines([one.xyz for one in sections]), lines, tolerance_m),
         near.off_m[used],
         (near.xyz - at)[used, 2],
         np.array(
@@ -185,10 +236,10 @@ def _lines_of(line: Integers, of: Integers) -> dict[int, int]:
     return {int(of[one[0]]): int(line[one[one.size // 2]]) for one in parts if one.size}
 
 
-def _false_sections(
+def _judged_lines(
     features: Sequence[MappedFeature], true_lines: Lines, lines: Lines, tolerance_m: float
-) -> int:
-    """Sections of result lines that no true line, seen or not, accounts for."""
+) -> tuple[JudgedLine, ...]:
+    """Lines of the result with what no true line, seen or not, accounts for."""
     parts = [pieces_of(one.xyz) for one in features]
     owner = np.repeat(np.arange(len(parts)), [len(one) for one in parts])
     pieces = list(itertools.chain.from_iterable(parts))
@@ -198,10 +249,25 @@ def _false_sections(
     # Of two lines along one true line only the nearer is right.
     beside = lines.nearest(true.xyz[is_right], tolerance_m)
     is_right[is_right] = beside.line == owner[of[is_right]]
-    return int((~_mostly(is_right, of, len(pieces))).sum())
+    is_piece_right = _mostly(is_right, of, len(pieces))
+    places = np.bincount(owner[of], minlength=len(features))
+    share = np.bincount(owner[of[is_right]], minlength=len(features)) / np.maximum(places, 1)
+    ends = np.cumsum([0, *map(len, parts)])
+    return tuple(
+        JudgedLine(
+            feature,
+            float(share[number]),
+            tuple(
+                pieces[one]
+                for one in range(ends[number], ends[number + 1])
+                if not is_piece_right[one]
+            ),
+        )
+        for number, feature in enumerate(features)
+    )
 
 
-def _edge_errors(edge: str, score: _EdgeScore) -> Iterator[Errors]:
+def _edge_errors(edge: str, score: JudgedEdge) -> Iterator[Errors]:
     yield errors_of(f"{edge}_plan", _edge_name(edge, "in plan", "の水平距離"), "m", score.plan_off)
     yield errors_of(f"{edge}_height", _edge_name(edge, "height", "の標高"), "m", score.height_off)
     yield errors_of(f"{edge}_step", _edge_name(edge, "curb's step", "の段差"), "m", score.step_off)

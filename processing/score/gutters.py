@@ -50,6 +50,27 @@ _NAME = Text("lids of gutters", "側溝蓋")
 
 
 @dataclass(frozen=True)
+class JudgedGutters:
+    """What was found, missed and made up, place by place.
+
+    Attributes
+    ----------
+    missed, false : (n, 3) float64
+        Middles of slots along true gutters, m.
+    beside : tuple of MappedFeature
+        Covers of the result that lie on no gutter.
+    is_right : tuple of (MappedFeature, bool)
+        Covers of the result, and whether each shares enough with a true one of its type, seen or
+        not; without those on covers that nobody can see.
+    """
+
+    missed: Floats
+    false: Floats
+    beside: tuple[MappedFeature, ...]
+    is_right: tuple[tuple[MappedFeature, bool], ...]
+
+
+@dataclass(frozen=True)
 class _Pieces:
     """Lids and gratings of both sides, and which were paired."""
 
@@ -84,16 +105,8 @@ def gutter_score(result: MappedFile, truth: MappedFile) -> FileScore:
     BadFile
         Features aren't areas of lids and gratings, or a share is no number.
     """
-    found, true = _covers(result), _covers(truth)
-    found_areas, true_areas = areas_of(found), areas_of(true)
-    asked = np.array([is_seen(truth, one) for one in true], np.bool_)
-    pieces = _Pieces(
-        found,
-        true,
-        asked,
-        _mostly_on(found_areas, true_areas[~asked]),
-        _paired(found_areas, true_areas),
-    )
+    pieces, found_areas = _pieces(result, truth)
+    found, true, asked = pieces.result, pieces.truth, pieces.is_asked
     runs = runs_of(truth, true)
     slots, found_runs, asked_runs = _slot_counts(runs, found, found_areas)
     right = [(found[i], true[j]) for i, j in pieces.pairs if asked[j]]
@@ -126,6 +139,48 @@ def gutter_score(result: MappedFile, truth: MappedFile) -> FileScore:
             "least_scanned": LEAST_SCANNED,
         },
     )
+
+
+def judged_gutters(result: MappedFile, truth: MappedFile) -> JudgedGutters:
+    """The places behind the counts of :func:`gutter_score`.
+
+    Raises
+    ------
+    BadFile
+        As there.
+    """
+    pieces, areas = _pieces(result, truth)
+    missed, false = [np.empty((0, 3))], [np.empty((0, 3))]
+    runs = runs_of(truth, pieces.truth)
+    for run in runs:
+        is_found, _ = _on_run(run, areas)
+        missed.append(run.slots[run.is_asked & run.has_lid & ~is_found])
+        false.append(run.slots[run.is_asked & ~run.has_lid & is_found])
+    right = {i for i, j in pieces.pairs if _type(pieces.result[i]) == _type(pieces.truth[j])}
+    paired = {i for i, _ in pieces.pairs}
+    return JudgedGutters(
+        np.vstack(missed),
+        np.vstack(false),
+        tuple(_beside_runs(runs, pieces.result, areas)),
+        tuple(
+            (one, i in right)
+            for i, one in enumerate(pieces.result)
+            if i in paired or not pieces.is_on_unseen[i]
+        ),
+    )
+
+
+def _type(cover: MappedFeature) -> object:
+    return cover.facts["type"]
+
+
+def _pieces(result: MappedFile, truth: MappedFile) -> tuple[_Pieces, Areas]:
+    """Covers of both sides, and the result's outlines in plan."""
+    found, true = _covers(result), _covers(truth)
+    found_areas, true_areas = areas_of(found), areas_of(true)
+    asked = np.array([is_seen(truth, one) for one in true], np.bool_)
+    on_unseen = _mostly_on(found_areas, true_areas[~asked])
+    return _Pieces(found, true, asked, on_unseen, _paired(found_areas, true_areas)), found_areas
 
 
 def _covers(file: MappedFile) -> list[MappedFeature]:
@@ -165,24 +220,39 @@ def _slot_counts(
     runs: Sequence[Run], found: Sequence[MappedFeature], areas: Areas
 ) -> tuple[TwoByTwo, int, int]:
     """Slots along all runs and beside them; how many runs were found, and of how many."""
-    import shapely
-
-    tree = shapely.STRtree(areas)
     counts, found_runs, asked_runs = TwoByTwo(0, 0, 0, 0), 0, 0
-    is_on_run = np.zeros(len(areas), np.bool_)
     for run in runs:
-        is_found = np.zeros(len(run.slots), np.bool_)
-        is_found[
-            tree.query(shapely.points(run.slots[:, :2]), predicate="dwithin", distance=JOINT_M)[0]
-        ] = True
+        is_found, _ = _on_run(run, areas)
         counts += TwoByTwo.of(run.has_lid[run.is_asked], is_found[run.is_asked])
         wanted = run.has_lid & run.is_asked
         asked_runs += bool(wanted.any())
         found_runs += bool(wanted.any() and is_found[wanted].mean() >= RUN_SHARE)
-        axis = shapely.linestrings(run.axis[:, :2])
-        is_on_run[tree.query(axis, predicate="dwithin", distance=JOINT_M)] = True
-    beside = [one for one, is_on in zip(found, is_on_run, strict=True) if not is_on]
-    return counts + TwoByTwo(0, sum(map(_slots_of, beside)), 0, 0), found_runs, asked_runs
+    beside = sum(map(_slots_of, _beside_runs(runs, found, areas)))
+    return counts + TwoByTwo(0, beside, 0, 0), found_runs, asked_runs
+
+
+def _on_run(run: Run, areas: Areas) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Which slots of a run have a cover on them, and which covers lie on the run."""
+    import shapely
+
+    tree = shapely.STRtree(areas)
+    is_found = np.zeros(len(run.slots), np.bool_)
+    middles = shapely.points(run.slots[:, :2])
+    is_found[tree.query(middles, predicate="dwithin", distance=JOINT_M)[0]] = True
+    is_on = np.zeros(len(areas), np.bool_)
+    axis = shapely.linestrings(run.axis[:, :2])
+    is_on[tree.query(axis, predicate="dwithin", distance=JOINT_M)] = True
+    return is_found, is_on
+
+
+def _beside_runs(
+    runs: Sequence[Run], found: Sequence[MappedFeature], areas: Areas
+) -> list[MappedFeature]:
+    """Covers that lie on no run."""
+    is_on = np.zeros(len(areas), np.bool_)
+    for run in runs:
+        is_on |= _on_run(run, areas)[1]
+    return [one for one, on in zip(found, is_on, strict=True) if not on]
 
 
 def _slots_of(cover: MappedFeature) -> int:

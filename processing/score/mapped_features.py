@@ -93,7 +93,9 @@ class MappedFile:
             if kind is not None and kind not in kinds:
                 continue
             implied = kinds[str(kind)] if kind is not None else {}
-            chosen.append(replace(feature, facts={**implied, **feature.facts}))
+            # Tables of a whole map have empty fields where a kind lacks them.
+            lacking = {n: v for n, v in implied.items() if feature.facts.get(n) in (None, "")}
+            chosen.append(replace(feature, facts={**feature.facts, **lacking}))
         if self.features and not chosen:
             raise BadFile(
                 Text("The file holds none of: {name}.", "ファイルに{name}がありません。").filled(

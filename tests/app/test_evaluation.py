@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
 
 from app.document import Document
 from app.evaluation import Evaluation
@@ -17,13 +18,21 @@ from app.evaluation_files import write_evaluation_file
 from app.jobs import JobQueue
 from app.review import Review
 from processing.errors import Unsuitable, UserError
+from processing.project.catalogue import Geometry
 from processing.project.change import Change, Replacement
+from processing.project.feature import Feature, Vertex, new_feature_id
+from processing.project.importing import ImportRequest
 from processing.project.review_state import ReviewOrder
+from processing.score.file_scores import FileScore
+from processing.score.point_classes import TwoByTwo
 from processing.score.reliability import reliability_of
 from processing.text import Text
-from tests.processing.project.candidates import found_lines
+from processing.tools.tool import Candidate, CandidateResult
+from tests.builders import simulated_drive, write_laz, write_trajectory_csv
+from tests.processing.project.candidates import found, found_lines
 from widgets.panels.reliability_plot import PlotWords, ReliabilityPlot
 
+WAIT_MS = 30_000
 LABEL = Text("Move", "移動")
 WORDS = PlotWords("縁石", "信頼度", "採用の割合", "{count}件", "誤差{error}", "なし")
 
@@ -101,3 +110,30 @@ def test_a_picture_that_cannot_be_written_is_refused_and_leaves_nothing(
         with pytest.raises(UserError):
             write_evaluation_file(tmp_path / "file" / f"a.{ending}", (), plot)
     assert [one.name for one in tmp_path.iterdir()] == ["file"]
+
+
+def test_what_a_run_found_is_scored_against_what_was_drawn_and_accepted(
+    document: Document, tmp_path: Path, qtbot: QtBot
+) -> None:
+    cloud, trajectory = simulated_drive(3), tmp_path / "軌跡.csv"
+    files = (write_laz(cloud, tmp_path / "左.laz"),), (write_trajectory_csv(cloud, trajectory),)
+    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
+        document.import_files(ImportRequest(*files))
+    (drive,) = document.drives()
+    low = np.array(drive.info.lowest)
+    lines = [np.array([[n, 0.5, 0.0], [n + 2.0, 0.5, 0.0]]) + low for n in (0, 3, 6)]
+    candidates = tuple(
+        Candidate("curb_lower", "line", one, np.full(2, -1), 0.8, {"edge": "lower"})
+        for one in lines
+    )
+    made = found(CandidateResult(candidates), drive=drive.id)
+    document.store_run(replace(made, run=replace(made.run, tool="curbs")))
+    by_hand = [Vertex((x, y, z)) for x, y, z in (lines[0] + [0.0, 0.02, 0.0]).tolist()]
+    drawn = Feature(new_feature_id(), "curb_lower", Geometry.LINE, tuple(by_hand))
+    document.apply(LABEL, Change(added=(drawn,)))
+    evaluation = Evaluation(document)
+    evaluation.evaluations()
+    scores: list[Mapping[str, FileScore]] = []
+    evaluation.score_maps(scores.append)
+    qtbot.waitUntil(lambda: bool(scores), timeout=WAIT_MS)
+    assert scores[0][made.run.id].counts_of("all") == TwoByTwo(1, 2, 0, 0)

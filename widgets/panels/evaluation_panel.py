@@ -13,6 +13,8 @@ from PySide6.QtWidgets import (
     QLabel,
     QMenu,
     QPushButton,
+    QScrollArea,
+    QSizePolicy,
     QSplitter,
     QStackedWidget,
     QTableWidget,
@@ -24,6 +26,7 @@ from typing_extensions import override
 
 from processing.project.run_evaluation import RunEvaluation
 from processing.project.runs import Run
+from processing.score.file_scores import FileScore
 from processing.score.reliability import Share
 from processing.text import Language
 from widgets.panels.feature_tally import RunOfTool
@@ -72,6 +75,10 @@ class EvaluationPanel(QWidget):
         self._is_stale = True
         self._refresh = QTimer(self, interval=_WAIT_MS, singleShot=True)
         self._refresh.timeout.connect(self._ask_if_seen)
+        self._map_scores: Mapping[str, FileScore] = {}
+        self._against_map = QLabel(self)
+        self._against_map.setWordWrap(True)
+        self._around_map_score = self._scrolled(self._against_map)
         self._table = self._new_table()
         self._plot = ReliabilityView(self)
         self._halves = QSplitter(Qt.Orientation.Horizontal, self)
@@ -114,6 +121,30 @@ class EvaluationPanel(QWidget):
         self._table.setCurrentCell(min(row, len(self._evaluations) - 1), 0)
         self._share_room()
         self._show_plot()
+
+    def show_map_scores(self, scores: Mapping[str, FileScore]) -> None:
+        """Show, by the ids of runs, how what they found fits the map of a person."""
+        self._map_scores = scores
+        self._show_map_score()
+
+    def _show_map_score(self) -> None:
+        row = self._table.currentRow()
+        chosen = self._evaluations[row].runs if 0 <= row < len(self._evaluations) else ()
+        score = self._map_scores.get(chosen[0]) if len(chosen) == 1 else None
+        self._around_map_score.setVisible(score is not None)
+        if score is None:
+            self._against_map.clear()
+            return
+        lines = [self.tr("Against what was drawn and accepted, place by place:")]
+        for one in score.counts:
+            if one.counts.count:
+                words = self.tr("{what}: precision {p}, recall {r}, F {f}")
+                counts = one.counts
+                shares = counts.precision, counts.recall, counts.f_measure
+                p, r, f = (_percent(Share(share, 1.0)) or "–" for share in shares)
+                name = one.name.spoken(self._language)
+                lines.append(words.format(what=name, p=p, r=r, f=f))
+        self._against_map.setText("\n".join(lines))
 
     def _name_of(self, one: RunEvaluation, runs: Mapping[str, Run]) -> str:
         """A tool over several runs, with those below it; or a tool that was run once."""
@@ -206,8 +237,20 @@ class EvaluationPanel(QWidget):
         layout.setContentsMargins(8, 8, 8, 8)
         layout.setSpacing(8)
         layout.addWidget(self._table, 1)
+        layout.addWidget(self._around_map_score)
         layout.addWidget(button, 0, Qt.AlignmentFlag.AlignLeft)
         return half
+
+    def _scrolled(self, label: QLabel) -> QScrollArea:
+        """Words that ask for no height on a low screen; hidden until there are some."""
+        area = QScrollArea(self)
+        area.setWidget(label)
+        area.setWidgetResizable(True)
+        area.setFrameShape(QScrollArea.Shape.NoFrame)
+        area.setMinimumHeight(1)
+        area.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
+        area.hide()
+        return area
 
     def _empty_page(self) -> QLabel:
         words = QLabel(
@@ -220,6 +263,7 @@ class EvaluationPanel(QWidget):
         return words
 
     def _show_plot(self) -> None:
+        self._show_map_score()
         row = self._table.currentRow()
         if not 0 <= row < len(self._evaluations):
             self._plot.show_plot(None)

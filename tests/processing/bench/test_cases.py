@@ -14,7 +14,10 @@ from processing.bench.import_cases import measure_import, measure_import_memory
 from processing.bench.label_case import measure_labels
 from processing.bench.noise_cases import measure_noise
 from processing.bench.peer_cases import measure_normals, measure_searchable
+from processing.bench.road_case import measure_road
+from processing.bench.road_run import StageWatch
 from processing.bench.simulate_case import measure_simulate
+from processing.text import Text
 
 LITTLE = BenchWish(most_points=20_000, share=0.2)
 
@@ -67,6 +70,27 @@ def test_noise_is_compared_with_a_peer_and_the_combined_has_a_time() -> None:
         assert row.value is not None
         assert row.value > 0
         assert row.target is not None
+
+
+def test_curbs_and_gutters_have_times_by_stage_and_length() -> None:
+    rows = measure_road(LITTLE)
+    assert [row.name for row in rows] == ["road", "road-growth", "road-memory", "road-stop"]
+    for row in rows:
+        assert row.value is not None or row.name == "road-memory"
+        assert row.target is not None
+    assert "curbs" in rows[0].detail
+    assert "gutters" in rows[0].detail
+
+
+def test_stages_are_timed_from_one_told_to_the_next() -> None:
+    watch = StageWatch()
+    watch.report(0.0, Text("Reading", "読み込み中"))
+    watch.report(0.5)
+    watch.report(0.6, Text("Joining", "結合中"))
+    watch.close()
+    assert list(watch.seconds) == ["begin", "Reading", "Joining"]
+    assert min(watch.seconds.values()) >= 0
+    assert 0 < watch.longest_s < math.inf
 
 
 def test_memory_of_an_import_is_some_of_it_in_no_file() -> None:
