@@ -291,6 +291,8 @@ class Document(QObject):
             return found.change
 
         is_stored = self._changed(push)
+        if is_stored and found.change.added:
+            self.shared.map_changes.candidates_found.emit(found.run.tool, found.run.id)
         if found.change.labels or found.change.filed:
             self._first_look.show_classes()
         return is_stored

@@ -9,10 +9,11 @@ from itertools import islice
 
 from PySide6.QtCore import QObject, Signal
 
+from app.decisions import Lines, judged, label_of_line, label_of_many, label_of_one
 from app.document import Document
 from app.review_queue import ReviewQueue
 from processing.errors import UserError
-from processing.project.change import Change, Replacement
+from processing.project.change import Change
 from processing.project.feature import Feature, Status
 from processing.project.feature_middle import middle_of
 from processing.project.review_order import review_order
@@ -27,13 +28,6 @@ from processing.text import Text
 from widgets.shared.cursor import Place
 
 _PREPARED = 3
-_LABELS = {
-    Status.ACCEPTED: Text("Accept {kind}", "「{kind}」を採用"),
-    Status.REJECTED: Text("Reject {kind}", "「{kind}」を却下"),
-}
-_ACCEPT_ABOVE = Text(
-    "Accept {count} candidates from confidence {least} up", "信頼度{least}以上の候補{count}件を採用"
-)
 _GONE = Text(
     "{count} features of the review are gone; {left} candidates are left.",
     "確認中の地物{count}件がなくなりました。残りの候補は{left}件です。",
@@ -82,6 +76,7 @@ class Review(QObject):
         self._clock = clock
         self._state = ReviewState()
         self._queue = ReviewQueue()
+        self._lines = Lines()
         self._trail: list[str] = []
         self._shown_at = 0.0
         self._is_deciding = False
@@ -117,6 +112,11 @@ class Review(QObject):
             return
         self._begin(ReviewState(tuple(dict.fromkeys(runs)), order))
 
+    def add(self, run: str) -> None:
+        """Go on with what is shown, and judge the candidates of this run too."""
+        if run not in self._state.runs:
+            self._begin(replace(self._state, runs=(*self._state.runs, run)))
+
     def close(self) -> None:
         """End the review; what was decided stays."""
         self.open((), self._state.order)
@@ -133,6 +133,19 @@ class Review(QObject):
     def reject(self) -> bool:
         """Refuse what is shown and go on; it is kept to judge the tool by."""
         return self._decide(Status.REJECTED)
+
+    @property
+    def line_count(self) -> int:
+        """How many undecided candidates belong to the line of what is shown."""
+        return len(self._line())
+
+    def accept_line(self) -> bool:
+        """Agree to all undecided candidates of the line of what is shown, in one step."""
+        return self._decide_line(Status.ACCEPTED)
+
+    def reject_line(self) -> bool:
+        """Refuse them all."""
+        return self._decide_line(Status.REJECTED)
 
     def edit(self) -> None:
         """Let the operator correct what is shown; it is still to be judged."""
@@ -165,9 +178,8 @@ class Review(QObject):
         features = [feature for feature in found if feature is not None]
         if not features:
             return False
-        change = _judged(features, Status.ACCEPTED)
-        label = _ACCEPT_ABOVE.filled(count=f"{len(features):,}", least=f"{least:.2f}")
-        if not self._applied(label, change):
+        label = label_of_many(len(features), least)
+        if not self._applied(label, judged(features, Status.ACCEPTED)):
             return False
         if self._queue.status(self._state.feature) is Status.CANDIDATE:
             self.changed.emit()
@@ -181,17 +193,28 @@ class Review(QObject):
             return False
         if feature.status is not status:
             seconds = self._clock() - self._shown_at
-            change = _judged((feature,), status)
-            if not self._applied(self._label(feature, status), change):
+            label = label_of_one(self._document.catalogue(), feature, status)
+            if not self._applied(label, judged((feature,), status)):
                 return False
             self._state = self._state.decided(seconds)
         self._go_on()
         return True
 
-    def _label(self, feature: Feature, status: Status) -> Text:
-        catalogue, kind = self._document.catalogue(), feature.kind
-        name = catalogue[kind].name if kind in catalogue else Text.same(kind)
-        return _LABELS[status].filled(kind=name)
+    def _line(self) -> list[str]:
+        """The undecided candidates that a tool gave as one line with what is shown."""
+        beside = self._lines.beside(self._state.feature)
+        return [id_ for id_ in beside if self._queue.status(id_) is Status.CANDIDATE]
+
+    def _decide_line(self, status: Status) -> bool:
+        shown, found = self.current, map(self._document.feature, self._line())
+        features = [feature for feature in found if feature is not None]
+        if shown is None or not features:
+            return False
+        label = label_of_line(self._document.catalogue(), shown, len(features), status)
+        if not self._applied(label, judged(features, status)):
+            return False
+        self._go_on()
+        return True
 
     def _applied(self, label: Text, change: Change) -> bool:
         self._is_deciding = True
@@ -210,9 +233,11 @@ class Review(QObject):
 
     def _queue_of(self, state: ReviewState) -> ReviewQueue:
         if not state.is_open:
+            self._lines = Lines()
             return ReviewQueue()
         runs = set(state.runs)
         members = {one.id: one for one in self._document.features() if one.provenance.run in runs}
+        self._lines = Lines(members.values())
         ids = review_order(members.values(), state.order, self._document.drives())
         return ReviewQueue(
             ids,
@@ -342,10 +367,6 @@ class Review(QObject):
             self._go_to(self._first_undecided(new) or following)
         else:
             self.changed.emit()
-
-
-def _judged(features: Iterable[Feature], status: Status) -> Change:
-    return Change(replaced=tuple(Replacement(one, replace(one, status=status)) for one in features))
 
 
 def _place_of(feature: Feature) -> Place:

@@ -61,7 +61,7 @@ def _measured(parts: WindowParts, folder: Path, count: int) -> dict[str, list[fl
         street_candidates(drive, count),
         TEMPLATE,
         TEMPLATE.parameters(),
-        drive.id,
+        (drive.id,),
         started=now,
         finished=now,
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject, Qt
 
+from app.actions.process import one_click_tools
 from app.actions.review import QUEUE_KEYS
 from app.window_parts import WindowParts
 from processing.project.feature import Feature, Status
@@ -33,6 +34,8 @@ def connect_review(parts: WindowParts) -> None:
     panel.order_requested.connect(review.put_in_order)
     panel.accept_requested.connect(review.accept)
     panel.reject_requested.connect(review.reject)
+    panel.accept_line_requested.connect(review.accept_line)
+    panel.reject_line_requested.connect(review.reject_line)
     panel.edit_requested.connect(review.edit)
     panel.next_requested.connect(review.next)
     panel.back_requested.connect(review.back)
@@ -44,6 +47,7 @@ def connect_review(parts: WindowParts) -> None:
     parts.document.shared.view_settings.shows_rejected_changed.connect(
         wiring.on_settings_shows_rejected_changed
     )
+    parts.document.shared.map_changes.candidates_found.connect(wiring.on_candidates_found)
     wiring.keep_keys_to_views()
     wiring.on_review_changed()
 
@@ -90,7 +94,7 @@ class _ReviewWiring(QObject):
 
     def on_review_changed(self) -> None:
         review = self._parts.review
-        self._parts.review_panel.show_review(review.progress, review.current)
+        self._parts.review_panel.show_review(review.progress, review.current, review.line_count)
         self._allow_keys()
         self._is_near = self._is_near and review.is_open
         current = review.current
@@ -112,6 +116,14 @@ class _ReviewWiring(QObject):
     def on_settings_shows_rejected_changed(self) -> None:
         is_shown = self._parts.document.shared.view_settings.shows_rejected
         self._parts.window.actions_by_id["show-rejected"].setChecked(is_shown)
+
+    def on_candidates_found(self, tool: str, run: str) -> None:
+        """What was found by one click goes to the queue; the views stay where they are."""
+        if tool not in {one.tool for one in one_click_tools()}:
+            return
+        self._parts.window.show_panel("review")
+        if self._parts.review.is_open:
+            self._parts.review.add(run)
 
     def on_panel_processing_requested(self) -> None:
         self._parts.window.show_panel("processing")

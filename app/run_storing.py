@@ -88,13 +88,14 @@ def finished_run(
         As :func:`processing.runner.run`; `Cancelled`.
     """
     started = datetime.now(UTC)
-    tool, parameters, drive = tool_of(request.tool), request.parameters, request.drive
+    tool, parameters = tool_of(request.tool), request.parameters
     if tool.gives_classes:
         return _classes(request, into, monitor, started, _Labels(labels_into, begin))
     result = run(request, monitor, into=into)
     if isinstance(result, CandidateResult):
         times = {"started": started, "finished": datetime.now(UTC)}
-        return FinishedRun(found=found_features(result, tool, parameters, drive.id, **times))
+        drives = [drive.id for drive in drives_of(request)]
+        return FinishedRun(found=found_features(result, tool, parameters, drives, **times))
     return FinishedRun(columns=result)
 
 

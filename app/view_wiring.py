@@ -16,6 +16,8 @@ from processing.errors import UserError
 from processing.formats.profile_dxf import ProfileLook, write_profile_dxf
 from processing.section.cut import Cut
 from processing.text import Text
+from processing.tools.registry import TOOLS
+from processing.tools.trial_makers import TRIAL_MAKERS
 from widgets.shared.view_settings import PointLook
 
 _KEPT = Text("The camera offsets are kept.", "カメラの補正値を保存しました。")
@@ -41,6 +43,8 @@ def connect_views(parts: WindowParts) -> None:
     section.profile_export_requested.connect(wiring.on_section_profile_export_requested)
     section.cut_changed.connect(wiring.on_section_cut_changed)
     wiring.on_section_cut_changed(section.cut)
+    parts.processing_panel.values_changed.connect(wiring.on_processing_values_changed)
+    wiring.on_processing_values_changed()
     camera.told.connect(parts.status_line.show_message)
     camera.fields_of_view_changed.connect(map_view.show_fields_of_view)
     parts.camera_panel.offsets_save_requested.connect(wiring.on_camera_offsets_save_requested)
@@ -60,6 +64,13 @@ class _ViewWiring(QObject):
         outline = None if cut is None else cut.outline
         self._parts.map_view.show_slab(outline)
         self._parts.scene_view.clipping.know_section(outline)
+
+    def on_processing_values_changed(self) -> None:
+        panel = self._parts.processing_panel
+        known = [tool for tool in TRIAL_MAKERS if tool in TOOLS]
+        self._parts.section_view.use_tool_parameters(
+            {tool: panel.parameters_of(tool) for tool in known}
+        )
 
     def on_bar_another_requested(self) -> None:
         self._parts.image_views.add()
@@ -124,7 +135,9 @@ class _ViewWiring(QObject):
         document.told.emit(_KEPT)
 
     def on_evaluation_wanted(self) -> None:
-        self._parts.evaluation_panel.show_evaluations(self._evaluation.evaluations())
+        panel = self._parts.evaluation_panel
+        panel.show_evaluations(self._evaluation.evaluations())
+        self._evaluation.score_maps(panel.show_map_scores)
 
     def on_evaluation_export_requested(self, ending: str) -> None:
         path = self._asked_path(

@@ -44,7 +44,7 @@ class WindowActions(QObject):
         self._groups: dict[str, QActionGroup] = {}
         self._toolbar_group = 0
         self._has_project = False
-        self._forbidden: set[str] = set()
+        self._forbidden: dict[str, Text] = {}  # and why
         self._menus: dict[str, QMenu] = {
             id_: window.menuBar().addMenu(title.spoken(language)) for id_, title in MENUS
         }
@@ -64,8 +64,10 @@ class WindowActions(QObject):
         """Why an action can't be done now; empty when it can, or when that isn't known."""
         if entry.made.isEnabled():
             return NOTHING
-        needs = entry.action.needs_project and not self._has_project
-        return NEEDS_PROJECT if needs else entry.action.why_disabled
+        if entry.action.needs_project and not self._has_project:
+            return NEEDS_PROJECT
+        why = self._forbidden.get(entry.action.id, NOTHING)
+        return why if why.en else entry.action.why_disabled
 
     def add(self, actions: Sequence[Action]) -> None:
         """Put actions into menus and toolbar, in their order."""
@@ -112,8 +114,16 @@ class WindowActions(QObject):
 
     def allow(self, id_: str, *, is_allowed: bool) -> None:
         """Say whether there is anything for an action to do, project or not."""
-        (self._forbidden.discard if is_allowed else self._forbidden.add)(id_)
+        self.forbid(id_, None if is_allowed else NOTHING)
+
+    def forbid(self, id_: str, why: Text | None) -> None:
+        """Say why an action can't be done now, which its tooltip tells too; None: it can."""
+        if why is None:
+            self._forbidden.pop(id_, None)
+        else:
+            self._forbidden[id_] = why
         self._enable(self._entries[id_])
+        self._explain(self._entries[id_])
 
     def recolour(self) -> None:
         """Draw the icons in the colours of the window's palette."""
@@ -130,13 +140,20 @@ class WindowActions(QObject):
         return self._menus[id_]
 
     def _give_keys(self, id_: str, keys: tuple[str, ...]) -> None:
-        action, made = self._entries[id_].action, self._entries[id_].made
-        made.setShortcuts([QKeySequence(key) for key in keys])
-        name = action.name.spoken(self._language)
-        native = [QKeySequence(key).toString(_NATIVE) for key in keys]
-        first = f"{name} ({native[0]})" if native else name
-        hint = action.hint.spoken(self._language)
-        made.setToolTip(f"{first}\n{hint}" if hint else first)
+        self._entries[id_].made.setShortcuts([QKeySequence(key) for key in keys])
+        self._explain(self._entries[id_])
+
+    def _explain(self, entry: Entry) -> None:
+        """Tell name, key, what it does and why it can't be done, as far as there is any."""
+        keys = [key.toString(_NATIVE) for key in entry.made.shortcuts()]
+        name = entry.action.name.spoken(self._language)
+        why_not = self._forbidden.get(entry.action.id, NOTHING)
+        told = (
+            f"{name} ({keys[0]})" if keys else name,
+            entry.action.hint.spoken(self._language),
+            why_not.spoken(self._language),
+        )
+        entry.made.setToolTip("\n".join(line for line in told if line))
 
     def _enable(self, entry: Entry) -> None:
         action = entry.action

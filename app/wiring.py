@@ -6,6 +6,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject
 
+from app.actions.process import one_click_tools
 from app.class_wiring import connect_classes
 from app.drawing_wiring import connect_drawing
 from app.drive_wiring import connect_drives
@@ -71,6 +72,9 @@ def _connect_document(parts: WindowParts, wiring: _Wiring) -> None:
     document.shared.map_changes.drives_changed.connect(parts.processing_panel.refresh)
     parts.processing_panel.ask_reasons_from(wiring.reason_against_tool)
     parts.processing_panel.ask_remarks_from(wiring.remark_on_tool)
+    document.shared.view_settings.image_changed.connect(wiring.allow_tools)
+    document.shared.map_changes.drives_changed.connect(wiring.allow_tools)
+    wiring.allow_tools()
 
 
 def _connect_intentions(parts: WindowParts, wiring: _Wiring) -> None:
@@ -110,6 +114,12 @@ class _Wiring(QObject):
         except Unsuitable as reason:
             return reason.what
         return None
+
+    def allow_tools(self) -> None:
+        """Let those tools be run by one click that can run on the drive shown."""
+        for one in one_click_tools():
+            reason = self.reason_against_tool(one.tool)
+            self._parts.window.actions_made.forbid(one.action, reason)
 
     def remark_on_tool(self, tool: str) -> Text | None:
         """What must be given for a tool on the drive shown; None where nothing must."""

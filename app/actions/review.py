@@ -11,7 +11,15 @@ from processing.project.feature import Status
 from processing.project.review_state import ReviewOrder
 from processing.text import Text
 
-QUEUE_KEYS = ("review-accept", "review-reject", "review-edit", "review-next", "review-back")
+QUEUE_KEYS = (
+    "review-accept",
+    "review-reject",
+    "review-accept-line",
+    "review-reject-line",
+    "review-edit",
+    "review-next",
+    "review-back",
+)
 """Actions whose keys work over the views and the review panel only, while a queue is open."""
 
 _NOTHING_TO_REVIEW = Text(
@@ -23,7 +31,13 @@ _NO_QUEUE = Text("Start a review first.", "先に確認を開始してくださ�
 
 def review_actions(parts: WindowParts) -> tuple[Action, ...]:
     """The review menu, from top to bottom."""
-    return (_start(parts), *_judgements(parts), *_orders(parts), *_hindsight(parts))
+    return (
+        _start(parts),
+        *_judgements(parts),
+        *_line_judgements(parts),
+        *_orders(parts),
+        *_hindsight(parts),
+    )
 
 
 def _start(parts: WindowParts) -> Action:
@@ -106,6 +120,34 @@ def _judgements(parts: WindowParts) -> tuple[Action, ...]:
             review.back,
             Text("Shows the candidate before.", "前の候補を表示します。"),
             "B",
+        ),
+    )
+
+
+def _line_judgements(parts: WindowParts) -> tuple[Action, ...]:
+    """What they do with all that a tool gave as one line."""
+    review = parts.review
+    return (
+        _of_queue(
+            "review-accept-line",
+            Text("Accept the whole line", "一連の候補をすべて採用"),
+            review.accept_line,
+            Text(
+                "All lids of one gutter, or both edges of one curb, as far as undecided.",
+                "同じ側溝の蓋、または同じ縁石の上端・下端のうち、未判定の候補をまとめて採用します。",
+            ),
+            "Shift+Return",
+            "Shift+Enter",
+        ),
+        _of_queue(
+            "review-reject-line",
+            Text("Reject the whole line", "一連の候補をすべて却下"),
+            review.reject_line,
+            Text(
+                "What was taken for a gutter or a curb and is none.",
+                "側溝や縁石と誤って抽出された一連の候補をまとめて却下します。",
+            ),
+            "Shift+Del",
         ),
     )
 

@@ -136,7 +136,7 @@ def _found(studio: Studio) -> None:
                 CandidateResult(tuple(found)),
                 TEMPLATE,
                 TEMPLATE.parameters(),
-                drive,
+                (drive,),
                 started=started,
                 finished=started + timedelta(seconds=41),
             )

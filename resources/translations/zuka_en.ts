@@ -58,6 +58,20 @@
             </translation>
         </message>
         <message numerus="yes">
+            <source>Accept line: %n</source>
+            <translation>
+                <numerusform>Accept line: %n</numerusform>
+                <numerusform>Accept line: %n</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <source>Reject line: %n</source>
+            <translation>
+                <numerusform>Reject line: %n</numerusform>
+                <numerusform>Reject line: %n</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
             <source>Accept %n</source>
             <translation>
                 <numerusform>Accept %n</numerusform>

@@ -424,6 +424,14 @@ kept</source>
     </context>
     <context>
         <name>EvaluationPanel</name>
+        <message>
+            <source>Against what was drawn and accepted, place by place:</source>
+            <translation>作図・採用した地物との区間ごとの比較:</translation>
+        </message>
+        <message>
+            <source>{what}: precision {p}, recall {r}, F {f}</source>
+            <translation>{what}: 適合率 {p}、再現率 {r}、F値 {f}</translation>
+        </message>
         <message numerus="yes">
             <source>%n run(s)</source>
             <translation>
@@ -1355,6 +1363,18 @@ kept</source>
             </translation>
         </message>
         <message numerus="yes">
+            <source>Accept line: %n</source>
+            <translation>
+                <numerusform>一連%n件採用</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <source>Reject line: %n</source>
+            <translation>
+                <numerusform>一連%n件却下</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
             <source>Accept %n</source>
             <translation>
                 <numerusform>%n件を採用</numerusform>
@@ -1509,6 +1529,14 @@ kept</source>
             <translation>抽出した地面の線を描きます（補間した区間は破線）</translation>
         </message>
         <message>
+            <source>Tests</source>
+            <translation>判定</translation>
+        </message>
+        <message>
+            <source>Show the normalised scanline, and why tools take a place on it or not</source>
+            <translation>正規化スキャンラインと、各箇所が採用された理由・されなかった理由を表示</translation>
+        </message>
+        <message>
             <source>Width</source>
             <translation>幅</translation>
         </message>
@@ -1566,6 +1594,10 @@ kept</source>
         <message>
             <source>Line of the found ground</source>
             <translation>抽出した地面の線</translation>
+        </message>
+        <message>
+            <source>Scanline and tests</source>
+            <translation>スキャンラインと判定</translation>
         </message>
         <message>
             <source>Heights</source>

@@ -6,8 +6,10 @@ import json
 from argparse import Namespace
 from collections.abc import Iterator
 from dataclasses import replace
+from io import StringIO
 from pathlib import Path
 
+import ezdxf
 import numpy as np
 import pytest
 from PySide6.QtWidgets import QApplication
@@ -17,7 +19,7 @@ from app.cli.run import command
 from app.document import Document
 from app.jobs import JobQueue
 from processing.errors import MissingInput, OutOfRange
-from processing.monitor import Monitor
+from processing.monitor import Monitor, TerminalMonitor
 from processing.points.drive import Drive
 from processing.project.feature import PointReference, Status
 from processing.project.importing import ImportRequest
@@ -58,10 +60,26 @@ def refuse(_drive: Drive, _parameters: object, _monitor: Monitor) -> CandidateRe
     raise MissingInput(Text("No.", "いいえ。"), Text.same("here"), Text("Go.", "どうぞ。"))
 
 
+def find_in_all(
+    drives: tuple[Drive, ...], _parameters: object, _monitor: Monitor
+) -> CandidateResult:
+    """One line from the first drive to the last, and what is drawn from it."""
+    xyz = np.concatenate([drive.xyz(slice(0, 1)) for drive in drives] * 2)
+    xyz[-1] += 1.0
+    numbers = np.tile(np.arange(len(drives)), 2)
+    line = Candidate("curb_upper", "line", xyz, np.zeros(len(xyz), np.int64), 0.9, drives=numbers)
+    return CandidateResult(
+        (line, replace(line, kind="gutter_covered", is_drawing=True)),
+        Text("Only one line was seen.", "1本の線しか計測されていません。"),
+    )
+
+
 @pytest.fixture(autouse=True)
 def finder(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the program know a tool that finds, and one that refuses."""
     monkeypatch.setitem(TOOLS, "finder", replace(FINDER, find=find_every_thousandth))
+    together = replace(FINDER, id="together", find=None, find_together=find_in_all)
+    monkeypatch.setitem(TOOLS, "together", together)
     monkeypatch.setitem(TOOLS, "refuser", replace(FINDER, id="refuser", find=refuse))
 
 
@@ -192,3 +210,49 @@ def test_a_tool_that_finds_is_not_written_as_points(
         command(arguments(tmp_path, list(delivery.inputs), "a.las"))
     with pytest.raises(OutOfRange):
         command(arguments(tmp_path, list(delivery.inputs), "a.geojson", tool="normals"))
+
+
+@pytest.fixture
+def two_heads(tmp_path: Path) -> ImportRequest:
+    heads = [simulated_drive(3), simulated_drive(4, head="right")]
+    clouds = [
+        write_laz(heads[0], tmp_path / "left.laz"),
+        write_laz(heads[1], tmp_path / "right.laz"),
+    ]
+    return ImportRequest(
+        tuple(clouds), (write_trajectory_csv(heads[0], tmp_path / "trajectory.csv"),)
+    )
+
+
+def test_a_run_on_all_heads_gives_one_result_whose_vertices_know_their_drive(
+    document: Document, two_heads: ImportRequest, tmp_path: Path, qtbot: QtBot
+) -> None:
+    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
+        document.create(tmp_path / "p.zuka", "EPSG:6677")
+    with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=WAIT_MS):
+        document.import_files(two_heads)
+    other, shown = document.drives()
+    with qtbot.waitSignal(document.shared.map_changes.features_changed, timeout=WAIT_MS):
+        document.start_run("together", shown.id, NormalsParameters())
+    line, drawn = document.features()
+    (run,) = document.runs()
+    assert run.drives == (shown.id, other.id)
+    assert run.summary.en == "Curbs: 2 candidates. Only one line was seen."
+    for vertex, drive in zip(line.vertices, (shown, other, shown), strict=False):
+        assert vertex.measured == PointReference(drive.id, 0)
+    assert drawn.kind == "gutter_covered"
+
+
+def test_the_command_line_joins_all_heads_and_draws_what_follows_only_in_drawings(
+    two_heads: ImportRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told_lines = StringIO()
+    monkeypatch.setattr("app.cli.run.terminal_monitor", lambda: TerminalMonitor(told_lines))
+    given = {"trajectory": list(two_heads.trajectories), "tool": "together"}
+    for output in ("a.geojson", "a.dxf"):
+        assert command(arguments(tmp_path, list(two_heads.inputs), output, **given)) == 0
+    assert "Only one line was seen." in told_lines.getvalue()
+    told = json.loads((tmp_path / "a.geojson").read_text("utf-8"))
+    assert [one["properties"]["kind"] for one in told["features"]] == ["curb_upper"]
+    drawing = ezdxf.readfile(tmp_path / "a.dxf").modelspace()
+    assert len(drawing.query("POLYLINE LWPOLYLINE")) == 2

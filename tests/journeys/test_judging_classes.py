@@ -193,8 +193,10 @@ def test_right_and_wrong_follow_what_is_painted_and_undone(judge, tmp_path):
         pixels = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), -1, 4)
         return int((pixels[:, :, :3] == wrong).all(axis=2).sum())
 
-    judge.bot.waitUntil(lambda: seen_wrong() > 100, timeout=5000)
+    judge.bot.waitUntil(lambda: seen_wrong() > 100, timeout=WAIT_MS)
     judge.bot.waitUntil(lambda: judge.rows()[2] != counted, timeout=WAIT_MS)
+    # Counted before all of it is painted, as many may be seen of what else is wrong.
+    judge.bot.waitUntil(lambda: seen_wrong() > 100 and view._is_sharp, timeout=WAIT_MS)
     seen = seen_wrong()
     with judge.bot.waitSignal(judged, timeout=WAIT_MS):
         judge.bot.keyClick(view, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)

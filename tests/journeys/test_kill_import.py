@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 
 import laspy
@@ -62,7 +62,8 @@ class Importer:
         self._server.stdin.write("\t".join(map(str, arguments)).encode() + b"\n")
         child = int(self._server.stdout.readline())
         if not select.select([self._server.stdout], [], [], kill_after_s)[0]:
-            os.kill(child, signal.SIGKILL)
+            with suppress(ProcessLookupError):  # it came to its end at this very instant
+                os.kill(child, signal.SIGKILL)
         status = int(self._server.stdout.readline())
         assert status in (0, signal.SIGKILL), status
         return status == 0

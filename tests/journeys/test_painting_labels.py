@@ -171,6 +171,13 @@ def test_a_lasso_in_3d_labels_every_measured_point_inside_it(painter, surveyor):
         assert not labelled[~inside[1]].any()
         found += int(inside[0].sum())
     assert found > sum(one.tile.points.size for one in scene._hits.drawn) / 100
+    told: list[object] = []
+    document.told.connect(told.append)
+    document.refused.connect(told.append)
     assert document.undo()
     every = [(drive, np.arange(drive.count)) for drive in document.drives()]
-    bot.waitUntil(lambda: not any(labels_of(*one).any() for one in every), timeout=WAIT_MS)
+
+    def is_taken_back() -> None:
+        assert not any(labels_of(*one).any() for one in every), told
+
+    bot.waitUntil(is_taken_back, timeout=WAIT_MS)

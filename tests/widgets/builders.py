@@ -31,7 +31,9 @@ from widgets.shared.view_settings import ViewSettings
 KINDS = Catalogue(
     (
         FeatureKind("curb", Text("Curb", "縁石"), Geometry.LINE, "", "curb", "#e69f00", 30),
-        FeatureKind("lid", Text("Lid", "側溝蓋"), Geometry.AREA, "", "lid", "#56b4e9", 150),
+        FeatureKind(
+            "lid", Text("Lid", "側溝蓋"), Geometry.AREA, "", "lid", "#56b4e9", 150, thickness_m=0.3
+        ),
         FeatureKind("pole", Text("Pole", "電柱"), Geometry.POINT, "", "pole", "#009e73", 96),
     )
 )

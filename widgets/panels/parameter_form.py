@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import QEvent, QObject, Signal
 from PySide6.QtWidgets import QFormLayout, QLabel, QWidget
+from typing_extensions import override
 
 from processing.text import Language
 from processing.tools.parameters import Parameter, Value, filled_in, parameters_of
@@ -26,9 +27,13 @@ class ParameterForm(QWidget):
     -------
     changed()
         The user set a value.
+    pictured(picture: str)
+        What shows the meaning of the parameter under the mouse or, without one there, of that in
+        focus; empty where neither has a picture.
     """
 
     changed = Signal()
+    pictured = Signal(str)
 
     def __init__(
         self,
@@ -39,6 +44,9 @@ class ParameterForm(QWidget):
         super().__init__(parent)
         self._parameters = parameters
         self._rows: dict[str, ParameterRow] = {}
+        self._pictures: dict[QObject, str] = {}
+        self._lines: set[QObject] = set()
+        self._hovered = self._focused = ""
         layout = QFormLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setHorizontalSpacing(8)
@@ -54,6 +62,7 @@ class ParameterForm(QWidget):
             row.field.setToolTip(name.toolTip())
             layout.addRow(name, row)
             self._rows[parameter.id] = row
+            self._watch(parameter, name, row)
         if not self._rows:
             layout.addRow(QLabel(self.tr("This tool needs no settings."), self))
 
@@ -87,6 +96,40 @@ class ParameterForm(QWidget):
     def field(self, id_: str) -> QWidget:
         """The widget in which a parameter is typed."""
         return self._rows[id_].field
+
+    @property
+    def picture(self) -> str:
+        """What shows the parameter at hand; the first one's before any was at hand."""
+        first = next((one for one in self._pictures.values() if one), "")
+        return self._hovered or self._focused or first
+
+    @property
+    def has_pictures(self) -> bool:
+        """Whether any of the parameters has one."""
+        return any(self._pictures.values())
+
+    @override
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Note which parameter the mouse or the keyboard is at."""
+        picture = self._pictures.get(watched, "")
+        match event.type():
+            case QEvent.Type.Enter if watched in self._lines:
+                self._hovered = picture
+            case QEvent.Type.Leave if watched in self._lines:
+                self._hovered = ""
+            case QEvent.Type.FocusIn:
+                self._focused = picture
+            case _:
+                return super().eventFilter(watched, event)
+        self.pictured.emit(self.picture)
+        return super().eventFilter(watched, event)
+
+    def _watch(self, parameter: Parameter, name: QLabel, row: ParameterRow) -> None:
+        # The mouse is in a row wherever in it; the focus is at what is typed into.
+        self._lines.update((name, row))
+        for part in (name, row, row.field, *row.field.findChildren(QWidget)):
+            self._pictures[part] = parameter.picture
+            part.installEventFilter(self)
 
     def _explanation(self, parameter: Parameter, language: Language) -> str:
         parts = [parameter.explanation.spoken(language)]

@@ -22,6 +22,7 @@ from processing.tools.parameters import Value
 from processing.tools.registry import TOOLS
 from processing.tools.tool import Tool
 from widgets.panels.parameter_form import ParameterForm
+from widgets.panels.parameter_picture import ParameterPicture
 from widgets.panels.tree_items import children_of
 
 Reason = Callable[[str], Text | None]
@@ -79,6 +80,7 @@ class ProcessingPanel(QWidget):
         self._scroll.setMinimumHeight(_LEAST_HIGH_PX)
         self._scroll.setFrameShape(QScrollArea.Shape.NoFrame)
         self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._picture = ParameterPicture(self)
         self._why_not = QLabel(self)
         self._why_not.setWordWrap(True)
         self._run = QPushButton(self.tr("Run"), self)
@@ -119,6 +121,13 @@ class ProcessingPanel(QWidget):
             form.set_values(values)
             self.values_changed.emit()
 
+    def run_tool(self, tool: str) -> bool:
+        """Run a tool as its form stands, or by its defaults; says whether it can run now."""
+        if self._reason is not None and self._reason(tool) is not None:
+            return False
+        self.run_requested.emit(tool, self.parameters_of(tool))
+        return True
+
     def ask_reasons_from(self, reason: Reason) -> None:
         """Ask this whether a tool can run."""
         self._reason = reason
@@ -155,6 +164,8 @@ class ProcessingPanel(QWidget):
         layout.setSpacing(8)
         layout.addWidget(self._explanation)
         layout.addWidget(self._scroll, 1)
+        # Below what scrolls: it stays in sight whatever field is at hand.
+        layout.addWidget(self._picture)
         layout.addWidget(self._why_not)
         layout.addWidget(self._run)
         halves = QSplitter(Qt.Orientation.Vertical, self)
@@ -201,6 +212,7 @@ class ProcessingPanel(QWidget):
         if tool.id not in self._forms:
             self._forms[tool.id] = ParameterForm(tool.parameters, self._language)
             self._forms[tool.id].changed.connect(self.values_changed)
+            self._forms[tool.id].pictured.connect(self._show_picture)
         self._scroll.takeWidget()
         for form in self._forms.values():
             # Forms keep what was typed while another tool is looked at.
@@ -208,7 +220,14 @@ class ProcessingPanel(QWidget):
             form.hide()
         self._scroll.setWidget(self._forms[tool.id])
         self._forms[tool.id].show()
+        self._show_picture(self._forms[tool.id].picture)
         self.refresh()
+
+    def _show_picture(self, name: str) -> None:
+        self._picture.show_picture(name)
+        form = self.form
+        # Room is kept for a form that has pictures at all, so that nothing jumps under the mouse.
+        self._picture.setVisible(form is not None and form.has_pictures)
 
     def _on_search_text_changed(self, words: str) -> None:
         wanted = words.lower().split()

@@ -35,6 +35,7 @@ from widgets.parts.share_bar import ShareBar
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
+_NATIVE = QKeySequence.SequenceFormat.NativeText
 _LEAST = 0.9
 _BIG_PX = 24
 _NUMBER_PX = 72
@@ -49,6 +50,8 @@ class ReviewKeys:
 
     accept: tuple[str, ...] = ("Enter", "Return")
     reject: tuple[str, ...] = ("Delete",)
+    accept_line: tuple[str, ...] = ("Shift+Return",)
+    reject_line: tuple[str, ...] = ("Shift+Delete",)
     edit: tuple[str, ...] = ("E",)
     next: tuple[str, ...] = ("N",)
     back: tuple[str, ...] = ("B",)
@@ -70,6 +73,8 @@ class ReviewPanel(QWidget):
     order_requested(order: ReviewOrder)
     accept_requested, reject_requested, edit_requested, next_requested, back_requested
         What is to be done with the candidate that is shown.
+    accept_line_requested, reject_line_requested
+        The same with all undecided ones of its line.
     accept_from_requested(least: float)
         Accept all undecided ones of at least this confidence.
     processing_requested
@@ -82,6 +87,8 @@ class ReviewPanel(QWidget):
     order_requested = Signal(object)
     accept_requested = Signal()
     reject_requested = Signal()
+    accept_line_requested = Signal()
+    reject_line_requested = Signal()
     edit_requested = Signal()
     next_requested = Signal()
     back_requested = Signal()
@@ -127,8 +134,10 @@ class ReviewPanel(QWidget):
         self._count_from = count
         self._show_count()
 
-    def show_review(self, progress: ReviewProgress, feature: Feature | None) -> None:
-        """Show how far the review is, and the candidate that is judged now."""
+    def show_review(
+        self, progress: ReviewProgress, feature: Feature | None, line_count: int = 0
+    ) -> None:
+        """Show how far the review is, the candidate that is judged now, and how long its line."""
         self._progress = progress
         self._show_page()
         if not progress.state.is_open:
@@ -146,6 +155,7 @@ class ReviewPanel(QWidget):
             self._card.show_feature(feature, catalogue, progress.place, progress.total)
         for button in (self._accept, self._reject, self._edit, self._next):
             button.setEnabled(feature is not None)
+        self._show_line(line_count)
         self._show_count()
 
     @override
@@ -179,6 +189,8 @@ class ReviewPanel(QWidget):
         keys = self.keys()
         self._accept = self._button(self.tr("Accept"), keys.accept[:1], self.accept_requested.emit)
         self._reject = self._button(self.tr("Reject"), keys.reject, self.reject_requested.emit)
+        self._accept_line = self._button("", (), self.accept_line_requested.emit)
+        self._reject_line = self._button("", (), self.reject_line_requested.emit)
         self._edit = self._button(self.tr("Edit"), keys.edit, self.edit_requested.emit)
         self._next = self._button(self.tr("Next"), keys.next, self.next_requested.emit)
         self._back = self._button(self.tr("Back"), keys.back, self.back_requested.emit)
@@ -214,8 +226,8 @@ class ReviewPanel(QWidget):
         return self._least.value()
 
     def _button(self, words: str, keys: tuple[str, ...], slot: Callable[[], None]) -> QPushButton:
-        key = QKeySequence(keys[0]).toString(QKeySequence.SequenceFormat.NativeText)
-        button = QPushButton(f"{words}  ({key})", self)
+        native = [QKeySequence(key).toString(_NATIVE) for key in keys]
+        button = QPushButton(f"{words}  ({native[0]})" if native else words, self)
         # The keys belong to the queue: a button in focus would take Enter for itself.
         button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         button.clicked.connect(slot)
@@ -245,6 +257,8 @@ class ReviewPanel(QWidget):
         judging.addWidget(self._reject, 0, 3, 1, 3)
         for column, button in enumerate((self._edit, self._back, self._next)):
             judging.addWidget(button, 1, 2 * column, 1, 2)
+        judging.addWidget(self._accept_line, 2, 0, 1, 3)
+        judging.addWidget(self._reject_line, 2, 3, 1, 3)
         many = QHBoxLayout()
         many.setSpacing(4)
         many.addWidget(self._least)
@@ -301,6 +315,16 @@ class ReviewPanel(QWidget):
     def _show_runs(self) -> None:
         state = self._progress.state
         self._chooser.show_runs(self._tally.by_run, state.runs, state.order)
+
+    def _show_line(self, count: int) -> None:
+        keys = self.keys()
+        for button, words, key in (
+            (self._accept_line, self.tr("Accept line: %n", "", count), keys.accept_line[0]),
+            (self._reject_line, self.tr("Reject line: %n", "", count), keys.reject_line[0]),
+        ):
+            button.setText(words)
+            button.setToolTip(f"{words} ({QKeySequence(key).toString(_NATIVE)})")
+            button.setVisible(count > 1)
 
     def _show_count(self) -> None:
         count = self._count_from(self.least) if self._progress.state.is_open else 0

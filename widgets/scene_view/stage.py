@@ -27,18 +27,19 @@ from vtkmodules.vtkRenderingOpenGL2 import (
 from widgets.scene_view.backdrop import BACKGROUND
 from widgets.scene_view.camera import Camera
 from widgets.scene_view.map.feature_actors import FeatureActors
+from widgets.scene_view.map.solid_actors import SolidActors
 from widgets.scene_view.points.tile_actors import PointSizes, TileActors
 
 _NEAREST_M = 0.1
 _DEPTH_RATIO = 20_000.0
-_LAYERS = 4
+_LAYERS = 5
 _ROOM_M = 1.0  # beyond the points, for what is drawn about them
 _FORMAT_AGAIN = "Setting a new default format"
 _MOST_TIMES_LEAST = 4.0  # fills the gaps of a road down to some four metres
 
 
 class Stage:
-    """One interactor with four layers that share a camera: cloud, halos, lines, marks.
+    """One interactor with layers that share a camera: cloud, bodies, halos, lines, marks.
 
     Parameters
     ----------
@@ -75,7 +76,8 @@ class Stage:
         self._observer = self._window.AddObserver(vtkCommand.StartEvent, self._on_window_start)
         self.widget.frameSwapped.connect(self._on_widget_frame_swapped)
         self.tiles = TileActors(self._cloud)
-        self.features = FeatureActors(*self._layers[1:])
+        self.solids = SolidActors(self._layers[1])
+        self.features = FeatureActors(*self._layers[2:])
 
     @property
     def scale(self) -> float:
@@ -127,6 +129,7 @@ class Stage:
         self._is_closed = True
         self._window.RemoveObserver(self._observer)
         self.tiles.close()
+        self.solids.clear()
         self.features.clear()
         self._set_pass(None)
         # A pass that isn't in use is not released with the window.

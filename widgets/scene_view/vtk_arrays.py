@@ -41,6 +41,14 @@ def lines_of(local_xyz: NDArray[np.floating]) -> vtkPolyData:
     return data
 
 
+def faces_of(corners: NDArray[np.int64], sizes: NDArray[np.int64]) -> vtkCellArray:
+    """Faces with their corners one after the other, ``sizes`` of each."""
+    cells = vtkCellArray()
+    offsets = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int32)
+    cells.SetData(as_vtk(offsets), as_vtk(corners.astype(np.int32)))
+    return cells
+
+
 def _cells(count: int, size: int) -> vtkCellArray:
     cells = vtkCellArray()
     offsets = as_vtk(np.arange(0, count * size + 1, size, dtype=np.int32))

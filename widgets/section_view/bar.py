@@ -93,6 +93,11 @@ class SectionBar(QWidget):
             self.tr("Ground"),
             self.tr("Draw the ground that was found: dashed where it is filled in"),
         )
+        self._trials = self._switch(
+            "mdi6.clipboard-check-outline",
+            self.tr("Tests"),
+            self.tr("Show the normalised scanline, and why tools take a place on it or not"),
+        )
         self._lay_out()
         self._connect_fields()
         self.show_settings(self._settings)
@@ -104,6 +109,7 @@ class SectionBar(QWidget):
             field.valueChanged.connect(self._on_settings_edited)
         self._line.activated.connect(self._on_line_activated)
         self._ground.toggled.connect(self._on_settings_edited)
+        self._trials.toggled.connect(self._on_settings_edited)
         self._live.toggled.connect(self._on_settings_edited)
         self._pin.toggled.connect(self.pin_toggled)
         self._template.clicked.connect(self.template_requested)
@@ -116,6 +122,7 @@ class SectionBar(QWidget):
             *self._named(self.tr("Step"), self._step),
             *self._named(self.tr("Heights"), self._heights),
             self._ground,
+            self._trials,
         )
         self._buttons = self._group(self._live, self._pin, self._template, self._export)
         self._grid = QGridLayout(self)
@@ -185,6 +192,7 @@ class SectionBar(QWidget):
                 self._heights,
                 self._live,
                 self._ground,
+                self._trials,
             )
         ]
         self._lying.setCurrentIndex(int(settings.is_along))
@@ -194,6 +202,7 @@ class SectionBar(QWidget):
             self._heights.setCurrentIndex(EXAGGERATIONS.index(settings.exaggeration))
         self._live.setChecked(settings.is_live)
         self._ground.setChecked(settings.shows_ground)
+        self._trials.setChecked(settings.shows_trials)
         for one in blocked:
             one.unblock()
 
@@ -222,6 +231,7 @@ class SectionBar(QWidget):
             is_along=bool(self._lying.currentIndex()),
             is_live=self._live.isChecked(),
             shows_ground=self._ground.isChecked(),
+            shows_trials=self._trials.isChecked(),
         )
         self.settings_chosen.emit(self._settings)
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,7 @@ from processing.section.cut import Cut
 from processing.section.points_in_cut import MOST_POINTS, SectionPoints, section_points
 from processing.section.surface_line import SurfaceLine
 from widgets.section_view.found_ground import FoundGround
+from widgets.section_view.found_trials import SectionTrials, trials_at
 from widgets.section_view.settings import SectionSettings
 from widgets.section_view.standing import Standing
 from widgets.shared.view_settings import PointLook
@@ -45,7 +46,9 @@ class SectionWish:
     look : PointLook
     settings : SectionSettings
         Say whether colours tell the distance from the plane instead of the look's attribute, and
-        whether the ground is shown.
+        whether the ground and what tools look at are shown.
+    parameters : mapping of str to object
+        Of the tools that tell what they look at, by their ids.
     """
 
     standing: Standing
@@ -53,6 +56,7 @@ class SectionWish:
     drives: tuple[Drive, ...]
     look: PointLook
     settings: SectionSettings
+    parameters: Mapping[str, object] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +79,8 @@ class SectionPicture:
         Whether the colours are those wished for.
     ground : tuple of SurfaceLine
         In the plane of the cut, as the tool “ground” found it.
+    trials : tuple of SectionTrials or None
+        None where they aren't shown, or aren't known as yet.
     """
 
     wish: SectionWish
@@ -85,6 +91,7 @@ class SectionPicture:
     is_thinned: bool
     is_final: bool = True
     ground: tuple[SurfaceLine, ...] = ()
+    trials: tuple[SectionTrials, ...] | None = None
 
 
 class SectionFeed(QObject):
@@ -150,8 +157,16 @@ class SectionFeed(QObject):
         if is_slow:
             plain = picture_of(wish, parts, _PLAIN)
             self._tell(replace(plain, is_final=False, ground=ground))
-        if not (is_slow and self._is_outdated()):
-            self._tell(replace(picture_of(wish, parts, wish.look.attribute), ground=ground))
+        if is_slow and self._is_outdated():
+            return
+        picture = replace(picture_of(wish, parts, wish.look.attribute), ground=ground)
+        if not wish.settings.shows_trials or wish.standing.is_along:
+            self._tell(picture)
+            return
+        self._tell(replace(picture, is_final=False))
+        if not self._is_outdated():
+            trials = trials_at(wish.drives, wish.standing, wish.cut, wish.parameters)
+            self._tell(replace(picture, trials=trials))
 
     def _tell(self, picture: SectionPicture) -> None:
         if not self._is_closed:

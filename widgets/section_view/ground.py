@@ -16,6 +16,8 @@ from widgets.section_view.lay import SectionLay
 BACKGROUND = (16, 19, 24)
 
 _LEAST_PX, _MOST_PX = 1.0, 8.0
+_GROUND_WITHIN_M = 4.0
+_GROUND_PERCENT = 25
 
 
 @dataclass(frozen=True)
@@ -71,3 +73,12 @@ def _image_of(wanted: _Made) -> QImage:
     image = QImage(out.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
     image.setDevicePixelRatio(ratio)
     return image
+
+
+def ground_y(lay: SectionLay, picture: SectionPicture) -> float:
+    """Where the ground about the middle is on the plane; the middle where no points are."""
+    section = picture.section
+    near = section[np.abs(section[:, 0]) <= _GROUND_WITHIN_M, 1]
+    if not near.size:
+        return 0.0
+    return lay.cut.middle[2] - float(np.percentile(near, _GROUND_PERCENT))

@@ -21,7 +21,7 @@ from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.section_view.feed import SectionFeed, SectionPicture, SectionWish
 from widgets.section_view.frame import BOTTOM_PX, LEFT_PX, paint_frame
-from widgets.section_view.ground import GroundPainter
+from widgets.section_view.ground import GroundPainter, ground_y
 from widgets.section_view.ground_line import paint_ground_legend, paint_ground_lines
 from widgets.section_view.lay import SectionLay
 from widgets.section_view.lines import SectionLines
@@ -30,6 +30,7 @@ from widgets.section_view.point_search import measured_point, points_within, sho
 from widgets.section_view.settings import SectionSettings
 from widgets.section_view.standing import Standing
 from widgets.section_view.titles import frame_words
+from widgets.section_view.trial_marks import TrialMarks
 from widgets.section_view.view_menu import add_settings
 from widgets.shared.cursor import Place
 from widgets.shared.map_source import MapSource
@@ -39,8 +40,6 @@ from widgets.shared.sketch import Note
 
 _START_HALF_M = 8.0
 _START_BELOW_M, _START_ABOVE_M = 1.5, 3.5
-_GROUND_WITHIN_M = 4.0
-_GROUND_PERCENT = 25
 _GROUND_SHARE = 0.7
 """The ground lies so far down in the window: what stands on it is seen."""
 
@@ -81,17 +80,16 @@ class SectionPane(PlaneView):
         self._asked: SectionWish | None = None
         self._picture: SectionPicture | None = None
         self._lay: SectionLay | None = None
-        self._framed = ""
-        self._ground_y = 0.0
+        self._framed, self._ground_y = "", 0.0
         self._marks: SectionMarks | None = None
         self._named: NamedMark | None = None
         self._held: tuple[str, Vertex] | None = None
         self._settings = SectionSettings()
         self._is_closed = False
         self._points = GroundPainter()
-        self.is_pinned = False
-        self.is_mouse_here = False
-        self.is_clicking = False
+        self._trials = TrialMarks(language)
+        self._parameters: Mapping[str, object] = {}
+        self.is_pinned = self.is_mouse_here = self.is_clicking = False
         self._feed = SectionFeed()
         self._feed.arrived.connect(self._on_feed_arrived)
         shared.view_settings.look_changed.connect(self._ask)
@@ -150,6 +148,12 @@ class SectionPane(PlaneView):
         if before.wanted != settings.wanted:
             self._ask()
 
+    def use_tool_parameters(self, parameters: Mapping[str, object]) -> None:
+        """As in the view."""
+        self._parameters = dict(parameters)
+        if self._settings.shows_trials:
+            self._ask()
+
     @override
     def close(self) -> bool:
         """Stop looking for points; may be called again."""
@@ -203,6 +207,7 @@ class SectionPane(PlaneView):
             return
         selected = self._shared.selection.features
         paint_ground_lines(painter, viewport, picture.wish.cut, picture.ground)
+        self._trials.paint(painter, picture, viewport)
         paint_marks(painter, marks, viewport, catalogue, selected)
         words = frame_words(
             self._source,
@@ -214,6 +219,7 @@ class SectionPane(PlaneView):
         )
         paint_frame(painter, viewport, picture.wish.cut, words)
         paint_ground_legend(painter, viewport, picture.ground, self._language)
+        self._trials.paint_words(painter, picture, viewport)
         named = self._named
         if named is not None:
             x, y = viewport.to_screen(np.array([named.place]))[0].tolist()
@@ -289,6 +295,7 @@ class SectionPane(PlaneView):
         if named != self._named:
             self._named = named
             self.update()
+        self._hover(event.position())
 
     @override
     def mousePressEvent(self, event: QMouseEvent) -> None:
@@ -308,6 +315,7 @@ class SectionPane(PlaneView):
         super().leaveEvent(event)
         self.is_mouse_here = False
         self._named = None
+        self._hover(None)
         self.update()
 
     # What others tell.
@@ -340,9 +348,15 @@ class SectionPane(PlaneView):
         if self._standing is None or self._is_closed or not self.isVisible():
             return  # what is hidden is looked for when it is shown
         standing, look = self._standing, self._shared.view_settings.look
-        wish = SectionWish(standing, standing.cut, self._drives(), look, self._settings)
+        wish = SectionWish(
+            standing, standing.cut, self._drives(), look, self._settings, self._parameters
+        )
         self._asked = wish
         self._feed.wish(wish)
+
+    def _hover(self, mouse: QPointF | None) -> None:
+        if self._trials.hover(self._picture, self.viewport, mouse):
+            self.update()
 
     def _drives(self) -> tuple[Drive, ...]:
         hidden = self._shared.view_settings.hidden_drives
@@ -358,7 +372,7 @@ class SectionPane(PlaneView):
         framed = f"{line.feature}/{line.drive}/{standing.is_along}"
         viewport, lay = self.viewport, SectionLay(picture.wish.cut)
         if framed != self._framed:
-            y = self._ground_y = _ground_y(lay, picture)
+            y = self._ground_y = ground_y(lay, picture)
             sides = y - _START_ABOVE_M, _START_HALF_M, y + _START_BELOW_M
             scaled = viewport if self._framed else viewport.fitted(-_START_HALF_M, *sides)
             below = (_GROUND_SHARE - 0.5) * viewport.height / scaled.scale_y
@@ -384,12 +398,3 @@ class SectionPane(PlaneView):
         if not self._is_closed:
             self._is_closed = True
             self._feed.close()
-
-
-def _ground_y(lay: SectionLay, picture: SectionPicture) -> float:
-    """Where the ground about the middle is on the plane; the middle where no points are."""
-    section = picture.section
-    near = section[np.abs(section[:, 0]) <= _GROUND_WITHIN_M, 1]
-    if not near.size:
-        return 0.0
-    return lay.cut.middle[2] - float(np.percentile(near, _GROUND_PERCENT))

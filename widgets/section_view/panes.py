@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QSplitter, QWidget
@@ -72,6 +74,11 @@ class SectionPanes(QSplitter):
         """Colour points and draw heights like this."""
         for pane in self.all:
             pane.use_settings(settings)
+
+    def use_tool_parameters(self, parameters: Mapping[str, object]) -> None:
+        """Show what tools look at with these parameters, by their ids."""
+        for pane in self.all:
+            pane.use_tool_parameters(parameters)
 
     def set_mouse_tool(self, tool: MouseTool | None) -> None:
         """Tell this tool from now on what the mouse does."""

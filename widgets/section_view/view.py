@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from PySide6.QtCore import QPointF, Qt, Signal
@@ -165,6 +165,10 @@ class SectionView(QWidget):
         self._panes.use_settings(settings)
         if self._standing is not None:
             self._stand(self._standing)
+
+    def use_tool_parameters(self, parameters: Mapping[str, object]) -> None:
+        """Show what tools look at with these parameters, by their ids."""
+        self._panes.use_tool_parameters(parameters)
 
     def follow(self, line: str) -> None:
         """Stand on a drawn line from now on, or on the trajectory (empty).

@@ -14,7 +14,7 @@ from widgets.section_view.settings import EXAGGERATIONS, SectionSettings
 def add_settings(
     menu: QMenu, settings: SectionSettings, choose: Callable[[SectionSettings], None]
 ) -> None:
-    """Offer colours, ground and heights; what was chosen is told as the settings then wanted."""
+    """Offer what is shown and how; what was chosen is told as the settings then wanted."""
     colours = menu.addAction(
         QCoreApplication.translate("SectionMenu", "Colour by distance from the plane")
     )
@@ -25,6 +25,10 @@ def add_settings(
     ground.setCheckable(True)
     ground.setChecked(settings.shows_ground)
     ground.toggled.connect(lambda is_on: choose(replace(settings, shows_ground=is_on)))
+    trials = menu.addAction(QCoreApplication.translate("SectionMenu", "Scanline and tests"))
+    trials.setCheckable(True)
+    trials.setChecked(settings.shows_trials)
+    trials.toggled.connect(lambda is_on: choose(replace(settings, shows_trials=is_on)))
     heights = menu.addMenu(QCoreApplication.translate("SectionMenu", "Heights"))
     for factor in EXAGGERATIONS:
         entry = heights.addAction(f"{factor:g}×")

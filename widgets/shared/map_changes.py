@@ -13,6 +13,7 @@ class MapChanges(QObject):
     """Facts about the open project, told by the document after they happened."""
 
     features_changed = Signal(object)  # tuple[str, ...]: ids added, replaced or removed
+    candidates_found = Signal(str, str)  # ids of a tool and of its run: its candidates are there
     drives_changed = Signal()  # drives added, or a project opened or closed
     drive_columns_changed = Signal(str)  # drive id: a tool's result columns were added
     labels_changed = Signal(

@@ -14,8 +14,10 @@ from pytestqt.qtbot import QtBot
 from processing.points.drive import Drive
 from processing.project.feature import Status
 from processing.project.run_evaluation import RunEvaluation, evaluate_runs
+from processing.score.curb_lines import curb_score
 from processing.score.reliability import reliability_of
 from tests.processing.project.candidates import found_lines
+from tests.processing.score.small_maps import moved, street_curbs
 from tests.widgets.builders import OpenMap
 from widgets.panels.evaluation_panel import EvaluationPanel
 from widgets.panels.reliability_plot import PlotColours, PlotWords, ReliabilityPlot
@@ -174,3 +176,22 @@ def test_without_decisions_the_plot_says_so_and_has_no_curve(qtbot: QtBot) -> No
 def test_a_plot_in_no_room_paints_nothing_and_breaks_nothing(qtbot: QtBot) -> None:
     certain = reliability_of(np.linspace(0, 1, 100), np.ones(100, bool))
     assert not len(pixels_of(painted(ReliabilityPlot(certain, WORDS), 20), PAPER.curve))
+
+
+def test_what_a_run_found_is_held_against_the_map_where_one_run_is_chosen(
+    panel: EvaluationPanel, open_map: OpenMap
+) -> None:
+    found = evaluations(open_map)
+    panel.show_evaluations(found)
+    truth = street_curbs()
+    panel.show_map_scores({found[1].runs[0]: curb_score(moved(truth, north=0.3), truth)})
+
+    def said() -> list[str]:
+        labels = [one for one in panel.findChildren(QLabel) if "Against" in one.text()]
+        return [line for one in labels if not one.isHidden() for line in one.text().splitlines()]
+
+    assert said() == []  # the first row is of both runs
+    table_of(panel).setCurrentCell(1, 0)
+    assert said()[1] == "2 m sections, without dropped curbs: precision 0 %, recall 0 %, F 0 %"
+    table_of(panel).setCurrentCell(2, 0)
+    assert said() == []

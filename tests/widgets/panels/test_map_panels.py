@@ -95,7 +95,7 @@ def test_runs_of_tools_are_listed_with_their_features(
     open_map.add(Geometry.POINT, left_drive, 9, provenance=made)
     open_map.add(Geometry.POINT, left_drive, 12)
     words = [item.text(0) for item in rows_of(tree_in(panel))]
-    assert any("curbs" in word and "2" in word for word in words)
+    assert any("Curbs" in word and "2" in word for word in words)
 
 
 def test_an_empty_project_says_what_would_be_here(qtbot: QtBot) -> None:

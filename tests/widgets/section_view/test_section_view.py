@@ -306,7 +306,7 @@ def test_the_menu_offers_heights_and_colours(hand: Hand) -> None:
     assert hand.pane.viewport.exaggeration == pytest.approx(5.0)
     assert chosen == [hand.view.settings]
     menu = hand.pane.view_menu()
-    colours, _ = (one for one in menu.actions() if one.isCheckable())
+    colours, *_ = (one for one in menu.actions() if one.isCheckable())
     hand.do(colours.trigger)
     assert hand.pane.picture is not None
     in_plane = np.abs(hand.pane.picture.section[:, 2]).argmin()

@@ -48,6 +48,7 @@ class FeatureActors:
     def __init__(self, halos: vtkRenderer, lines: vtkRenderer, marks: vtkRenderer) -> None:
         self._halos, self._lines, self._marks = halos, lines, marks
         self._actors: list[tuple[vtkRenderer, vtkActor]] = []
+        self._dashes: dict[str, tuple[FeatureShape, Floats]] = {}
 
     def show(self, styled: Sequence[StyledShape], scale: float) -> None:
         """Draw exactly these.
@@ -58,9 +59,11 @@ class FeatureActors:
             Device pixels per Qt pixel.
         """
         self.clear()
+        shown = {one.shape.feature.id for one in styled}
+        self._dashes = {id_: made for id_, made in self._dashes.items() if id_ in shown}
         for width_px, halo_px in sorted({_widths(one.style) for one in styled}):
             alike = [one for one in styled if _widths(one.style) == (width_px, halo_px)]
-            places, colours = _segments(alike)
+            places, colours = self._segments(alike)
             if len(places):
                 halo = _lines_actor(places, None)
                 halo.GetProperty().SetLineWidth((width_px + 2 * halo_px) * scale)
@@ -114,6 +117,26 @@ class FeatureActors:
             actor.GetProperty().SetPointSize(size_px)
             self._add(self._marks, actor)
 
+    def _segments(self, styled: Sequence[StyledShape]) -> tuple[Floats, Colours]:
+        """(k, 2, 3) places and (k, 3) colours of all lines."""
+        pieces = [
+            self._dashed(one.shape)
+            if one.style.is_dashed
+            else one.shape.local_xyz[one.shape.segments]
+            for one in styled
+        ]
+        colours = np.array([_rgb(one.style) for one in styled])
+        return np.concatenate(pieces), np.repeat(colours, [len(one) for one in pieces], axis=0)
+
+    def _dashed(self, shape: FeatureShape) -> Floats:
+        """The dashes of a feature, cut once: thousands are drawn anew whenever one is chosen."""
+        id_ = shape.feature.id
+        known = self._dashes.get(id_)
+        if known is None or known[0] is not shape:
+            known = shape, dashed(shape.local_xyz, shape.segments)
+            self._dashes[id_] = known
+        return known[1]
+
     def _add(self, renderer: vtkRenderer, actor: vtkActor) -> None:
         renderer.AddActor(actor)
         self._actors.append((renderer, actor))
@@ -145,17 +168,6 @@ def dashed(local_xyz: Floats, ends: NDArray[np.int64]) -> Floats:
     is_dash = np.mod(middles, _DASH_M + _GAP_M) < _DASH_M
     places = np.column_stack([np.interp(cuts, along, axis) for axis in corners.T])
     return np.stack([places[:-1][is_dash], places[1:][is_dash]], axis=1)
-
-
-def _segments(styled: Sequence[StyledShape]) -> tuple[Floats, Colours]:
-    """(k, 2, 3) places and (k, 3) colours of all lines."""
-    places, colours = [np.empty((0, 2, 3))], [np.empty((0, 3), np.uint8)]
-    for one in styled:
-        local_xyz, ends = one.shape.local_xyz, one.shape.segments
-        pieces = dashed(local_xyz, ends) if one.style.is_dashed else local_xyz[ends]
-        places.append(pieces)
-        colours.append(np.tile(_rgb(one.style), (len(pieces), 1)))
-    return np.concatenate(places), np.concatenate(colours)
 
 
 def _widths(style: FeatureStyle) -> tuple[float, float]:

@@ -9,6 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from processing.project.catalogue import Catalogue
+from processing.project.feature import Feature, Status
+from processing.project.solids import thickness_of
 from widgets.shared.feature_shapes import FeatureShapes, FlatShapes, flattened
 from widgets.shared.feature_style import style_of
 from widgets.shared.map_source import MapSource
@@ -77,6 +80,7 @@ class MapLayer(QObject):
             return
         # Imported here: it draws by VTK.
         from widgets.scene_view.map.feature_actors import StyledShape
+        from widgets.scene_view.map.solid_actors import Body
 
         catalogue, chosen = self._source.catalogue(), self._shared.selection.features
         styled = [
@@ -87,6 +91,13 @@ class MapLayer(QObject):
             for shape in seen
         ]
         stage.features.show(styled, stage.scale)
+        stage.solids.show(
+            [
+                Body(one.shape, one.style, thickness_m)
+                for one in styled
+                if (thickness_m := _thickness(catalogue, one.shape.feature))
+            ]
+        )
 
     def places_of(self, ids: Iterable[str]) -> NDArray[np.float64] | None:
         """(n, 3): vertices of features, metres from the origin; None when there are none."""
@@ -106,3 +117,10 @@ class MapLayer(QObject):
     def _replaced_now(self) -> str:
         drawing = self._shared.sketch.drawing
         return "" if drawing is None else drawing.replaces
+
+
+def _thickness(catalogue: Catalogue, feature: Feature) -> float:
+    """Of the body below a feature; 0 without one, as what was rejected is."""
+    if feature.status is Status.REJECTED or feature.kind not in catalogue:
+        return 0.0
+    return thickness_of(catalogue[feature.kind], feature)

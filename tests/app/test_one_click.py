@@ -1,0 +1,142 @@
+"""Curbs and covered gutters by one click: told before where they can't run, else in the queue."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QPushButton, QToolBar, QToolButton
+from pytestqt.qtbot import QtBot
+
+from app.application import build_window, make_application
+from app.settings import Settings
+from app.window_parts import WindowParts
+from processing.monitor import Monitor
+from processing.points.drive import Drive
+from processing.project.importing import ImportRequest
+from processing.tools.normals import NormalsParameters
+from processing.tools.registry import TOOLS
+from processing.tools.tool import Candidate, CandidateResult, Needs
+from tests.builders import simulated_drive, write_laz, write_trajectory_csv
+from tests.processing.project.candidates import FINDER
+
+WAIT_MS = 30_000
+
+
+def find_lids(drive: Drive, _parameters: NormalsParameters, monitor: Monitor) -> CandidateResult:
+    """Five lids on the drive's points."""
+    monitor.check()
+    found = []
+    for at in range(5):
+        points = np.array([at, at + 200, at + 400]) * 3
+        lid = Candidate("gutter_lid", "area", drive.xyz(points), points, 0.5 + at / 10)
+        found.append(replace(lid, attributes={"run": at // 3}))
+    return CandidateResult(tuple(found))
+
+
+@pytest.fixture
+def parts(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[WindowParts]:
+    """The window of a program that has a tool for gutters and none for curbs."""
+    monkeypatch.delitem(TOOLS, "curbs", raising=False)
+    tool = replace(FINDER, id="gutters", find=find_lids, find_together=None)
+    monkeypatch.setitem(TOOLS, "gutters", replace(tool, needs=Needs.TRAJECTORY))
+    make_application()
+    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
+    parts.window.resize(1366, 768)
+    parts.window.show()
+    qtbot.waitExposed(parts.window)
+    yield parts
+    parts.window.close()
+    parts.window.deleteLater()
+
+
+def open_street(
+    parts: WindowParts, folder: Path, qtbot: QtBot, *, has_trajectory: bool = True
+) -> None:
+    drive = simulated_drive(3)
+    trajectories = (write_trajectory_csv(drive, folder / "t.csv"),) if has_trajectory else ()
+    changes = parts.document.shared.map_changes
+    with qtbot.waitSignal(changes.drives_changed, timeout=WAIT_MS):
+        parts.document.create(folder / "p.zuka", "EPSG:6677")
+    with qtbot.waitSignal(changes.drives_changed, timeout=WAIT_MS):
+        request = ImportRequest((write_laz(drive, folder / "left.laz"),), trajectories)
+        parts.document.import_files(request)
+
+
+def button_of(parts: WindowParts) -> QToolButton:
+    (bar,) = (one for one in parts.window.findChildren(QToolBar) if one.objectName() == "toolbar")
+    button = bar.widgetForAction(parts.window.actions_by_id["run-gutters"])
+    assert isinstance(button, QToolButton)
+    return button
+
+
+def test_a_button_is_there_for_each_of_them_that_the_program_has(parts: WindowParts) -> None:
+    assert not button_of(parts).icon().isNull()
+    assert "run-curbs" not in parts.window.actions_by_id
+    assert "Open a project first." in [
+        parts.window.actions_made.why_disabled(entry).en
+        for entry in parts.window.actions_made.entries
+        if entry.action.id == "run-gutters"
+    ]
+
+
+def test_one_click_finds_lids_and_puts_them_before_the_reviewer(
+    parts: WindowParts, tmp_path: Path, qtbot: QtBot
+) -> None:
+    open_street(parts, tmp_path, qtbot)
+    found = parts.document.shared.map_changes.candidates_found
+    with qtbot.waitSignal(found, timeout=WAIT_MS):
+        qtbot.mouseClick(button_of(parts), Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(parts.review_panel.isVisible, timeout=5_000)
+    # Nothing has moved yet; the review begins by its own button or key.
+    assert not parts.review.is_open
+    parts.window.actions_by_id["review-start"].trigger()
+    assert parts.review.progress.total == 5
+    shown = parts.review.current
+    assert shown is not None
+    assert shown.provenance.confidence == 0.5
+    # What a second click finds joins the queue that is open, behind what is shown.
+    with qtbot.waitSignal(found, timeout=WAIT_MS):
+        parts.window.actions_by_id["run-gutters"].trigger()
+    assert parts.review.progress.total == 10
+    assert parts.review.current == shown
+
+
+def test_a_row_of_lids_is_accepted_by_one_key_over_any_view(
+    parts: WindowParts, tmp_path: Path, qtbot: QtBot
+) -> None:
+    open_street(parts, tmp_path, qtbot)
+    with qtbot.waitSignal(parts.document.shared.map_changes.candidates_found, timeout=WAIT_MS):
+        button_of(parts).click()
+    parts.window.actions_by_id["review-start"].trigger()
+    (line,) = (
+        one
+        for one in parts.review_panel.findChildren(QPushButton)
+        if one.text() == "Accept line: 3"
+    )
+    assert line.isVisible()
+    with qtbot.waitActive(parts.window):
+        parts.window.activateWindow()
+    parts.image_view.setFocus()
+    qtbot.keyClick(parts.image_view, Qt.Key.Key_Return, Qt.KeyboardModifier.ShiftModifier)
+    assert parts.review.progress.accepted == 3
+    assert line.text() == "Accept line: 2"
+    qtbot.keyClick(parts.image_view, Qt.Key.Key_Delete, Qt.KeyboardModifier.ShiftModifier)
+    assert parts.review.progress.rejected == 2
+    assert not line.isVisible()
+
+
+def test_without_a_trajectory_the_button_is_disabled_and_says_why(
+    parts: WindowParts, tmp_path: Path, qtbot: QtBot
+) -> None:
+    open_street(parts, tmp_path, qtbot, has_trajectory=False)
+    action = parts.window.actions_by_id["run-gutters"]
+    assert not action.isEnabled()
+    assert "trajectory" in action.toolTip()
+    (entry,) = (one for one in parts.window.actions_made.entries if one.made is action)
+    assert "trajectory" in parts.window.actions_made.why_disabled(entry).en
+    assert not parts.processing_panel.run_tool("gutters")
