@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+_Floats = NDArray[np.float64]
+
+_SHARED = 0.25  # of the smaller one's area: two that share more are one
+_PLACES = (np.arange(8) + 0.5) / 8
 
 
 @dataclass(frozen=True)
@@ -14,29 +20,23 @@ class GratingFacts:
 
     Attributes
     ----------
-    hits : int
-        Notches inside.
     rows : int
         Revolutions that crossed it.
-    density : float
-        Share of the rectangle's crossings by rows that are open (bars let most through).
+    open_share : float
+        Share of the rectangle that is open (bars let most through).
     depth_m : float
-        Median depth of the points that fell through.
-    rim_m : float
-        How far its top is from a plane, RMS.
-    filled : float
-        Share of its nine parts with notches.
-    contrast : float
-        Notches inside against those beside it, by area: 1 where nothing beside is open.
+        Upper quartile of the depths of the points that fell through.
+    least_part : float
+        Share that is open of the least open of its nine parts but one.
+    about : float
+        Share of the surface around it that is open: all of a road is rough, or only this.
     """
 
-    hits: int
     rows: int
-    density: float
+    open_share: float
     depth_m: float
-    rim_m: float
-    filled: float
-    contrast: float
+    least_part: float
+    about: float
 
 
 @dataclass(frozen=True)
@@ -49,19 +49,51 @@ class GratingFound:
         On the surface, m, project CRS, counterclockwise from above; the first two are a long side.
     length_m, width_m : float
         Longer and shorter side.
-    time_s : float
-        When the vehicle was beside it.
-    points : (k,) int64
-        Points of the drive by which it was found.
     facts : GratingFacts
     confidence : float
         0 … 1.
     """
 
-    corners: NDArray[np.float64]
+    corners: _Floats
     length_m: float
     width_m: float
-    time_s: float
-    points: NDArray[np.int64]
     facts: GratingFacts
     confidence: float
+
+    def share_in(self, corners: _Floats) -> float:
+        """Share of its area that lies in a rectangle, in plan."""
+        first, second, last = (self.corners[k, :2] for k in (0, 1, 3))
+        along, across = np.meshgrid(_PLACES, _PLACES)
+        sides = np.stack([second - first, last - first])
+        places = first + np.column_stack([along.ravel(), across.ravel()]) @ sides
+        return float(inside(places, corners).mean())
+
+
+def inside(places: _Floats, corners: _Floats, beyond_m: float = 0.0) -> NDArray[np.bool_]:
+    """Which places are in a rectangle in plan or no further outside than this."""
+    own, long, wide = in_rectangle(places, corners)
+    low, high = -beyond_m, np.array([long, wide]) + beyond_m
+    return np.asarray(((own >= low) & (own <= high)).all(axis=1))
+
+
+def in_rectangle(places: _Floats, corners: _Floats) -> tuple[_Floats, float, float]:
+    """Places along and across a rectangle from its first corner, and its sides."""
+    first, second, last = (corners[k, :2] for k in (0, 1, 3))
+    long, wide = float(np.hypot(*(second - first))), float(np.hypot(*(last - first)))
+    local = places[:, :2] - first
+    along, across = (second - first) / long, (last - first) / wide
+    return np.column_stack([local @ along, local @ across]), long, wide
+
+
+def one_of_each(found: Iterable[GratingFound]) -> tuple[GratingFound, ...]:
+    """Gratings that several drives or passes saw, once each: as the surest of them."""
+    kept: list[GratingFound] = []
+    for one in sorted(found, key=lambda one: -one.confidence):
+        middle = one.corners[:, :2].mean(axis=0)
+        if not any(
+            np.hypot(*(other.corners[:, :2].mean(axis=0) - middle)) < other.length_m + one.length_m
+            and max(one.share_in(other.corners), other.share_in(one.corners)) > _SHARED
+            for other in kept
+        ):
+            kept.append(one)
+    return tuple(kept)

@@ -26,6 +26,7 @@ Integers = NDArray[np.int64]
 
 _POINTS_AT_ONCE = 1 << 19
 _LEAST_ADVANCE_M = 0.01
+_BEYOND_ANY_PASS = 1e9  # steps
 _NEAR_M = 3.0
 _SAMPLED_ROWS = 40
 _LEAST_NOISE_M, _MOST_NOISE_M = 0.0005, 0.02
@@ -110,9 +111,13 @@ def joined(parts: list[Notches]) -> Notches:
             across_m=empty,
             stretch=none,
             direction=np.empty((0, 2)),
+            area_m2=empty,
         )
     names = Notches.__dataclass_fields__
     return Notches(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in names})
+
+
+_OF_SWEEPS = ("rows", "times", "stretch", "stations", "advances", "starts", "stops", "below")
 
 
 class _Sweeps:
@@ -132,6 +137,7 @@ class _Sweeps:
             stations[is_in] = one.station_at(times[is_in])
         kept = np.flatnonzero(number >= 0)
         kept = kept[_advancing(stations[kept], number[kept])]
+        self.advances = _advances(stations[kept], number[kept])
         pulse = drive.columns["pulse"]
         self.rows = kept
         self.times, self.stretch, self.stations = times[kept], number[kept], stations[kept]
@@ -147,7 +153,7 @@ class _Sweeps:
     def chosen(self, which: Integers) -> _Sweeps:
         """Some of them."""
         some = copy(self)
-        for name in ("rows", "times", "stretch", "stations", "starts", "stops", "below"):
+        for name in _OF_SWEEPS:
             setattr(some, name, getattr(self, name)[which])
         return some
 
@@ -166,9 +172,23 @@ class _Sweeps:
 def _advancing(stations: Floats, number: Integers) -> Integers:
     """Rows that are a little on from the one before: a standing vehicle repeats itself."""
     step = np.floor(stations / _LEAST_ADVANCE_M)
+    # Where the vehicle waits, its place goes to and fro within the trajectory's noise.
+    farthest = np.maximum.accumulate(step + number * _BEYOND_ANY_PASS)
     is_new = np.ones(len(stations), np.bool_)
-    is_new[1:] = (np.diff(step) != 0) | (np.diff(number) != 0)
+    is_new[1:] = np.diff(farthest) > 0
     return np.flatnonzero(is_new)
+
+
+def _advances(stations: Floats, number: Integers) -> Floats:
+    """(s,) how far along the way each row stands for: half of the way to the rows beside it, m."""
+    steps = np.diff(stations)
+    is_same = np.diff(number) == 0
+    behind, ahead = np.full(len(stations), np.nan), np.full(len(stations), np.nan)
+    behind[1:][is_same], ahead[:-1][is_same] = steps[is_same], steps[is_same]
+    both = np.where(
+        np.isnan(behind) | np.isnan(ahead), np.fmax(behind, ahead), (behind + ahead) / 2
+    )
+    return np.asarray(np.nan_to_num(both), np.float64)
 
 
 def _found_in(
@@ -210,6 +230,7 @@ def _found_in(
     ahead = way.directions_at(np.where(is_known, station, 0.0))
     along = (between * ahead).sum(axis=1) / length
     spacing = length / np.maximum(origin[:, 2] - origin[:, 1] + found[:, 7], 1)
+    apart = sweeps.advances[first:stop][origin[:, 0]] * np.sqrt(np.maximum(1.0 - along**2, 0.0))
     whole = Notches(
         placed,
         time_s=time,
@@ -223,6 +244,7 @@ def _found_in(
         across_m=across,
         stretch=np.full(count, way.number, np.int64),
         direction=between / length[:, None],
+        area_m2=found[:, 4] * apart,
     )
     yield whole.chosen(is_known)
 

@@ -82,6 +82,9 @@ class Notches:
         Number of the pass: stations are one axis within each.
     direction : (n, 2) float64
         Unit vector in plan along which the row crosses the surface.
+    area_m2 : (n,) float64
+        Of road that the opening stands for: its width by how far rows lie apart there. A slow or
+        waiting vehicle measures more notches, but no more area.
     """
 
     xyz: NDArray[np.float64]
@@ -96,6 +99,7 @@ class Notches:
     across_m: NDArray[np.float64]
     stretch: NDArray[np.int64]
     direction: NDArray[np.float64]
+    area_m2: NDArray[np.float64]
 
     @property
     def count(self) -> int:

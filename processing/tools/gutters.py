@@ -12,11 +12,14 @@ from processing.monitor import Monitor, PartMonitor, parts_of
 from processing.points.drive import Drive
 from processing.points.passes import passes_of
 from processing.road.curb_points import GuideCells
+from processing.road.grating_found import GratingFound, one_of_each
+from processing.road.gratings import GratingParameters, gratings_of
 from processing.road.gutter_confidence import confidences
+from processing.road.gutter_gratings import SureCovers, with_gratings
 from processing.road.gutter_lids import POINTS_WITHIN_M, Cover, covers_of
 from processing.road.gutter_notches import notches_of
 from processing.road.gutter_outline import edge_lines
-from processing.road.gutter_runs import gutter_runs
+from processing.road.gutter_runs import GutterRun, gutter_runs
 from processing.road.notches import Notches, NotchParameters
 from processing.text import Text
 from processing.tools.parameters import count, length, ratio
@@ -39,8 +42,10 @@ _NO_NOTCHES = Text(
     "または点密度が不足しています）。",
 )
 _NOT_REGULAR = Text(
-    "There are dents in the road, but nowhere at the regular spacing of lids.",
-    "路面にくぼみはありますが、側溝蓋の間隔で規則的に並ぶものはありません。",
+    "There are dents in the road, but nowhere at the regular spacing of lids, nor as close as in "
+    "a grating.",
+    "路面にくぼみはありますが、側溝蓋の間隔で規則的に並ぶものも、グレーチングのように密集するものも"
+    "ありません。",
 )
 
 
@@ -133,23 +138,42 @@ def find_gutters(
     if sum(one.count for one in notches) < _FEW_NOTCHES:
         return CandidateResult(note=_NO_NOTCHES)
     monitor.report(_FINDING, _LAYING)
+    gratings = one_of_each(
+        found
+        for drive, own in zip(drives, notches, strict=True)
+        for found in gratings_of(drive, own, GratingParameters(), monitor)
+        if found.confidence >= parameters.least_confidence
+    )
     runs = gutter_runs(passes, notches, parameters.most_missed)
-    if not runs:
-        return CandidateResult(note=_NOT_REGULAR)
-    cells = GuideCells([one.axis for one in runs], POINTS_WITHIN_M)
-    laying = parts_of(PartMonitor(monitor, _FINDING, 1.0), [drive.count for drive in drives])
-    about = [cells.about(drive, part) for drive, part in zip(drives, laying, strict=True)]
-    candidates: list[Candidate] = []
-    for number, run in enumerate(runs):
-        monitor.check()
-        covers = covers_of(run, number, about)
-        sure = confidences(run, covers)
-        is_kept = sure >= parameters.least_confidence
-        kept = [one for one, keep in zip(covers, is_kept, strict=True) if keep]
-        candidates += _candidates(kept, sure[is_kept], number + 1)
+    laid = PartMonitor(monitor, _FINDING, 1.0)
+    candidates = [*_laid(drives, runs, gratings, parameters, laid)]
     if not candidates:
         return CandidateResult(note=_NOT_REGULAR)
     return CandidateResult(tuple(candidates))
+
+
+def _laid(
+    drives: Sequence[Drive],
+    runs: Sequence[GutterRun],
+    gratings: tuple[GratingFound, ...],
+    parameters: GutterParameters,
+    monitor: Monitor,
+) -> Iterator[Candidate]:
+    """Covers of all gutters that are sure enough, then the gratings beside them."""
+    if runs:
+        cells = GuideCells([one.axis for one in runs], POINTS_WITHIN_M)
+        parts = parts_of(monitor, [drive.count for drive in drives])
+        about = [cells.about(drive, part) for drive, part in zip(drives, parts, strict=True)]
+    for number, run in enumerate(runs):
+        monitor.check()
+        covers = covers_of(run, number, about)
+        own = SureCovers(covers, confidences(run, covers))
+        own, gratings = with_gratings(run.axis, own, gratings)
+        is_kept = own.sure >= parameters.least_confidence
+        kept = [one for one, keep in zip(own.covers, is_kept, strict=True) if keep]
+        yield from _candidates(kept, own.sure[is_kept], number + 1)
+    for number, one in enumerate(gratings, len(runs) + 1):
+        yield _basin(one, number)
 
 
 def notch_parameters(parameters: GutterParameters) -> NotchParameters:
@@ -199,6 +223,24 @@ def _candidates(
             {"width_m": round(covers[0].width_m, 3), "run": run},
             is_drawing=True,
         )
+
+
+def _basin(one: GratingFound, run: int) -> Candidate:
+    """A grating by itself: the cover of a catch basin."""
+    return Candidate(
+        "gutter_grating",
+        "area",
+        one.corners,
+        np.full(4, -1, np.int64),
+        one.confidence,
+        {
+            "type": "grating",
+            "width_m": round(one.width_m, 3),
+            "length_m": round(one.length_m, 3),
+            "evidence": "seen",
+            "run": run,
+        },
+    )
 
 
 GUTTERS = Tool(

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import fields, replace
+
 import numpy as np
 import pytest
 
 from processing.points.passes import Pass, passes_of_trajectory
 from processing.points.trajectory import Trajectory
+from processing.road.grating_found import GratingFound, one_of_each
 from processing.road.gratings import GratingParameters, gratings_among
 from processing.road.notches import OPENING, Notches
 
@@ -40,6 +43,7 @@ def notches_at(x: np.ndarray, across: np.ndarray, *, width_m: float = 0.03) -> N
         across_m=across,
         stretch=np.zeros(count, np.int64),
         direction=np.tile(np.array([1.0, -1.0]) / np.sqrt(2.0), (count, 1)),
+        area_m2=np.full(count, width_m * SPEED_M_S / ROWS_PER_S / np.sqrt(2.0)),
     )
 
 
@@ -56,10 +60,12 @@ def openings_of_a_grating() -> tuple[np.ndarray, np.ndarray]:
     return found[:, 0], found[:, 1]
 
 
+def found_by(notches: Notches) -> tuple[GratingFound, ...]:
+    return gratings_among(notches, (way_east(),), GratingParameters())
+
+
 def test_a_grating_has_its_place_and_size() -> None:
-    found, is_taken = gratings_among(
-        notches_at(*openings_of_a_grating()), (way_east(),), GratingParameters()
-    )
+    found = found_by(notches_at(*openings_of_a_grating()))
 
     assert len(found) == 1
     one = found[0]
@@ -68,29 +74,43 @@ def test_a_grating_has_its_place_and_size() -> None:
     assert one.corners[:, :2].mean(axis=0) == pytest.approx([4.25, -3.2], abs=0.02)
     assert one.corners[:, 2] == pytest.approx(-0.02 * one.corners[:, 1], abs=1e-6)
     assert one.confidence > 0.8
-    assert is_taken.mean() > 0.9
+
+
+def test_a_slow_vehicle_makes_a_grating_no_surer_that_is_none() -> None:
+    random = np.random.default_rng(1)
+    x, across = random.uniform(0.5, 10.0, 1200), random.uniform(1.0, 4.0, 1200)
+    slow = notches_at(x, across)
+    # Each place measured by four rows that stand for a quarter of the way.
+    often = Notches(
+        **{f.name: np.repeat(getattr(slow, f.name), 4, axis=0) for f in fields(slow)}
+        | {"area_m2": np.repeat(slow.area_m2 / 4, 4), "row": np.arange(4 * slow.count)}
+    )
+
+    assert all(one.confidence < 0.5 for one in (*found_by(slow), *found_by(often)))
 
 
 def test_the_holes_of_lids_are_no_grating() -> None:
     joints = np.repeat(np.arange(1.0, 20.0, 0.6), 6)
     across = np.tile([3.05, 3.08, 3.11, 3.25, 3.28, 3.31], len(joints) // 6)
-    found, is_taken = gratings_among(notches_at(joints, across), (way_east(),), GratingParameters())
 
-    assert not found
-    assert not is_taken.any()
+    assert not found_by(notches_at(joints, across))
 
 
 def test_gravel_without_an_edge_is_less_sure() -> None:
     random = np.random.default_rng(0)
     x, across = random.uniform(3.0, 5.0, 600), random.uniform(2.5, 4.0, 600)
-    found, _ = gratings_among(notches_at(x, across), (way_east(),), GratingParameters())
 
-    assert not found
+    assert not found_by(notches_at(x, across))
 
 
 def test_without_notches_there_are_no_gratings() -> None:
-    empty = notches_at(np.empty(0), np.empty(0))
-    found, is_taken = gratings_among(empty, (way_east(),), GratingParameters())
+    assert not found_by(notches_at(np.empty(0), np.empty(0)))
 
-    assert not found
-    assert is_taken.shape == (0,)
+
+def test_a_grating_that_two_heads_saw_is_one() -> None:
+    (one,) = found_by(notches_at(*openings_of_a_grating()))
+    seen_in_part = replace(one, corners=one.corners[[0, 1, 1, 0]], confidence=one.confidence / 2)
+    seen_in_part.corners[2:] += (one.corners[2:] - one.corners[[1, 0]]) / 2
+    far = replace(one, corners=one.corners + np.array([2.0, 0.0, 0.0]))
+
+    assert one_of_each([seen_in_part, one, far]) == (one, far)

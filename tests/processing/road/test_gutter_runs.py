@@ -62,6 +62,7 @@ def notches_at(one: Pass, along_m: Floats, across_m: Floats, strength: float = 0
         ASIDE_M + across_m,
         np.zeros(at.size, np.int64),
         np.zeros((at.size, 2)),
+        empty,
     )
 
 
