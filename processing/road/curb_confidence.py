@@ -10,8 +10,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from processing.road.curb_runs import StepRun
+from processing.road.curb_runs import StepRun, median_of
 
 _LEAST_SPREAD_M, _LEAST_ROUGH_M = 0.002, 0.003
 _USUAL_SPREAD_M, _USUAL_SURENESS = 0.01, 10.0
@@ -126,6 +127,6 @@ def confidence_of(run: StepRun) -> float:
     return 1.0 / (1.0 + math.exp(-min(max(logit, -50.0), 50.0)))
 
 
-def _median(values: np.ndarray[tuple[int], np.dtype[np.float64]], run: StepRun) -> float:
-    """Of the places that were seen."""
-    return float(np.nanmedian(values[run.is_seen]))
+def _median(values: NDArray[np.float64], run: StepRun) -> float:
+    """Of the places that were seen, where all is known."""
+    return median_of(values[run.is_seen])

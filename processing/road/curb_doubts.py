@@ -19,7 +19,7 @@ from processing.road.curb_chains import chains_of
 from processing.road.curb_confidence import confidence_of
 from processing.road.curb_crossings import crossing_runs
 from processing.road.curb_profile import PassSteps, StepSettings, joined_steps, steps_of
-from processing.road.curb_runs import StepRun, run_of
+from processing.road.curb_runs import StepRun, median_of, run_of
 from processing.worked_ahead import one_ahead
 
 LEAST_LENGTH_M = 1.0
@@ -99,11 +99,11 @@ def is_likely(run: StepRun, settings: StepSettings) -> bool:
     """Whether a run by itself looks like a curb."""
     if run.seen_m < LEAST_LENGTH_M:
         return False
-    high_m = float(np.median(run.heights_m[run.is_seen]))
+    high_m = median_of(run.heights_m[run.is_seen])
     if high_m < settings.least_step_m:
         return False
-    is_flat = float(np.nanmedian(run.face_m[run.is_seen])) > _MOST_LEAN * high_m
-    if run.rises > 0 and high_m >= _HIGH_M and is_flat:
+    is_high = run.rises > 0 and high_m >= _HIGH_M
+    if is_high and median_of(run.face_m[run.is_seen]) > _MOST_LEAN * high_m:
         return False
     return confidence_of(run) >= LEAST_CHANCE
 

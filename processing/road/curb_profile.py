@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,6 +77,11 @@ class PassSteps:
     rights: Floats
     table: Floats
     times_s: Floats
+
+    @cached_property
+    def sections(self) -> NDArray[np.int64]:
+        """(n,) scanline of each step."""
+        return self.table[:, SECTION].astype(np.int64)
 
 
 def steps_of(scanlines: Scanlines, settings: StepSettings) -> PassSteps:

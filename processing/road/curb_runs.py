@@ -17,7 +17,6 @@ from processing.road.step_columns import (
     LOWER_ACROSS,
     LOWER_HEIGHT,
     NOISE_M,
-    SECTION,
     SIGN,
     SURENESS,
     TOP_M,
@@ -27,6 +26,9 @@ from processing.road.step_columns import (
 )
 
 Floats = NDArray[np.float64]
+_Line = tuple[Floats, Floats, Floats, NDArray[np.bool_]]
+"""Where something was measured along a run and how much it counts; the run's stations, and whether
+something was measured near each."""
 
 _REACH_M, _HIGH_REACH_M = 0.6, 0.35
 """How far along a run places and heights are smoothed: ramps of dropped curbs are 0.7 m long."""
@@ -110,6 +112,12 @@ class StepRun:
         return float(steps[self.is_seen[1:]].sum())
 
 
+def median_of(values: Floats) -> float:
+    """The median of at least one known value: several times faster than numpy's for some tens."""
+    rising = np.sort(values)
+    return float(rising[(rising.size - 1) // 2] + rising[rising.size // 2]) / 2
+
+
 def run_of(steps: PassSteps, chain: Chain, number: int) -> StepRun:
     """The smooth line through the steps of a chain, at every scanline.
 
@@ -119,23 +127,23 @@ def run_of(steps: PassSteps, chain: Chain, number: int) -> StepRun:
         Which of the drives given it is of.
     """
     rows = steps.table[chain.rows]
-    sections = rows[:, SECTION].astype(np.int64)
+    sections = steps.sections[chain.rows]
     at = steps.stations_m[sections]
     every = np.arange(sections[0], sections[-1] + 1)
     stations = steps.stations_m[every]
-    weights = np.where(rows[:, FACE_COUNT] > 0, 1.0, 0.5)
-    middle = _smooth(at, (rows[:, LOWER_ACROSS] + rows[:, UPPER_ACROSS]) / 2, weights, stations)
-    wide = np.abs(rows[:, UPPER_ACROSS] - rows[:, LOWER_ACROSS])
-    face = _smooth(at, wide, weights, stations)
-    low = _smooth(at, rows[:, LOWER_HEIGHT], weights, stations, _HIGH_REACH_M)
-    high = _smooth(at, rows[:, UPPER_HEIGHT], weights, stations, _HIGH_REACH_M)
-    lower = _placed(steps, every, middle - chain.sign * face / 2, low)
-    upper = _placed(steps, every, middle + chain.sign * face / 2, np.maximum(high, low))
     nearest = _nearest(at, stations)
     is_seen = np.abs(at[nearest] - stations) <= _SEEN_WITHIN_M
-    on_line = np.interp(at, stations, middle)
-    off = np.abs((rows[:, LOWER_ACROSS] + rows[:, UPPER_ACROSS]) / 2 - on_line)
-    side = 1 if np.median(middle) > 0 else -1
+    weights = np.where(rows[:, FACE_COUNT] > 0, 1.0, 0.5)
+    line = (at, weights, stations, is_seen)
+    places = (rows[:, LOWER_ACROSS] + rows[:, UPPER_ACROSS]) / 2
+    wide = np.abs(rows[:, UPPER_ACROSS] - rows[:, LOWER_ACROSS])
+    middle, face = _smooth(places, line), _smooth(wide, line)
+    low = _smooth(rows[:, LOWER_HEIGHT], line, _HIGH_REACH_M)
+    high = _smooth(rows[:, UPPER_HEIGHT], line, _HIGH_REACH_M)
+    lower = _placed(steps, every, middle - chain.sign * face / 2, low)
+    upper = _placed(steps, every, middle + chain.sign * face / 2, np.maximum(high, low))
+    off = np.abs(places - np.interp(at, stations, middle))
+    side = 1 if median_of(middle) > 0 else -1
     unseen = np.where(is_seen, 0.0, np.nan)
     return StepRun(
         drive=number,
@@ -159,15 +167,15 @@ def run_of(steps: PassSteps, chain: Chain, number: int) -> StepRun:
     )
 
 
-def _smooth(
-    at: Floats, values: Floats, weights: Floats, places: Floats, reach_m: float = _REACH_M
-) -> Floats:
-    out = np.empty(places.size)
-    smooth_kernel(at, np.ascontiguousarray(values), weights.copy(), reach_m, places, out)
-    nearest = _nearest(at, places)
-    is_known = np.abs(at[nearest] - places) <= _SEEN_WITHIN_M
+def _smooth(values: Floats, line: _Line, reach_m: float = _REACH_M) -> Floats:
+    """What was measured along a run, smooth at every station of it."""
+    at, weights, stations, is_seen = line
+    out = np.empty(stations.size)
+    smooth_kernel(at, np.ascontiguousarray(values), weights.copy(), reach_m, stations, out)
+    if is_seen.all():
+        return out
     # Straight over what wasn't seen: the directions at its ends say nothing over metres.
-    smooth: Floats = np.interp(places, places[is_known], out[is_known])
+    smooth: Floats = np.interp(stations, stations[is_seen], out[is_seen])
     return smooth
 
 
@@ -190,10 +198,9 @@ def _nearest(at: Floats, places: Floats) -> NDArray[np.int64]:
 def _risen(steps: PassSteps, line: tuple[NDArray[np.int64], Floats], side: int) -> Floats:
     """(k,) heights of the steps between the way and a line, up less down, m."""
     every, middle = line
-    sections = steps.table[:, SECTION].astype(np.int64)
-    first, stop = np.searchsorted(sections, [every[0], every[-1] + 1])
+    first, stop = np.searchsorted(steps.sections, [every[0], every[-1] + 1])
     rows = steps.table[first:stop]
-    place = sections[first:stop] - every[0]
+    place = steps.sections[first:stop] - every[0]
     across = side * rows[:, LOWER_ACROSS]
     is_between = (across > 0) & (across < side * middle[place] - _BEFORE_M)
     heights = (rows[:, UPPER_HEIGHT] - rows[:, LOWER_HEIGHT]) * rows[:, SIGN] * side

@@ -1,4 +1,4 @@
-"""Loops that link steps of scanlines to tracks along the way, and lay a smooth line through them.
+"""Loops that link steps of scanlines to tracks along the way, and join and smooth tracks.
 
 A track is followed from scanline to scanline: its place and direction are predicted, the step that
 fits best is taken, and the prediction is made better by it (an alpha-beta filter), so that a step
@@ -26,6 +26,16 @@ _HIGH_M, _HIGH_PER_M = (
 )  # how far heights may differ from one scanline to the next; grows with the gap
 _MOST_ACTIVE = 512
 _LAST, _NUMBER, _AGE = range(3)  # scanline of a track's last step, its number, its steps
+_STATION, _ACROSS, _SLOPE, _LOWER, _LENGTH = range(5)
+END_COLUMNS = 5
+"""Of one end of a track, as a straight line over its last metres: station, place across there, m;
+slope, m per m; height of the lower edge; length of the whole track, m."""
+
+_END_M = 3.0  # what tells the direction of an end
+_OFF_M, _OFF_PER_M, _END_TURN = 0.05, 0.04, 0.12
+_END_HIGH_M, _END_HIGH_PER_M = 0.05, 0.03
+_BESIDE_M = 3.0  # tracks of one low step may go on beside each other
+_LONG_M = 8.0  # longest gap that is bridged where both sides lie on one line: a parked lorry
 _ROUNDS = 3
 _SPREADS = 3.0
 
@@ -164,6 +174,104 @@ def _cost(state: _Floats, gap: float, age: int, found: _Floats) -> float:
 
 
 @kernel
+def ends_kernel(
+    stations: _Floats, places: _Floats, rows: _Integers, bounds: _Integers, ends: _Floats
+) -> None:
+    """Both ends of tracks.
+
+    Parameters
+    ----------
+    stations : (n,)
+        Of each step, along the way, m.
+    places : (n, 2)
+        Middle of its face across, and height of its lower edge; m.
+    rows : (k,)
+        Steps of one track after the other, each track's along the way.
+    bounds : (t, 2)
+        Where each track begins and ends in ``rows``.
+    ends : (t, 2, END_COLUMNS)
+        Filled: first and last end.
+    """
+    for track in range(bounds.shape[0]):
+        steps = rows[bounds[track, 0] : bounds[track, 1]]
+        first, last = stations[steps[0]], stations[steps[-1]]
+        for end in range(2):
+            _end_of(stations, places, steps, (last if end else first), ends[track, end])
+            ends[track, end, _LENGTH] = last - first
+
+
+@kernel
+def _end_of(
+    stations: _Floats, places: _Floats, steps: _Integers, station: float, end: _Floats
+) -> None:
+    near = steps[np.abs(stations[steps] - station) <= _END_M]
+    away, across = stations[near] - station, places[near, 0]
+    middle = away.mean()
+    # A short end tells no direction: held along the way, within some degrees.
+    slope = ((away - middle) * across).sum() / (((away - middle) ** 2).sum() + 0.3)
+    few = min(max(3, min(10, near.size)), near.size)
+    close = near[near.size - few :] if station == stations[steps[-1]] else near[:few]
+    end[_STATION], end[_ACROSS] = station, across.mean() - slope * middle
+    end[_SLOPE], end[_LOWER] = slope, np.median(places[close, 1])
+
+
+@kernel
+def joins_kernel(
+    ends: _Floats, signs: _Floats, join_m: float, costs: _Floats, pairs: _Integers
+) -> int:
+    """Tracks that may go on as others; gives how many pairs there are, beyond the room too.
+
+    Parameters
+    ----------
+    ends : (t, 2, END_COLUMNS)
+        Of tracks, as `ends_kernel` fills it.
+    signs : (t,)
+        1 where the ground rises to the right, else −1.
+    join_m : float
+        Longest gap between tracks that needn't be long.
+    costs, pairs : (k,), (k, 2)
+        Filled: how badly they go on, and the two.
+    """
+    count = 0
+    order = np.argsort(ends[:, 0, _STATION])
+    starts = ends[order, 0, _STATION]
+    for i in range(ends.shape[0]):
+        tail = ends[i, 1]
+        low = np.searchsorted(starts, tail[_STATION] - _BESIDE_M)
+        high = np.searchsorted(starts, tail[_STATION] + _LONG_M, side="right")
+        for j in order[low:high]:
+            head = ends[j, 0]
+            is_later = ends[i, 0, _STATION] < head[_STATION] and tail[_STATION] < ends[j, 1, 0]
+            if signs[i] != signs[j] or not is_later:
+                continue
+            cost = _misfit(tail, head, join_m)
+            if cost < 1.0:
+                if count < costs.size:
+                    costs[count] = cost + abs(head[_STATION] - tail[_STATION])
+                    pairs[count, 0], pairs[count, 1] = i, j
+                count += 1
+    return count
+
+
+@kernel
+def _misfit(tail: _Floats, head: _Floats, join_m: float) -> float:
+    """How badly two ends fit each other: 1 is the most."""
+    half = (head[_STATION] - tail[_STATION]) / 2
+    gap = abs(2 * half)
+    off = abs(tail[_ACROSS] + tail[_SLOPE] * half - head[_ACROSS] + head[_SLOPE] * half)
+    turn = abs(tail[_SLOPE] - head[_SLOPE])
+    most_off, most_turn = _OFF_M + _OFF_PER_M * min(gap, join_m), _END_TURN
+    if gap > join_m:
+        if min(tail[_LENGTH], head[_LENGTH]) < gap / 3:
+            return 2.0
+        most_turn = _END_TURN / 2
+    if gap < 1.0:
+        most_turn = 3 * _END_TURN
+    low = abs(tail[_LOWER] - head[_LOWER]) / (_END_HIGH_M + _END_HIGH_PER_M * gap)
+    return float(max(off / most_off, turn / most_turn, low))
+
+
+@kernel
 def smooth_kernel(
     at: _Floats, values: _Floats, weights: _Floats, reach_m: float, places: _Floats, out: _Floats
 ) -> None:
@@ -233,3 +341,6 @@ def warm_up() -> None:
     zeros, ones = np.zeros(2), np.ones(2)
     link_kernel(section, np.zeros((2, 4)), np.array([0.1, 0.8]), number)
     smooth_kernel(zeros + np.arange(2), zeros, ones.copy(), 1.5, ones, np.empty(2))
+    ends = np.empty((1, 2, END_COLUMNS))
+    ends_kernel(zeros, np.zeros((2, 2)), section, np.array([[0, 2]]), ends)
+    joins_kernel(ends, np.ones(1), 2.5, np.empty(1), np.empty((1, 2), np.int64))

@@ -42,19 +42,19 @@ _TOPS = np.array([8, 8, 8, 8, 4, 4], np.int64)  # cells of the top
 
 
 class _Line(NamedTuple):
-    """One scanline and the cells that it is put into, counted from ``-half`` on.
+    """The cells that a scanline is put into, counted from ``-half`` on.
 
     ``sums`` are running sums over cells of 1, u, v, u², uv, v² and of walls.
     """
 
-    x: _Floats
-    h: _Floats
     half: float
     level: _Floats
     low: _Floats
     high: _Floats
     counts: _Floats
     sums: _Floats
+    rises: _Floats
+    shadows: _Integers
 
 
 @kernel
@@ -69,56 +69,50 @@ def steps_kernel(
     the order of the scanlines.
     """
     cells = int(2 * limits[3] / CELL_M)
-    level, low, high = np.empty(cells), np.empty(cells), np.empty(cells)
-    counts = np.empty(cells)
-    sums = np.empty((cells + 1, 7))
-    sure, chosen = np.empty((2, cells)), np.empty((2, cells), np.int64)
+    flat, sums = np.empty((5, cells)), np.empty((cells + 1, 7))
+    shadows, chosen, sure = np.empty(cells, np.int64), np.empty(cells, np.int64), np.empty(cells)
+    line = _Line(limits[3], flat[0], flat[1], flat[2], flat[3], sums, flat[4], shadows)
     count = 0
     for section in range(starts.size - 1):
-        x = across[starts[section] : starts[section + 1]]
-        h = height[starts[section] : starts[section + 1]]
-        if x.size < 2 * _LEAST_FOOT:
+        part = slice(starts[section], starts[section + 1])
+        if part.stop - part.start < 2 * _LEAST_FOOT:
             continue
-        line = _Line(x, h, limits[3], level, low, high, counts, sums)
-        _fill_cells(line)
+        _fill_cells(across[part], height[part], line)
         _sum_up(line)
+        _look_over(sums, line.rises, shadows)
         noise = _noise(sums)
-        for side in range(2):
-            _judge_cells(sums, 1 - 2 * side, limits, noise, (sure[side], chosen[side]))
-        for side in range(2):
+        for sign in (1, -1):
+            _judge_cells(line, sign, limits, noise, (sure, chosen))
             for cell in range(cells):
-                if sure[side, cell] < _LEAST_SURE or not _is_peak(sure[side], cell):
+                if sure[cell] < _LEAST_SURE or not _is_peak(sure, cell):
                     continue
                 row = found[min(count, found.shape[0] - 1)]
-                if _describe(line, (cell, 1 - 2 * side, chosen[side, cell]), limits, noise, row):
+                if _describe(line, (cell, sign, chosen[cell]), limits, noise, row):
                     row[of.SECTION] = section
-                    row[of.SURENESS] = sure[side, cell]
+                    row[of.SURENESS] = sure[cell]
                     count += 1
     return count
 
 
 @kernel
-def _fill_cells(line: _Line) -> None:
+def _fill_cells(x: _Floats, h: _Floats, line: _Line) -> None:
     """Lowest, highest and mean of the lowest heights of each cell."""
-    x, h, half = line.x, line.h, line.half
-    level, low, high, counts = line.level, line.low, line.high, line.counts
-    cells = level.size
+    half, level, low, high, counts = line.half, line.level, line.low, line.high, line.counts
     counts[:] = 0.0
     level[:] = 0.0
-    low[:] = math.inf
-    high[:] = -math.inf
+    low[:], high[:] = math.inf, -math.inf
     for i in range(x.size):
         cell = int((x[i] + half) / CELL_M)
-        if 0 <= cell < cells:
+        if 0 <= cell < level.size:
             low[cell] = min(low[cell], h[i])
     for i in range(x.size):
         cell = int((x[i] + half) / CELL_M)
-        if 0 <= cell < cells and h[i] <= low[cell] + _OVERHEAD_M:
+        if 0 <= cell < level.size and h[i] <= low[cell] + _OVERHEAD_M:
             high[cell] = max(high[cell], h[i])
             if h[i] <= low[cell] + _LOWEST_M:
                 counts[cell] += 1.0
                 level[cell] += h[i]
-    for cell in range(cells):
+    for cell in range(level.size):
         if counts[cell] > 0:
             level[cell] /= counts[cell]
     _drop_overhead(level, counts)
@@ -147,9 +141,8 @@ def _sum_up(line: _Line) -> None:
     level, low, high, counts, sums = line.level, line.low, line.high, line.counts, line.sums
     sums[0] = 0.0
     for cell in range(level.size):
-        row, before = sums[cell + 1], sums[cell]
-        for j in range(7):
-            row[j] = before[j]
+        row = sums[cell + 1]
+        row[:] = sums[cell]
         if counts[cell] == 0:
             continue
         u, v = (cell + 0.5) * CELL_M, level[cell]
@@ -230,8 +223,8 @@ def _foot(sums: _Floats, cell: int, sign: int, noise: float) -> _Piece:
 
 
 @kernel
-def _top(sums: _Floats, step: _Step, noise: float, slope: float) -> tuple[_Piece, float]:
-    """The ground behind a step, and where the middle of its face is.
+def _top_cells(sums: _Floats, step: _Step) -> tuple[int, int, float]:
+    """First and behind the last cell of the ground behind a step, and the middle of its face.
 
     A face is a row of `_GAPS` and `_TOPS`, or minus the cells in shadow.
     """
@@ -240,8 +233,7 @@ def _top(sums: _Floats, step: _Step, noise: float, slope: float) -> tuple[_Piece
     gap, cells = (_GAPS[face] if face >= 0 else -face), (_TOPS[face] if face >= 0 else _SHADOW_TOP)
     near = edge + sign * gap
     far = near + sign * _enough(sums, near, sign, cells, _TOP_POINTS if cells > 4 else 3)
-    top = _piece(sums, min(near, far), max(near, far), (slope, _TOP_SLOPE_SD, noise))
-    return top, (edge + sign * gap / 2) * CELL_M
+    return min(near, far), max(near, far), (edge + sign * gap / 2) * CELL_M
 
 
 @kernel
@@ -250,46 +242,70 @@ def _height(piece: _Piece, at: float) -> float:
 
 
 @kernel
-def _shadow(sums: _Floats, cell: int, sign: int) -> int:
-    """How many cells beyond the foot's last one are empty, if the way lies behind them; else 0."""
-    middle = (sums.shape[0] - 1) // 2
-    if (cell - middle) * sign >= 0:
-        return 0
-    edge = cell if sign > 0 else cell + 1
-    if abs(sums[edge, 0] - sums[edge - sign, 0]) == 0:
-        return 0
-    count = 0
-    while count <= _MOST_SHADOW:
-        at = edge + sign * (count + 1)
-        if at < 0 or at >= sums.shape[0]:
-            return 0
-        if sums[at, 0] != sums[edge, 0]:
+def _look_over(sums: _Floats, rises: _Floats, shadows: _Integers) -> None:
+    """How much higher the cells to the right of each are than those before it: a quick look.
+
+    0 where too few are filled. ``shadows`` are the empty cells beyond a foot on the far side of
+    the way, at the cell where the foot ends.
+    """
+    cells = rises.size
+    shadows[:] = 0
+    last = cells
+    for cell in range(cells):
+        rises[cell] = _rise(sums, cell)
+        if sums[cell + 1, 0] == sums[cell, 0]:
+            continue
+        empty = cell - last - 1
+        if _GAPS[2] < empty <= _MOST_SHADOW:
+            if last + 1 < cells // 2:
+                shadows[last + 1] = empty
+            if cell - 1 > cells // 2:
+                shadows[cell - 1] = empty
+        last = cell
+
+
+@kernel
+def _rise(sums: _Floats, cell: int) -> float:
+    """How much higher the cells from the third after a place on are than those before it."""
+    for factor in range(4):
+        reach = _LOOK_CELLS << factor
+        if cell < reach or cell + 3 + reach >= sums.shape[0]:
             break
-        count += 1
-    return count if _GAPS[2] < count <= _MOST_SHADOW else 0
+        m = sums[cell, 0] - sums[cell - reach, 0]
+        n = sums[cell + 3 + reach, 0] - sums[cell + 3, 0]
+        if min(m, n) >= _FEWEST:
+            rise = (sums[cell + 3 + reach, 2] - sums[cell + 3, 2]) / n
+            return float(rise - (sums[cell, 2] - sums[cell - reach, 2]) / m)
+    return 0.0
 
 
 @kernel
 def _judge_cells(
-    sums: _Floats, sign: int, limits: _Floats, noise: float, best: tuple[_Floats, _Integers]
+    line: _Line, sign: int, limits: _Floats, noise: float, best: tuple[_Floats, _Integers]
 ) -> None:
     """How sure a step at each cell is, in standard deviations, and which width of face is best.
 
     Less than the least that counts may be given as 0.
     """
     sure, chosen = best
+    sums, rises = line.sums, line.rises
+    middle = sure.size // 2
     sure[:] = 0.0
     for cell in range(sure.size):
-        shadow = _shadow(sums, cell, sign)
-        if shadow == 0 and _rise(sums, cell, sign) < _HINT * limits[0]:
+        shadow = line.shadows[cell] if (cell - middle) * sign < 0 else 0
+        # What rises to the right of a place falls to the left of one two cells on.
+        rise = rises[cell] if sign > 0 else -rises[max(cell - 2, 0)]
+        if shadow == 0 and rise < _HINT * limits[0]:
             continue
         foot = _foot(sums, cell, sign, noise)
         if foot[0] == 0 or abs(foot[3]) > limits[2]:
             continue
+        squares = _error(foot, (cell if sign > 0 else cell + 1) * CELL_M) + _MODEL_M**2
+        unit = 0.999 * math.sqrt(max(foot[6] - noise, 0.0) + squares)
         for face in range(-1 if shadow > 0 else 0, _GAPS.size):
             form = face if face >= 0 else -shadow
-            known = (noise, max(sure[cell], _LEAST_SURE))
-            value = _sureness(sums, (cell, sign, form), limits, known, foot)
+            least = max(max(sure[cell], _LEAST_SURE) * unit, limits[0])
+            value = _sureness(sums, (cell, sign, form), limits, (noise, least), foot)
             if value > sure[cell]:
                 sure[cell] = value
                 chosen[cell] = form
@@ -299,44 +315,29 @@ def _judge_cells(
 def _sureness(
     sums: _Floats, step: _Step, limits: _Floats, known: tuple[float, float], foot: _Piece
 ) -> float:
-    """Height of a step in its standard deviations; 0 where it is none or surely less than a least.
+    """Height of a step in its standard deviations; 0 where it is none or lower than a least.
 
-    ``known`` are noise and that least.
+    ``known`` are noise and that least height.
     """
     noise, least = known
-    top, at = _top(sums, step, noise, foot[3])
-    high = _height(top, at) - _height(foot, at)
-    if top[0] == 0 or abs(top[3]) > limits[2] or not limits[0] <= high <= limits[1]:
+    begin, end, at = _top_cells(sums, step)
+    n, base = sums[end, 0] - sums[begin, 0], _height(foot, at)
+    if n == 0.0:
         return 0.0
-    rough = max(foot[6] - noise, 0.0)
-    # Most of rough ground is left here; the rest takes four divisions and a root.
-    if high * high < 0.999 * least * least * (rough + 2 * _MODEL_M**2):
+    # Most of rough ground is left here, before anything is fitted: no slope makes it high enough.
+    level, away = (sums[end, 2] - sums[begin, 2]) / n, (sums[end, 1] - sums[begin, 1]) / n - at
+    if level + limits[2] * abs(away) < base + least:
+        return 0.0
+    top = _piece(sums, begin, end, (foot[3], _TOP_SLOPE_SD, noise))
+    high = _height(top, at) - base
+    if top[0] == 0 or abs(top[3]) > limits[2] or not least <= high <= limits[1]:
         return 0.0
     if step[2] < 0:
         away = abs(step[0] * CELL_M - limits[3])
         if -step[2] * CELL_M > high * away / limits[4] + _SHADOW_MORE_M:
             return 0.0
-    misfit = rough + max(top[6] - noise, 0.0)
+    misfit = max(foot[6] - noise, 0.0) + max(top[6] - noise, 0.0)
     return float(high / math.sqrt(_error(foot, at) + _error(top, at) + misfit))
-
-
-@kernel
-def _rise(sums: _Floats, cell: int, sign: int) -> float:
-    """How much higher the cells beyond a place are than those before: a quick look."""
-    cells = sums.shape[0] - 1
-    reach = _LOOK_CELLS
-    while reach <= 8 * _LOOK_CELLS:
-        before = cell - reach if sign > 0 else cell + 1
-        behind = cell + 3 if sign > 0 else cell - reach - 2
-        if before < 0 or behind < 0 or max(before, behind) + reach > cells:
-            return -math.inf
-        m = sums[before + reach, 0] - sums[before, 0]
-        n = sums[behind + reach, 0] - sums[behind, 0]
-        if min(m, n) >= _FEWEST:
-            rise = (sums[behind + reach, 2] - sums[behind, 2]) / n
-            return float(rise - (sums[before + reach, 2] - sums[before, 2]) / m)
-        reach *= 2
-    return -math.inf
 
 
 @kernel
@@ -353,21 +354,20 @@ def _describe(line: _Line, step: _Step, limits: _Floats, noise: float, row: _Flo
     """What is known of a step from the cells."""
     cell, sign, face = step
     foot = _foot(line.sums, cell, sign, noise)
-    top, at = _top(line.sums, step, noise, foot[3])
+    begin, end, at = _top_cells(line.sums, step)
+    top = _piece(line.sums, begin, end, (foot[3], _TOP_SLOPE_SD, noise))
     if foot[0] == 0 or top[0] == 0:
         return False
     low, high = _height(foot, at), _height(top, at)
-    edge = cell if sign > 0 else cell + 1
     half_face = (_GAPS[face] if face >= 0 else -face) * CELL_M / 2
-    middle = edge * CELL_M + sign * half_face
     row[of.SIGN] = sign
     row[of.FOOT_SLOPE], row[of.TOP_SLOPE] = foot[3] * sign, top[3] * sign
     row[of.LOWER_HEIGHT], row[of.UPPER_HEIGHT] = low, high
-    row[of.LOWER_ACROSS] = middle - sign * half_face - line.half
-    row[of.UPPER_ACROSS] = middle + sign * half_face - line.half
+    row[of.LOWER_ACROSS] = at - sign * half_face - line.half
+    row[of.UPPER_ACROSS] = at + sign * half_face - line.half
     row[of.NOISE_M] = math.sqrt(noise)
-    row[of.FOOT_M] = _follow(line, middle - sign * half_face, (low, foot[3]), -sign)
-    row[of.TOP_M] = _follow(line, middle + sign * half_face, (high, top[3]), sign)
+    row[of.FOOT_M] = _follow(line, at - sign * half_face, (low, foot[3]), -sign)
+    row[of.TOP_M] = _follow(line, at + sign * half_face, (high, top[3]), sign)
     return bool(limits[0] <= high - low <= limits[1])
 
 
