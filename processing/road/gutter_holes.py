@@ -12,6 +12,12 @@ from scipy.ndimage import gaussian_filter1d
 _Floats = NDArray[np.float64]
 
 _BIN_M = 0.01
+_EXTENTS_M = (0.04, 0.08, 0.15, 0.25)  # how wide openings are across the gutter: ends of classes
+_USUAL_M = (0.02, 0.06, 0.11, 0.18)
+_WIDER_M = 0.03  # an opening is seen at most so much wider than it is: a spacing of points
+_SQUARE = 0.9  # rows nearly square to the gutter see holes as wide as they are
+_SEEN_WHOLE = 0.6  # share of a hole's crossings by such rows
+_GROOVES = (0.0, 0.25, 0.5, 0.75)  # shares of narrow openings that are the joint's beside the holes
 _SPREAD_M = 0.02
 _CHANCE = 0.15  # share of notches that lie anywhere
 _REACH_M = 0.45
@@ -53,6 +59,25 @@ LID_TYPES = (
 
 
 @dataclass(frozen=True)
+class JointNotches:
+    """Notches at the joints of one gutter.
+
+    Attributes
+    ----------
+    across_m : (n,) float64
+        m to the right of the axis.
+    extent_m : (n,) float64
+        How wide the opening is across the gutter.
+    square : (n,) float64
+        How much the row runs across the gutter: 0 along it, 1 square to it.
+    """
+
+    across_m: _Floats
+    extent_m: _Floats
+    square: _Floats
+
+
+@dataclass(frozen=True)
 class HoleFit:
     """What the notches at joints say of the lids.
 
@@ -73,17 +98,21 @@ class HoleFit:
     count: int
 
 
-def hole_fit(across_m: _Floats) -> HoleFit:
-    """The standard lid whose holes fit the notches at joints best.
+def hole_fit(notches: JointNotches) -> HoleFit:
+    """The standard lid whose holes and joints fit the notches best.
 
-    Parameters
-    ----------
-    across_m : (n,) float64
-        m to the right of the axis, n ≥ 1.
+    A joint is a groove as wide as the lids, with the holes in it: narrow openings lie in either,
+    wide ones in holes alone, and the wider the nearer to a hole's middle.
     """
     places, likelihood = _fits()
-    counts = np.histogram(across_m, _EDGES_M)[0].astype(np.float64)
-    gains = (counts * likelihood).sum(axis=2) + np.log([[one.share] for one in LID_TYPES])
+    counts = np.zeros((2, len(_USUAL_M), _EDGES_M.size - 1))
+    kinds = np.searchsorted(_EXTENTS_M, notches.extent_m)
+    for square in range(2):
+        for kind in range(len(_USUAL_M)):
+            chosen = (kinds == kind) & ((notches.square > _SQUARE) == bool(square))
+            counts[square, kind] = np.histogram(notches.across_m[chosen], _EDGES_M)[0]
+    gains = np.tensordot(likelihood, counts, axes=3).max(axis=2)
+    gains += np.log([[one.share] for one in LID_TYPES])
     gains /= max(1.0, float(counts.sum()))
     which, at = divmod(int(gains.argmax()), places.size)
     gain = float(gains[which, at])
@@ -92,19 +121,49 @@ def hole_fit(across_m: _Floats) -> HoleFit:
 
 @cache
 def _fits() -> tuple[_Floats, _Floats]:
-    """Places of a lid's middle (k,), and how much likelier than by chance notches are (t, k, bins).
+    """Places of a lid's middle (k,), and how much likelier than by chance notches are.
 
-    The latter for each type and place, as logarithms.
+    The latter (types, k, grooves, 2, classes, bins) for rows that are oblique and square to the
+    gutter, as logarithms.
     """
     places: _Floats = np.arange(-0.2, 0.2001, _BIN_M)
     middles = (_EDGES_M[1:] + _EDGES_M[:-1]) / 2
-    density = np.array([[_density(one, middles - at) for at in places] for one in LID_TYPES])
-    mix = (1 - _CHANCE) * density + _CHANCE / (2 * _REACH_M)
+    shape = (len(LID_TYPES), places.size, len(_GROOVES), 2, len(_USUAL_M), middles.size)
+    mix = np.empty(shape)
+    for number, one in enumerate(LID_TYPES):
+        for at, place in enumerate(places):
+            groove = _box(middles - place, one.width_m / 2)
+            for kind in range(len(_USUAL_M)):
+                holes = _holes(one, middles - place, kind)
+                for square in range(2):
+                    mix[number, at, :, square, kind] = holes * _told(one, kind, square)
+            share = np.array(_GROOVES)[:, None, None]
+            mix[number, at, :, :, 0] *= 1 - share
+            mix[number, at, :, :, 0] += share * groove
+    mix = (1 - _CHANCE) * mix + _CHANCE / (2 * _REACH_M)
     return places, np.log(mix * 2 * _REACH_M)
 
 
-def _density(one: LidType, across: _Floats) -> _Floats:
+def _told(one: LidType, kind: int, square: int) -> float:
+    """How much likelier than by chance a hole is seen so wide."""
+    if _USUAL_M[kind] > one.hole_wide_m + _WIDER_M:
+        return 0.0
+    if not square:
+        return 1.0
+    whole = int(np.searchsorted(_EXTENTS_M, one.hole_wide_m + _WIDER_M / 2))
+    share = _SEEN_WHOLE if kind == whole else (1 - _SEEN_WHOLE) / max(whole, 1)
+    return share * len(_USUAL_M)
+
+
+def _holes(one: LidType, across: _Floats, kind: int) -> _Floats:
+    """Density of the middles of openings of a class across a lid."""
     quarter = one.width_m / 4 if one.holes == 2 else 0.0
-    is_in = np.abs(np.abs(across) - quarter) <= one.hole_wide_m / 2
+    half = max(one.hole_wide_m - _USUAL_M[kind], _BIN_M) / 2
+    return _box(np.abs(across) - quarter, half)
+
+
+def _box(across: _Floats, half_m: float) -> _Floats:
+    is_in = np.abs(across) <= half_m + _BIN_M / 4
     spread: _Floats = gaussian_filter1d(is_in.astype(np.float64), _SPREAD_M / _BIN_M)
-    return spread / max(float(spread.sum()) * _BIN_M, 1e-9)
+    density: _Floats = spread / max(float(spread.sum()) * _BIN_M, 1e-9)
+    return density

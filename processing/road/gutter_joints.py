@@ -8,6 +8,7 @@ joint seen weakly or not at all is found by its neighbours, and a stretch withou
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,6 @@ from scipy.linalg import solveh_banded
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d, uniform_filter1d
 
 from processing.road.gutter_kernels import joints_kernel
-from processing.road.gutter_lines import LENGTHS_M
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
@@ -42,6 +42,20 @@ _OCCUPIED_M, _OCCUPIED_WORTH, _GRATING_WORTH = 0.04, 0.04, 0.02
 _SEEN_M = 0.03
 _LEAST_STRENGTH = 0.1
 _JOINT_SCATTER_M = 0.003
+
+
+def lengths_of(usual_m: Sequence[float], others_m: Sequence[float] = ()) -> dict[float, float]:
+    """What a lid of each length costs a row of joints, by the length, m.
+
+    Parameters
+    ----------
+    usual_m : sequence of float
+        Of most lids: one, or several where lids are mixed, of which each lid has to tell its own.
+    others_m : sequence of float
+        Of single ones between them.
+    """
+    usual = dict.fromkeys(usual_m, float(np.log(len(usual_m))))
+    return usual | dict.fromkeys(others_m, _OTHER_LENGTH_COST)
 
 
 @dataclass(frozen=True)
@@ -82,7 +96,7 @@ class JointRow:
 
 
 def joint_row(
-    notches: tuple[_Floats, _Floats], length_m: float, end_m: float, most_missed: int
+    notches: tuple[_Floats, _Floats], lids: Mapping[float, float], end_m: float, most_missed: int
 ) -> JointRow | None:
     """The covers along a gutter, by the places of its notches.
 
@@ -90,8 +104,8 @@ def joint_row(
     ----------
     notches : (n,) float64 and (n,) float64
         Places of the notches on the gutter, m along its axis, and their strengths.
-    length_m : float
-        Of most of its lids.
+    lids : mapping of float
+        What lids of each length cost: see `lengths_of`.
     end_m : float
         Where the axis ends.
     most_missed : int
@@ -102,7 +116,7 @@ def joint_row(
     at = np.round(along_m / _PLACE_M).astype(np.int64)
     is_in = (at >= 0) & (at < count)
     hits = np.bincount(at[is_in], strength[is_in], minlength=count).astype(np.float64)
-    steps, costs, kinds, lengths = _covers(length_m)
+    steps, costs, kinds, lengths = _covers(lids)
     occupied = maximum_filter1d(np.minimum(hits, 1.0), 2 * round(_OCCUPIED_M / _PLACE_M) + 1)
     summed = np.concatenate([[0.0], np.cumsum(occupied * _OCCUPIED_WORTH)])
     best = (np.empty(count), np.empty(count, np.int64), np.empty(count, np.int64))
@@ -137,10 +151,10 @@ def _evidence(hits: _Floats) -> _Floats:
     return worth
 
 
-def _covers(length_m: float) -> tuple[_Integers, _Floats, _Integers, _Floats]:
+def _covers(lids: Mapping[float, float]) -> tuple[_Integers, _Floats, _Integers, _Floats]:
     """Steps from joint to joint, their costs, what they are, and how long the cover is."""
     made = []
-    kinds = [(LID, one, 0.0 if one == length_m else _OTHER_LENGTH_COST) for one in LENGTHS_M]
+    kinds = [(LID, one, cost) for one, cost in lids.items()]
     kinds += [(GRATING, one, cost) for one, cost in GRATING_LENGTHS_M.items()]
     for kind, long, cost in kinds:
         for joint in _JOINTS_M:

@@ -17,7 +17,7 @@ _Integers = NDArray[np.int64]
 def waves_kernel(
     along: _Floats,
     cells: _Integers,
-    worth: _Floats,
+    worth: tuple[_Floats, _Floats],
     scales: _Floats,
     pitches: _Floats,
     window: tuple[float, float],
@@ -32,8 +32,8 @@ def waves_kernel(
         Stations of the notches, m, rising.
     cells : (n,) int64
         Number of each across the road; −1: left out.
-    worth : (n,) float64
-        Weight of each.
+    worth : (n,) float64 and (n,) float64
+        Weight of each, and of all that are of its joint.
     scales : (w, c) float64
         How much longer than the station a metre is in that cell, at bends.
     pitches : (p,) float64
@@ -43,7 +43,8 @@ def waves_kernel(
     waves : (w, c, p) complex128
         Result, zeros before.
     weights : (w, c) float64
-        Result: notches counted; zeros before.
+        Result: sum of the joints' squared weights, which is what chance makes of the squared
+        waves; zeros before.
     """
     step, half = window
     for i in range(along.shape[0]):
@@ -54,10 +55,10 @@ def waves_kernel(
         last = min(waves.shape[0] - 1, math.floor((along[i] + half) / step))
         for w in range(first, last + 1):
             away = (along[i] - w * step) * scales[w, c]
-            weights[w, c] += worth[i]
+            weights[w, c] += worth[0][i] * worth[1][i]
             for p in range(pitches.shape[0]):
                 turn = 2 * math.pi * away / pitches[p]
-                waves[w, c, p] += worth[i] * complex(math.cos(turn), math.sin(turn))
+                waves[w, c, p] += worth[0][i] * complex(math.cos(turn), math.sin(turn))
 
 
 @kernel
@@ -118,7 +119,7 @@ def warm_up() -> None:
     waves_kernel(
         zeros,
         np.zeros(2, np.int64),
-        zeros,
+        (zeros, zeros),
         np.ones((1, 1)),
         np.ones(1),
         (1.0, 3.0),

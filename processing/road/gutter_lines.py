@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import uniform_filter1d
+from scipy.ndimage import maximum_filter1d, uniform_filter, uniform_filter1d
 from scipy.spatial import cKDTree
 
 from processing.points.passes import Pass
@@ -22,7 +22,6 @@ from processing.road.notches import Notches
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
-_Bools = NDArray[np.bool_]
 
 LENGTHS_M = (0.6, 0.5, 1.0)
 """Lids' lengths met in Japan, the usual one first (JIS A 5372; mms.md, Table 7-2)."""
@@ -31,24 +30,48 @@ _REACH_M = 6.5
 _CELL_M = 0.05
 _COUNT = round(2 * _REACH_M / _CELL_M) + 1
 _BAND_CELLS = 9  # holes of one lid lie at most so many cells apart
-_WINDOW_STEP_M, _WINDOW_HALF_M = 1.0, 3.0
-# Half lengths of windows, and joints between lids to try: short ones for bends and where lengths
-# change, long ones for sparse scanners that miss most of the holes; and how regular a line is at
-# its most regular place at least.
-_WINDOWS = (
-    (_WINDOW_HALF_M, np.arange(0.002, 0.025, 0.006), 8.0),
-    (6.0, np.arange(0.0, 0.021, 0.004), 7.0),
-)
+_WINDOW_STEP_M = 1.0
 _WINDOWS_AT_ONCE = 256
-_LEAST_WEIGHT = 3.0
+_LEAST_WEIGHT = 0.3
 _LEAST_STRENGTH = 0.1
 _BEYOND_M = 3.0  # how much farther its joints are looked for than a line is regular
 _SAME_M = 0.04  # notches so near to each other are of one opening
-_MOST_ABREAST = 4.0  # cells that the two holes of a joint take
+_ABOUT_M = 0.3  # no two joints are nearer, but bars and weeds are
+_BIN_M = 0.04
+_LEAST_VOTE = 0.5  # notches that are weaker together have less than a vote
 _ASIDE_CELLS = 2  # how far a gutter moves across the road from window to window
-_CLEAR_M = 0.6
-_FOLLOWED = 3.5
+_CLEAR_M = 0.4
 _LEAST_WINDOWS = 2
+
+
+@dataclass(frozen=True)
+class Search:
+    """How lines are looked for.
+
+    Attributes
+    ----------
+    half_m : float
+        Half the length of the windows in which waves are summed.
+    joints_m : (k,) float64
+        Widths of joints between lids to try.
+    pooled_m : float
+        Half the length over which a line's windows are averaged.
+    seed, followed : float
+        How regular a line is at its most regular place at least, and elsewhere.
+    """
+
+    half_m: float
+    joints_m: _Floats
+    pooled_m: float
+    seed: float
+    followed: float
+
+
+LONG = Search(6.0, np.arange(0.0, 0.021, 0.004), 10.0, 3.3, 2.2)
+"""Long lines, of which far and sparse scanners miss most holes: gratings and other lids put waves
+out of step, so that windows are short and their powers averaged."""
+SHORT = Search(6.0, np.arange(0.0, 0.021, 0.004), 0.0, 6.5, 3.0)
+"""Short lines, which average out among what is beyond their ends."""
 
 
 @dataclass(frozen=True)
@@ -59,27 +82,16 @@ class GutterLine:
     ----------
     axis : GutterAxis
         About in the middle of the holes.
-    length_m : float
-        Of the lids, as their spacing tells.
     regularity : float
         Mean over the line of the periodogram: 1 where notches come by chance.
     """
 
     axis: GutterAxis
-    length_m: float
     regularity: float
 
 
-@dataclass(frozen=True)
-class _Map:
-    """Regularity about every place beside a pass: (w, c) each."""
-
-    regularity: _Floats
-    length: _Integers
-
-
 def gutter_lines(
-    passes: Sequence[Pass], notches: Sequence[Notches], bridge_m: float
+    passes: Sequence[Pass], notches: Notches, search: Search, bridge_m: float
 ) -> tuple[GutterLine, ...]:
     """Lines of gutters along all passes, found from what all drives measured.
 
@@ -87,13 +99,13 @@ def gutter_lines(
     ----------
     passes : sequence of Pass
         Of all drives; each notch is told along the longest that it lies beside.
-    notches : sequence of Notches
-        Of each drive.
+    notches : Notches
+        Of all drives.
+    search : Search
     bridge_m : float
         How far a line goes on without any regular notch.
     """
-    xyz = np.vstack([one.xyz for one in notches]) if notches else np.empty((0, 3))
-    strength = np.concatenate([one.strength for one in notches]) if notches else np.empty(0)
+    xyz, strength = notches.xyz, notches.strength
     is_free = strength >= _LEAST_STRENGTH
     lines: list[GutterLine] = []
     for one in sorted(passes, key=lambda one: -one.length_m):
@@ -105,7 +117,7 @@ def gutter_lines(
         is_free[chosen] = False
         if chosen.size:
             own = (station[is_beside], across[is_beside], strength[chosen], xyz[chosen, 2])
-            lines += _lines_beside(one, own, bridge_m)
+            lines += _lines_beside(one, own, search, bridge_m)
     return tuple(lines)
 
 
@@ -124,27 +136,26 @@ def _told(one: Pass, xyz: _Floats) -> tuple[_Floats, _Floats]:
 
 
 def _lines_beside(
-    one: Pass, own: tuple[_Floats, _Floats, _Floats, _Floats], bridge_m: float
+    one: Pass, own: tuple[_Floats, _Floats, _Floats, _Floats], search: Search, bridge_m: float
 ) -> Iterator[GutterLine]:
     station, across, strength, height = own
     cells = np.floor((across + _REACH_M) / _CELL_M).astype(np.int64)
     places = _one_of_each(station, cells, strength)
     places = places[np.argsort(station[places], kind="stable")]
     height_of = cKDTree(np.column_stack([station, across]))
-    taken = np.zeros((int(one.length_m / _WINDOW_STEP_M) + 2, _COUNT), np.bool_)
-    for half_m, joints, seed in _WINDOWS:
-        found = _map_of(one, (station[places], cells[places], strength[places]), half_m, joints)
-        for windows, columns in _ridges(found.regularity, taken, seed, bridge_m):
-            yield _line_of(one, found, (windows, columns), (height_of, height), half_m)
+    found = _map_of(one, (station[places], cells[places], strength[places]), search)
+    for windows, columns in _ridges(found, search, bridge_m):
+        regularity = float(found[windows, columns].mean())
+        line = _axis_of(one, (windows, columns), (height_of, height), search.half_m)
+        yield GutterLine(line, regularity)
 
 
-def _line_of(
+def _axis_of(
     one: Pass,
-    found: _Map,
     ridge: tuple[_Integers, _Integers],
     heights: tuple[cKDTree, _Floats],
     half_m: float,
-) -> GutterLine:
+) -> GutterAxis:
     windows, columns = ridge
     height_of, height = heights
     smooth = _smoothed(columns.astype(np.float64))
@@ -155,12 +166,7 @@ def _line_of(
     line = one.xyz_at(at_m, aside_m)
     _, near = height_of.query(np.column_stack([at_m, aside_m]), k=min(9, height.size))
     line[:, 2] = np.median(height[np.asarray(near).reshape(len(at_m), -1)], axis=1)
-    votes = np.bincount(found.length[windows, columns], minlength=len(LENGTHS_M))
-    return GutterLine(
-        GutterAxis.through(line),
-        LENGTHS_M[int(votes.argmax())],
-        float(found.regularity[windows, columns].mean()),
-    )
+    return GutterAxis.through(line)
 
 
 def _one_of_each(station: _Floats, cells: _Integers, strength: _Floats) -> _Integers:
@@ -172,33 +178,48 @@ def _one_of_each(station: _Floats, cells: _Integers, strength: _Floats) -> _Inte
     return chosen
 
 
-def _worth(station: _Floats, cells: _Integers, strength: _Floats) -> _Floats:
-    """Weights by which what lies side by side counts as the two holes of one joint at most."""
-    near = cKDTree(np.column_stack([station / _SAME_M, cells / (_BAND_CELLS - 1)]))
-    pairs = near.query_pairs(1.0, p=np.inf, output_type="ndarray")
-    abreast = strength + np.bincount(pairs[:, 0], strength[pairs[:, 1]], minlength=strength.size)
-    abreast += np.bincount(pairs[:, 1], strength[pairs[:, 0]], minlength=strength.size)
-    worth: _Floats = np.minimum(1.0, _MOST_ABREAST / np.maximum(abreast, 1e-9))
-    return worth
+def _votes(station: _Floats, cells: _Integers, strength: _Floats) -> tuple[_Floats, _Floats]:
+    """Weights by which all notches about a place have one vote together, where they are strong.
+
+    So the many bars of a grating, or weeds, count no more than a joint that lies alone.
+
+    Returns
+    -------
+    worth, abreast : (n,) float64
+        Of each, and of all that lie side by side with it: of the two holes of a joint.
+    """
+    bins = ((station - station.min(initial=0.0)) / _BIN_M).astype(np.int64)
+    size = int(bins.max(initial=0)) + 1
+
+    def summed(values: _Floats, along_m: float) -> _Floats:
+        flat = np.bincount(bins * _COUNT + cells, values, minlength=size * _COUNT)
+        window = 2 * round(along_m / _BIN_M) + 1, _BAND_CELLS
+        even = uniform_filter(flat.reshape(size, _COUNT), window, mode="constant")
+        return np.asarray(even[bins, cells] * (window[0] * window[1]), np.float64)
+
+    worth = strength / np.maximum(summed(strength, _ABOUT_M), _LEAST_VOTE)
+    return worth, summed(worth, _SAME_M)
 
 
-def _map_of(
-    one: Pass, own: tuple[_Floats, _Integers, _Floats], half_m: float, joints: _Floats
-) -> _Map:
+def _map_of(one: Pass, own: tuple[_Floats, _Integers, _Floats], search: Search) -> _Floats:
+    """(w, c) how regular notches are about every place beside a pass."""
     station, cells, strength = own
     windows = int(one.length_m / _WINDOW_STEP_M) + 2
     inside = np.clip(cells, 0, _COUNT - 1)
-    worth = strength * _worth(station, cells, strength)
     regularity = np.zeros((windows, _COUNT))
-    length = np.zeros((windows, _COUNT), np.int64)
     for first in range(0, windows, _WINDOWS_AT_ONCE):
         stop = min(first + _WINDOWS_AT_ONCE, windows)
-        ends = first * _WINDOW_STEP_M - half_m, stop * _WINDOW_STEP_M + half_m
+        ends = np.array([first, stop]) * _WINDOW_STEP_M + [-search.half_m, search.half_m]
         near = slice(*np.searchsorted(station, ends))
-        part = (station[near] - first * _WINDOW_STEP_M, inside[near], worth[near])
-        power = _power(part, _scales(one, first, stop, _COUNT), half_m, joints)
-        regularity[first:stop], length[first:stop] = power.max(axis=2), power.argmax(axis=2)
-    return _Map(regularity, length)
+        votes = _votes(station[near], inside[near], strength[near])
+        part = (station[near] - first * _WINDOW_STEP_M, inside[near], votes)
+        regularity[first:stop] = _power(part, _scales(one, first, stop, _COUNT), search)
+    if search.pooled_m == 0.0:
+        return regularity
+    size = 2 * round(search.pooled_m / _WINDOW_STEP_M) + 1
+    beside = maximum_filter1d(regularity, 3, axis=1)
+    pooled: _Floats = uniform_filter1d(beside, size, axis=0, mode="nearest")
+    return pooled
 
 
 def _scales(one: Pass, first: int, stop: int, count: int) -> _Floats:
@@ -214,57 +235,51 @@ def _scales(one: Pass, first: int, stop: int, count: int) -> _Floats:
 
 
 def _power(
-    own: tuple[_Floats, _Integers, _Floats], scales: _Floats, half_m: float, joints: _Floats
+    own: tuple[_Floats, _Integers, tuple[_Floats, _Floats]], scales: _Floats, search: Search
 ) -> _Floats:
-    """(w, c, l) the periodogram for each length of lids, 1 where notches come by chance."""
-    windows, count = scales.shape
-    pitches = (np.array(LENGTHS_M)[:, None] + joints[None, :]).ravel()
-    waves = np.zeros((windows, count, pitches.size), np.complex128)
-    weights = np.zeros((windows, count))
-    waves_kernel(*own, scales, pitches, (_WINDOW_STEP_M, half_m), waves, weights)
+    """(w, c) the most of the periodogram, 1 on average where joints lie by chance."""
+    pitches = (np.array(LENGTHS_M)[:, None] + search.joints_m[None, :]).ravel()
+    waves = np.zeros((*scales.shape, pitches.size), np.complex128)
+    weights = np.zeros(scales.shape)
+    waves_kernel(*own, scales, pitches, (_WINDOW_STEP_M, search.half_m), waves, weights)
     band = uniform_filter1d(waves, _BAND_CELLS, axis=1, mode="constant") * _BAND_CELLS
-    all_weights = uniform_filter1d(weights, _BAND_CELLS, axis=1, mode="constant") * _BAND_CELLS
-    power = np.abs(band) ** 2 / np.maximum(all_weights, _LEAST_WEIGHT)[:, :, None]
-    by_length = power.reshape(windows, count, len(LENGTHS_M), -1).max(axis=3)
-    # Lids of 1 m are regular at half their spacing too; the other way round they are not.
-    is_whole = by_length[:, :, 2] > 0.6 * by_length[:, :, 1]
-    by_length[:, :, 1] = np.where(is_whole, 0.0, by_length[:, :, 1])
-    return np.asarray(by_length, np.float64)
+    chance = uniform_filter1d(weights, _BAND_CELLS, axis=1, mode="constant") * _BAND_CELLS
+    power = (np.abs(band) ** 2).max(axis=2) / np.maximum(chance, _LEAST_WEIGHT)
+    return np.asarray(power, np.float64)
 
 
 def _ridges(
-    regularity: _Floats, taken: _Bools, seed: float, bridge_m: float
+    regularity: _Floats, search: Search, bridge_m: float
 ) -> Iterator[tuple[_Integers, _Integers]]:
-    """Windows and cells of each line, the most regular first; marks what they take."""
-    left = np.where(taken, 0.0, regularity)
+    """Windows and cells of each line, the most regular first."""
+    left = regularity.copy()
     clear = round(_CLEAR_M / _CELL_M)
     bridge = max(1, int(bridge_m / _WINDOW_STEP_M))
     while left.size:
         most = np.unravel_index(int(left.argmax()), left.shape)
-        if left[most] < seed:
+        if left[most] < search.seed:
             return
         start = int(most[0]), int(most[1])
-        ahead = _followed(left, start, 1, bridge)
-        behind = _followed(left, start, -1, bridge)
+        ahead = _followed(left, start, (1, bridge), search.followed)
+        behind = _followed(left, start, (-1, bridge), search.followed)
         path = np.array(behind[:0:-1] + ahead)
         for window, cell in path:
-            beside = slice(max(0, cell - clear), cell + clear + 1)
-            left[window, beside] = 0.0
-            taken[window, beside] = True
+            left[window, max(0, cell - clear) : cell + clear + 1] = 0.0
         if len(path) >= _LEAST_WINDOWS:
             yield path[:, 0], path[:, 1]
 
 
 def _followed(
-    left: _Floats, start: tuple[int, int], way: int, bridge: int
+    left: _Floats, start: tuple[int, int], way: tuple[int, int], least: float
 ) -> list[tuple[int, int]]:
+    step, bridge = way
     path, missed, last = [start], 0, 1
     window, cell = start
-    while 0 <= window + way < len(left) and missed < bridge:
-        window += way
+    while 0 <= window + step < len(left) and missed < bridge:
+        window += step
         low = max(0, cell - _ASIDE_CELLS)
         near = left[window, low : cell + _ASIDE_CELLS + 1]
-        if near.max() >= _FOLLOWED:
+        if near.max() >= least:
             cell, missed = low + int(near.argmax()), 0
         else:
             missed += 1

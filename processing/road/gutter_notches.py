@@ -18,7 +18,7 @@ from processing.points.drive import Drive
 from processing.points.passes import Pass, passes_of
 from processing.points.turns import Turns
 from processing.road.notch_kernels import FOUND, notches_kernel
-from processing.road.notches import DENT, OPENING, Notches, NotchParameters
+from processing.road.notches import DENT, OPENING, Notches, NotchParameters, joined
 from processing.worked_ahead import in_order
 
 Floats = NDArray[np.float64]
@@ -91,30 +91,6 @@ def notches_about(drive: Drive, place: Floats, parameters: NotchParameters) -> N
             for first, stop in about.blocks():
                 parts.extend(_found_in(about, first, stop, parameters))
     return joined(parts)
-
-
-def joined(parts: list[Notches]) -> Notches:
-    """Notches of several blocks, one after another."""
-    if not parts:
-        empty = np.empty(0)
-        none = np.empty(0, np.int64)
-        return Notches(
-            np.empty((0, 3)),
-            time_s=empty,
-            depth_m=empty,
-            width_m=empty,
-            pattern=np.empty(0, np.uint8),
-            strength=empty,
-            row=none,
-            point=none,
-            station_m=empty,
-            across_m=empty,
-            stretch=none,
-            direction=np.empty((0, 2)),
-            area_m2=empty,
-        )
-    names = Notches.__dataclass_fields__
-    return Notches(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in names})
 
 
 _OF_SWEEPS = ("rows", "times", "stretch", "stations", "advances", "starts", "stops", "below")

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from processing.points.passes import Pass
 from processing.road.gutter_axis import STEP_M, GutterAxis
-from processing.road.gutter_holes import HoleFit, hole_fit
-from processing.road.gutter_joints import JointRow, joint_row
-from processing.road.gutter_lines import LENGTHS_M, GutterLine, gutter_lines
-from processing.road.notches import Notches
+from processing.road.gutter_holes import HoleFit, JointNotches, hole_fit
+from processing.road.gutter_joints import LID, JointRow, joint_row, lengths_of
+from processing.road.gutter_lines import LENGTHS_M, LONG, SHORT, GutterLine, gutter_lines
+from processing.road.notches import Notches, joined
 
 _Floats = NDArray[np.float64]
 
@@ -27,6 +27,29 @@ _CLEAR_M = 0.6
 _END_M = 0.1
 _ROUNDS = 3
 _LEAST_COVERS = 2
+
+_LIDS = (
+    lengths_of((0.6,), (0.5, 1.0)),
+    lengths_of((0.5,), (0.6, 1.0)),
+    lengths_of((1.0,), (0.5, 0.6)),
+    lengths_of((0.5, 0.6), (1.0,)),
+    lengths_of((0.6, 1.0), (0.5,)),
+)
+"""What the lids of a gutter may be like: of one of `LENGTHS_M`, or of two mixed."""
+_ANY_LIDS = dict.fromkeys(LENGTHS_M, 0.0)
+_BY_CHANCE = (
+    lengths_of((0.67,), (0.55, 0.86)),
+    lengths_of((0.55,), (0.67, 0.86)),
+    lengths_of((0.86,), (0.55, 0.67)),
+    lengths_of((0.55, 0.67), (0.86,)),
+    lengths_of((0.67, 0.86), (0.55,)),
+)
+"""The same of lengths that are made nowhere, with their joints apart from those that are."""
+_LEAST_WORTH, _SURE_WORTH = 4.0, 40.0
+_DEEP_M, _LEAST_DEEP = 0.02, 0.1
+"""Holes go through lids; grooves between paving blocks and blocks of L-gutters are shallower. So
+many of the notches at joints are deeper than grooves at least, also where soil fills most holes.
+"""
 
 
 @dataclass(frozen=True)
@@ -80,16 +103,14 @@ def gutter_runs(
     """
     if not notches:
         return ()
-    xyz = np.vstack([one.xyz for one in notches])
-    strength = np.concatenate([one.strength for one in notches])
-    lines = gutter_lines(passes, notches, most_missed * 0.6 + 1.0)
+    left = joined(list(notches))
     found: list[GutterRun] = []
-    for line in lines:
-        run = _run_of(line, (xyz, strength), most_missed)
-        if run is not None:
-            found.append(run)
-            is_free = ~_is_covered(run, xyz)
-            xyz, strength = xyz[is_free], strength[is_free]
+    for search in (LONG, SHORT):
+        for line in gutter_lines(passes, left, search, most_missed * 0.6 + 1.0):
+            run = _run_of(line, left, most_missed)
+            if run is not None:
+                found.append(run)
+                left = left.chosen(~_is_covered(run, left.xyz))
     return tuple(found)
 
 
@@ -100,27 +121,20 @@ def _is_covered(run: GutterRun, xyz: _Floats) -> NDArray[np.bool_]:
     return np.asarray((along > first - _END_M) & (along < last + _END_M))
 
 
-def _run_of(
-    line: GutterLine, notches: tuple[_Floats, _Floats], most_missed: int
-) -> GutterRun | None:
-    axis, (xyz, all_strength) = line.axis, notches
+def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun | None:
+    axis = line.axis
     low, high = axis.xyz.min(axis=0) - 2.0, axis.xyz.max(axis=0) + 2.0
-    is_near = ((xyz >= low) & (xyz <= high)).all(axis=1)
-    near, strength = xyz[is_near], all_strength[is_near]
-    holes, length_m = None, line.length_m
+    near = notches.chosen(((notches.xyz >= low) & (notches.xyz <= high)).all(axis=1))
+    lids = _lids_along(axis, near, most_missed)
+    if lids is None:
+        return None
+    holes: HoleFit | None = None
     for _ in range(_ROUNDS):
-        along, across, above = axis.told(near, _BAND_M)
-        is_on = np.isfinite(along) & (np.abs(above) < 0.15)
-        notches_on = along[is_on], strength[is_on]
-        if holes is None:
-            lengths = _lengths(line.length_m)
-            rows = [joint_row(notches_on, one, axis.length_m, most_missed) for one in lengths]
-            worth = [-np.inf if one is None else one.value for one in rows]
-            length_m = lengths[int(np.argmax(worth))]
-        row = joint_row(notches_on, length_m, axis.length_m, most_missed)
+        along, across, is_on = _on_lids(axis, near, holes)
+        row = joint_row((along[is_on], near.strength[is_on]), lids, axis.length_m, most_missed)
         if row is None or row.starts_m.size < _LEAST_COVERS:
             return None
-        at_joint = is_on & (strength >= _STRONG)
+        at_joint = is_on & (near.strength >= _STRONG)
         at_joint[at_joint] = _is_at_joint(along[at_joint], row)
         if not at_joint.any():
             return None
@@ -130,20 +144,68 @@ def _run_of(
             off = holes.type.off(across[at_joint])
             of_hole = np.abs(off) <= holes.type.hole_wide_m / 2 + _ASIDE_M
             axis = _moved(axis, along[at_joint][of_hole], off[of_hole])
-        along, across, _ = axis.told(near[at_joint], _BAND_M)
-        holes = hole_fit(across[np.isfinite(across)])
+        holes = hole_fit(_at_joints(axis, near.chosen(at_joint)))
         axis = _aside(axis, holes.middle_m)
-    along, across, above = axis.told(near, _BAND_M)
-    is_on = np.isfinite(along) & (np.abs(above) < 0.15)
-    row = joint_row((along[is_on], strength[is_on]), length_m, axis.length_m, most_missed)
+    along, across, is_on = _on_lids(axis, near, holes)
+    row = joint_row((along[is_on], near.strength[is_on]), lids, axis.length_m, most_missed)
     if row is None or holes is None or row.starts_m.size < _LEAST_COVERS:
         return None
-    return GutterRun(axis, row, holes, length_m, line.regularity)
+    at_joint = is_on & (near.strength >= _STRONG)
+    at_joint[at_joint] = _is_at_joint(along[at_joint], row)
+    if (near.depth_m[at_joint] > _DEEP_M).mean() < _LEAST_DEEP:
+        return None
+    return GutterRun(axis, row, holes, _length_of(row), line.regularity)
 
 
-def _lengths(first_m: float) -> tuple[float, ...]:
-    """The length that the spacing tells, and the others."""
-    return (first_m, *(one for one in LENGTHS_M if one != first_m))
+def _at_joints(axis: GutterAxis, notches: Notches) -> JointNotches:
+    along, across, _ = axis.told(notches.xyz, _BAND_M)
+    known = np.isfinite(across)
+    at = np.clip((along[known] / STEP_M).astype(np.int64), 0, len(axis.outwards) - 1)
+    square = np.abs((notches.direction[known] * axis.outwards[at]).sum(axis=1))
+    return JointNotches(across[known], notches.width_m[known] * square, square)
+
+
+def _on_lids(
+    axis: GutterAxis, notches: Notches, holes: HoleFit | None
+) -> tuple[_Floats, _Floats, NDArray[np.bool_]]:
+    """Along and across of notches, and which may be of the lids, as far as their width is known."""
+    along, across, above = axis.told(notches.xyz, _BAND_M)
+    wide = _BAND_M if holes is None else holes.type.width_m / 2 + _ASIDE_M
+    is_on = np.isfinite(along) & (np.abs(above) < 0.15)
+    is_on[is_on] = np.abs(across[is_on]) <= wide
+    return along, across, is_on
+
+
+def _lids_along(axis: GutterAxis, notches: Notches, most_missed: int) -> dict[float, float] | None:
+    """The lengths of lids that explain the notches best; None if no better than by chance.
+
+    What chance does is asked of the same notches: rows of lengths that no lid has are laid too.
+    """
+    along, _, is_on = _on_lids(axis, notches, None)
+    those = along[is_on], notches.strength[is_on]
+    if those[1].sum() < _LEAST_WORTH:
+        return None
+
+    def worth(lids: dict[float, float]) -> float:
+        row = joint_row(those, lids, axis.length_m, most_missed)
+        return -np.inf if row is None else row.value
+
+    if worth(_ANY_LIDS) < _LEAST_WORTH:
+        return None
+    worths = [worth(one) for one in _LIDS]
+    best = max(worths)
+    if best < _LEAST_WORTH:
+        return None
+    if best < _SURE_WORTH and best < _LEAST_WORTH + max(worth(one) for one in _BY_CHANCE):
+        return None
+    return _LIDS[worths.index(best)]
+
+
+def _length_of(row: JointRow) -> float:
+    """Of most of its lids, m."""
+    lengths = np.round((row.ends_m - row.starts_m)[row.what == LID], 1)
+    found, count = np.unique(lengths, return_counts=True)
+    return float(found[count.argmax()]) if found.size else 0.0
 
 
 def _is_at_joint(along: _Floats, row: JointRow) -> NDArray[np.bool_]:

@@ -266,8 +266,9 @@ def _weigh_kernel(
         end = ahead + _FEWEST
         while end < used and end - ahead < lengths and origin[1, end] == origin[1, at]:
             end += 1
-        end = min(end, used)
-        line = _line(taken, (at - lengths, at), (ahead, end))
+        line = _sides(
+            taken, (at, ahead), (at - lengths, min(end, used)), smooth if is_open else np.inf
+        )
         # Noise alone never gets the benefit of a window that happens to be still.
         scale = max(line[4], 0.7 * noise)
         if line[4] > smooth or abs(line[2]) > _STEEPEST:
@@ -284,6 +285,21 @@ def _weigh_kernel(
             quiet = at + 1
             count += 1
     return count
+
+
+@kernel
+def _sides(
+    taken: Floats, inner: tuple[int, int], outer: tuple[int, int], smooth: float
+) -> tuple[float, float, float, float, float, int]:
+    """The line through what is taken before and after a place; the nearest if all is not smooth.
+
+    A lid may lie a little higher or lower than what is beside it.
+    """
+    line = _line(taken, (outer[0], inner[0]), (inner[1], outer[1]))
+    if line[4] > smooth:
+        before = max(outer[0], inner[0] - _FEWEST)
+        line = _line(taken, (before, inner[0]), (inner[1], min(outer[1], inner[1] + _FEWEST)))
+    return line
 
 
 @kernel

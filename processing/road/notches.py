@@ -109,3 +109,27 @@ class Notches:
     def chosen(self, which: NDArray[np.bool_] | NDArray[np.int64]) -> Notches:
         """Some of them."""
         return Notches(**{field.name: getattr(self, field.name)[which] for field in fields(self)})
+
+
+def joined(parts: list[Notches]) -> Notches:
+    """Notches of several blocks, one after another."""
+    if not parts:
+        empty = np.empty(0)
+        none = np.empty(0, np.int64)
+        return Notches(
+            np.empty((0, 3)),
+            time_s=empty,
+            depth_m=empty,
+            width_m=empty,
+            pattern=np.empty(0, np.uint8),
+            strength=empty,
+            row=none,
+            point=none,
+            station_m=empty,
+            across_m=empty,
+            stretch=none,
+            direction=np.empty((0, 2)),
+            area_m2=empty,
+        )
+    names = Notches.__dataclass_fields__
+    return Notches(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in names})

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -10,7 +12,7 @@ from processing.points.passes import Pass, passes_of_trajectory
 from processing.points.trajectory import Trajectory
 from processing.road.curb_points import PointsAbout
 from processing.road.gutter_axis import STEP_M, GutterAxis
-from processing.road.gutter_joints import GRATING, joint_row
+from processing.road.gutter_joints import GRATING, joint_row, lengths_of
 from processing.road.gutter_lids import covers_of
 from processing.road.gutter_outline import edge_lines
 from processing.road.gutter_runs import GutterRun, gutter_runs
@@ -21,6 +23,7 @@ HOLES_M = 0.095
 ASIDE_M = 3.4
 COUNT = 60
 BEGIN_M = 10.0
+LIDS = lengths_of((LID_M,), (0.5, 1.0))
 
 Floats = NDArray[np.float64]
 
@@ -107,6 +110,44 @@ def test_a_long_step_is_no_gutter() -> None:
     assert sum(run.row.starts_m.size for run in found if run.row.value > 18) == 0
 
 
+def test_a_far_gutter_is_found_by_few_of_its_joints() -> None:
+    one, random = way(1e6), np.random.default_rng(4)
+    along = joints(75)[random.random(76) < 0.5]
+    along = along + random.normal(0, 0.008, along.size)
+    beside = random.uniform(0, 45, 60), random.uniform(-1.5, 1.5, 60)
+    across = random.choice([-HOLES_M, HOLES_M], along.size)
+    places = np.concatenate([along, beside[0]]), np.concatenate([across, beside[1]])
+    (run,) = gutter_runs([one], [notches_at(one, *places)], 8)
+    assert run.length_m == LID_M
+    assert run.row.starts_m.size > 30
+
+
+def test_lids_of_two_lengths_may_be_mixed() -> None:
+    one, random = way(1e6), np.random.default_rng(6)
+    lids = random.choice([0.5, 0.6], 60)
+    along = np.repeat(np.concatenate([[0.0], np.cumsum(lids + JOINT_M)]), 4)
+    across = np.tile([-HOLES_M, HOLES_M], along.size // 2)
+    (run,) = gutter_runs([one], [notches_at(one, along, across)], 5)
+    assert run.row.starts_m.size >= 58
+    short = np.isclose(run.row.ends_m - run.row.starts_m, 0.5, atol=0.02).sum()
+    assert abs(int(short) - int((lids == 0.5).sum())) <= 2
+
+
+def test_joints_at_a_spacing_that_no_lids_have_are_no_gutter() -> None:
+    one = way(1e6)
+    along = np.repeat(np.arange(40) * 0.68, 2)
+    across = np.tile([-HOLES_M, HOLES_M], 40)
+    assert gutter_runs([one], [notches_at(one, along, across)], 5) == ()
+
+
+def test_grooves_between_blocks_are_no_gutter() -> None:
+    one, random = way(1e6), np.random.default_rng(8)
+    along = np.repeat(joints(60), 3)
+    grooves = notches_at(one, along, random.uniform(-0.25, 0.25, along.size))
+    shallow = replace(grooves, depth_m=np.full(grooves.count, 0.012))
+    assert gutter_runs([one], [shallow], 5) == ()
+
+
 def test_nothing_is_found_where_there_are_no_notches() -> None:
     one = way(1e6)
     assert gutter_runs([one], [], 5) == ()
@@ -117,7 +158,7 @@ def test_a_joint_that_nobody_saw_is_laid_by_its_neighbours() -> None:
     known = np.repeat(joints(20), 3)
     hidden = joints(20)[9:11]
     is_seen = ~np.isin(known, hidden)
-    row = joint_row((known[is_seen], np.ones(int(is_seen.sum()))), LID_M, 12.5, 5)
+    row = joint_row((known[is_seen], np.ones(int(is_seen.sum()))), LIDS, 12.5, 5)
     assert row is not None
     assert row.starts_m.size == 20
     ends = row.ends_m[8:10] + JOINT_M / 2
@@ -128,7 +169,7 @@ def test_a_joint_that_nobody_saw_is_laid_by_its_neighbours() -> None:
 def test_more_lids_than_allowed_without_a_hole_are_a_gap() -> None:
     known = np.repeat(joints(30), 3)
     is_seen = (known < joints(30)[10] + 0.01) | (known > joints(30)[20] - 0.01)
-    row = joint_row((known[is_seen], np.ones(int(is_seen.sum()))), LID_M, 18.5, 3)
+    row = joint_row((known[is_seen], np.ones(int(is_seen.sum()))), LIDS, 18.5, 3)
     assert row is not None
     assert np.diff(row.starts_m).max() > 3.0
 
@@ -137,7 +178,7 @@ def test_a_grating_between_lids_is_one() -> None:
     before, behind = joints(10), joints(10)[-1] + 0.506 + joints(10)
     bars = np.arange(before[-1] + 0.01, behind[0] - 0.01, 0.03)
     along = np.concatenate([np.repeat(before, 3), bars, np.repeat(behind, 3)])
-    row = joint_row((along, np.ones(along.size)), LID_M, float(behind[-1]) + 0.2, 5)
+    row = joint_row((along, np.ones(along.size)), LIDS, float(behind[-1]) + 0.2, 5)
     assert row is not None
     (grating,) = np.flatnonzero(row.what == GRATING)
     assert row.starts_m[grating] == pytest.approx(before[-1], abs=0.02)
