@@ -109,23 +109,28 @@ def _measured(
     drive: Drive, guides: Sequence[Guide], about: PointsAbout, settings: EdgeSettings
 ) -> list[MeasuredEdges]:
     measured = []
+    is_hidden = _hidden(guides, drive.trajectory)
+    first = 0
     for number, guide in enumerate(guides):
         part = slice(int(about.starts[number]), int(about.starts[number + 1]))
         along = about.along[part]
         places = np.column_stack([about.across[part], about.above[part]])
-        measures = _edges(along, places, _stations(guide, drive.trajectory), settings)
+        hidden = is_hidden[first : first + guide.width_m.size]
+        first += hidden.size
+        measures = _edges(along, places, np.column_stack([guide.width_m, hidden]), settings)
         measured.append(MeasuredEdges(measures, along, places, about.point[part]))
     return measured
 
 
-def _stations(guide: Guide, trajectory: Trajectory | None) -> _Floats:
-    """(m, 2) what is known before of each station: width of its face, and whether it is hidden."""
-    is_hidden = guide.is_hidden
-    if trajectory is not None:
-        way = trajectory.xyz[:, :2]
-        nearest = cKDTree(way).query(guide.xyz[:, :2])[1]
-        is_hidden = ((way[nearest] - guide.xyz[:, :2]) * guide.outwards).sum(axis=1) > 0
-    return np.column_stack([guide.width_m, is_hidden])
+def _hidden(guides: Sequence[Guide], trajectory: Trajectory | None) -> NDArray[np.bool_]:
+    """Where the faces of guides look away from the vehicle, one guide after the other."""
+    if trajectory is None:
+        return np.concatenate([guide.is_hidden for guide in guides])
+    xy = np.vstack([guide.xyz[:, :2] for guide in guides])
+    outwards = np.vstack([guide.outwards for guide in guides])
+    way = trajectory.xyz[:, :2]
+    nearest = cKDTree(way).query(xy)[1]
+    return np.asarray(((way[nearest] - xy) * outwards).sum(axis=1) > 0)
 
 
 def _edges(along: _Floats, places: _Floats, stations: _Floats, settings: EdgeSettings) -> _Floats:

@@ -19,12 +19,11 @@ from processing.road.curb_edge_kernels import (
     UPPER_ABOVE,
     UPPER_ACROSS,
 )
+from processing.road.curb_join_kernels import joined_kernel
 
 _Floats = NDArray[np.float64]
 
 _MOST_ASIDE_M = 0.25  # a rough line is off by less
-_MOST_OFFSET_M = 0.15  # between drives of one survey
-_LEAST_TOGETHER = 8
 
 
 @dataclass(frozen=True)
@@ -103,28 +102,6 @@ def pooled(measures: Sequence[_Floats], most_step_m: float) -> PooledEdges:
 
 def _joined(values: _Floats, errors: _Floats) -> tuple[_Floats, _Floats]:
     """Weighted mean of drives (d, m) after their offsets are removed, and its error."""
-    weights = 1.0 / errors**2
-    values = np.where(weights > 0, values, 0.0)
-    values = values - _offsets(values, weights)[:, None] * (weights > 0)
-    total = weights.sum(axis=0)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        mean = np.where(total > 0, (weights * values).sum(axis=0) / total, np.nan)
-        error = np.where(total > 0, 1.0 / np.sqrt(total), np.inf)
+    mean, error = np.empty(values.shape[1]), np.empty(values.shape[1])
+    joined_kernel(np.ascontiguousarray(values), errors, mean, error)
     return mean, error
-
-
-def _offsets(values: _Floats, weights: _Floats) -> _Floats:
-    """(d,) how far each drive lies off what all of them together measured, where they overlap."""
-    offsets = np.zeros(values.shape[0])
-    is_known = weights > 0
-    together = is_known.sum(axis=0) > 1
-    for _ in range(5):
-        shifted = values - offsets[:, None]
-        total = np.maximum(weights.sum(axis=0), 1e-12)
-        mean = (weights * shifted).sum(axis=0) / total
-        for drive in range(values.shape[0]):
-            both = together & is_known[drive]
-            if both.sum() >= _LEAST_TOGETHER:
-                offsets[drive] += float(np.median((shifted[drive] - mean)[both]))
-    offsets[np.abs(offsets) > _MOST_OFFSET_M] = 0.0
-    return offsets

@@ -99,25 +99,46 @@ def in_cells_kernel(
     place: _Floats,
     table: tuple[_Integers, _Integers],
     heights: _Floats,
-    chosen: _Integers,
+    found: tuple[_Integers, _Integers],
 ) -> int:
     """Points in some cells of the plan and between the heights of each; gives their number.
 
-    ``place`` is as in :func:`about_lines_kernel`; ``heights``: (cells, 2) lowest and highest.
+    ``place`` is as in :func:`about_lines_kernel`; ``heights``: (cells, 2) lowest and highest;
+    ``found``: the points, and which quarter of which cell each is in, four to a cell.
     """
     slots, keys = table
     count = 0
     for i in range(integers.shape[0]):
-        x = integers[i, 0] * place[0] + place[3]
-        y = integers[i, 1] * place[1] + place[4]
-        key = math.floor(x / place[6]) * 0x100000000 + math.floor(y / place[6])
+        x = (integers[i, 0] * place[0] + place[3]) / place[6]
+        y = (integers[i, 1] * place[1] + place[4]) / place[6]
+        column, row = math.floor(x), math.floor(y)
+        key = column * 0x100000000 + row
         cell = slots[slot_of(key, slots, keys)]
         if cell >= 0:
             z = integers[i, 2] * place[2] + place[5]
             if heights[cell, 0] <= z <= heights[cell, 1]:
-                chosen[count] = i
+                found[0][count] = i
+                found[1][count] = 4 * cell + 2 * (x - column >= 0.5) + (y - row >= 0.5)
                 count += 1
     return count
+
+
+@kernel
+def order_kernel(groups: _Integers, begins: _Integers, order: _Integers) -> None:
+    """Numbers of values group by group, each group's rising.
+
+    Parameters
+    ----------
+    groups : (n,)
+        Of each value.
+    begins : (g,)
+        Where each group begins in ``order``; changed.
+    order : (n,)
+        Filled.
+    """
+    for i in range(groups.size):
+        order[begins[groups[i]]] = i
+        begins[groups[i]] += 1
 
 
 def warm_up() -> None:
@@ -125,11 +146,12 @@ def warm_up() -> None:
     keys = np.zeros(1, np.int64)
     slots = np.full(4, -1)
     fill_slots_kernel(keys, slots)
+    order_kernel(keys, keys.copy(), keys.copy())
     integers = np.zeros((1, 3), np.int32)
     integers.flags.writeable = False
     place = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.5])
     for one in (np.zeros((1, 3), np.int32), integers):
-        in_cells_kernel(one, place, (slots, keys), np.zeros((1, 2)), np.empty(1, np.int64))
+        in_cells_kernel(one, place, (slots, keys), np.zeros((1, 2)), (keys.copy(), keys.copy()))
         about_lines_kernel(
             one,
             place,

@@ -20,6 +20,7 @@ from processing.road.curb_point_kernels import (
     about_lines_kernel,
     fill_slots_kernel,
     in_cells_kernel,
+    order_kernel,
 )
 from processing.worked_ahead import in_order
 
@@ -32,6 +33,8 @@ BELOW_M, ABOVE_M = 0.3, 0.7
 POINTS_AT_ONCE = 500_000
 
 _CELL_M, _COARSE_M = 0.25, 2.0
+_X_KEY = 0x100000000
+_ROUNDED_M = 0.001  # two origins make one place two numbers
 
 
 @dataclass(frozen=True)
@@ -73,10 +76,41 @@ class GuideLine(Protocol):
 
 @dataclass(frozen=True)
 class ChosenPoints:
-    """Some points of a drive: their indices (n,) int64, and (n, 3) int32 coordinates."""
+    """Some points of a drive, and which of them lie in which cell of the plan.
+
+    Attributes
+    ----------
+    points : (n,) int64
+        Their indices, rising.
+    integers : (n, 3) int32
+        Coordinates as delivered.
+    origin : (3,) float64
+        Of the cells, m, project CRS.
+    keys : (c,) int64
+        Of the cells, rising.
+    order, starts : (n,), (4 c + 1,) int64
+        Places in ``points``, quarter of a cell by quarter, and where each quarter begins.
+    """
 
     points: _Integers
     integers: NDArray[np.int32]
+    origin: _Floats
+    keys: _Integers
+    order: _Integers
+    starts: _Integers
+
+    def about(self, guides: Sequence[GuideLine], across_m: float) -> _Integers:
+        """(k,) places in ``points``, rising: those in all quarters that guides come near to."""
+        parts = []
+        for guide in guides:
+            ends = guide.xyz[:, :2] - self.origin[:2]
+            _, x, y = _boxes((ends[:-1], ends[1:]), across_m + _ROUNDED_M, _COARSE_M / 2)
+            parts.append(((x >> 1) * _X_KEY + (y >> 1)) * 4 + (x & 1) * 2 + (y & 1))
+        quarters = np.unique(np.concatenate(parts))
+        cell = np.minimum(np.searchsorted(self.keys, quarters >> 2), self.keys.size - 1)
+        quarters = (4 * cell + (quarters & 3))[self.keys[cell] == quarters >> 2]
+        spans = [self.order[self.starts[one] : self.starts[one + 1]] for one in quarters]
+        return np.sort(_joined(spans))
 
 
 def points_near(
@@ -95,22 +129,27 @@ def points_near(
     keys, heights = _cells_about(places - origin, reach)
     slots = _slots_of(keys)
     place = _place(drive, origin, _COARSE_M)
-    points, integers = [np.empty(0, np.int64)], [np.empty((0, 3), np.int32)]
+    points, integers, quarters = [], [np.empty((0, 3), np.int32)], []
 
-    def near(start: int) -> tuple[_Integers, NDArray[np.int32]]:
+    def near(start: int) -> tuple[_Integers, NDArray[np.int32], _Integers]:
         monitor.check()
         stop = min(start + POINTS_AT_ONCE, drive.count)
         block = read_stretch(drive.folder, "xyz", start, stop)
-        chosen = np.empty(stop - start, np.int64)
-        count = in_cells_kernel(block, place, (slots, keys), heights, chosen)
-        return chosen[:count] + start, block[chosen[:count]]
+        chosen, quarter = np.empty(stop - start, np.int64), np.empty(stop - start, np.int64)
+        count = in_cells_kernel(block, place, (slots, keys), heights, (chosen, quarter))
+        return chosen[:count] + start, block[chosen[:count]], quarter[:count].copy()
 
     starts = range(0, drive.count, POINTS_AT_ONCE)
-    for done, (those, places_of) in enumerate(in_order(near, starts), 1):
-        points.append(those)
-        integers.append(places_of)
+    for done, found in enumerate(in_order(near, starts), 1):
+        points.append(found[0])
+        integers.append(found[1])
+        quarters.append(found[2])
         monitor.report(done / len(starts))
-    return ChosenPoints(np.concatenate(points), np.vstack(integers))
+    quarter = _joined(quarters)
+    begins = np.concatenate([[0], np.cumsum(np.bincount(quarter, minlength=4 * keys.size))])
+    order = np.empty(quarter.size, np.int64)
+    order_kernel(quarter, begins[:-1].copy(), order)
+    return ChosenPoints(_joined(points), np.vstack(integers), origin, keys, order, begins)
 
 
 def _cells_about(places: _Floats, reach: tuple[float, float]) -> tuple[_Integers, _Floats]:
@@ -118,7 +157,7 @@ def _cells_about(places: _Floats, reach: tuple[float, float]) -> tuple[_Integers
     aside = int(np.ceil(reach[0] / _COARSE_M))
     steps = np.arange(-aside, aside + 1)
     cells = np.floor(places[:, :2] / _COARSE_M).astype(np.int64)
-    x = (cells[:, 0, None, None] + steps[None, :, None]) * 0x100000000
+    x = (cells[:, 0, None, None] + steps[None, :, None]) * _X_KEY
     keys = (x + cells[:, 1, None, None] + steps[None, None, :]).reshape(len(places), -1)
     z = np.repeat(places[:, 2], keys.shape[1])
     unique, where = np.unique(keys.ravel(), return_inverse=True)
@@ -152,6 +191,7 @@ class GuideCells:
     """
 
     def __init__(self, guides: Sequence[GuideLine], across_m: float) -> None:
+        self._guides = guides
         sizes = np.array([guide.xyz.shape[0] for guide in guides])
         self.firsts: _Integers = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
         self.origin: _Floats = np.floor(guides[0].xyz[0])
@@ -184,9 +224,10 @@ class GuideCells:
 
     def among(self, drive: Drive, chosen: ChosenPoints) -> PointsAbout:
         """Points about the guides among some of a drive."""
+        near = chosen.about(self._guides, self._limits[0])
         place = _place(drive, self.origin, _CELL_M)
-        which, owners, values = self._found(chosen.integers, place)
-        return self._by_guide(chosen.points[which], owners, values)
+        which, owners, values = self._found(chosen.integers[near], place)
+        return self._by_guide(chosen.points[near[which]], owners, values)
 
     def _found(
         self, integers: NDArray[np.int32], place: _Floats
@@ -219,22 +260,27 @@ class GuideCells:
     def _table_of(self, across_m: float) -> tuple[_Integers, _Integers, _Integers, _Integers]:
         segments = np.flatnonzero(self._line_of[:-1] == self._line_of[1:])
         ends = self._xyz[:, :2]
-        low = np.minimum(ends[segments], ends[segments + 1]) - across_m
-        high = np.maximum(ends[segments], ends[segments + 1]) + across_m
-        first = np.floor(low / _CELL_M).astype(np.int64)
-        count = np.floor(high / _CELL_M).astype(np.int64) - first + 1
-        per = count[:, 0] * count[:, 1]
-        which = np.repeat(np.arange(segments.size), per)
-        within = np.arange(which.size) - np.repeat(np.cumsum(per) - per, per)
-        cell_x = first[which, 0] + within // count[which, 1]
-        cell_y = first[which, 1] + within % count[which, 1]
-        keys = cell_x * 0x100000000 + cell_y
+        which, x, y = _boxes((ends[segments], ends[segments + 1]), across_m, _CELL_M)
+        keys = x * _X_KEY + y
         order = np.lexsort((which, keys))
         unique, starts = np.unique(keys[order], return_index=True)
         return _slots_of(unique), unique, np.append(starts, which.size), segments[which[order]]
 
 
 _NO_VALUES = np.empty((0, 3))
+
+
+def _boxes(
+    ends: tuple[_Floats, _Floats], across_m: float, cell_m: float
+) -> tuple[_Integers, _Integers, _Integers]:
+    """Which segments come near to which cells (x, y) of the plan."""
+    first = np.floor((np.minimum(*ends) - across_m) / cell_m).astype(np.int64)
+    count = np.floor((np.maximum(*ends) + across_m) / cell_m).astype(np.int64) - first + 1
+    per = count[:, 0] * count[:, 1]
+    which = np.repeat(np.arange(per.size), per)
+    within = np.arange(which.size) - np.repeat(np.cumsum(per) - per, per)
+    x = first[which, 0] + within // count[which, 1]
+    return which, x, first[which, 1] + within % count[which, 1]
 
 
 def _joined(parts: Sequence[_Integers]) -> _Integers:

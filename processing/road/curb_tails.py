@@ -241,8 +241,11 @@ def _tail(guide: Guide, end: int, more_bend: float, ahead_of: int = _AHEAD) -> G
     known = guide.xyz[order][-_KNOWN:]
     ahead = np.diff(known, axis=0)
     heading = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
-    at = np.arange(heading.size)
-    bend, last = np.polyfit(at - at[-1], heading, 1) if heading.size > 2 else (0.0, heading[-1])
+    bend, last = 0.0, float(heading[-1])
+    if heading.size > 2:
+        away = np.arange(heading.size) - (heading.size - 1) / 2
+        bend = float(away @ heading) / float(away @ away)
+        last = float(heading.mean()) + bend * float(away[-1])
     if math.isnan(more_bend):
         last, bend, more_bend = float(np.mean(heading[-_LAST:])), 0.0, 0.0
     turned = last + np.clip(bend + more_bend, -0.25, 0.25) * np.arange(1, ahead_of + 1)
