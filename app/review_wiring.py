@@ -7,6 +7,7 @@ from PySide6.QtCore import QObject, Qt
 from app.actions.process import one_click_tools
 from app.actions.review import QUEUE_KEYS
 from app.window_parts import WindowParts
+from processing.project.catalogue import Geometry
 from processing.project.feature import Feature, Status
 from widgets.shared.cursor import Place
 
@@ -19,6 +20,9 @@ _LEAST_IMAGE_ZOOM = 2.0
 _FARTHEST_M = 15.0
 _LEAST_MAP_SCALE = 12.0
 """Screen pixels of a metre."""
+
+_LEAST_SECTION_SCALE = 200.0
+"""The same across a line or an area: a curb is a step of a few centimetres."""
 
 
 def connect_review(parts: WindowParts) -> None:
@@ -71,11 +75,11 @@ class _ReviewWiring(QObject):
             for widget in (*parts.views, parts.review_panel):
                 widget.addAction(action)
 
-    def on_review_shown(self, _feature: Feature, place: Place) -> None:
+    def on_review_shown(self, feature: Feature, place: Place) -> None:
         """Every view has the candidate in its middle; the section cuts through it."""
         if not self._is_near:
             self._is_near = True
-            self._come_near()
+            self._come_near(feature)
         self._show_its_image(place)
         for view in self._parts.views:
             if view is not self._parts.camera_view:
@@ -136,7 +140,7 @@ class _ReviewWiring(QObject):
         self._parts.window.show_panel("review")
         review.open((run,), review.progress.state.order)
 
-    def _come_near(self) -> None:
+    def _come_near(self, feature: Feature) -> None:
         """Show what is judged large enough; later the operator's own zoom is kept."""
         image, scene, map_view = (
             self._parts.image_view,
@@ -146,6 +150,9 @@ class _ReviewWiring(QObject):
         image.zoom_by(max(_LEAST_IMAGE_ZOOM / image.viewport.zoom_v, 1.0))
         scene.zoom_by(max(scene.camera.distance_m / _FARTHEST_M, 1.0))
         map_view.zoom_by(max(_LEAST_MAP_SCALE / map_view.viewport.scale, 1.0))
+        if feature.geometry is not Geometry.POINT:  # trees and poles are looked at whole
+            for pane in self._parts.section_view.panes:
+                pane.zoom_by(max(_LEAST_SECTION_SCALE / pane.viewport.scale, 1.0))
 
     def _allow_keys(self) -> None:
         """While something is drawn, Enter and Delete belong to what is drawn."""

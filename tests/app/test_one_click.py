@@ -95,6 +95,8 @@ def test_one_click_finds_lids_and_puts_them_before_the_reviewer(
     # Nothing has moved yet; the review begins by its own button or key.
     assert not parts.review.is_open
     parts.window.actions_by_id["review-start"].trigger()
+    # A step of ten centimetres is large enough to be judged in the section.
+    assert {pane.viewport.scale >= 100 for pane in parts.section_view.panes} == {True}
     assert parts.review.progress.total == 5
     shown = parts.review.current
     assert shown is not None

@@ -367,14 +367,14 @@ class SectionPane(PlaneView):
         """Begin on the ground at each new line; afterwards move only as far as needed."""
         if self.viewport.width <= 1:  # never shown yet: it is looked at when it is
             return
-        standing = picture.wish.standing
-        line = standing.line
+        standing, line = picture.wish.standing, picture.wish.standing.line
         framed = f"{line.feature}/{line.drive}/{standing.is_along}"
         viewport, lay = self.viewport, SectionLay(picture.wish.cut)
         if framed != self._framed:
             y = self._ground_y = ground_y(lay, picture)
             sides = y - _START_ABOVE_M, _START_HALF_M, y + _START_BELOW_M
             scaled = viewport if self._framed else viewport.fitted(-_START_HALF_M, *sides)
+            scaled = max(viewport, scaled, key=lambda one: one.scale)  # a review may be near
             below = (_GROUND_SHARE - 0.5) * viewport.height / scaled.scale_y
             self.set_viewport(scaled.centred_on(0.0, y - below))
             self._framed = framed
