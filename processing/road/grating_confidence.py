@@ -9,7 +9,7 @@ from processing.road.grating_found import GratingFacts
 
 _DEEP_M, _DEEPEST_M, _FLATTEST_M = 0.02, 0.10, 0.01
 _LITTLE = 0.02
-_MOST_ROWS = 30.0
+_MOST_ROWS, _MOST_RAISED_M = 30.0, 0.3
 _MOST_OPEN, _MOST_PART = 0.8, 0.6
 
 
@@ -28,6 +28,8 @@ class GratingTerms(NamedTuple):
         Logarithm of how much more of it than of the road around is open.
     rows : float
         Logarithm of how many revolutions show it, up to 30.
+    raised_m : float
+        How far it lies higher than roads and walks do, m, 0 to 0.3: hedges are open all over.
     """
 
     open: float
@@ -35,10 +37,22 @@ class GratingTerms(NamedTuple):
     least_part: float
     contrast: float
     rows: float
+    raised_m: float
 
 
-WEIGHTS = GratingTerms(open=0.6, depth=0.3, least_part=6.5, contrast=3.4, rows=2.4)
-CONSTANT = -16.8
+WEIGHTS = GratingTerms(
+    open=1.6,
+    depth=0.59,
+    least_part=8.24,
+    contrast=3.04,
+    rows=1.53,
+    raised_m=-12.1,
+)
+"""What each fact is worth: see `processing.score.gutter_training`, which also says how reliable
+they are. Of 32 streets left out one by one, 121 of 121 rectangles given 0.9 and more were gratings,
+6 of 9 of those from 0.5 and 3 of 247 of those below."""
+
+CONSTANT = -15.16
 
 
 def terms_of(facts: GratingFacts) -> GratingTerms:
@@ -50,6 +64,7 @@ def terms_of(facts: GratingFacts) -> GratingTerms:
         min(facts.least_part, _MOST_PART),
         math.log((facts.open_share + _LITTLE) / (facts.about + _LITTLE)),
         math.log(min(max(facts.rows, 1), _MOST_ROWS)),
+        min(facts.raised_m, _MOST_RAISED_M),
     )
 
 

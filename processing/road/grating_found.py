@@ -30,6 +30,8 @@ class GratingFacts:
         Share that is open of the least open of its nine parts but one.
     about : float
         Share of the surface around it that is open: all of a road is rough, or only this.
+    raised_m : float
+        How far it lies higher than roads and walks do, m.
     """
 
     rows: int
@@ -37,6 +39,7 @@ class GratingFacts:
     depth_m: float
     least_part: float
     about: float
+    raised_m: float
 
 
 @dataclass(frozen=True)

@@ -208,4 +208,5 @@ def _facts(notches: Notches, members: Integers, corners: Floats) -> GratingFacts
         depth_m=float(np.quantile(notches.depth_m[is_in], 0.75)),
         least_part=float(np.sort(parts)[1]),
         about=float(notches.area_m2[is_about].sum() / about_m2),
+        raised_m=float(np.median(notches.higher_m(is_in))),
     )

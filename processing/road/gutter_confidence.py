@@ -3,44 +3,123 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.road.gutter_contrast import Contrast, contrast_of
 from processing.road.gutter_lids import Cover
 from processing.road.gutter_runs import GutterRun
+from processing.road.notches import Notches
 
-# Logistic in a few physical facts; how they were fitted is said in `run_evidence`.
-_BIAS, _JOINTS, _HOLES, _SEEN, _BRIDGED, _FEW_POINTS = -4.0, 0.2, 2.0, 0.5, -1.0, -0.8
-_MOST_JOINTS, _MOST_HOLES = 30.0, 1.2
 _FEW_HOLES = 8  # notches that make the holes' places half believed
+_FEW_POINTS = 10
+_MOST_JOINTS, _MOST_CONTRAST, _MOST_RAISED_M = 60.0, 4.0, 0.3
+_GAINS = (-1.0, 1.2)
 _MOST = 0.99
 
 
-def run_evidence(run: GutterRun) -> float:
-    """What a whole gutter is worth: the evidence of its joints, and of its holes' places.
+class CoverFacts(NamedTuple):
+    """What is known of one cover. Facts are bounded, so that none outweighs all others.
 
-    Notes
-    -----
-    Set by hand on seven simulated streets: rows of notches by chance have joints worth 2 to 6, or
-    up to 17 with holes worth less than nothing (a logarithm of the likelihood per notch); gutters
-    mostly have joints worth 17 to 400 and holes worth 0.3 to 1.2. The holes of a few notches say
-    little. A gutter of which most joints were seen comes to more than nine in ten.
+    Attributes
+    ----------
+    joints : float
+        Logarithm of what the notches are worth for the gutter's row of joints, up to 60.
+    holes : float
+        How much likelier its holes' places across the gutter are than chance, −1 to 1.2: the mean
+        logarithm per notch, the less the fewer notches there are.
+    lids : float
+        How much more of it is open at the joints about than on the lids: a logarithm, −1 to 4.
+    beside : float
+        How much more than beside it.
+    raised_m : float
+        How far the gutter lies higher than roads and walks do, m, 0 to 0.3: hedges have gaps too.
+    bridged : float
+        1 where nothing was seen at either.
+    grating : float
+        1 where the row of joints says that it is a grating.
+    few_points : float
+        1 where hardly a point lies on its top.
+    hollow : float
+        Share of its points that lie below its top, 0 to 1: open gutters have steps too.
     """
-    joints = min(run.row.value, _MOST_JOINTS)
-    holes = float(np.clip(run.holes.gain, -1.0, _MOST_HOLES))
+
+    joints: float
+    holes: float
+    lids: float
+    beside: float
+    raised_m: float
+    bridged: float
+    grating: float
+    few_points: float
+    hollow: float
+
+
+WEIGHTS = CoverFacts(
+    joints=0.25,
+    holes=1.57,
+    lids=0.86,
+    beside=0.99,
+    raised_m=-10.9,
+    bridged=-0.6,
+    grating=-0.59,
+    few_points=-0.6,
+    hollow=-2.55,
+)
+"""What each fact is worth: see `processing.score.gutter_training`, which also says how reliable
+they are. Of 32 streets left out one by one, 2,465 of 2,533 covers given 0.9 and more were right,
+208 of 262 of those from 0.7, 39 of 68 of those from 0.5 and 13 of 49 of those below."""
+
+CONSTANT = -5.65
+
+
+def facts_of(
+    run: GutterRun, covers: tuple[Cover, ...], notches: Sequence[Notches]
+) -> list[CoverFacts]:
+    """The facts of all covers of a gutter.
+
+    Parameters
+    ----------
+    run : GutterRun
+    covers : tuple of Cover
+        All of its row's.
+    notches : sequence of Notches
+        Of each drive.
+    """
+    contrast = contrast_of(run, notches)
+    joints = math.log(min(max(run.row.value, 1.0), _MOST_JOINTS))
     believed = run.holes.count / (run.holes.count + _FEW_HOLES)
-    return _BIAS + _JOINTS * joints + _HOLES * holes * believed
+    holes = believed * float(np.clip(run.holes.gain, *_GAINS))
+    return [_facts(one, (joints, holes), contrast, k) for k, one in enumerate(covers)]
 
 
-def confidences(run: GutterRun, covers: tuple[Cover, ...]) -> NDArray[np.float64]:
-    """(n,) float64 for the covers of one gutter."""
-    base = run_evidence(run)
-    return np.array([_confidence(base, one) for one in covers])
+def _facts(
+    cover: Cover, of_run: tuple[float, float], contrast: Contrast, number: int
+) -> CoverFacts:
+    lids, beside = (
+        min(max(float(one[number]), -1.0), _MOST_CONTRAST)
+        for one in (contrast.lids, contrast.beside)
+    )
+    return CoverFacts(
+        *of_run,
+        lids,
+        beside,
+        min(contrast.raised_m, _MOST_RAISED_M),
+        float(cover.is_bridged),
+        float(cover.is_grating),
+        float(cover.on_top < _FEW_POINTS),
+        cover.below / max(cover.on_top + cover.below, 1),
+    )
 
 
-def _confidence(base: float, cover: Cover) -> float:
-    value = base + _SEEN * (min(cover.seen[0], 2) + min(cover.seen[1], 2)) / 2
-    value += _BRIDGED if cover.is_bridged else 0.0
-    value += _FEW_POINTS if cover.on_top < 10 else 0.0
-    return min(_MOST, 1.0 / (1.0 + math.exp(-value)))
+def chance_of(facts: CoverFacts) -> float:
+    """The chance that a cover is right, 0 to 1.
+
+    References
+    ----------
+    Hosmer, Lemeshow: Applied Logistic Regression (the model).
+    """
+    logit = CONSTANT + sum(weight * fact for weight, fact in zip(WEIGHTS, facts, strict=True))
+    return min(_MOST, 1.0 / (1.0 + math.exp(-logit)))

@@ -180,7 +180,8 @@ def _found_in(
     stations = sweeps.stations[first:stop]
     places = way.places_at(stations) - way.origin
     below = np.clip(sweeps.below[first:stop] - start, 1, len(xyz) - 2)
-    places[:, 2] -= _height_above_road(xyz, below, places, parameters)
+    height_m = _height_above_road(xyz, below, places, parameters)
+    places[:, 2] -= height_m
     spans = np.column_stack([sweeps.starts[first:stop], sweeps.stops[first:stop]]) - start
     rights = way.rights_at(stations)
     noise = _noise(xyz, pulse, spans, places)
@@ -203,7 +204,8 @@ def _found_in(
     placed = found[:, :3] + way.origin
     station, across = way.stations_of(placed, time)
     is_known = np.isfinite(station)
-    ahead = way.directions_at(np.where(is_known, station, 0.0))
+    beside = np.where(is_known, station, 0.0)
+    ahead = way.directions_at(beside)
     along = (between * ahead).sum(axis=1) / length
     spacing = length / np.maximum(origin[:, 2] - origin[:, 1] + found[:, 7], 1)
     apart = sweeps.advances[first:stop][origin[:, 0]] * np.sqrt(np.maximum(1.0 - along**2, 0.0))
@@ -221,6 +223,7 @@ def _found_in(
         stretch=np.full(count, way.number, np.int64),
         direction=between / length[:, None],
         area_m2=found[:, 4] * apart,
+        raised_m=placed[:, 2] - way.places_at(beside)[:, 2] + height_m,
     )
     yield whole.chosen(is_known)
 

@@ -20,6 +20,8 @@ LOST = 4
 JOINT = 8
 """A narrow dip or a step too small for the thesis' limits, as joints between lids make them."""
 
+_WALK_M, _RISE = 0.15, 0.02  # walks lie higher than a road, and a road in a bend falls to one side
+
 
 @dataclass(frozen=True)
 class NotchParameters:
@@ -85,6 +87,8 @@ class Notches:
     area_m2 : (n,) float64
         Of road that the opening stands for: its width by how far rows lie apart there. A slow or
         waiting vehicle measures more notches, but no more area.
+    raised_m : (n,) float64
+        How far it lies above the road below the vehicle, beside it.
     """
 
     xyz: NDArray[np.float64]
@@ -100,11 +104,17 @@ class Notches:
     stretch: NDArray[np.int64]
     direction: NDArray[np.float64]
     area_m2: NDArray[np.float64]
+    raised_m: NDArray[np.float64]
 
     @property
     def count(self) -> int:
         """How many there are."""
         return len(self.time_s)
+
+    def higher_m(self, which: NDArray[np.bool_]) -> NDArray[np.float64]:
+        """How far some lie above what roads and walks rise to their sides, m; 0 below."""
+        rise = _WALK_M + _RISE * np.abs(self.across_m[which])
+        return np.asarray(np.maximum(self.raised_m[which] - rise, 0.0))
 
     def chosen(self, which: NDArray[np.bool_] | NDArray[np.int64]) -> Notches:
         """Some of them."""
@@ -130,6 +140,7 @@ def joined(parts: list[Notches]) -> Notches:
             stretch=none,
             direction=np.empty((0, 2)),
             area_m2=empty,
+            raised_m=empty,
         )
     names = Notches.__dataclass_fields__
     return Notches(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in names})

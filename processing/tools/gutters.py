@@ -14,7 +14,7 @@ from processing.points.passes import passes_of
 from processing.road.curb_points import GuideCells
 from processing.road.grating_found import GratingFound, one_of_each
 from processing.road.gratings import GratingParameters, gratings_of
-from processing.road.gutter_confidence import confidences
+from processing.road.gutter_confidence import CoverFacts, chance_of, facts_of
 from processing.road.gutter_gratings import SureCovers, with_gratings
 from processing.road.gutter_lids import POINTS_WITHIN_M, Cover, covers_of
 from processing.road.gutter_notches import notches_of
@@ -138,42 +138,77 @@ def find_gutters(
     if sum(one.count for one in notches) < _FEW_NOTCHES:
         return CandidateResult(note=_NO_NOTCHES)
     monitor.report(_FINDING, _LAYING)
-    gratings = one_of_each(
-        found
-        for drive, own in zip(drives, notches, strict=True)
-        for found in gratings_of(drive, own, GratingParameters(), monitor)
-        if found.confidence >= parameters.least_confidence
-    )
-    runs = gutter_runs(passes, notches, parameters.most_missed)
-    laid = PartMonitor(monitor, _FINDING, 1.0)
-    candidates = [*_laid(drives, runs, gratings, parameters, laid)]
+    laid, gratings = _evidence(drives, notches, parameters, PartMonitor(monitor, _FINDING, 1.0))
+    candidates = [*_chosen(laid, gratings, parameters.least_confidence)]
     if not candidates:
         return CandidateResult(note=_NOT_REGULAR)
     return CandidateResult(tuple(candidates))
 
 
-def _laid(
-    drives: Sequence[Drive],
-    runs: Sequence[GutterRun],
-    gratings: tuple[GratingFound, ...],
+@dataclass(frozen=True)
+class LaidGutter:
+    """One gutter with all its covers.
+
+    Attributes
+    ----------
+    run : GutterRun
+    covers : tuple of Cover
+    facts : tuple of CoverFacts
+        What is known of each.
+    """
+
+    run: GutterRun
+    covers: tuple[Cover, ...]
+    facts: tuple[CoverFacts, ...]
+
+
+def gutter_evidence(
+    drives: tuple[Drive, ...], parameters: GutterParameters, monitor: Monitor
+) -> tuple[list[LaidGutter], tuple[GratingFound, ...]]:
+    """All gutters and gratings of a survey, none left out that is not sure."""
+    notches = _notches(drives, parameters, PartMonitor(monitor, 0.0, _FINDING))
+    return _evidence(drives, notches, parameters, PartMonitor(monitor, _FINDING, 1.0))
+
+
+def _evidence(
+    drives: tuple[Drive, ...],
+    notches: Sequence[Notches],
     parameters: GutterParameters,
     monitor: Monitor,
-) -> Iterator[Candidate]:
-    """Covers of all gutters that are sure enough, then the gratings beside them."""
-    if runs:
-        cells = GuideCells([one.axis for one in runs], POINTS_WITHIN_M)
-        parts = parts_of(monitor, [drive.count for drive in drives])
-        about = [cells.about(drive, part) for drive, part in zip(drives, parts, strict=True)]
+) -> tuple[list[LaidGutter], tuple[GratingFound, ...]]:
+    gratings = one_of_each(
+        found
+        for drive, own in zip(drives, notches, strict=True)
+        for found in gratings_of(drive, own, GratingParameters(), monitor)
+    )
+    passes = [one for drive in drives for one in passes_of(drive)]
+    runs = gutter_runs(passes, notches, parameters.most_missed) if passes else ()
+    if not runs:
+        return [], gratings
+    cells = GuideCells([one.axis for one in runs], POINTS_WITHIN_M)
+    parts = parts_of(monitor, [drive.count for drive in drives])
+    about = [cells.about(drive, part) for drive, part in zip(drives, parts, strict=True)]
+    laid = []
     for number, run in enumerate(runs):
         monitor.check()
         covers = covers_of(run, number, about)
-        own = SureCovers(covers, confidences(run, covers))
-        own, gratings = with_gratings(run.axis, own, gratings)
-        is_kept = own.sure >= parameters.least_confidence
-        kept = [one for one, keep in zip(own.covers, is_kept, strict=True) if keep]
-        yield from _candidates(kept, own.sure[is_kept], number + 1)
-    for number, one in enumerate(gratings, len(runs) + 1):
-        yield _basin(one, number)
+        laid.append(LaidGutter(run, covers, tuple(facts_of(run, covers, notches))))
+    return laid, gratings
+
+
+def _chosen(
+    laid: Sequence[LaidGutter], gratings: tuple[GratingFound, ...], least: float
+) -> Iterator[Candidate]:
+    """Covers of all gutters that are sure enough, then the gratings beside them."""
+    gratings = tuple(one for one in gratings if one.confidence >= least)
+    for number, one in enumerate(laid, 1):
+        sure = np.array([chance_of(facts) for facts in one.facts])
+        own, gratings = with_gratings(one.run.axis, SureCovers(one.covers, sure), gratings)
+        is_kept = own.sure >= least
+        kept = [cover for cover, keep in zip(own.covers, is_kept, strict=True) if keep]
+        yield from _candidates(kept, own.sure[is_kept], number)
+    for number, found in enumerate(gratings, len(laid) + 1):
+        yield _basin(found, number)
 
 
 def notch_parameters(parameters: GutterParameters) -> NotchParameters:

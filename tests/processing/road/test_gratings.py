@@ -44,6 +44,7 @@ def notches_at(x: np.ndarray, across: np.ndarray, *, width_m: float = 0.03) -> N
         stretch=np.zeros(count, np.int64),
         direction=np.tile(np.array([1.0, -1.0]) / np.sqrt(2.0), (count, 1)),
         area_m2=np.full(count, width_m * SPEED_M_S / ROWS_PER_S / np.sqrt(2.0)),
+        raised_m=0.02 * across,
     )
 
 

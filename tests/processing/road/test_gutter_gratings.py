@@ -37,7 +37,9 @@ def cover(along_m: float, *, long_m: float = LONG_M, is_grating: bool = False) -
 
 
 def grating(x: float, y: float = 0.0, *, long_m: float = 0.5, sure: float = 0.9) -> GratingFound:
-    facts = GratingFacts(rows=10, open_share=0.6, depth_m=0.1, least_part=0.5, about=0.0)
+    facts = GratingFacts(
+        rows=10, open_share=0.6, depth_m=0.1, least_part=0.5, about=0.0, raised_m=0.0
+    )
     return GratingFound(rectangle((x, y), long_m, 0.38), long_m, 0.38, facts, sure)
 
 

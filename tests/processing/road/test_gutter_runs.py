@@ -66,6 +66,7 @@ def notches_at(one: Pass, along_m: Floats, across_m: Floats, strength: float = 0
         np.zeros(at.size, np.int64),
         np.zeros((at.size, 2)),
         empty,
+        empty,
     )
 
 
