@@ -32,6 +32,10 @@ _HIGH_M, _MOST_LEAN = 0.10, 0.7
 """Faces of high curbs lean by less than 35° (Table 6-1: 30°): banks of earth between fields don't.
 Of low steps too few points tell."""
 
+_LEVEL_M, _RISEN_SHARE = 0.02, 0.5
+"""Where the ground falls away from the road and what falls is no higher than the road itself, less
+than this share of it having risen before, no island ends but a ditch or a bank begins."""
+
 _WIDEST_STONE_M = 0.30
 _BESIDE_SHARE = 0.5
 
@@ -102,10 +106,19 @@ def is_likely(run: StepRun, settings: StepSettings) -> bool:
     high_m = median_of(run.heights_m[run.is_seen])
     if high_m < settings.least_step_m:
         return False
+    if run.rises < 0 and _falls_off(run, high_m):
+        return False
     is_high = run.rises > 0 and high_m >= _HIGH_M
     if is_high and median_of(run.face_m[run.is_seen]) > _MOST_LEAN * high_m:
         return False
     return confidence_of(run) >= LEAST_CHANCE
+
+
+def _falls_off(run: StepRun, high_m: float) -> bool:
+    """Whether the ground falls off beside the road: nothing rose before, the road is as high."""
+    seen = run.is_seen
+    above_m = median_of(run.above_way_m[seen]) + high_m
+    return above_m < _LEVEL_M and median_of(run.risen_m[seen]) < _RISEN_SHARE * high_m
 
 
 def _is_rear(run: StepRun, runs: Sequence[StepRun]) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from processing.image.scanlines import Scanlines
@@ -130,6 +131,15 @@ def test_a_ramp_and_a_kink_of_the_pavement_are_no_curbs() -> None:
 
 def test_the_foot_of_a_wall_is_no_curb() -> None:
     assert found(lambda _station, across: np.where(across > 3.0, 2.5, 0.0)) == ()
+
+
+@pytest.mark.parametrize("fall", [0.0, 0.02])
+def test_where_the_ground_falls_off_beside_the_road_is_no_curb(fall: float) -> None:
+    def ditch(_station: float, across: _Floats) -> _Floats:
+        return np.where((across > 3.0) & (across < 3.6), -0.4, 0.0) - fall * np.abs(across)
+
+    assert all(run.rises > 0 for run in found(ditch))
+    assert found(lambda _station, across: np.where(across > 3.0, -0.2, -fall * across)) == ()
 
 
 def test_nothing_measured_gives_nothing() -> None:
