@@ -88,7 +88,6 @@ class Answers:
         truths = {tool: read_mapped(scene.truth(tool)) for tool in TOOLS}
         runs: dict[str, RoadRun] = {}
         for head, drives in scene.heads().items():
-            points = sum(drive.count for drive in drives)
             for tool in TOOLS:
                 runs[tool] = found_by(tool, drives)
                 self.streets[tool].append(
@@ -97,7 +96,6 @@ class Answers:
                         head,
                         _SCORES[tool](runs[tool].result, truths[tool]),
                         len(runs[tool].result.features),
-                        1e6 * runs[tool].seconds / max(points, 1),
                     )
                 )
         for tool in TOOLS:

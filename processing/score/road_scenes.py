@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -93,13 +92,11 @@ class RoadRun:
     ----------
     result : MappedFile
         Its candidates, without what is for drawings only.
-    seconds : float
     notes : tuple of str
         Why few or nothing was found.
     """
 
     result: MappedFile
-    seconds: float
     notes: tuple[str, ...]
 
 
@@ -177,7 +174,6 @@ def found_by(tool: str, drives: Sequence[Drive]) -> RoadRun:
     """
     features: list[MappedFeature] = []
     notes: list[str] = []
-    began = time.perf_counter()
     left = list(drives)
     with TemporaryDirectory(prefix="zuka-") as place:
         while left:
@@ -190,8 +186,7 @@ def found_by(tool: str, drives: Sequence[Drive]) -> RoadRun:
                     if not one.is_drawing:
                         features.append(mapped(one, len(features) + 1))
                 notes += [result.note.en] if result.note.en else []
-    seconds = time.perf_counter() - began
-    return RoadRun(MappedFile(Path(f"{tool}.geojson"), _CRS, tuple(features)), seconds, (*notes,))
+    return RoadRun(MappedFile(Path(f"{tool}.geojson"), _CRS, tuple(features)), (*notes,))
 
 
 def mapped(candidate: Candidate, number: int) -> MappedFeature:

@@ -29,15 +29,12 @@ class ScoredStreet:
         Whose points it had.
     score : FileScore
     candidates : int
-    seconds_per_million : float
-        Of points; the tool alone.
     """
 
     name: str
     head: str
     score: FileScore
     candidates: int
-    seconds_per_million: float
 
 
 def curbs_table(streets: Sequence[ScoredStreet]) -> str:

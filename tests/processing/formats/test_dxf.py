@@ -21,6 +21,7 @@ from processing.project.catalogue import LINE_TYPES, Catalogue, Geometry, read_c
 from processing.project.catalogue_file import symbol_names
 from processing.project.feature import Feature, Position, Status, Vertex
 from resources import path_of
+from tests.processing.formats.audited_dxf import audited_dxf
 
 _VERSIONS: tuple[DxfVersion, ...] = ("R2000", "R2018")
 _FOOT = (-11394.608, -35139.915, 25.682)
@@ -44,17 +45,6 @@ def _feature(
 
 def _tree(**own: Any) -> Feature:
     return _feature("street_tree", Geometry.POINT, _FOOT, **own)
-
-
-def _drawn(
-    path: Path, catalogue: Catalogue, *features: Feature, version: DxfVersion = "R2018"
-) -> Any:
-    write_dxf(path, features, catalogue, version=version, crs="EPSG:6677")
-    doc = ezdxf.filemanagement.readfile(path)
-    audit = doc.audit()
-    assert [error.message for error in audit.errors] == []
-    assert [fix.message for fix in audit.fixes] == []
-    return doc
 
 
 def _only(doc: Any, query: str) -> Any:
@@ -88,7 +78,7 @@ def test_a_line_is_a_3d_polyline_on_the_layer_of_its_code(
     tmp_path: Path, catalogue: Catalogue, version: DxfVersion
 ) -> None:
     line = _feature("road_edge", Geometry.LINE, *_LINE)
-    doc = _drawn(tmp_path / "図.dxf", catalogue, line, version=version)
+    doc = audited_dxf(tmp_path / "図.dxf", catalogue, line, version=version)
     entity = _only(doc, "POLYLINE")
     assert entity.is_3d_polyline
     assert not entity.is_closed
@@ -104,7 +94,7 @@ def test_an_area_is_closed_and_does_not_repeat_its_first_vertex(
     tmp_path: Path, catalogue: Catalogue, version: DxfVersion
 ) -> None:
     area = _feature("gutter_lid", Geometry.AREA, *_LINE)
-    entity = _only(_drawn(tmp_path / "a.dxf", catalogue, area, version=version), "POLYLINE")
+    entity = _only(audited_dxf(tmp_path / "a.dxf", catalogue, area, version=version), "POLYLINE")
     assert entity.is_closed
     assert entity.is_3d_polyline
     assert len(entity.vertices) == 3
@@ -114,7 +104,7 @@ def test_a_symbol_stands_on_its_point_and_looks_where_its_sign_looks(
     tmp_path: Path, catalogue: Catalogue
 ) -> None:
     sign = _feature("sign_regulation", Geometry.POINT, _FOOT, facing_deg=90.0)
-    doc = _drawn(tmp_path / "a.dxf", catalogue, sign)
+    doc = audited_dxf(tmp_path / "a.dxf", catalogue, sign)
     point, insert = _only(doc, "POINT"), _only(doc, "INSERT")
     assert tuple(point.dxf.location) == tuple(insert.dxf.insert) == _FOOT
     # The plate is ahead of the foot: east of it when the sign faces east.
@@ -130,10 +120,10 @@ def test_a_direction_goes_before_a_facing_and_nonsense_turns_nothing(
 ) -> None:
     path = tmp_path / "a.dxf"
     both = _feature("sign", Geometry.POINT, _FOOT, direction_deg=30.0, facing_deg=90.0)
-    assert _only(_drawn(path, catalogue, both), "INSERT").dxf.rotation == 330.0
+    assert _only(audited_dxf(path, catalogue, both), "INSERT").dxf.rotation == 330.0
     for nonsense in ("north", math.nan, None):
         lost = _feature("sign", Geometry.POINT, _FOOT, direction_deg=nonsense)
-        assert _only(_drawn(path, catalogue, lost), "INSERT").dxf.rotation == 0.0
+        assert _only(audited_dxf(path, catalogue, lost), "INSERT").dxf.rotation == 0.0
 
 
 @pytest.mark.parametrize("version", _VERSIONS)
@@ -144,7 +134,7 @@ def test_every_kind_of_the_catalogue_is_drawn_without_an_error(
     features = [
         _feature(kind.id, kind.geometry, *shapes[kind.geometry], number="1") for kind in catalogue
     ]
-    doc = _drawn(tmp_path / "a.dxf", catalogue, *features, version=version)
+    doc = audited_dxf(tmp_path / "a.dxf", catalogue, *features, version=version)
     assert doc.dxfversion == {"R2000": "AC1015", "R2018": "AC1032"}[version]
     assert doc.header["$DWGCODEPAGE"] == "ANSI_932"
     assert doc.header["$INSUNITS"] == 6
@@ -162,13 +152,13 @@ def test_kinds_that_share_a_layer_keep_their_own_line_types(
     tmp_path: Path, catalogue: Catalogue
 ) -> None:
     features = [_feature(kind, Geometry.LINE, *_LINE) for kind in ("slope_foot", "slope_top")]
-    foot, top = _drawn(tmp_path / "a.dxf", catalogue, *features).modelspace().query("POLYLINE")
+    foot, top = audited_dxf(tmp_path / "a.dxf", catalogue, *features).modelspace().query("POLYLINE")
     assert foot.dxf.layer == top.dxf.layer == "6101_人工斜面"
     assert (foot.dxf.linetype, top.dxf.linetype) == ("SHORT_DASHED", "BYLAYER")
 
 
 def test_line_types_are_metres_on_the_ground(tmp_path: Path, catalogue: Catalogue) -> None:
-    doc = _drawn(tmp_path / "a.dxf", catalogue, _tree())
+    doc = audited_dxf(tmp_path / "a.dxf", catalogue, _tree())
     for name, pattern in LINE_TYPES.items():
         if pattern:
             tags = doc.linetypes.get(name.upper()).pattern_tags.tags
@@ -184,7 +174,7 @@ def test_every_symbol_is_drawn_about_its_point_in_a_readable_size(
 
     kind = next(kind for kind in catalogue if kind.symbol == symbol)
     feature = _feature(kind.id, Geometry.POINT, (0.0, 0.0, 0.0))
-    insert = _only(_drawn(tmp_path / "a.dxf", catalogue, feature), "INSERT")
+    insert = _only(audited_dxf(tmp_path / "a.dxf", catalogue, feature), "INSERT")
     extent = bbox.extents(insert.virtual_entities())
     assert 0.15 < max(extent.size.x, extent.size.y) <= 2.0
     assert extent.extmin.magnitude < 1.5
@@ -193,7 +183,7 @@ def test_every_symbol_is_drawn_about_its_point_in_a_readable_size(
 def test_the_drawing_says_its_extent_and_its_reference_system(
     tmp_path: Path, catalogue: Catalogue
 ) -> None:
-    doc = _drawn(tmp_path / "a.dxf", catalogue, _feature("road_edge", Geometry.LINE, *_LINE))
+    doc = audited_dxf(tmp_path / "a.dxf", catalogue, _feature("road_edge", Geometry.LINE, *_LINE))
     assert tuple(doc.header["$EXTMIN"]) == (-11394.608, -35139.915, 25.682)
     assert tuple(doc.header["$EXTMAX"]) == (-11385.25, -35138.5, 26.0)
     assert doc.header.custom_vars.properties == [("CRS", "EPSG:6677")]
@@ -211,7 +201,7 @@ def test_candidates_have_layers_of_their_own_and_rejected_ones_are_left_out(
         _feature("road_edge", Geometry.LINE, *_LINE, status=status, number=status.value)
         for status in Status
     ]
-    doc = _drawn(tmp_path / "a.dxf", catalogue, *features)
+    doc = audited_dxf(tmp_path / "a.dxf", catalogue, *features)
     layers = {entity.dxf.layer for entity in doc.modelspace()}
     assert layers == {
         "2101_道路縁",
@@ -225,7 +215,7 @@ def test_names_and_heights_are_written_beside_their_feature(
     tmp_path: Path, catalogue: Catalogue
 ) -> None:
     height = _feature("spot_height", Geometry.POINT, (1.0, 2.0, 25.678))
-    doc = _drawn(tmp_path / "a.dxf", catalogue, _tree(name="欅\n並木", number="7"), height)
+    doc = audited_dxf(tmp_path / "a.dxf", catalogue, _tree(name="欅\n並木", number="7"), height)
     texts = {text.dxf.text: text for text in doc.modelspace().query("TEXT")}
     assert set(texts) == {"欅 並木", "25.7"}
     assert all(text.dxf.style == "JAPANESE" for text in texts.values())
@@ -237,7 +227,7 @@ def test_a_lines_name_lies_above_its_middle_and_is_never_upside_down(
     tmp_path: Path, catalogue: Catalogue
 ) -> None:
     west = _feature("road_center", Geometry.LINE, (20.0, 0.0, 5.0), (0.0, 0.0, 5.0), name="市道")
-    text = _only(_drawn(tmp_path / "a.dxf", catalogue, west), "TEXT")
+    text = _only(audited_dxf(tmp_path / "a.dxf", catalogue, west), "TEXT")
     assert text.dxf.rotation == pytest.approx(0.0)
     assert text.dxf.align_point.isclose((10.0, 0.4, 5.0))
 
@@ -245,13 +235,13 @@ def test_a_lines_name_lies_above_its_middle_and_is_never_upside_down(
 def test_an_areas_name_is_in_its_middle(tmp_path: Path, catalogue: Catalogue) -> None:
     corners = ((0.0, 0.0, 1.0), (9.0, 0.0, 1.0), (9.0, 6.0, 1.0), (0.0, 6.0, 1.0))
     house = _feature("building", Geometry.AREA, *corners, name="市役所")
-    text = _only(_drawn(tmp_path / "a.dxf", catalogue, house), "TEXT")
+    text = _only(audited_dxf(tmp_path / "a.dxf", catalogue, house), "TEXT")
     assert text.dxf.align_point.isclose((4.5, 3.0, 1.0))
 
 
 def test_a_label_never_becomes_a_control_code(tmp_path: Path, catalogue: Catalogue) -> None:
     path = tmp_path / "a.dxf"
-    assert _only(_drawn(path, catalogue, _tree(name="5%%d %%u")), "TEXT").plain_text() == (
+    assert _only(audited_dxf(path, catalogue, _tree(name="5%%d %%u")), "TEXT").plain_text() == (
         "5％％d ％％u"
     )
 
@@ -271,7 +261,7 @@ def test_the_same_map_has_the_same_extended_data_in_both_versions(
 ) -> None:
     tree = _tree(species="欅", girth_m=0.1 + 0.2, stems=3, alive=True, big=1 << 40, nothing=None)
     for version in _VERSIONS:
-        point = _only(_drawn(tmp_path / "a.dxf", catalogue, tree, version=version), "POINT")
+        point = _only(audited_dxf(tmp_path / "a.dxf", catalogue, tree, version=version), "POINT")
         assert _attributes(point) == {
             "species": "欅",
             "girth_m": 0.1 + 0.2,
@@ -324,7 +314,7 @@ def test_lines_end_as_on_windows(tmp_path: Path, catalogue: Catalogue) -> None:
 
 
 def test_an_empty_map_is_a_valid_drawing(tmp_path: Path, catalogue: Catalogue) -> None:
-    assert len(_drawn(tmp_path / "a.dxf", catalogue).modelspace()) == 0
+    assert len(audited_dxf(tmp_path / "a.dxf", catalogue).modelspace()) == 0
 
 
 def test_a_layer_that_shift_jis_lacks_is_refused_for_r2000_only(tmp_path: Path) -> None:
@@ -336,7 +326,7 @@ def test_a_layer_that_shift_jis_lacks_is_refused_for_r2000_only(tmp_path: Path) 
     )
     office = read_catalogue(path)
     post = _feature("post", Geometry.POINT, _FOOT)
-    assert _only(_drawn(tmp_path / "a.dxf", office, post), "POINT").dxf.layer == "기둥"
+    assert _only(audited_dxf(tmp_path / "a.dxf", office, post), "POINT").dxf.layer == "기둥"
     with pytest.raises(Unsuitable):
         write_dxf(tmp_path / "b.dxf", [post], office, version="R2000")
 
@@ -357,7 +347,7 @@ def test_any_coordinate_is_kept_to_the_last_bit(
 ) -> None:
     path = tmp_path_factory.getbasetemp() / "any.dxf"
     line = _feature("road_edge", Geometry.LINE, *positions)
-    entity = _only(_drawn(path, catalogue, line, version=version), "POLYLINE")
+    entity = _only(audited_dxf(path, catalogue, line, version=version), "POLYLINE")
     assert [tuple(one.dxf.location) for one in entity.vertices] == positions
 
 
@@ -374,7 +364,7 @@ def test_any_text_comes_back(
 ) -> None:
     path = tmp_path_factory.getbasetemp() / "any.dxf"
     tree = _tree(note=text, name=text)
-    doc = _drawn(path, catalogue, tree, version=version)
+    doc = audited_dxf(path, catalogue, tree, version=version)
     assert _attributes(_only(doc, "POINT"))["note"] == text
 
 
@@ -384,7 +374,7 @@ def test_a_long_text_is_cut_between_characters_and_comes_back(
     text = "長い説明𠮷" * 200
     for version in _VERSIONS:
         point = _only(
-            _drawn(tmp_path / "a.dxf", catalogue, _tree(note=text), version=version), "POINT"
+            audited_dxf(tmp_path / "a.dxf", catalogue, _tree(note=text), version=version), "POINT"
         )
         assert _attributes(point)["note"] == text
         for tag in point.get_xdata(APP_ID):

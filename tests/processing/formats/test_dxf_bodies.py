@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-import ezdxf.filemanagement
 import numpy as np
 import pytest
 
-from processing.formats.dxf import APP_ID, DxfVersion, write_dxf
+from processing.formats.dxf import APP_ID, DxfVersion
 from processing.project.catalogue import Catalogue, Geometry, read_catalogue
 from processing.project.feature import Feature, Position, Status, Vertex
 from resources import path_of
+from tests.processing.formats.audited_dxf import audited_dxf
 
 _LID = (
     (-11394.608, -35139.915, 25.682),
@@ -42,17 +42,6 @@ def _lid(status: Status = Status.ACCEPTED, **own: Any) -> Feature:
     return _feature("gutter_lid", Geometry.AREA, _LID, status, **own)
 
 
-def _drawn(
-    path: Path, catalogue: Catalogue, *features: Feature, version: DxfVersion = "R2018"
-) -> Any:
-    write_dxf(path, features, catalogue, version=version, crs="EPSG:6677")
-    doc = ezdxf.filemanagement.readfile(path)
-    audit = doc.audit()
-    assert [error.message for error in audit.errors] == []
-    assert [fix.message for fix in audit.fixes] == []
-    return doc
-
-
 def _faces(doc: Any) -> list[Any]:
     return list(doc.modelspace().query("3DFACE"))
 
@@ -65,7 +54,7 @@ def _corners(face: Any) -> np.ndarray:
 def test_a_lid_is_an_outline_and_five_faces_on_a_layer_of_their_own(
     tmp_path: Path, catalogue: Catalogue, version: DxfVersion
 ) -> None:
-    doc = _drawn(tmp_path / "lid.dxf", catalogue, _lid(type="lid"), version=version)
+    doc = audited_dxf(tmp_path / "lid.dxf", catalogue, _lid(type="lid"), version=version)
     (outline,) = doc.modelspace().query("POLYLINE")
     faces = _faces(doc)
     assert outline.dxf.layer == "側溝蓋"
@@ -85,7 +74,7 @@ def test_a_grating_is_as_thick_as_it_says_and_keeps_its_code(
     tmp_path: Path, catalogue: Catalogue
 ) -> None:
     grating = _feature("gutter_grating", Geometry.AREA, _LID, thickness_m=0.075)
-    faces = _faces(_drawn(tmp_path / "grating.dxf", catalogue, grating))
+    faces = _faces(audited_dxf(tmp_path / "grating.dxf", catalogue, grating))
     assert {face.dxf.layer for face in faces} == {"2235_グレーチング_立体"}
     lowest = min(_corners(face)[:, 2].min() for face in faces)
     assert lowest == pytest.approx(25.682 - 0.075)
@@ -94,15 +83,15 @@ def test_a_grating_is_as_thick_as_it_says_and_keeps_its_code(
 def test_candidates_have_bodies_on_layers_of_candidates(
     tmp_path: Path, catalogue: Catalogue
 ) -> None:
-    doc = _drawn(tmp_path / "both.dxf", catalogue, _lid(), _lid(Status.CANDIDATE))
+    doc = audited_dxf(tmp_path / "both.dxf", catalogue, _lid(), _lid(Status.CANDIDATE))
     layers = {face.dxf.layer for face in _faces(doc)}
     assert layers == {"側溝蓋_立体", "側溝蓋_候補_立体"}
-    assert not _faces(_drawn(tmp_path / "none.dxf", catalogue, _lid(Status.REJECTED)))
+    assert not _faces(audited_dxf(tmp_path / "none.dxf", catalogue, _lid(Status.REJECTED)))
 
 
 def test_edges_inside_a_bent_top_are_invisible(tmp_path: Path, catalogue: Catalogue) -> None:
     bent = _feature("gutter_lid", Geometry.AREA, _ELBOW)
-    faces = _faces(_drawn(tmp_path / "bent.dxf", catalogue, bent))
+    faces = _faces(audited_dxf(tmp_path / "bent.dxf", catalogue, bent))
     tops = [face for face in faces if np.ptp(_corners(face)[:, 2]) == 0.0]
     drawn = []
     for face in tops:
@@ -123,7 +112,7 @@ def test_other_areas_and_the_gutters_outline_stay_lines(
     outline = _feature("gutter_covered", Geometry.LINE, _LID[:2])
     pit = _feature("tree_pit", Geometry.AREA, _LID)
     flat = _feature("gutter_lid", Geometry.AREA, (_LID[0], _LID[1], _LID[0]))
-    doc = _drawn(tmp_path / "lines.dxf", catalogue, outline, pit, flat)
+    doc = audited_dxf(tmp_path / "lines.dxf", catalogue, outline, pit, flat)
     layers = [line.dxf.layer for line in doc.modelspace().query("POLYLINE")]
     assert layers == ["2232_側溝U字溝有蓋", "2236_並木桝", "側溝蓋"]
     assert not _faces(doc)

@@ -151,7 +151,7 @@ def test_the_page_has_every_table_and_the_plot_is_a_picture(tmp_path: Path) -> N
         ("gutters", gutter_score, GUTTER),
     ):
         for head in ("left", "right", BOTH):
-            answers.streets[tool].append(ScoredStreet("a", head, score(truth, truth), 3, 0.4))
+            answers.streets[tool].append(ScoredStreet("a", head, score(truth, truth), 3))
         answers.judged[tool] = [(0.9, True)] * 9 + [(0.9, False)]
     answers.failures.append(Failure("curbs", "a", "missed", "vehicles", np.zeros((1, 3)), ""))
     answers.notes.append("a, curbs: The drive has no road.")
