@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from processing.points.passes import Pass
 from processing.road.gutter_axis import STEP_M, GutterAxis
+from processing.road.gutter_depths import are_deep
 from processing.road.gutter_holes import HoleFit, JointNotches, hole_fit
 from processing.road.gutter_joints import LID, JointRow, joint_row, lengths_of
 from processing.road.gutter_lines import LENGTHS_M, LONG, SHORT, GutterLine, gutter_lines
@@ -46,10 +47,7 @@ _BY_CHANCE = (
 )
 """The same of lengths that are made nowhere, with their joints apart from those that are."""
 _LEAST_WORTH, _SURE_WORTH = 4.0, 40.0
-_DEEP_M, _LEAST_DEEP = 0.02, 0.1
-"""Holes go through lids; grooves between paving blocks and blocks of L-gutters are shallower. So
-many of the notches at joints are deeper than grooves at least, also where soil fills most holes.
-"""
+_LEAST_GAIN = 0.1  # notches that lie anywhere across a line are not those of holes and joints
 
 
 @dataclass(frozen=True)
@@ -146,13 +144,15 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
             axis = _moved(axis, along[at_joint][of_hole], off[of_hole])
         holes = hole_fit(_at_joints(axis, near.chosen(at_joint)))
         axis = _aside(axis, holes.middle_m)
+    if holes is None or holes.gain < _LEAST_GAIN:
+        return None
     along, across, is_on = _on_lids(axis, near, holes)
     row = joint_row((along[is_on], near.strength[is_on]), lids, axis.length_m, most_missed)
-    if row is None or holes is None or row.starts_m.size < _LEAST_COVERS:
+    if row is None or row.starts_m.size < _LEAST_COVERS:
         return None
-    at_joint = is_on & (near.strength >= _STRONG)
-    at_joint[at_joint] = _is_at_joint(along[at_joint], row)
-    if (near.depth_m[at_joint] > _DEEP_M).mean() < _LEAST_DEEP:
+    is_on &= near.strength >= _STRONG
+    row = row.chosen(are_deep(row, along[is_on], near.depth_m[is_on]))
+    if row.starts_m.size < _LEAST_COVERS:
         return None
     return GutterRun(axis, row, holes, _length_of(row), line.regularity)
 
