@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
 from processing.monitor import Monitor
 from processing.points.drive import Drive
@@ -140,38 +141,45 @@ def _least_box(ends: Floats, ahead: Floats) -> tuple[Floats, Floats]:
     ends : (2, n, 2)
         Both ends of each opening in plan.
     """
-    best: tuple[float, Floats, Floats] = (np.inf, ahead, np.zeros((2, 2)))
-    for turned in np.arange(-_MOST_TURNED_DEG, _MOST_TURNED_DEG + 0.1, _TURN_STEP_DEG):
-        turn = np.exp(1j * np.radians(turned)) * (ahead[0] + 1j * ahead[1])
-        along = np.array([turn.real, turn.imag])
-        sides = [_filled(ends @ axis) for axis in (along, np.array([-along[1], along[0]]))]
-        box = np.array(sides).T
-        # Ties are for the way's own direction, since gutters follow it.
-        area = float(np.prod(box[1] - box[0])) * (1.0 + 0.002 * abs(turned))
-        if area < best[0]:
-            best = area, along, box
-    return best[1], best[2]
+    turned = np.arange(-_MOST_TURNED_DEG, _MOST_TURNED_DEG + 0.1, _TURN_STEP_DEG)
+    turns = np.exp(1j * np.radians(turned)) * (ahead[0] + 1j * ahead[1])
+    along = np.column_stack([turns.real, turns.imag])
+    left = np.column_stack([-turns.imag, turns.real])
+    low, high = _filled(ends @ np.vstack([along, left]).T)
+    size = (high - low).reshape(2, -1)
+    # Ties are for the way's own direction, since gutters follow it.
+    best = int(np.argmin(size[0] * size[1] * (1.0 + 0.002 * np.abs(turned))))
+    which = [best, best + turned.size]
+    return along[best], np.array([low[which], high[which]])
 
 
-def _filled(ends: Floats) -> tuple[float, float]:
+def _filled(ends: Floats) -> tuple[Floats, Floats]:
     """Where openings lie as densely as in the middle, by how many of them cover a place.
 
     Beyond are strays, and the holes of the lid that follows.
+
+    Parameters
+    ----------
+    ends : (2, n, d)
+        Both ends of each opening along so many directions.
     """
     low, high = ends.min(axis=0), ends.max(axis=0)
-    first = float(low.min())
-    bins = int((high.max() - first) / _BIN_M) + 1
-    change = np.bincount(((low - first) / _BIN_M).astype(np.int64), minlength=bins + 1)
-    change = (
-        change
-        - np.bincount(((high - first) / _BIN_M).astype(np.int64) + 1, minlength=bins + 2)[
-            : bins + 1
-        ]
+    first = low.min(axis=0)
+    bins = int((high.max(axis=0) - first).max() / _BIN_M) + 2
+    places = np.arange(low.shape[1]) * (bins + 2)
+    begins, stops = (
+        ((end - first) / _BIN_M).astype(np.int64) + shift for end, shift in ((low, 0), (high, 1))
     )
-    covered = np.cumsum(change)[:bins].astype(np.float64)
-    even = np.convolve(covered, np.ones(3) / 3, mode="same")
-    full = np.flatnonzero(even >= _EDGE_SHARE * np.median(even[even > 0]))
-    return first + float(full[0]) * _BIN_M, first + float(full[-1] + 1) * _BIN_M
+    change = np.bincount((places + begins).ravel(), minlength=places.size * (bins + 2))
+    change -= np.bincount((places + stops).ravel(), minlength=places.size * (bins + 2))
+    covered = np.cumsum(change.reshape(places.size, -1), axis=1).astype(np.float64)
+    even = uniform_filter1d(covered, 3, axis=1, mode="constant")
+    is_any = even > 0
+    ordered = np.sort(np.where(is_any, even, np.inf), axis=1)
+    usual = np.take_along_axis(ordered, is_any.sum(axis=1)[:, None] // 2, axis=1)
+    is_full = is_any & (even >= _EDGE_SHARE * usual)
+    last = is_full.shape[1] - is_full[:, ::-1].argmax(axis=1)
+    return first + is_full.argmax(axis=1) * _BIN_M, first + last * _BIN_M
 
 
 def _corners(box: Floats, along: Floats, centre: Floats, xyz: Floats) -> Floats:
@@ -190,23 +198,22 @@ def _corners(box: Floats, along: Floats, centre: Floats, xyz: Floats) -> Floats:
 
 
 def _facts(notches: Notches, members: Integers, corners: Floats) -> GratingFacts:
-    own, long, wide = in_rectangle(notches.xyz, corners)
     # Another pass of the same place says nothing here.
     span = np.ptp(notches.time_s[members]) + 1.0
     is_near = np.abs(notches.time_s - np.median(notches.time_s[members])) <= span
-    is_near &= notches.strength >= _LEAST_STRENGTH
-    is_in = is_near & inside(notches.xyz, corners, _EDGE_M)
-    is_about = is_near & inside(notches.xyz, corners, _ABOUT_M)
-    is_about &= ~inside(notches.xyz, corners, _FRAME_M)
+    near = notches.chosen(np.flatnonzero(is_near & (notches.strength >= _LEAST_STRENGTH)))
+    own, long, wide = in_rectangle(near.xyz, corners)
+    is_in = inside(near.xyz, corners, _EDGE_M)
+    is_about = inside(near.xyz, corners, _ABOUT_M) & ~inside(near.xyz, corners, _FRAME_M)
     about_m2 = (long + 2 * _ABOUT_M) * (wide + 2 * _ABOUT_M)
     about_m2 -= (long + 2 * _FRAME_M) * (wide + 2 * _FRAME_M)
     cells = np.clip((own[is_in] / [long / 3, wide / 3]).astype(np.int64), 0, 2) @ [3, 1]
-    parts = np.bincount(cells, notches.area_m2[is_in], minlength=9) * 9 / (long * wide)
+    parts = np.bincount(cells, near.area_m2[is_in], minlength=9) * 9 / (long * wide)
     return GratingFacts(
-        rows=int(np.unique(notches.row[is_in]).size),
-        open_share=float(notches.area_m2[is_in].sum() / (long * wide)),
-        depth_m=float(np.quantile(notches.depth_m[is_in], 0.75)),
+        rows=int(np.unique(near.row[is_in]).size),
+        open_share=float(near.area_m2[is_in].sum() / (long * wide)),
+        depth_m=float(np.quantile(near.depth_m[is_in], 0.75)),
         least_part=float(np.sort(parts)[1]),
-        about=float(notches.area_m2[is_about].sum() / about_m2),
-        raised_m=float(np.median(notches.higher_m(is_in))),
+        about=float(near.area_m2[is_about].sum() / about_m2),
+        raised_m=float(np.median(near.higher_m(is_in))),
     )
