@@ -55,6 +55,10 @@ class GratingFound:
     facts : GratingFacts
     confidence : float
         0 … 1.
+    points : tuple of int
+        The measured point nearest to each corner, −1 where none is near.
+    drive : int
+        That they are of, among those of the survey.
     """
 
     corners: _Floats
@@ -62,6 +66,8 @@ class GratingFound:
     width_m: float
     facts: GratingFacts
     confidence: float
+    points: tuple[int, ...] = (-1,) * 4
+    drive: int = 0
 
     def share_in(self, corners: _Floats) -> float:
         """Share of its area that lies in a rectangle, in plan."""

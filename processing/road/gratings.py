@@ -31,6 +31,7 @@ _FARTHEST_M = 0.25  # from row to row of one grating
 _EDGE_M = 0.005  # frame beyond the outermost opening
 _FRAME_M, _ABOUT_M = 0.02, 0.50
 _BIN_M = 0.01
+_CORNER_M = 0.10  # a notch so near to a corner shows it
 _EDGE_SHARE = 0.4
 _MOST_TURNED_DEG, _TURN_STEP_DEG = 8.0, 1.0
 
@@ -130,7 +131,10 @@ def _grating(
         return None
     corners = _corners(box, along, centre, notches.xyz[members])
     facts = _facts(notches, members, corners)
-    return GratingFound(corners, long, wide, facts, grating_chance(facts))
+    away = np.hypot(*(corners[:, None, :2] - notches.xyz[members, :2]).transpose(2, 0, 1))
+    points = np.where(away.min(axis=1) < _CORNER_M, notches.point[members][away.argmin(axis=1)], -1)
+    chance = grating_chance(facts)
+    return GratingFound(corners, long, wide, facts, chance, points=tuple(points.tolist()))
 
 
 def _least_box(ends: Floats, ahead: Floats) -> tuple[Floats, Floats]:

@@ -78,6 +78,8 @@ def _on_gutter(axis: GutterAxis, covers: Sequence[Cover], found: GratingFound) -
         along_m=at,
         seen=(0, 0),
         rough_m=0.0,
+        points=(*found.points[first:], *found.points[:first]),
+        drives=(found.drive,) * 4,
     )
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from processing.road.curb_points import PointsAbout
 from processing.road.gutter_axis import STEP_M
@@ -26,6 +27,7 @@ _ROUNDS = 3
 _LEAST_POINTS = 6
 _BARRED = 1.25  # how much rougher the top of a grating is than a lid
 _STEEPEST = 0.05  # a lid against its neighbours
+_CORNER_M = 0.10  # a point so near to a corner shows it
 _LEVEL = 1.0  # points' worth of the belief that a lid lies as the gutter does
 
 
@@ -48,6 +50,9 @@ class Cover:
         Notches at its joints.
     rough_m : float
         Scatter of the points on it about its plane, root mean square.
+    points, drives : tuple of int
+        The measured point nearest to each corner, −1 where none is near, and the drive that it is
+        of.
     """
 
     corners: _Floats
@@ -60,6 +65,8 @@ class Cover:
     along_m: float
     seen: tuple[int, int]
     rough_m: float
+    points: tuple[int, ...] = (-1,) * 4
+    drives: tuple[int, ...] = (0,) * 4
 
 
 def covers_of(run: GutterRun, number: int, about: Sequence[PointsAbout]) -> tuple[Cover, ...]:
@@ -86,14 +93,49 @@ def covers_of(run: GutterRun, number: int, about: Sequence[PointsAbout]) -> tupl
     which = np.searchsorted(row.starts_m, along) - 1
     is_in = (which >= 0) & (across > edges[0] + _RIM_M) & (across < edges[1] - _RIM_M)
     is_in &= along < row.ends_m[np.maximum(which, 0)]
-    which, along, across, above = which[is_in], along[is_in], across[is_in], above[is_in]
+    which, places = which[is_in], np.column_stack([along, across, above])
     middles, wide = (row.starts_m + row.ends_m) / 2, (edges[0] + edges[1]) / 2
-    x, y = along - middles[which], across - wide
-    planes = _Planes.fitted(which, np.column_stack([x, y, above]), row.starts_m.size)
+    local = places[is_in] - np.column_stack([middles[which], *np.tile([[wide], [0.0]], which.size)])
+    planes = _Planes.fitted(which, local, row.starts_m.size)
     is_grating = (row.what == GRATING) & planes.are_barred(row.what == LID)
+    nearest = _nearest_to(_corners_about(run, planes), places)
+    point = np.concatenate([one.point[part] for one, part in zip(about, parts, strict=True)])
+    drive = np.repeat(np.arange(len(about)), [part.stop - part.start for part in parts])
+    measured = np.append(point, -1)[nearest], np.append(drive, 0)[nearest]
     return tuple(
-        _cover(run, k, planes, is_grating=bool(is_grating[k])) for k in range(row.starts_m.size)
+        replace(
+            _cover(run, k, planes, is_grating=bool(is_grating[k])),
+            points=tuple(measured[0][k].tolist()),
+            drives=tuple(measured[1][k].tolist()),
+        )
+        for k in range(row.starts_m.size)
     )
+
+
+def _corners_about(run: GutterRun, planes: _Planes) -> _Floats:
+    """(k, 4, 3) corners of the covers along, across and above the axis."""
+    row, (left, right) = run.row, run.edges
+    half = (row.ends_m - row.starts_m)[:, None] / 2
+    x, y = half * np.array([-1, 1, 1, -1]), (right - left) / 2 * np.array([1, 1, -1, -1])
+    above = planes.planes[:, :1] + planes.planes[:, 1:2] * x + planes.planes[:, 2:] * y
+    along = (row.starts_m + row.ends_m)[:, None] / 2 + x
+    return np.stack([along, np.broadcast_to((left + right) / 2 + y, x.shape), above], axis=2)
+
+
+def _nearest_to(corners: _Floats, places: _Floats) -> _Integers:
+    """(k, 4) the nearest of some places to each corner; −1 where none is near."""
+    ends = np.unique(corners[:, :, 0])
+    after = np.clip(np.searchsorted(ends, places[:, 0]), 1, ends.size - 1)
+    off = np.minimum(places[:, 0] - ends[after - 1], ends[after] - places[:, 0])
+    sides = corners[0, [0, 2], 1]
+    aside = np.abs(places[:, 1, None] - sides).min(axis=1)
+    near = np.flatnonzero((np.abs(off) < _CORNER_M) & (aside < _CORNER_M))
+    found = np.full(corners.shape[:2], -1, np.int64)
+    if near.size:
+        away, which = cKDTree(places[near]).query(corners, distance_upper_bound=_CORNER_M)
+        is_met = np.isfinite(away)
+        found[is_met] = near[np.asarray(which, np.int64)[is_met]]
+    return found
 
 
 @dataclass(frozen=True)

@@ -37,8 +37,8 @@ from processing.tools.gutters import GutterParameters, gutter_evidence
 _FACTS = {"lids": CoverFacts._fields, "gratings": GratingTerms._fields}
 _EXPECTED = {
     "lids": Expected(
-        (-4.0, *CoverFacts(0.8, 1.0, 1.0, 0.5, -10.0, -0.5, -0.5, -0.5, -2.0)),
-        (3.0, *CoverFacts(0.5, 0.7, 0.7, 0.4, 10.0, 0.5, 0.5, 0.5, 1.5)),
+        (-4.0, *CoverFacts(0.8, 1.0, 1.0, 0.5, -10.0, -0.5, -0.5, -0.5, -0.5, -2.0)),
+        (3.0, *CoverFacts(0.5, 0.7, 0.7, 0.4, 10.0, 0.5, 0.5, 0.5, 0.5, 1.5)),
     ),
     "gratings": Expected(
         (-12.0, *GratingTerms(2.0, 0.5, 4.0, 2.0, 1.5, -10.0)),

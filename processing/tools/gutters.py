@@ -177,8 +177,8 @@ def _evidence(
     monitor: Monitor,
 ) -> tuple[list[LaidGutter], tuple[GratingFound, ...]]:
     gratings = one_of_each(
-        found
-        for drive, own in zip(drives, notches, strict=True)
+        replace(found, drive=number)
+        for number, (drive, own) in enumerate(zip(drives, notches, strict=True))
         for found in gratings_of(drive, own, GratingParameters(), monitor)
     )
     passes = [one for drive in drives for one in passes_of(drive)]
@@ -238,7 +238,7 @@ def _candidates(
             "gutter_grating" if one.is_grating else "gutter_lid",
             "area",
             one.corners,
-            np.full(4, -1, np.int64),
+            np.array(one.points, np.int64),
             confidence,
             {
                 "type": "grating" if one.is_grating else "lid",
@@ -247,6 +247,7 @@ def _candidates(
                 "evidence": "bridged" if one.is_bridged else "seen",
                 "run": run,
             },
+            drives=np.array(one.drives, np.int64),
         )
     for edge in edge_lines(covers, _OUTLINE_GAP_M):
         yield Candidate(
@@ -266,7 +267,7 @@ def _basin(one: GratingFound, run: int) -> Candidate:
         "gutter_grating",
         "area",
         one.corners,
-        np.full(4, -1, np.int64),
+        np.array(one.points, np.int64),
         one.confidence,
         {
             "type": "grating",
@@ -275,6 +276,7 @@ def _basin(one: GratingFound, run: int) -> Candidate:
             "evidence": "seen",
             "run": run,
         },
+        drives=np.full(4, one.drive, np.int64),
     )
 
 

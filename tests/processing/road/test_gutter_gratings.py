@@ -40,7 +40,8 @@ def grating(x: float, y: float = 0.0, *, long_m: float = 0.5, sure: float = 0.9)
     facts = GratingFacts(
         rows=10, open_share=0.6, depth_m=0.1, least_part=0.5, about=0.0, raised_m=0.0
     )
-    return GratingFound(rectangle((x, y), long_m, 0.38), long_m, 0.38, facts, sure)
+    corners = rectangle((x, y), long_m, 0.38)
+    return GratingFound(corners, long_m, 0.38, facts, sure, points=(4, 5, 6, 7), drive=1)
 
 
 def lids(count: int = 5, sure: float = 0.7) -> SureCovers:
@@ -54,6 +55,8 @@ def test_a_grating_takes_the_place_of_the_lid_that_was_taken_for_one() -> None:
     assert not beside
     assert [one.is_grating for one in own.covers] == [False, False, True, False, False]
     assert own.covers[2].length_m == pytest.approx(0.5)
+    assert own.covers[2].points == (4, 5, 6, 7)
+    assert own.covers[2].drives == (1, 1, 1, 1)
     assert own.sure == pytest.approx([0.7, 0.7, 0.9, 0.7, 0.7])
 
 

@@ -114,6 +114,8 @@ def test_lids_with_holes_are_found(tmp_path: Path) -> None:
     found = covers_found(lids(), tmp_path)
     assert len(found) >= 15
     assert {one.attributes["length_m"] for one in found} == {LID_M}
+    inner = found[2:-2]
+    assert np.concatenate([one.points for one in inner]).min() >= 0
 
 
 @pytest.mark.parametrize("shapes", [l_gutter, pavement_of_slabs, old_curb_stones])
