@@ -28,13 +28,13 @@ LID, GRATING, GAP = 0, 1, 2
 GRATING_LENGTHS_M = {0.5: 1.0, 1.0: 1.0, 0.4: 2.0, 0.6: 2.0}
 """Lengths of gratings met, with what each costs a row: usual ones less."""
 
-_PLACE_M = 0.005
+_PLACE_M, _ROUGHLY_M = 0.005, 0.01
 _HOLE_M = 0.012  # a notch's place along the gutter is so uncertain
 _ABOUT_M = 0.6  # over which notches are everywhere, and say nothing
 _LITTLE = 0.08
 _LEAST, _MOST = -0.8, 2.5
 _UNSEEN = 0.35  # what a joint costs that nothing was seen of
-_JOINTS_M = np.arange(0.0, 0.041, _PLACE_M)
+_WIDEST_JOINT_M = 0.04
 _WIDE_JOINT_M, _WIDE_COST = 0.015, 60.0
 _OTHER_LENGTH_COST, _GAP_COST = 2.5, 5.0
 _GAP_M = (0.25, 6.0)
@@ -111,23 +111,7 @@ def joint_row(
     most_missed : int
         Lids in a row whose joints may all be unseen.
     """
-    along_m, strength = notches
-    count = int(end_m / _PLACE_M) + 1
-    at = np.round(along_m / _PLACE_M).astype(np.int64)
-    is_in = (at >= 0) & (at < count)
-    hits = np.bincount(at[is_in], strength[is_in], minlength=count).astype(np.float64)
-    steps, costs, kinds, lengths = _covers(lids)
-    occupied = maximum_filter1d(np.minimum(hits, 1.0), 2 * round(_OCCUPIED_M / _PLACE_M) + 1)
-    summed = np.concatenate([[0.0], np.cumsum(occupied * _OCCUPIED_WORTH)])
-    best = (np.empty(count), np.empty(count, np.int64), np.empty(count, np.int64))
-    joints_kernel(
-        _evidence(hits),
-        steps,
-        costs,
-        (round(_GAP_M[0] / _PLACE_M), round(_GAP_M[1] / _PLACE_M), _GAP_COST),
-        (summed, (kinds == GRATING).astype(np.int64), _GRATING_WORTH),
-        best,
-    )
+    best, kinds, lengths = _best(notches, lids, end_m, _PLACE_M)
     places, taken = _traced(best)
     if places.size < 3:
         return None
@@ -141,25 +125,62 @@ def joint_row(
     )
 
 
-def _evidence(hits: _Floats) -> _Floats:
+def joint_worth(
+    notches: tuple[_Floats, _Floats], lids: Mapping[float, float], end_m: float
+) -> float:
+    """The value of the best row, roughly: for comparison with other lids' (see `joint_row`)."""
+    (value, before, _), _, _ = _best(notches, lids, end_m, _ROUGHLY_M)
+    last = int(value.argmax())
+    is_row = before[last] >= 0 and before[before[last]] >= 0
+    return float(value[last]) if is_row else 0.0
+
+
+def _best(
+    notches: tuple[_Floats, _Floats], lids: Mapping[float, float], end_m: float, place_m: float
+) -> tuple[tuple[_Floats, _Integers, _Integers], _Integers, _Floats]:
+    """For each place the best row that ends there; what steps between joints cover, how long."""
+    along_m, strength = notches
+    count = int(end_m / place_m) + 1
+    at = np.round(along_m / place_m).astype(np.int64)
+    is_in = (at >= 0) & (at < count)
+    hits = np.bincount(at[is_in], strength[is_in], minlength=count).astype(np.float64)
+    steps, costs, kinds, lengths = _covers(lids, place_m)
+    occupied = maximum_filter1d(np.minimum(hits, 1.0), 2 * round(_OCCUPIED_M / place_m) + 1)
+    worth = place_m / _PLACE_M
+    summed = np.concatenate([[0.0], np.cumsum(occupied * _OCCUPIED_WORTH * worth)])
+    best = (np.empty(count), np.empty(count, np.int64), np.empty(count, np.int64))
+    joints_kernel(
+        _evidence(hits, place_m),
+        steps,
+        costs,
+        (round(_GAP_M[0] / place_m), round(_GAP_M[1] / place_m), _GAP_COST),
+        (summed, (kinds == GRATING).astype(np.int64), _GRATING_WORTH * worth),
+        best,
+    )
+    return best, kinds, lengths
+
+
+def _evidence(hits: _Floats, place_m: float) -> _Floats:
     """What a joint at each place is worth: notches there against notches about."""
-    here = gaussian_filter1d(hits, _HOLE_M / _PLACE_M) * _HOLE_M / _PLACE_M * np.sqrt(2 * np.pi)
-    about = uniform_filter1d(here, round(_ABOUT_M / _PLACE_M), mode="nearest")
+    here = gaussian_filter1d(hits, _HOLE_M / place_m) * _HOLE_M / place_m * np.sqrt(2 * np.pi)
+    about = uniform_filter1d(here, round(_ABOUT_M / place_m), mode="nearest")
     ratio = np.log((here + _LITTLE) / (about + _LITTLE))
     unseen = _UNSEEN * np.exp(-here / _LITTLE)
     worth: _Floats = np.clip(ratio - unseen, _LEAST, _MOST)
     return worth
 
 
-def _covers(lids: Mapping[float, float]) -> tuple[_Integers, _Floats, _Integers, _Floats]:
+def _covers(
+    lids: Mapping[float, float], place_m: float
+) -> tuple[_Integers, _Floats, _Integers, _Floats]:
     """Steps from joint to joint, their costs, what they are, and how long the cover is."""
     made = []
     kinds = [(LID, one, cost) for one, cost in lids.items()]
     kinds += [(GRATING, one, cost) for one, cost in GRATING_LENGTHS_M.items()]
     for kind, long, cost in kinds:
-        for joint in _JOINTS_M:
+        for joint in np.arange(0.0, _WIDEST_JOINT_M + 1e-6, place_m):
             wide = max(0.0, float(joint) - _WIDE_JOINT_M) * _WIDE_COST
-            made.append((round((long + joint) / _PLACE_M), cost + wide, kind, long))
+            made.append((round((long + joint) / place_m), cost + wide, kind, long))
     steps, costs, what, lengths = zip(*made, strict=True)
     return (
         np.array(steps, np.int64),
@@ -220,7 +241,7 @@ def _settled(measured: _Floats, seen: _Integers, long: _Floats) -> _Floats:
     is_known = np.isfinite(long)
     gaps = np.diff(measured) - np.where(is_known, long, 0.0)
     usual = float(np.median(gaps[is_known])) if is_known.any() else 0.0
-    joint = np.clip(usual, 0.0, float(_JOINTS_M[-1]))
+    joint = np.clip(usual, 0.0, _WIDEST_JOINT_M)
     ties = np.where(is_known & (np.abs(gaps - joint) < 0.05), 1 / _JOINT_SCATTER_M**2, 0.0)
     wanted = np.where(is_known, long, 0.0) + joint
     bands = np.zeros((2, measured.size))

@@ -12,8 +12,8 @@ from processing.points.passes import Pass
 from processing.road.gutter_axis import STEP_M, GutterAxis
 from processing.road.gutter_depths import are_deep
 from processing.road.gutter_holes import HoleFit, JointNotches, hole_fit
-from processing.road.gutter_joints import LID, JointRow, joint_row, lengths_of
-from processing.road.gutter_lines import LENGTHS_M, LONG, SHORT, GutterLine, gutter_lines
+from processing.road.gutter_joints import LID, JointRow, joint_row, joint_worth, lengths_of
+from processing.road.gutter_lines import LONG, SHORT, GutterLine, gutter_lines
 from processing.road.notches import Notches, joined
 
 _Floats = NDArray[np.float64]
@@ -23,7 +23,7 @@ _JOINT_M = 0.04
 _WINDOW_M = (1.0, 4.0)  # over which the middle of a gutter is found, by how many notches there are
 _NOTCHES = 12.0
 _ASIDE_M = 0.04
-_STRONG = 0.1
+_WEAK, _STRONG = 0.03, 0.1
 _CLEAR_M = 0.6
 _END_M = 0.1
 _ROUNDS = 3
@@ -36,8 +36,7 @@ _LIDS = (
     lengths_of((0.5, 0.6), (1.0,)),
     lengths_of((0.6, 1.0), (0.5,)),
 )
-"""What the lids of a gutter may be like: of one of `LENGTHS_M`, or of two mixed."""
-_ANY_LIDS = dict.fromkeys(LENGTHS_M, 0.0)
+"""What the lids of a gutter may be like: of one length, or of two mixed."""
 _BY_CHANCE = (
     lengths_of((0.67,), (0.55, 0.86)),
     lengths_of((0.55,), (0.67, 0.86)),
@@ -46,7 +45,7 @@ _BY_CHANCE = (
     lengths_of((0.67, 0.86), (0.55,)),
 )
 """The same of lengths that are made nowhere, with their joints apart from those that are."""
-_LEAST_WORTH, _SURE_WORTH = 4.0, 40.0
+_LEAST_WORTH, _MORE_WORTH, _SURE_WORTH = 6.0, 2.5, 50.0
 _LEAST_GAIN = 0.1  # notches that lie anywhere across a line are not those of holes and joints
 
 
@@ -102,6 +101,7 @@ def gutter_runs(
     if not notches:
         return ()
     left = joined(list(notches))
+    left = left.chosen(left.strength >= _WEAK)
     found: list[GutterRun] = []
     for search in (LONG, SHORT):
         for line in gutter_lines(passes, left, search, most_missed * 0.6 + 1.0):
@@ -123,7 +123,7 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
     axis = line.axis
     low, high = axis.xyz.min(axis=0) - 2.0, axis.xyz.max(axis=0) + 2.0
     near = notches.chosen(((notches.xyz >= low) & (notches.xyz <= high)).all(axis=1))
-    lids = _lids_along(axis, near, most_missed)
+    lids = _lids_along(axis, near)
     if lids is None:
         return None
     holes: HoleFit | None = None
@@ -176,7 +176,7 @@ def _on_lids(
     return along, across, is_on
 
 
-def _lids_along(axis: GutterAxis, notches: Notches, most_missed: int) -> dict[float, float] | None:
+def _lids_along(axis: GutterAxis, notches: Notches) -> dict[float, float] | None:
     """The lengths of lids that explain the notches best; None if no better than by chance.
 
     What chance does is asked of the same notches: rows of lengths that no lid has are laid too.
@@ -187,16 +187,13 @@ def _lids_along(axis: GutterAxis, notches: Notches, most_missed: int) -> dict[fl
         return None
 
     def worth(lids: dict[float, float]) -> float:
-        row = joint_row(those, lids, axis.length_m, most_missed)
-        return -np.inf if row is None else row.value
+        return joint_worth(those, lids, axis.length_m)
 
-    if worth(_ANY_LIDS) < _LEAST_WORTH:
-        return None
     worths = [worth(one) for one in _LIDS]
     best = max(worths)
     if best < _LEAST_WORTH:
         return None
-    if best < _SURE_WORTH and best < _LEAST_WORTH + max(worth(one) for one in _BY_CHANCE):
+    if best < _SURE_WORTH and best < _MORE_WORTH + max(worth(one) for one in _BY_CHANCE):
         return None
     return _LIDS[worths.index(best)]
 
