@@ -106,7 +106,7 @@ def test_coarse_asphalt_is_open_all_over_and_no_gutter() -> None:
 
     assert np.abs(contrast.lids).max() < 0.7
     assert np.abs(contrast.beside).max() < 0.7
-    assert (sure_of(rough()) < 0.1).all()
+    assert (sure_of(rough()) < 0.4).all()
 
 
 def test_two_heads_say_the_same_as_one() -> None:
