@@ -11,6 +11,7 @@ from itertools import groupby
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from processing.image.scanlines import Scanlines, ScanlineSettings, scanlines_of
 from processing.monitor import Monitor
@@ -19,8 +20,11 @@ from processing.road.curb_chains import chains_of
 from processing.road.curb_confidence import confidence_of
 from processing.road.curb_crossings import crossing_runs
 from processing.road.curb_profile import PassSteps, StepSettings, joined_steps, steps_of
+from processing.road.curb_ridges import PassRidges, ridge_runs, ridges_of
 from processing.road.curb_runs import StepRun, median_of, run_of
 from processing.worked_ahead import one_ahead
+
+Floats = NDArray[np.float64]
 
 LEAST_LENGTH_M = 1.0
 """What stands alone has to be so long: a kerb stone is 0.6 m, two of them make a line."""
@@ -36,8 +40,10 @@ _LEVEL_M, _RISEN_SHARE = 0.02, 0.5
 """Where the ground falls away from the road and what falls is no higher than the road itself, less
 than this share of it having risen before, no island ends but a ditch or a bank begins."""
 
-_WIDEST_STONE_M = 0.30
-_BESIDE_SHARE = 0.5
+_WIDEST_STONE_M = 0.35  # 25 cm, and both edges are known within some centimetres
+_BESIDE_SHARE = 0.25  # no planting strip is as narrow as a stone
+_ABOVE_ROAD_M = 0.05
+_WIDEST_STRIP_M, _ALONG_SHARE = 3.5, 0.5
 
 
 def step_runs(
@@ -78,25 +84,43 @@ def runs_of(
     """
     for _, stretches in groupby(scanlines, key=lambda one: one.number):
         parts: list[PassSteps] = []
-        yield from crossing_runs(_noted(stretches, settings, parts), number, settings)
+        ridges: list[PassRidges] = []
+        noted = _noted(stretches, settings, parts, ridges)
+        yield from crossing_runs(noted, number, settings)
         steps = joined_steps(parts)
+        yield from ridge_runs(ridges, steps, number, settings)
         for chain in chains_of(steps, settings):
             yield run_of(steps, chain, number)
 
 
 def _noted(
-    stretches: Iterable[Scanlines], settings: StepSettings, parts: list[PassSteps]
+    stretches: Iterable[Scanlines],
+    settings: StepSettings,
+    parts: list[PassSteps],
+    ridges: list[PassRidges],
 ) -> Iterator[Scanlines]:
     """The stretches, each one's steps being noted on the way: none is held."""
     for stretch in stretches:
         parts.append(steps_of(stretch, settings))
+        ridges.append(ridges_of(stretch, settings))
         yield stretch
 
 
 def without_doubtful(runs: Sequence[StepRun], settings: StepSettings) -> tuple[StepRun, ...]:
     """The runs of one drive that are taken for curbs."""
-    likely = [run for run in runs if is_likely(run, settings)]
-    return tuple(run for run in likely if not _is_rear(run, likely))
+    return without_rears([run for run in runs if is_likely(run, settings)], settings)
+
+
+def without_rears(runs: Sequence[StepRun], settings: StepSettings) -> tuple[StepRun, ...]:
+    """Runs, of any drives, that aren't rear edges of stones whose front is another of them."""
+    fronts = _fronts(runs, settings)
+    return tuple(run for run in runs if run.rises > 0 or not _is_rear(run, fronts))
+
+
+def without_lone_edging(runs: Sequence[StepRun], settings: StepSettings) -> tuple[StepRun, ...]:
+    """Runs, of any drives, but for narrow ridges that no curb runs beside: those of fields."""
+    fronts = _fronts(runs, settings)
+    return tuple(run for run in runs if not run.is_edging or _is_beside(run, fronts))
 
 
 def is_likely(run: StepRun, settings: StepSettings) -> bool:
@@ -121,27 +145,42 @@ def _falls_off(run: StepRun, high_m: float) -> bool:
     return above_m < _LEVEL_M and median_of(run.risen_m[seen]) < _RISEN_SHARE * high_m
 
 
-def _is_rear(run: StepRun, runs: Sequence[StepRun]) -> bool:
-    """Whether most of a run is the rear edge of stones whose front is another, higher run."""
-    if run.rises > 0:
+def _is_rear(run: StepRun, fronts: Floats) -> bool:
+    """Whether along some of a run a higher front lies a stone's width away."""
+    if not fronts.size:
         return False
-    beside = np.zeros(run.stations_m.size, np.bool_)
-    for other in runs:
-        if other.side == run.side and other.rises > 0:
-            beside |= _behind(run, other)
+    tree = cKDTree(fronts[:, :2])
+    found = tree.query(run.upper[:, :2], distance_upper_bound=_WIDEST_STONE_M)
+    beside = np.isfinite(found[0])
+    nearest = np.asarray(found[1], np.int64)[beside]
+    beside[beside] = fronts[nearest, 2] >= run.heights_m[beside]
     return bool(beside.mean() >= _BESIDE_SHARE)
 
 
-def _behind(run: StepRun, front: StepRun) -> NDArray[np.bool_]:
-    """(k,) where the front edge of a stone lies on the road's side of a run."""
-    if np.any(np.diff(front.stations_m) <= 0):
-        return np.zeros(run.stations_m.size, np.bool_)
-    low, high = front.stations_m[0], front.stations_m[-1]
-    here = (run.stations_m >= low) & (run.stations_m <= high)
-    apart = np.full(run.stations_m.size, np.inf)
-    places = run.stations_m[here]
-    level = [np.interp(places, front.stations_m, front.upper[:, axis]) for axis in range(3)]
-    apart[here] = np.hypot(level[0] - run.upper[here, 0], level[1] - run.upper[here, 1])
-    is_higher = np.zeros(run.stations_m.size, np.bool_)
-    is_higher[here] = np.interp(places, front.stations_m, front.heights_m) >= run.heights_m[here]
-    return (apart <= _WIDEST_STONE_M) & is_higher
+def _is_beside(run: StepRun, fronts: Floats) -> bool:
+    """Whether along most of a run there is a front as far away as planting strips are wide."""
+    if not fronts.size:
+        return False
+    away = cKDTree(fronts[:, :2]).query(run.upper[:, :2], distance_upper_bound=_WIDEST_STRIP_M)[0]
+    return bool(np.isfinite(away).mean() >= _ALONG_SHARE)
+
+
+def _fronts(runs: Sequence[StepRun], settings: StepSettings) -> Floats:
+    """(n, 3) places of the curbs that stand on the road: in plan, and how high they are."""
+    return np.vstack(
+        [
+            np.empty((0, 3)),
+            *(
+                np.column_stack([run.upper[:, :2], run.heights_m])
+                for run in runs
+                if run.rises > 0 and _is_first(run, settings)
+            ),
+        ]
+    )
+
+
+def _is_first(run: StepRun, settings: StepSettings) -> bool:
+    """Whether a run stands on the road: stones on ground that a curb has raised are edgings."""
+    seen = run.is_seen
+    is_raised = median_of(run.risen_m[seen]) >= settings.least_step_m
+    return not is_raised and median_of(run.above_way_m[seen]) < _ABOVE_ROAD_M

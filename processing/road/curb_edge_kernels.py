@@ -41,6 +41,8 @@ _LEAST_TOP = 3.0
 _UNSEEN, _ROUGH_M = 0.05, 0.005  # a rough line's height is worth so many points
 _NOISY, _NOISIEST_M = 1.5, 0.02
 _TOP_SPACING_M = 0.03
+_ASIDE_M = 0.08
+_RAISED = 0.7  # of the rough step: what lies higher is no soil and little of a face
 _LEAST_FACE = 2.5
 _TYPICAL_LEAN = 0.08
 
@@ -110,12 +112,15 @@ def _plane(
 
 
 @kernel
-def _middle(values: _Floats, span: tuple[int, int], low: float, high: float, share: float) -> float:
-    """A quantile of the heights between two distances across; NaN where there are too few."""
+def _middle(
+    values: _Floats, span: tuple[int, int], across: tuple[float, float], above: float, share: float
+) -> float:
+    """A quantile of heights above a floor, between distances across; NaN of too few."""
+    low, high = across
     heights = np.empty(span[1] - span[0])
     count = 0
     for i in range(span[0], span[1]):
-        if low <= values[i, 1] < high:
+        if low <= values[i, 1] < high and values[i, 2] > above:
             heights[count] = values[i, 2]
             count += 1
     if count < _LEAST_POINTS:
@@ -138,8 +143,9 @@ def _sort_into(
         clear, clear_m = min(max(0.25 * step, 0.006), 0.02), upper + _CHAMFER_M
         if d < lower - 0.01 and h < low + max(0.5 * step, 0.02):
             kind = _LOW
-        elif d > upper + 0.01 and h > high - (max(0.5 * step, 0.02) if d > clear_m else 0.006):
-            kind = _HIGH
+        elif d > upper + 0.01 - edge[3]:
+            below = max(0.5 * step, 0.02) if d > clear_m else 0.006
+            kind = _HIGH if h > high - min(below, edge[4]) else -1
         if lower - edge[2] <= d <= upper + edge[2] and low + clear < h < high - _ROUND * step:
             kind = _FACE
         kinds[i - span[0]] = kind if d > lower - _REACH_M and d < upper + _TOP_M + 0.03 else -1
@@ -166,24 +172,42 @@ def _ends(
 
 
 @kernel
-def _station(span: tuple[int, int], values: _Floats, start: _Floats, out: _Floats) -> None:
-    """Edges at one station; ``start``: rough width of the face, whether it is hidden, tolerance."""
-    width, is_hidden, tolerance = start[0], start[1] > 0.5, start[2]
-    low = _middle(values, span, -0.25, -0.05, 0.4)
+def _levels(values: _Floats, span: tuple[int, int], start: _Floats) -> tuple[float, float]:
+    """Rough heights of carriageway and top; NaN where there are too few points."""
+    width, is_hidden, step = start[0], start[1] > 0.5, start[2]
+    low = _middle(values, span, (-0.25, -0.05), -math.inf, 0.4)
     if math.isnan(low):
-        low = _middle(values, span, -0.4, -0.02, 0.4)
-    high = _middle(values, span, width + 0.04, width + 0.16, 0.5)
+        low = _middle(values, span, (-0.4, -0.02), -math.inf, 0.4)
+    high = math.nan
+    if is_hidden:
+        # Behind a narrow stone the ground may lie as low as before it; the top is no carriageway.
+        low = low if low <= 0.5 * step else math.nan
+        floor = (0.0 if math.isnan(low) else low) + _RAISED * step
+        high = _middle(values, span, (width - 0.06, width + 0.16), floor, 0.6)
     if math.isnan(high):
-        high = _middle(values, span, width + 0.02, width + 0.3, 0.5)
+        high = _middle(values, span, (width + 0.04, width + 0.16), -math.inf, 0.5)
+    if math.isnan(high):
+        high = _middle(values, span, (width + 0.02, width + 0.3), -math.inf, 0.5)
+    return low, high
+
+
+@kernel
+def _station(span: tuple[int, int], values: _Floats, start: _Floats, out: _Floats) -> None:
+    """Edges at a station; ``start``: rough width, whether hidden, rough step, tolerance."""
+    width, is_hidden, tolerance = start[0], start[1] > 0.5, start[3]
+    low, high = _levels(values, span, start)
     if math.isnan(high) or (math.isnan(low) and not is_hidden):
         return
     is_shaded = math.isnan(low)  # the carriageway lies in the curb's own shadow
     kinds = np.empty(span[1] - span[0], np.int64)
     planes = np.array([0.0 if is_shaded else low, 0.0, 0.0, high, 0.0, 0.0])
-    edge = np.array([0.0, width, 0.12])
+    # At first a hidden top may begin elsewhere; close below it the stone's other face may be.
+    aside_m, below_m = (_ASIDE_M, 0.02) if is_hidden else (0.0, math.inf)
+    edge = np.array([0.0, width, 0.12, aside_m, below_m])
     weights, spread = np.zeros(3), math.nan
     for turn in range(_TURNS):
         _sort_into(span, values, edge, planes, kinds)
+        edge[3] = 0.0
         a = _plane(_LOW, span, values, kinds, np.array([tolerance, planes[0], 0.0, 0.05, 0.1]))
         b = _plane(_HIGH, span, values, kinds, np.array([tolerance, planes[3], 0.0, 0.05, 0.1]))
         if b[3] < _LEAST_TOP or (a[3] < _LEAST_POINTS and not is_hidden):
@@ -191,7 +215,7 @@ def _station(span: tuple[int, int], values: _Floats, start: _Floats, out: _Float
         if a[3] < _LEAST_POINTS:
             a = (planes[0], 0.0, 0.0, _UNSEEN, _ROUGH_M)
         planes[:3], planes[3:] = a[:3], b[:3]
-        tolerance = max(start[2], min(_NOISY * min(a[4], b[4]), _NOISIEST_M))
+        tolerance = max(start[3], min(_NOISY * min(a[4], b[4]), _NOISIEST_M))
         weights[0], weights[1] = a[3], b[3]
         out[LOW_OFF], out[HIGH_OFF] = a[4], b[4]
         _sort_into(span, values, edge, planes, kinds)
@@ -295,11 +319,7 @@ def _measure(
 
 @kernel
 def edges_kernel(
-    along: _Floats,
-    across_above: _Floats,
-    stations: _Floats,
-    settings: _Floats,
-    measures: _Floats,
+    along: _Floats, across_above: _Floats, stations: _Floats, settings: _Floats, measures: _Floats
 ) -> None:
     """Edges at every station of one guide.
 
@@ -309,11 +329,10 @@ def edges_kernel(
         Rising, in stations.
     across_above : (n, 2) float64
         m.
-    stations : (m, 2) float64
-        Rough width of the face, and whether it is hidden.
+    stations : (m, 3) float64
+        Rough width of the face, whether it is hidden, and rough height of the step.
     settings : (4,) float64
-        Half the window, the longest half window, points that are enough in a
-        window, tolerance.
+        Half the window, the longest half window, points that are enough in one, tolerance.
     measures : (m, MEASURES) float64
         Filled with NaN before.
     """
@@ -335,7 +354,7 @@ def edges_kernel(
         values = np.empty(((far - near + stride - 1) // stride, 3))
         values[:, 0] = (along[near:far:stride] - k) * STEP_M
         values[:, 1:] = across_above[near:far:stride]
-        start = np.array([stations[k, 0], stations[k, 1], tolerance])
+        start = np.append(stations[k], tolerance)
         _station((0, values.shape[0]), values, start, measures[k])
 
 
@@ -373,7 +392,7 @@ def warm_up() -> None:
     edges_kernel(
         np.linspace(0, 2, 200),
         place,
-        np.zeros((3, 2)),
+        np.zeros((3, 3)),
         np.array([0.25, 0.5, 50.0, 0.005]),
         measures,
     )

@@ -31,6 +31,7 @@ _LONGEST_DROP_M = 12.0
 _FALLEN = 0.6  # of the usual step: it comes down to an opening
 _LEAST_M = 1.0
 _FACED = 0.5
+_HIDDEN = 0.5
 _AROUND_M, _USUAL_PERCENT = 8.0, 70.0
 _TALLER, _TALLER_M = 0.15, 0.015
 
@@ -70,7 +71,9 @@ def lines_of(guide: Guide, edges: PooledEdges, bridge_m: float) -> Iterator[Curb
     is_flat = is_measured & ~is_edge
     is_edge &= ~_stands_out(edges.steps_m, is_edge)
     is_known = is_edge | is_flat
-    for first, stop in _parts(is_edge, is_flat, edges.steps_m, bridge_m):
+    # A face that looks away and is lowered to the ground shows nothing: there it ends.
+    drop_m = 0.0 if guide.is_hidden.mean() > _HIDDEN else _LONGEST_DROP_M
+    for first, stop in _parts(is_edge, is_flat, edges.steps_m, (bridge_m, drop_m)):
         if (stop - first) * STEP_M >= _LEAST_M and is_edge[first:stop].sum() * STEP_M >= _LEAST_M:
             yield _line(guide, edges, (is_edge, is_known), (first, stop))
 
@@ -88,7 +91,7 @@ def _stands_out(steps: _Floats, is_edge: _Flags) -> _Flags:
 
 
 def _parts(
-    is_edge: _Flags, is_flat: _Flags, steps: _Floats, bridge_m: float
+    is_edge: _Flags, is_flat: _Flags, steps: _Floats, longest_m: tuple[float, float]
 ) -> Iterator[tuple[int, int]]:
     """First and behind the last station of each curb."""
     seen = np.flatnonzero(is_edge)
@@ -98,20 +101,27 @@ def _parts(
     for last, following in itertools.pairwise(seen):
         if following - last > 1:
             hole = slice(int(last) + 1, int(following))
-            if not _goes_on(is_flat, steps, is_edge, hole, bridge_m):
+            if not _goes_on(is_flat, steps, is_edge, hole, longest_m):
                 yield first, hole.start
                 first = hole.stop
     yield first, int(seen[-1]) + 1
 
 
 def _goes_on(
-    is_flat: _Flags, steps: _Floats, is_edge: _Flags, hole: slice, bridge_m: float
+    is_flat: _Flags,
+    steps: _Floats,
+    is_edge: _Flags,
+    hole: slice,
+    longest_m: tuple[float, float],
 ) -> bool:
-    """Whether a curb goes on where no edge was measured: hidden, or lowered to the road."""
+    """Whether a curb goes on where no edge was measured: hidden, or lowered to the road.
+
+    ``longest_m``: how long it may be so.
+    """
     long_m = (hole.stop - hole.start) * STEP_M
     if float(is_flat[hole].mean()) < 0.5:
-        return bool(long_m <= bridge_m)
-    if long_m > _LONGEST_DROP_M:
+        return bool(long_m <= longest_m[0])
+    if long_m > max(longest_m[1], 2 * STEP_M):
         return False
     return long_m <= 2 * STEP_M or all(
         _comes_down(steps, is_edge, end, way) for end, way in ((hole.start - 1, -1), (hole.stop, 1))

@@ -98,6 +98,7 @@ class StepRun:
     foot_roughness_m: Floats
     above_way_m: Floats
     risen_m: Floats
+    is_edging: bool = False
 
     @property
     def heights_m(self) -> Floats:
@@ -118,13 +119,15 @@ def median_of(values: Floats) -> float:
     return float(rising[(rising.size - 1) // 2] + rising[rising.size // 2]) / 2
 
 
-def run_of(steps: PassSteps, chain: Chain, number: int) -> StepRun:
+def run_of(steps: PassSteps, chain: Chain, number: int, among: PassSteps | None = None) -> StepRun:
     """The smooth line through the steps of a chain, at every scanline.
 
     Parameters
     ----------
     number : int
         Which of the drives given it is of.
+    among : PassSteps, optional
+        All steps of the same scanlines, where the chain is not of them.
     """
     rows = steps.table[chain.rows]
     sections = steps.sections[chain.rows]
@@ -163,7 +166,7 @@ def run_of(steps: PassSteps, chain: Chain, number: int) -> StepRun:
         roughness=rows[nearest, TOP_ROUGH_M] / rows[nearest, NOISE_M] + unseen,
         foot_roughness_m=rows[nearest, FOOT_ROUGH_M] + unseen,
         above_way_m=low + unseen,
-        risen_m=_risen(steps, (every, middle), side),
+        risen_m=_risen(among or steps, (every, middle), side),
     )
 
 

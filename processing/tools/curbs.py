@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from processing.monitor import Monitor, PartMonitor, parts_of
 from processing.points.drive import Drive
 from processing.road.curb_confidence import CurbFacts, chance_of
-from processing.road.curb_doubts import step_runs
+from processing.road.curb_doubts import step_runs, without_lone_edging, without_rears
 from processing.road.curb_edges import EdgeSettings, MeasuredEdges, measured_edges
 from processing.road.curb_evidence import facts_of, noise_of
 from processing.road.curb_features import CurbFeature, EdgeLine, features_of
@@ -188,6 +188,8 @@ def find_curbs(
     parts = parts_of(PartMonitor(monitor, 0.0, _FINDING), [drive.count for drive in drives])
     for number, (drive, part) in enumerate(zip(drives, parts, strict=True)):
         runs.extend(step_runs(drive, number, settings, part))
+    # What hides the front of a stone from one scanner doesn't hide it from all.
+    runs = list(without_lone_edging(without_rears(runs, settings), settings))
     features: list[CurbFeature] = []
     for one in measured_curbs(drives, runs, parameters, PartMonitor(monitor, _FINDING, 1.0)):
         chance = chance_of(one.facts)

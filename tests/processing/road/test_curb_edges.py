@@ -54,11 +54,15 @@ def curb_points(
 
 
 def measured(
-    points: tuple[Floats, Floats], width_m: float = 0.015, *, is_hidden: bool = False
+    points: tuple[Floats, Floats],
+    width_m: float = 0.015,
+    *,
+    is_hidden: bool = False,
+    step_m: float = 0.15,
 ) -> Floats:
     """What the kernel makes of the middle station."""
     measures = np.full((9, MEASURES), np.nan)
-    stations = np.column_stack([np.full(9, width_m), np.full(9, float(is_hidden))])
+    stations = np.tile([width_m, float(is_hidden), step_m], (9, 1))
     edges_kernel(points[0], points[1], stations, WINDOW, measures)
     return np.asarray(measures[4])
 
@@ -107,13 +111,31 @@ def test_of_a_hidden_face_the_end_of_the_top_is_the_upper_edge() -> None:
     assert found[UPPER_ABOVE] == pytest.approx(0.15, abs=0.005)
 
 
+@pytest.mark.parametrize("at_m", [-0.06, 0.0, 0.06])
+def test_a_narrow_top_with_soil_behind_it_is_told_from_the_soil(at_m: float) -> None:
+    random = np.random.default_rng(6)
+    top, face, soil = (random.uniform(0, 1, count) for count in (30, 30, 60))
+    places = np.vstack(
+        [
+            np.column_stack([at_m + 0.1 * top, np.full(30, 0.12)]),
+            np.column_stack([np.full(30, at_m + 0.1), 0.11 * face]),
+            np.column_stack([at_m + 0.1 + 0.3 * soil, np.full(60, 0.01)]),
+        ]
+    )
+    places += random.normal(0, 0.003, places.shape)
+    along = np.sort(random.uniform(2, 6, 120))
+    found = measured((along, random.permutation(places)), is_hidden=True, step_m=0.13)
+    assert found[UPPER_ACROSS] == pytest.approx(at_m, abs=0.025)
+    assert found[UPPER_ABOVE] == pytest.approx(0.12, abs=0.01)
+
+
 def test_without_points_nothing_is_measured() -> None:
     assert np.isnan(measured((np.empty(0), np.empty((0, 2))))).all()
 
 
 def test_the_kernel_and_its_plain_form_agree() -> None:
     points = curb_points(per_m=60.0)
-    stations = np.zeros((9, 2))
+    stations = np.zeros((9, 3))
     compiled, plain = np.full((2, 9, MEASURES), np.nan)
     edges_kernel(points[0], points[1], stations, WINDOW, compiled)
     edges_kernel.py_func(points[0], points[1], stations, WINDOW, plain)  # type: ignore[attr-defined]
