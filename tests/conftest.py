@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
-from hypothesis import settings
+from hypothesis import HealthCheck, settings
 
 from resources import path_of
 
@@ -34,7 +34,12 @@ ORDER = (
 TESTS = Path(__file__).parent
 
 # The same cases on every machine, however slow it is.
-settings.register_profile("zuka", deadline=None, derandomize=True)
+settings.register_profile(
+    "zuka",
+    deadline=None,
+    derandomize=True,
+    suppress_health_check=[HealthCheck.too_slow],  # says only that the machine is busy
+)
 settings.load_profile("zuka")
 
 
