@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.kernels import kernel
-from processing.road import step_columns as of
+from processing.road.curbs import step_columns as of
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]

@@ -1,8 +1,8 @@
 """``python -m processing.score.curb_training``: what tells curbs apart, learnt from known streets.
 
 Simulates streets of ``--seeds``, finds lines on them without leaving any out, and fits
-`processing.road.curb_confidence.WEIGHTS` to which of them are curbs; streets of ``--check`` are not
-learnt from. ``--deliveries`` are further streets to learn from, recorded before. Prints the weights
+`processing.road.curbs.curb_confidence.WEIGHTS` to which of them are curbs; streets of ``--check``
+are not learnt from. ``--deliveries`` are further streets to learn from, recorded before. Prints the weights
 and how many lines of each confidence are right: of streets learnt from by weights that were fitted
 without the street itself.
 """
@@ -22,8 +22,8 @@ from scipy.optimize import minimize
 
 from processing.formats.mapped_shapes import read_mapped
 from processing.monitor import SilentMonitor
-from processing.road.curb_confidence import CurbFacts, terms_of
-from processing.road.curb_doubts import step_runs
+from processing.road.curbs.curb_confidence import CurbFacts, terms_of
+from processing.road.curbs.curb_doubts import step_runs
 from processing.score.curb_lines import FOUND_SHARE, TOLERANCE_M
 from processing.score.curb_sections import kind_of
 from processing.score.filter_tables import markdown_table

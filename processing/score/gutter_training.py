@@ -1,8 +1,8 @@
 """``python -m processing.score.gutter_training``: what tells lids and gratings, from known streets.
 
 Simulates streets of ``--seeds``, finds covers on them without leaving any out, and fits the weights
-of `processing.road.gutter_confidence` and `processing.road.grating_confidence` to which of them are
-right; streets of ``--check`` are not learnt from. ``--deliveries`` are further streets to learn
+of `processing.road.gutters.gutter_confidence` and `processing.road.gutters.grating_confidence` to
+which of them are right; streets of ``--check`` are not learnt from. ``--deliveries`` are further streets to learn
 from, recorded before. Prints the weights and how many covers of each confidence are right: of
 streets learnt from by weights that were fitted without the street itself.
 """
@@ -18,8 +18,8 @@ from pathlib import Path
 
 from processing.formats.mapped_shapes import read_mapped
 from processing.monitor import SilentMonitor
-from processing.road.grating_confidence import GratingTerms, terms_of
-from processing.road.gutter_confidence import CoverFacts
+from processing.road.gutters.grating_confidence import GratingTerms, terms_of
+from processing.road.gutters.gutter_confidence import CoverFacts
 from processing.score.gutters import judged_gutters
 from processing.score.learnt_chances import (
     Expected,

@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 from processing.monitor import Monitor, PartMonitor, parts_of
 from processing.points.drive import Drive
-from processing.road.curb_confidence import CurbFacts, chance_of
-from processing.road.curb_doubts import step_runs, without_lone_edging, without_rears
-from processing.road.curb_edges import EdgeSettings, MeasuredEdges, measured_edges
-from processing.road.curb_evidence import facts_of, noise_of
-from processing.road.curb_features import CurbFeature, EdgeLine, features_of
-from processing.road.curb_guides import Guide, guides_of
-from processing.road.curb_joins import pooled
-from processing.road.curb_lines import CurbLine, lines_of
-from processing.road.curb_notes import note_on
-from processing.road.curb_profile import StepSettings
-from processing.road.curb_runs import StepRun
-from processing.road.curb_tails import prolonged
+from processing.road.curbs.curb_confidence import CurbFacts, chance_of
+from processing.road.curbs.curb_doubts import step_runs, without_lone_edging, without_rears
+from processing.road.curbs.curb_edges import EdgeSettings, MeasuredEdges, measured_edges
+from processing.road.curbs.curb_evidence import facts_of, noise_of
+from processing.road.curbs.curb_features import CurbFeature, EdgeLine, features_of
+from processing.road.curbs.curb_guides import Guide, guides_of
+from processing.road.curbs.curb_joins import pooled
+from processing.road.curbs.curb_lines import CurbLine, lines_of
+from processing.road.curbs.curb_notes import note_on
+from processing.road.curbs.curb_profile import StepSettings
+from processing.road.curbs.curb_runs import StepRun
+from processing.road.curbs.curb_tails import prolonged
 from processing.text import Text
 from processing.tools.parameters import angle, length, ratio
 from processing.tools.tool import Candidate, CandidateResult, Needs, Tool

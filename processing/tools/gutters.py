@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 from processing.monitor import Monitor, PartMonitor, parts_of
 from processing.points.drive import Drive
 from processing.points.passes import passes_of
-from processing.road.curb_points import GuideCells
-from processing.road.grating_found import GratingFound, one_of_each
-from processing.road.gratings import GratingParameters, gratings_of
-from processing.road.gutter_confidence import CoverFacts, chance_of, facts_of
-from processing.road.gutter_gratings import SureCovers, with_gratings
-from processing.road.gutter_lids import POINTS_WITHIN_M, Cover, covers_of
-from processing.road.gutter_notches import notches_of
-from processing.road.gutter_outline import edge_lines
-from processing.road.gutter_runs import GutterRun, gutter_runs
-from processing.road.notches import Notches, NotchParameters
+from processing.road.curbs.curb_points import GuideCells
+from processing.road.gutters.grating_found import GratingFound, one_of_each
+from processing.road.gutters.gratings import GratingParameters, gratings_of
+from processing.road.gutters.gutter_confidence import CoverFacts, chance_of, facts_of
+from processing.road.gutters.gutter_gratings import SureCovers, with_gratings
+from processing.road.gutters.gutter_lids import POINTS_WITHIN_M, Cover, covers_of
+from processing.road.gutters.gutter_notches import notches_of
+from processing.road.gutters.gutter_outline import edge_lines
+from processing.road.gutters.gutter_runs import GutterRun, gutter_runs
+from processing.road.gutters.notches import Notches, NotchParameters
 from processing.text import Text
 from processing.tools.parameters import count, length, ratio
 from processing.tools.tool import Candidate, CandidateResult, Needs, Tool

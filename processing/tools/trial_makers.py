@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from processing.road.asked_place import AskedPlace
-from processing.road.curb_trials import curb_trials
-from processing.road.notch_trials import notch_trials
+from processing.road.curbs.curb_trials import curb_trials
+from processing.road.gutters.notch_trials import notch_trials
 from processing.road.trials import Trial
 from processing.tools.curbs import CurbParameters, step_settings
 from processing.tools.gutters import GutterParameters, notch_parameters

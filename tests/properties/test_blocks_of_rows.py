@@ -18,10 +18,10 @@ from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
-from processing.road.curb_guides import Guide, outwards_of
-from processing.road.curb_points import GuideCells
-from processing.road.gutter_notches import notches_of
-from processing.road.notches import NotchParameters
+from processing.road.curbs.curb_guides import Guide, outwards_of
+from processing.road.curbs.curb_points import GuideCells
+from processing.road.gutters.gutter_notches import notches_of
+from processing.road.gutters.notches import NotchParameters
 from processing.runner import RunRequest, columns_of, run
 from processing.templates.fit import FitSettings, fit_along
 from processing.templates.fitted_lines import FittedLine, fitted_lines

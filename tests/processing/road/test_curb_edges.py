@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.road.curb_edge_kernels import (
+from processing.road.curbs.curb_edge_kernels import (
     FACE_POINTS,
     LOWER_ABOVE,
     LOWER_ACROSS,

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.road.curb_confidence import CurbFacts, chance_of
-from processing.road.curb_edge_kernels import (
+from processing.road.curbs.curb_confidence import CurbFacts, chance_of
+from processing.road.curbs.curb_edge_kernels import (
     HIGH_OFF,
     LEAN,
     LOW_OFF,
@@ -18,11 +18,11 @@ from processing.road.curb_edge_kernels import (
     UPPER_ABOVE,
     UPPER_ACROSS,
 )
-from processing.road.curb_evidence import facts_of, noise_of
-from processing.road.curb_guides import guides_of
-from processing.road.curb_joins import pooled
-from processing.road.curb_lines import lines_of
-from processing.road.curb_runs import StepRun
+from processing.road.curbs.curb_evidence import facts_of, noise_of
+from processing.road.curbs.curb_guides import guides_of
+from processing.road.curbs.curb_joins import pooled
+from processing.road.curbs.curb_lines import lines_of
+from processing.road.curbs.curb_runs import StepRun
 from processing.tools.curbs import CurbParameters
 from tests.processing.road.test_curb_lines import measures_of, run_of
 

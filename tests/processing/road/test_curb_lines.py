@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.road.curb_edge_kernels import (
+from processing.road.curbs.curb_edge_kernels import (
     ERROR_ACROSS,
     ERROR_HIGH,
     ERROR_LOW,
@@ -22,11 +22,11 @@ from processing.road.curb_edge_kernels import (
     UPPER_ABOVE,
     UPPER_ACROSS,
 )
-from processing.road.curb_guides import Guide, guides_of
-from processing.road.curb_joins import pooled
-from processing.road.curb_lines import lines_of
-from processing.road.curb_runs import StepRun
-from processing.road.curb_smoothing import Smoothness, smoothed
+from processing.road.curbs.curb_guides import Guide, guides_of
+from processing.road.curbs.curb_joins import pooled
+from processing.road.curbs.curb_lines import lines_of
+from processing.road.curbs.curb_runs import StepRun
+from processing.road.curbs.curb_smoothing import Smoothness, smoothed
 
 Floats = NDArray[np.float64]
 

@@ -9,9 +9,9 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.image.scanlines import Scanlines
-from processing.road.curb_doubts import runs_of, without_doubtful
-from processing.road.curb_profile import StepSettings
-from processing.road.curb_runs import StepRun
+from processing.road.curbs.curb_doubts import runs_of, without_doubtful
+from processing.road.curbs.curb_profile import StepSettings
+from processing.road.curbs.curb_runs import StepRun
 
 _Floats = NDArray[np.float64]
 SETTINGS = StepSettings()

@@ -9,8 +9,8 @@ import numpy as np
 from processing.image.scanlines import ScanlineSettings, scanline_through
 from processing.points.passes import passes_of
 from processing.road.asked_place import AskedPlace
-from processing.road.curb_profile import StepSettings
-from processing.road.curb_trials import curb_trials
+from processing.road.curbs.curb_profile import StepSettings
+from processing.road.curbs.curb_trials import curb_trials
 from processing.road.trials import Trial
 from tests.processing.image.test_scanlines import recorded
 from tests.street_scene import CURB_AT_M, CURB_HEIGHT_M

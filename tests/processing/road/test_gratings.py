@@ -9,9 +9,9 @@ import pytest
 
 from processing.points.passes import Pass, passes_of_trajectory
 from processing.points.trajectory import Trajectory
-from processing.road.grating_found import GratingFound, one_of_each
-from processing.road.gratings import GratingParameters, gratings_among
-from processing.road.notches import OPENING, Notches
+from processing.road.gutters.grating_found import GratingFound, one_of_each
+from processing.road.gutters.gratings import GratingParameters, gratings_among
+from processing.road.gutters.notches import OPENING, Notches
 
 SPEED_M_S, ROWS_PER_S = 11.1, 100.0
 CORNERS = ((4.0, 3.0), (4.5, 3.4))

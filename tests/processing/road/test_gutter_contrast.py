@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.road.gutter_axis import GutterAxis
-from processing.road.gutter_confidence import chance_of, facts_of
-from processing.road.gutter_contrast import contrast_of
-from processing.road.gutter_holes import JointNotches, hole_fit
-from processing.road.gutter_joints import LID, JointRow
-from processing.road.gutter_lids import Cover
-from processing.road.gutter_runs import GutterRun
-from processing.road.notches import OPENING, Notches
+from processing.road.gutters.gutter_axis import GutterAxis
+from processing.road.gutters.gutter_confidence import chance_of, facts_of
+from processing.road.gutters.gutter_contrast import contrast_of
+from processing.road.gutters.gutter_holes import JointNotches, hole_fit
+from processing.road.gutters.gutter_joints import LID, JointRow
+from processing.road.gutters.gutter_lids import Cover
+from processing.road.gutters.gutter_runs import GutterRun
+from processing.road.gutters.notches import OPENING, Notches
 
 LID_M, COUNT = 0.6, 20
 STARTS = 1.0 + LID_M * np.arange(COUNT)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.road.gutter_depths import are_deep
-from processing.road.gutter_joints import GRATING, LID, JointRow
+from processing.road.gutters.gutter_depths import are_deep
+from processing.road.gutters.gutter_joints import GRATING, LID, JointRow
 
 LID_M = 0.6
 

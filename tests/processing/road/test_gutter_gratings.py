@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.road.grating_found import GratingFacts, GratingFound
-from processing.road.gutter_axis import GutterAxis
-from processing.road.gutter_gratings import SureCovers, with_gratings
-from processing.road.gutter_lids import Cover
+from processing.road.gutters.grating_found import GratingFacts, GratingFound
+from processing.road.gutters.gutter_axis import GutterAxis
+from processing.road.gutters.gutter_gratings import SureCovers, with_gratings
+from processing.road.gutters.gutter_lids import Cover
 
 WIDE_M, LONG_M = 0.4, 0.6
 AXIS = GutterAxis.through(np.array([[0.0, 0.0, 5.0], [10.0, 0.0, 5.0]]))

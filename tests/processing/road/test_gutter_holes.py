@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.road.gutter_holes import LID_TYPES, JointNotches, LidType, hole_fit
+from processing.road.gutters.gutter_holes import LID_TYPES, JointNotches, LidType, hole_fit
 
 
 def seen_by_oblique_rows(one: LidType, count: int, groove: float) -> JointNotches:

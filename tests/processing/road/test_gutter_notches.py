@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.road import notch_kernels
-from processing.road.notch_kernels import FOUND, notches_kernel
-from processing.road.notches import LOST, OPENING
+from processing.road.gutters import notch_kernels
+from processing.road.gutters.notch_kernels import FOUND, notches_kernel
+from processing.road.gutters.notches import LOST, OPENING
 from tests.processing.road.notch_rows import (
     DEEP_M,
     HOLE_LONG_M,

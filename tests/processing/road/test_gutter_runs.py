@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from processing.points.passes import Pass, passes_of_trajectory
 from processing.points.trajectory import Trajectory
-from processing.road.curb_points import PointsAbout
-from processing.road.gutter_axis import STEP_M, GutterAxis
-from processing.road.gutter_joints import GRATING, joint_row, lengths_of
-from processing.road.gutter_lids import covers_of
-from processing.road.gutter_outline import edge_lines
-from processing.road.gutter_runs import GutterRun, gutter_runs
-from processing.road.notches import OPENING, Notches
+from processing.road.curbs.curb_points import PointsAbout
+from processing.road.gutters.gutter_axis import STEP_M, GutterAxis
+from processing.road.gutters.gutter_joints import GRATING, joint_row, lengths_of
+from processing.road.gutters.gutter_lids import covers_of
+from processing.road.gutters.gutter_outline import edge_lines
+from processing.road.gutters.gutter_runs import GutterRun, gutter_runs
+from processing.road.gutters.notches import OPENING, Notches
 
 LID_M, JOINT_M, WIDTH_M = 0.6, 0.006, 0.38
 HOLES_M = 0.095

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.road.curb_confidence import CONSTANT, WEIGHTS, CurbFacts, chance_of
+from processing.road.curbs.curb_confidence import CONSTANT, WEIGHTS, CurbFacts, chance_of
 from processing.score.curb_training import KnownLines, chances, fitted, left_out, reliability
 
 FACTS = len(CurbFacts._fields)

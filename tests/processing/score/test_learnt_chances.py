@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.road.grating_confidence import CONSTANT, WEIGHTS, grating_chance, terms_of
-from processing.road.grating_found import GratingFacts
+from processing.road.gutters.grating_confidence import CONSTANT, WEIGHTS, grating_chance, terms_of
+from processing.road.gutters.grating_found import GratingFacts
 from processing.score.learnt_chances import (
     Expected,
     Known,

@@ -1,0 +1,1 @@
+"""Curbs: from steps of scanlines to edges, their types and how certain they are."""

@@ -1,0 +1,186 @@
+"""What is no curb: runs whose length, height or surroundings speak against one.
+
+Grass and hedges rise rough and uneven; the line where a vehicle or a wall meets the ground has no
+level top behind it; the rear edge of kerb stones lies a stone's width behind the curb itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import groupby
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from processing.image.scanlines import Scanlines, ScanlineSettings, scanlines_of
+from processing.monitor import Monitor
+from processing.points.drive import Drive
+from processing.road.curbs.curb_chains import chains_of
+from processing.road.curbs.curb_confidence import confidence_of
+from processing.road.curbs.curb_crossings import crossing_runs
+from processing.road.curbs.curb_profile import PassSteps, StepSettings, joined_steps, steps_of
+from processing.road.curbs.curb_ridges import PassRidges, ridge_runs, ridges_of
+from processing.road.curbs.curb_runs import StepRun, median_of, run_of
+from processing.worked_ahead import one_ahead
+
+Floats = NDArray[np.float64]
+
+LEAST_LENGTH_M = 1.0
+"""What stands alone has to be so long: a kerb stone is 0.6 m, two of them make a line."""
+
+LEAST_CHANCE = 0.4
+"""Runs less likely than this are left out: more of them are wrong than right."""
+
+_HIGH_M, _MOST_LEAN = 0.10, 0.7
+"""Faces of high curbs lean by less than 35° (Table 6-1: 30°): banks of earth between fields don't.
+Of low steps too few points tell."""
+
+_LEVEL_M, _RISEN_SHARE = 0.02, 0.5
+"""Where the ground falls away from the road and what falls is no higher than the road itself, less
+than this share of it having risen before, no island ends but a ditch or a bank begins."""
+
+_WIDEST_STONE_M = 0.35  # 25 cm, and both edges are known within some centimetres
+_BESIDE_SHARE = 0.25  # no planting strip is as narrow as a stone
+_ABOVE_ROAD_M = 0.05
+_WIDEST_STRIP_M, _ALONG_SHARE = 3.5, 0.5
+
+
+def step_runs(
+    drive: Drive, number: int, settings: StepSettings, monitor: Monitor
+) -> tuple[StepRun, ...]:
+    """The runs of a drive that are taken for curbs.
+
+    Parameters
+    ----------
+    number : int
+        Which of the drives given it is; noted in the runs.
+
+    Raises
+    ------
+    MissingInput
+        The drive has no trajectory.
+    Cancelled
+    """
+    scanlines = one_ahead(scanlines_of(drive, ScanlineSettings(), monitor))
+    runs: list[StepRun] = []
+    for run in runs_of(scanlines, number, settings):
+        monitor.check()
+        runs.append(run)
+    return without_doubtful(runs, settings)
+
+
+def runs_of(
+    scanlines: Iterable[Scanlines], number: int, settings: StepSettings
+) -> Iterator[StepRun]:
+    """All runs of a drive's scanlines, doubtful ones too, pass by pass.
+
+    Parameters
+    ----------
+    scanlines : iterable of Scanlines
+        Stretch by stretch, in order.
+    number : int
+        Which of the drives given they are of.
+    """
+    for _, stretches in groupby(scanlines, key=lambda one: one.number):
+        parts: list[PassSteps] = []
+        ridges: list[PassRidges] = []
+        noted = _noted(stretches, settings, parts, ridges)
+        yield from crossing_runs(noted, number, settings)
+        steps = joined_steps(parts)
+        yield from ridge_runs(ridges, steps, number, settings)
+        for chain in chains_of(steps, settings):
+            yield run_of(steps, chain, number)
+
+
+def _noted(
+    stretches: Iterable[Scanlines],
+    settings: StepSettings,
+    parts: list[PassSteps],
+    ridges: list[PassRidges],
+) -> Iterator[Scanlines]:
+    """The stretches, each one's steps being noted on the way: none is held."""
+    for stretch in stretches:
+        parts.append(steps_of(stretch, settings))
+        ridges.append(ridges_of(stretch, settings))
+        yield stretch
+
+
+def without_doubtful(runs: Sequence[StepRun], settings: StepSettings) -> tuple[StepRun, ...]:
+    """The runs of one drive that are taken for curbs."""
+    return without_rears([run for run in runs if is_likely(run, settings)], settings)
+
+
+def without_rears(runs: Sequence[StepRun], settings: StepSettings) -> tuple[StepRun, ...]:
+    """Runs, of any drives, that aren't rear edges of stones whose front is another of them."""
+    fronts = _fronts(runs, settings)
+    return tuple(run for run in runs if run.rises > 0 or not _is_rear(run, fronts))
+
+
+def without_lone_edging(runs: Sequence[StepRun], settings: StepSettings) -> tuple[StepRun, ...]:
+    """Runs, of any drives, but for narrow ridges that no curb runs beside: those of fields."""
+    fronts = _fronts(runs, settings)
+    return tuple(run for run in runs if not run.is_edging or _is_beside(run, fronts))
+
+
+def is_likely(run: StepRun, settings: StepSettings) -> bool:
+    """Whether a run by itself looks like a curb."""
+    if run.seen_m < LEAST_LENGTH_M:
+        return False
+    high_m = median_of(run.heights_m[run.is_seen])
+    if high_m < settings.least_step_m:
+        return False
+    if run.rises < 0 and _falls_off(run, high_m):
+        return False
+    is_high = run.rises > 0 and high_m >= _HIGH_M
+    if is_high and median_of(run.face_m[run.is_seen]) > _MOST_LEAN * high_m:
+        return False
+    return confidence_of(run) >= LEAST_CHANCE
+
+
+def _falls_off(run: StepRun, high_m: float) -> bool:
+    """Whether the ground falls off beside the road: nothing rose before, the road is as high."""
+    seen = run.is_seen
+    above_m = median_of(run.above_way_m[seen]) + high_m
+    return above_m < _LEVEL_M and median_of(run.risen_m[seen]) < _RISEN_SHARE * high_m
+
+
+def _is_rear(run: StepRun, fronts: Floats) -> bool:
+    """Whether along some of a run a higher front lies a stone's width away."""
+    if not fronts.size:
+        return False
+    tree = cKDTree(fronts[:, :2])
+    found = tree.query(run.upper[:, :2], distance_upper_bound=_WIDEST_STONE_M)
+    beside = np.isfinite(found[0])
+    nearest = np.asarray(found[1], np.int64)[beside]
+    beside[beside] = fronts[nearest, 2] >= run.heights_m[beside]
+    return bool(beside.mean() >= _BESIDE_SHARE)
+
+
+def _is_beside(run: StepRun, fronts: Floats) -> bool:
+    """Whether along most of a run there is a front as far away as planting strips are wide."""
+    if not fronts.size:
+        return False
+    away = cKDTree(fronts[:, :2]).query(run.upper[:, :2], distance_upper_bound=_WIDEST_STRIP_M)[0]
+    return bool(np.isfinite(away).mean() >= _ALONG_SHARE)
+
+
+def _fronts(runs: Sequence[StepRun], settings: StepSettings) -> Floats:
+    """(n, 3) places of the curbs that stand on the road: in plan, and how high they are."""
+    return np.vstack(
+        [
+            np.empty((0, 3)),
+            *(
+                np.column_stack([run.upper[:, :2], run.heights_m])
+                for run in runs
+                if run.rises > 0 and _is_first(run, settings)
+            ),
+        ]
+    )
+
+
+def _is_first(run: StepRun, settings: StepSettings) -> bool:
+    """Whether a run stands on the road: stones on ground that a curb has raised are edgings."""
+    seen = run.is_seen
+    is_raised = median_of(run.risen_m[seen]) >= settings.least_step_m
+    return not is_raised and median_of(run.above_way_m[seen]) < _ABOVE_ROAD_M

@@ -1,0 +1,115 @@
+"""Why the steps of a scanline are taken for curbs or not: for the diagnostic layer.
+
+The tool judges runs, not single steps, so the runs about the place are found as the tool finds
+them, and what spoke for and against each is told where it crosses the scanline.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.image.scanlines import Scanlines, ScanlineSettings, scanlines_about
+from processing.road.asked_place import AskedPlace
+from processing.road.curbs.curb_confidence import confidence_of
+from processing.road.curbs.curb_doubts import (
+    LEAST_CHANCE,
+    LEAST_LENGTH_M,
+    is_likely,
+    runs_of,
+    without_doubtful,
+)
+from processing.road.curbs.curb_profile import StepSettings, steps_of
+from processing.road.curbs.curb_runs import StepRun
+from processing.road.curbs.step_columns import (
+    LOWER_ACROSS,
+    LOWER_HEIGHT,
+    UPPER_ACROSS,
+    UPPER_HEIGHT,
+)
+from processing.road.trials import Outcome, Trial
+from processing.text import Text
+
+Floats = NDArray[np.float64]
+
+ABOUT_M = 12.0
+"""Runs are followed so far to either side: longer ones are no surer."""
+
+_BESIDE_M = 0.15
+
+_HEIGHT = Text("Height of the step, median of its run", "段差の高さ（連続区間の中央値）")
+_HEIGHT_HERE = Text("Height of the step", "段差の高さ")
+_LENGTH = Text("Length seen nearby", "付近で確認できた長さ")
+_CHANCE = Text("Chance to be a curb", "縁石である確率")
+_FRONT = Text("Front of the stone, not its rear", "縁石の前面（背面ではない）")
+
+
+def curb_trials(asked: AskedPlace, settings: StepSettings) -> tuple[Trial, ...]:
+    """The steps that cross a scanline, from left to right, and what the tool makes of them.
+
+    Parameters
+    ----------
+    asked : AskedPlace
+    settings : StepSettings
+        As the tool would run.
+    """
+    about = scanlines_about(asked.drive, asked.xyz, ABOUT_M, ScanlineSettings())
+    runs = tuple(runs_of(about, 0, settings))
+    taken = {id(run) for run in without_doubtful(runs, settings)}
+    scanlines = asked.scanlines
+    found: list[tuple[float, Trial]] = []
+    for run in runs:
+        across = _crossing(run, scanlines)
+        if across is not None:
+            place, xyz = across
+            outcomes = _outcomes(run, settings, is_taken=id(run) in taken)
+            found.append((place, Trial(xyz, outcomes, is_taken=id(run) in taken)))
+    known = [place for place, _ in found]
+    for place, trial in _lone_steps(scanlines, settings):
+        if all(abs(place - other) > _BESIDE_M for other in known):
+            found.append((place, trial))
+    return tuple(trial for _, trial in sorted(found, key=lambda one: one[0]))
+
+
+def _crossing(run: StepRun, scanlines: Scanlines) -> tuple[float, Floats] | None:
+    """Where a run crosses the scanline: across, and the place."""
+    middles = (run.lower + run.upper) / 2
+    right = scanlines.rights[0]
+    from_way = middles[:, :2] - scanlines.places[0, :2]
+    ahead = np.abs(from_way @ np.array([-right[1], right[0]]))
+    nearest = int(ahead.argmin())
+    if ahead[nearest] > ScanlineSettings().spacing_m:
+        return None
+    return float(from_way[nearest] @ right), middles[nearest]
+
+
+def _outcomes(run: StepRun, settings: StepSettings, *, is_taken: bool) -> tuple[Outcome, ...]:
+    least, seen = settings.least_step_m, run.seen_m
+    high = float(np.median(run.heights_m[run.is_seen])) if run.is_seen.any() else np.nan
+    chance = confidence_of(run)
+    outcomes = [
+        Outcome(_HEIGHT, high, least, "m", is_met=high >= least),
+        Outcome(_LENGTH, seen, LEAST_LENGTH_M, "m", is_met=seen >= LEAST_LENGTH_M),
+        Outcome(_CHANCE, chance, LEAST_CHANCE, "", is_met=chance >= LEAST_CHANCE),
+    ]
+    if is_likely(run, settings):
+        outcomes.append(Outcome(_FRONT, np.nan, np.nan, "", is_met=is_taken))
+    return tuple(outcomes)
+
+
+def _lone_steps(scanlines: Scanlines, settings: StepSettings) -> list[tuple[float, Trial]]:
+    """Steps of the scanline alone, which belong to no run."""
+    table = steps_of(scanlines, settings).table
+    trials = []
+    for row in table:
+        across = float(row[LOWER_ACROSS] + row[UPPER_ACROSS]) / 2
+        height = float(row[LOWER_HEIGHT] + row[UPPER_HEIGHT]) / 2
+        right, place = scanlines.rights[0], scanlines.places[0]
+        xyz = place + np.array([across * right[0], across * right[1], height])
+        rise, least = float(row[UPPER_HEIGHT] - row[LOWER_HEIGHT]), settings.least_step_m
+        outcomes = (
+            Outcome(_HEIGHT_HERE, rise, least, "m", is_met=rise >= least),
+            Outcome(_LENGTH, 0.0, LEAST_LENGTH_M, "m", is_met=False),
+        )
+        trials.append((across, Trial(xyz, outcomes, is_taken=False)))
+    return trials

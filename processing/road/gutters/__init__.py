@@ -1,0 +1,1 @@
+"""Covered gutters: from holes between lids to rows of lids, gratings and their outline."""

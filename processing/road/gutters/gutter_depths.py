@@ -1,0 +1,82 @@
+"""Which covers lie over a channel: joints of lids are deep, for holes go through them.
+
+Blocks of L-gutters and of paving are laid at the same spacings, but the grooves between them are
+shallower than a lid is thick.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.road.gutters.gutter_joints import LID, JointRow
+
+_Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
+
+_DEPTHS_M = (0.015, 0.02, 0.025)
+_OF_LIDS = (0.45, 0.30, 0.12, 0.13)
+_OF_GROOVES = (0.60, 0.33, 0.05, 0.02)
+"""Shares of notches between these depths: at joints of lids, also where soil fills most holes and
+points are few; in grooves, which are some 12 mm deep at most, as noise makes them.
+"""
+_JOINT_M = 0.04
+_MOST = 2.5  # what one joint says at most, so that a catch basin between blocks says little
+_CHANGE = 3.0  # what it costs that lids end and blocks go on
+
+
+def are_deep(row: JointRow, along_m: _Floats, depth_m: _Floats) -> NDArray[np.bool_]:
+    """Which covers of a row have joints about them that are as deep as those of lids.
+
+    Parameters
+    ----------
+    row : JointRow
+    along_m, depth_m : (n,) float64
+        Places along the gutter and depths of the notches on it.
+
+    Returns
+    -------
+    (k,) bool
+    """
+    of_lids = row.what == LID
+    # The bars of a grating are deep on any gutter: only joints between two lids are asked.
+    after = of_lids[1:] & of_lids[:-1] & (row.starts_m[1:] - row.ends_m[:-1] < _JOINT_M)
+    joints = (row.ends_m[:-1][after] + row.starts_m[1:][after]) / 2
+    middles = (row.starts_m + row.ends_m) / 2
+    if joints.size == 0:
+        return np.ones(middles.size, np.bool_)
+    is_lids = _parted(_told(joints, along_m, depth_m))
+    after_it = np.clip(np.searchsorted(joints, middles), 1, max(joints.size - 1, 1))
+    before_it, after_it = after_it - 1, np.minimum(after_it, joints.size - 1)
+    is_before = np.abs(middles - joints[before_it]) < np.abs(middles - joints[after_it])
+    found: NDArray[np.bool_] = is_lids[np.where(is_before, before_it, after_it)]
+    return found
+
+
+def _parted(told: _Floats) -> NDArray[np.bool_]:
+    """Which joints are of lids, so that what all of them tell is the most (Viterbi)."""
+    changed = np.zeros((told.size, 2), np.int64)
+    lids, blocks = told[0], 0.0
+    for one in range(1, told.size):
+        changed[one] = blocks - _CHANGE > lids, lids - _CHANGE > blocks
+        lids, blocks = max(lids, blocks - _CHANGE) + told[one], max(blocks, lids - _CHANGE)
+    is_lids = np.zeros(told.size, np.bool_)
+    state = 0 if lids > blocks else 1
+    for one in range(told.size - 1, -1, -1):
+        is_lids[one] = state == 0
+        state = 1 - state if changed[one, state] else state
+    return is_lids
+
+
+def _told(joints: _Floats, along_m: _Floats, depth_m: _Floats) -> _Floats:
+    """How much likelier each joint is that of lids than a groove, as logarithms."""
+    after = np.clip(np.searchsorted(joints, along_m), 1, max(joints.size - 1, 1))
+    before = after - 1
+    after = np.minimum(after, joints.size - 1)
+    is_before = np.abs(along_m - joints[before]) < np.abs(along_m - joints[after])
+    nearest = np.where(is_before, before, after)
+    near = np.abs(along_m - joints[nearest]) < _JOINT_M
+    likelier = np.log(np.array(_OF_LIDS) / np.array(_OF_GROOVES))
+    worth = likelier[np.searchsorted(_DEPTHS_M, depth_m[near])]
+    summed = np.bincount(nearest[near], worth, minlength=joints.size)
+    return np.clip(summed, -_MOST / 5, _MOST)
