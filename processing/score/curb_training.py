@@ -2,9 +2,9 @@
 
 Simulates streets of ``--seeds``, finds lines on them without leaving any out, and fits
 `processing.road.curbs.curb_confidence.WEIGHTS` to which of them are curbs; streets of ``--check``
-are not learnt from. ``--deliveries`` are further streets to learn from, recorded before. Prints the weights
-and how many lines of each confidence are right: of streets learnt from by weights that were fitted
-without the street itself.
+are not learnt from. ``--deliveries`` are further streets to learn from, recorded before. Prints the
+weights and how many lines of each confidence are right: of streets learnt from by weights that were
+fitted without the street itself.
 """
 
 from __future__ import annotations
