@@ -9,8 +9,6 @@ are right: of streets learnt from by weights that were fitted without the street
 
 from __future__ import annotations
 
-import argparse
-import itertools
 import math
 import sys
 from collections.abc import Iterator, Sequence
@@ -21,17 +19,10 @@ from processing.monitor import SilentMonitor
 from processing.road.gutters.grating_confidence import GratingTerms, terms_of
 from processing.road.gutters.gutter_confidence import CoverFacts
 from processing.score.gutters import judged_gutters
-from processing.score.learnt_chances import (
-    Expected,
-    Known,
-    chances,
-    fitted,
-    left_out,
-    reliability,
-    weights_told,
-)
+from processing.score.learnt_chances import Expected, Known, learnt
 from processing.score.mapped_features import Floats, MappedFeature, MappedFile
-from processing.score.road_scenes import RoadScene, given_scenes, simulated_scenes
+from processing.score.road_scenes import RoadScene
+from processing.score.training_streets import training_streets
 from processing.tools.gutters import GutterParameters, gutter_evidence
 
 _FACTS = {"lids": CoverFacts._fields, "gratings": GratingTerms._fields}
@@ -98,27 +89,12 @@ def _which_are_right(
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
-    parser = argparse.ArgumentParser(prog="python -m processing.score.gutter_training")
-    parser.add_argument("--seeds", default="500-529", help="streets to learn from")
-    parser.add_argument("--check", default="530-539", help="streets to check with")
-    parser.add_argument("--length", type=float, default=60.0, help="m of each")
-    parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
-    asked = parser.parse_args(arguments)
-    learnt = simulated_scenes(_seeds(asked.seeds), asked.length)
-    known = known_covers(itertools.chain(learnt, given_scenes(asked.deliveries)))
-    check = known_covers(simulated_scenes(_seeds(asked.check), asked.length))
+    asked = training_streets("gutter_training", arguments)
+    known, check = known_covers(asked.learnt), known_covers(asked.check)
     for name, expected in _EXPECTED.items():
-        weights = fitted(known[name], expected)
-        sys.stdout.write(f"{name}\n{weights_told(_FACTS[name], weights)}")
-        sys.stdout.write(f"\n{reliability(known[name], left_out(known[name], expected))}\n")
-        sys.stdout.write(f"\n{reliability(check[name], chances(check[name], weights))}\n")
+        told = learnt(_FACTS[name], expected, known[name], check[name])
+        sys.stdout.write(f"{name}\n{told}")
     return 0
-
-
-def _seeds(text: str) -> range:
-    """Numbers from one to another; of nothing none."""
-    first, _, last = text.partition("-")
-    return range(int(first), int(last or first) + 1) if first else range(0)
 
 
 if __name__ == "__main__":

@@ -112,10 +112,13 @@ def reliability(known: Known, chance: _Floats) -> str:
     return markdown_table([["confidence", "of", "right", "share"], *rows])
 
 
-def weights_told(names: Sequence[str], weights: _Floats) -> str:
-    """The constant and the weights, a line each."""
+def learnt(names: Sequence[str], expected: Expected, known: Known, check: Known) -> str:
+    """The weights, a line each; how reliable they are, each street left out; and on others."""
+    weights = fitted(known, expected)
     named = zip(("constant", *names), weights, strict=True)
-    return "".join(f"{name} {weight:.2f}\n" for name, weight in named)
+    told = "".join(f"{name} {weight:.2f}\n" for name, weight in named)
+    own, others = left_out(known, expected), chances(check, weights)
+    return f"{told}\n{reliability(known, own)}\n\n{reliability(check, others)}\n"
 
 
 def _chance(logits: _Floats) -> _Floats:

@@ -12,9 +12,9 @@ from processing.score.learnt_chances import (
     Known,
     chances,
     fitted,
+    learnt,
     left_out,
     reliability,
-    weights_told,
 )
 
 EXPECTED = Expected((0.0, 1.0, -1.0), (3.0, 3.0, 3.0))
@@ -67,7 +67,12 @@ def test_the_table_counts_every_thing_once() -> None:
     assert sum(int(row[2]) for row in cells) == int(things.is_right.sum())
 
 
-def test_weights_are_told_by_name() -> None:
-    assert weights_told(("open", "depth"), np.array([-1.0, 2.0, 0.5])) == (
-        "constant -1.00\nopen 2.00\ndepth 0.50\n"
-    )
+def test_weights_are_told_by_name_with_both_tables() -> None:
+    told = learnt(("open", "depth"), EXPECTED, known(), known(40))
+    lines = told.splitlines()
+    weights = fitted(known(), EXPECTED)
+    assert lines[:3] == [
+        f"{name} {weight:.2f}"
+        for name, weight in zip(("constant", "open", "depth"), weights, strict=True)
+    ]
+    assert sum(line.startswith("| confidence") for line in lines) == 2
