@@ -214,6 +214,7 @@ def guide_along(drive: Drive) -> Guide:
         np.full(count, 0.15),
         np.zeros(count),
         np.zeros(count, np.bool_),
+        np.zeros(count, np.bool_),
         True,
         np.zeros(count, np.int64),
         0,

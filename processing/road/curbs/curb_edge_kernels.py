@@ -193,16 +193,17 @@ def _levels(values: _Floats, span: tuple[int, int], start: _Floats) -> tuple[flo
 
 @kernel
 def _station(span: tuple[int, int], values: _Floats, start: _Floats, out: _Floats) -> None:
-    """Edges at a station; ``start``: rough width, whether hidden, rough step, tolerance."""
-    width, is_hidden, tolerance = start[0], start[1] > 0.5, start[3]
+    """Edges at a station; ``start``: a row as in :func:`edges_kernel`, and the tolerance."""
+    width, is_hidden, tolerance = start[0], start[1] > 0.5, start[4]
     low, high = _levels(values, span, start)
     if math.isnan(high) or (math.isnan(low) and not is_hidden):
         return
     is_shaded = math.isnan(low)  # the carriageway lies in the curb's own shadow
     kinds = np.empty(span[1] - span[0], np.int64)
     planes = np.array([0.0 if is_shaded else low, 0.0, 0.0, high, 0.0, 0.0])
-    # At first a hidden top may begin elsewhere; close below it the stone's other face may be.
-    aside_m, below_m = (_ASIDE_M, 0.02) if is_hidden else (0.0, math.inf)
+    # At first a hidden top may begin elsewhere; close below a narrow one its other face may be.
+    aside_m = _ASIDE_M if is_hidden else 0.0
+    below_m = 0.02 if is_hidden and start[3] > 0.5 else math.inf
     edge = np.array([0.0, width, 0.12, aside_m, below_m])
     weights, spread = np.zeros(3), math.nan
     for turn in range(_TURNS):
@@ -215,7 +216,7 @@ def _station(span: tuple[int, int], values: _Floats, start: _Floats, out: _Float
         if a[3] < _LEAST_POINTS:
             a = (planes[0], 0.0, 0.0, _UNSEEN, _ROUGH_M)
         planes[:3], planes[3:] = a[:3], b[:3]
-        tolerance = max(start[3], min(_NOISY * min(a[4], b[4]), _NOISIEST_M))
+        tolerance = max(start[4], min(_NOISY * min(a[4], b[4]), _NOISIEST_M))
         weights[0], weights[1] = a[3], b[3]
         out[LOW_OFF], out[HIGH_OFF] = a[4], b[4]
         _sort_into(span, values, edge, planes, kinds)
@@ -329,8 +330,8 @@ def edges_kernel(
         Rising, in stations.
     across_above : (n, 2) float64
         m.
-    stations : (m, 3) float64
-        Rough width of the face, whether it is hidden, and rough height of the step.
+    stations : (m, 4) float64
+        Rough width of the face, whether it is hidden, rough step, whether it is of an edging.
     settings : (4,) float64
         Half the window, the longest half window, points that are enough in one, tolerance.
     measures : (m, MEASURES) float64
@@ -392,7 +393,7 @@ def warm_up() -> None:
     edges_kernel(
         np.linspace(0, 2, 200),
         place,
-        np.zeros((3, 3)),
+        np.zeros((3, 4)),
         np.array([0.25, 0.5, 50.0, 0.005]),
         measures,
     )

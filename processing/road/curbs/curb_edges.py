@@ -117,7 +117,7 @@ def _measured(
         places = np.column_stack([about.across[part], about.above[part]])
         hidden = is_hidden[first : first + guide.width_m.size]
         first += hidden.size
-        stations = np.column_stack([guide.width_m, hidden, guide.step_m])
+        stations = np.column_stack([guide.width_m, hidden, guide.step_m, guide.is_edging])
         measures = _edges(along, places, stations, settings)
         measured.append(MeasuredEdges(measures, along, places, about.point[part]))
     return measured

@@ -50,6 +50,8 @@ class Guide:
         Rough height and width of the face.
     is_hidden : (m,) bool
         The face looks away from the vehicle.
+    is_edging : (m,) bool
+        The far edge of a narrow edging stone.
     is_along : bool
         The first drive that saw it passed it in the line's own direction.
     runs : (m,) int64
@@ -64,6 +66,7 @@ class Guide:
     step_m: _Floats
     width_m: _Floats
     is_hidden: NDArray[np.bool_]
+    is_edging: NDArray[np.bool_]
     is_along: bool
     runs: _Integers
     drive: int
@@ -78,6 +81,7 @@ class _Piece:
     width_m: _Floats
     is_seen: NDArray[np.bool_]
     is_hidden: bool
+    is_edging: bool
     is_along: bool
     run: int
     drive: int
@@ -90,6 +94,7 @@ class _Piece:
             self.width_m[part],
             self.is_seen[part],
             self.is_hidden,
+            self.is_edging,
             self.is_along,
             self.run,
             self.drive,
@@ -128,6 +133,7 @@ def joined_again(guides: Sequence[Guide], bridge_m: float) -> tuple[Guide, ...]:
                 guide.width_m,
                 guide.is_seen,
                 bool(guide.is_hidden.mean() > 0.5),
+                bool(guide.is_edging.mean() > 0.5),
                 guide.is_along,
                 int(np.bincount(of).argmax()) if of.size else 0,
                 guide.drive,
@@ -166,7 +172,8 @@ def _piece_of(run: StepRun, number: int) -> _Piece | None:
     left = outwards_of(smooth)
     lean = _at(at, along, upper - lower)
     width = (lean[:, :2] * left).sum(axis=1)
-    return _Piece(smooth, step, width, seen, run.rises < 0, is_left_high, number, run.drive)
+    kind = (run.rises < 0, run.is_edging, is_left_high)
+    return _Piece(smooth, step, width, seen, *kind, number, run.drive)
 
 
 def _at(at: _Floats, along: _Floats, values: _Floats) -> _Floats:
@@ -298,6 +305,7 @@ def _guide_of(pieces: Sequence[_Piece]) -> Guide:
         np.interp(at, along, steps),
         np.interp(at, along, widths),
         np.array([piece.is_hidden for piece in pieces])[which[nearest]],
+        np.array([piece.is_edging for piece in pieces])[which[nearest]],
         first.is_along,
         np.where(is_near, np.array([piece.run for piece in pieces])[which[nearest]], -1),
         first.drive,

@@ -227,6 +227,7 @@ def _part(guide: Guide, part: slice) -> Guide:
         step_m=guide.step_m[part],
         width_m=guide.width_m[part],
         is_hidden=guide.is_hidden[part],
+        is_edging=guide.is_edging[part],
         runs=guide.runs[part],
     )
 
@@ -263,6 +264,7 @@ def _tail(guide: Guide, end: int, more_bend: float, ahead_of: int = _AHEAD) -> G
         step_m=guide.step_m[places],
         width_m=guide.width_m[places],
         is_hidden=guide.is_hidden[places],
+        is_edging=guide.is_edging[places],
         runs=guide.runs[places],
     )
 
@@ -320,6 +322,7 @@ def _longer(
             step_m=np.interp(at, at[known], edges.steps_m[known])[part],
             width_m=tail.width_m[part],
             is_hidden=tail.is_hidden[part],
+            is_edging=tail.is_edging[part],
             runs=tail.runs[part],
         ),
     )
@@ -337,5 +340,6 @@ def _with(guide: Guide, end: int, more: Guide) -> Guide:
         step_m=np.concatenate([first.step_m, second.step_m]),
         width_m=np.concatenate([first.width_m, second.width_m]),
         is_hidden=np.concatenate([first.is_hidden, second.is_hidden]),
+        is_edging=np.concatenate([first.is_edging, second.is_edging]),
         runs=np.concatenate([first.runs, second.runs]),
     )

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from processing.road.curbs.curb_edge_kernels import (
     FACE_POINTS,
+    HIGH_POINTS,
     LOWER_ABOVE,
     LOWER_ACROSS,
     MEASURES,
@@ -59,10 +60,11 @@ def measured(
     *,
     is_hidden: bool = False,
     step_m: float = 0.15,
+    is_edging: bool = False,
 ) -> Floats:
     """What the kernel makes of the middle station."""
     measures = np.full((9, MEASURES), np.nan)
-    stations = np.tile([width_m, float(is_hidden), step_m], (9, 1))
+    stations = np.tile([width_m, float(is_hidden), step_m, float(is_edging)], (9, 1))
     edges_kernel(points[0], points[1], stations, WINDOW, measures)
     return np.asarray(measures[4])
 
@@ -124,9 +126,22 @@ def test_a_narrow_top_with_soil_behind_it_is_told_from_the_soil(at_m: float) -> 
     )
     places += random.normal(0, 0.003, places.shape)
     along = np.sort(random.uniform(2, 6, 120))
-    found = measured((along, random.permutation(places)), is_hidden=True, step_m=0.13)
+    points = (along, random.permutation(places))
+    found = measured(points, is_hidden=True, step_m=0.13, is_edging=True)
     assert found[UPPER_ACROSS] == pytest.approx(at_m, abs=0.025)
     assert found[UPPER_ABOVE] == pytest.approx(0.12, abs=0.01)
+
+
+def test_a_hidden_top_of_a_pavement_may_fall_from_the_rough_height() -> None:
+    """Only where the stone is narrow may its other face lie close below the top."""
+    random = np.random.default_rng(7)
+    across = random.uniform(0.0, 0.3, 120)
+    places = np.column_stack([across, 0.15 - 0.2 * across + random.normal(0, 0.004, 120)])
+    along = np.sort(random.uniform(2, 6, 120))
+    wide = measured((along, places), is_hidden=True)
+    narrow = measured((along, places), is_hidden=True, is_edging=True)
+    assert wide[UPPER_ABOVE] == pytest.approx(0.15, abs=0.01)
+    assert wide[HIGH_POINTS] > narrow[HIGH_POINTS]
 
 
 def test_without_points_nothing_is_measured() -> None:
@@ -135,7 +150,7 @@ def test_without_points_nothing_is_measured() -> None:
 
 def test_the_kernel_and_its_plain_form_agree() -> None:
     points = curb_points(per_m=60.0)
-    stations = np.zeros((9, 3))
+    stations = np.zeros((9, 4))
     compiled, plain = np.full((2, 9, MEASURES), np.nan)
     edges_kernel(points[0], points[1], stations, WINDOW, compiled)
     edges_kernel.py_func(points[0], points[1], stations, WINDOW, plain)  # type: ignore[attr-defined]

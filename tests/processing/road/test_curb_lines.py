@@ -74,6 +74,7 @@ def guide_of(count: int) -> Guide:
         np.full(count, 0.15),
         np.full(count, 0.015),
         np.zeros(count, np.bool_),
+        np.zeros(count, np.bool_),
         True,
         np.zeros(count, np.int64),
         0,
