@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from processing.road.curbs.curb_confidence import CurbFacts, confidence_of
 from processing.road.curbs.curb_edge_kernels import HIGH_OFF, LEAN, LOW_OFF, STEP_M
+from processing.road.curbs.curb_ends import FACED
 from processing.road.curbs.curb_guides import Guide
 from processing.road.curbs.curb_joins import PooledEdges
 from processing.road.curbs.curb_lines import CurbLine
@@ -29,7 +30,7 @@ _USUAL_LEAN = 0.3  # half of what a face may lean by Table 6-1, m across per m o
 _LONG_M = 20.0  # what is longer may well stand behind another curb: a median, the far carriageway
 _MOST_UNEVEN, _MOST_ROUGH = 1.5, 4.0
 _MOST_RISEN_M, _MOST_ABOVE_M, _MOST_TALL_M, _MOST_FLAT = 0.2, 0.1, 0.2, 0.7
-_FACED, _ALONG = 0.5, 0.7
+_ALONG, _HIDDEN = 0.7, 0.5
 _LEAST_STATIONS = 4
 
 
@@ -73,10 +74,12 @@ def facts_of(
     above_m = _weighed(shares, lambda number: _seen_median(runs[number], "above_way_m"))
     known = np.isfinite(edges.across_error[stations])
     part = [one[stations] for one in measures]
-    is_faced = bool(known.any() and (edges.face_points[stations][known] > 0).mean() >= _FACED)
+    is_faced = bool(known.any() and (edges.face_points[stations][known] > 0).mean() >= FACED)
     inlier_m, noise_m = tolerances
-    # Of a face that looks away from the vehicle nothing but the upper edge was measured.
-    surfaces = (LOW_OFF, HIGH_OFF) if is_faced else (HIGH_OFF,)
+    # Of a face that looks away from the vehicle nothing but the upper edge was measured. What was
+    # found from its front without any point on the face is known by the ground before it alone.
+    is_foot_seen = is_faced or float(guide.is_hidden[stations].mean()) < _HIDDEN
+    surfaces = (LOW_OFF, HIGH_OFF) if is_foot_seen else (HIGH_OFF,)
     off_m = max(_median_of(part, column) for column in surfaces)
     lean = _median_of(part, LEAN) if is_faced else 0.0
     return CurbFacts(

@@ -13,7 +13,9 @@ from processing.road.curbs.curb_edge_kernels import (
     ERROR_HIGH,
     ERROR_LOW,
     FACE_POINTS,
+    HIGH_OFF,
     LEAN,
+    LOW_OFF,
     LOWER_ABOVE,
     LOWER_ACROSS,
     UPPER_ABOVE,
@@ -40,6 +42,9 @@ class PooledEdges:
         m; infinite where nothing was measured.
     face_points : (m,) float64
         Weight of all points on the face.
+    low_off, high_off : (m,) float64
+        How far points lie off carriageway and top, by the drive that shows them best, m RMS;
+        infinite where nothing was measured.
     """
 
     lower_across: _Floats
@@ -51,6 +56,8 @@ class PooledEdges:
     lower_error: _Floats
     upper_error: _Floats
     face_points: _Floats
+    low_off: _Floats
+    high_off: _Floats
 
     @property
     def steps_m(self) -> _Floats:
@@ -97,7 +104,15 @@ def pooled(measures: Sequence[_Floats], most_step_m: float) -> PooledEdges:
         lower_error,
         upper_error,
         weight,
+        _least(stack[:, :, LOW_OFF], is_good),
+        _least(stack[:, :, HIGH_OFF], is_good),
     )
+
+
+def _least(values: _Floats, is_good: NDArray[np.bool_]) -> _Floats:
+    """(m,) least of the drives (d, m) that show something."""
+    known = is_good & np.isfinite(values)
+    return np.asarray(np.where(known, values, np.inf).min(axis=0))
 
 
 def _joined(values: _Floats, errors: _Floats) -> tuple[_Floats, _Floats]:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import percentile_filter
 
 from processing.road.curbs.curb_edge_kernels import STEP_M
+from processing.road.curbs.curb_ends import FACED, own_part
 from processing.road.curbs.curb_guides import Guide
 from processing.road.curbs.curb_joins import PooledEdges
 from processing.road.curbs.curb_smoothing import Smoothness, smoothed
@@ -30,7 +31,6 @@ _TYPICAL_LEAN = 0.08
 _LONGEST_DROP_M = 12.0
 _FALLEN = 0.6  # of the usual step: it comes down to an opening
 _LEAST_M = 1.0
-_FACED = 0.5
 _HIDDEN = 0.5
 _AROUND_M, _USUAL_PERCENT = 8.0, 70.0
 _TALLER, _TALLER_M = 0.15, 0.015
@@ -65,7 +65,10 @@ class CurbLine:
 
 
 def lines_of(guide: Guide, edges: PooledEdges, bridge_m: float) -> Iterator[CurbLine]:
-    """The curbs along a guide: one, or several where it is open between them."""
+    """The curbs along a guide: one, or several where it is open between them.
+
+    Ends along ground unlike that about the rest are left out, see `curb_ends.own_part`.
+    """
     is_measured = np.isfinite(edges.across_error)
     is_edge = is_measured & (edges.steps_m >= FLAT_M)
     is_flat = is_measured & ~is_edge
@@ -73,7 +76,8 @@ def lines_of(guide: Guide, edges: PooledEdges, bridge_m: float) -> Iterator[Curb
     is_known = is_edge | is_flat
     # A face that looks away and is lowered to the ground shows nothing: there it ends.
     drop_m = 0.0 if guide.is_hidden.mean() > _HIDDEN else _LONGEST_DROP_M
-    for first, stop in _parts(is_edge, is_flat, edges.steps_m, (bridge_m, drop_m)):
+    for part in _parts(is_edge, is_flat, edges.steps_m, (bridge_m, drop_m)):
+        first, stop = own_part(edges, is_edge, part)
         if (stop - first) * STEP_M >= _LEAST_M and is_edge[first:stop].sum() * STEP_M >= _LEAST_M:
             yield _line(guide, edges, (is_edge, is_known), (first, stop))
 
@@ -151,7 +155,7 @@ def _line(
     lean = smoothed(edges.lean[part], lean_weight, _LEAN)
     lean = np.clip(np.where(np.isfinite(lean), lean, _TYPICAL_LEAN), -0.1, 1.5)
     # The middle of a face is better known than its ends; of a hidden one only the upper is seen.
-    is_faced = (edges.face_points[part][is_edge[part]] > 0).mean() >= _FACED
+    is_faced = (edges.face_points[part][is_edge[part]] > 0).mean() >= FACED
     share = 0.5 if is_faced else 1.0
     place = (1 - share) * edges.lower_across[part] + share * edges.upper_across[part]
     lower = smoothed(place, across, _ACROSS) - share * lean * step

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from processing.road.curbs.curb_confidence import CurbFacts, chance_of
 from processing.road.curbs.curb_edge_kernels import (
+    FACE_POINTS,
     HIGH_OFF,
     LEAN,
     LOW_OFF,
@@ -86,6 +87,14 @@ def test_a_long_line_may_stand_behind_another_curb() -> None:
     behind = replace(first, risen_m=first.risen_m + 0.15, above_way_m=first.above_way_m + 0.15)
     measures = np.vstack([stone(), stone()])
     assert chance(measures, behind) == pytest.approx(chance(measures, first))
+
+
+def test_a_face_nobody_sees_stands_on_pavement_unless_it_looks_away() -> None:
+    unseen = stone()
+    unseen[:, FACE_POINTS], unseen[:, LOW_OFF] = 0.0, 0.005
+    front = run_of(0.0, 8.0)
+    assert facts(unseen, front).rough == pytest.approx(2.5)
+    assert facts(unseen, replace(front, rises=-1, side=1)).rough == pytest.approx(1.0)
 
 
 def test_noise_is_that_of_the_quieter_stations() -> None:
