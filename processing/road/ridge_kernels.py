@@ -52,7 +52,7 @@ def ridges_kernel(
         begin, end = starts[section], starts[section + 1]
         for side in (-1, 1):
             x, h = across[begin:end][::side], height[begin:end][::side]
-            for i in range(x.size - 1):
+            for i in range(_first_of(across[begin:end], side), x.size - 1):
                 behind = _behind(x, h, (i, side), limits)
                 if behind < 0:
                     continue
@@ -70,6 +70,14 @@ def ridges_kernel(
                 row[of.VERTEX] = begin + i if side > 0 else end - 1 - i
                 count += 1
     return count
+
+
+@kernel
+def _first_of(across: _Floats, side: int) -> int:
+    """The first vertex beside the vehicle, counted towards a side."""
+    if side > 0:
+        return int(np.searchsorted(across, _NEAREST_M))
+    return int(across.size - np.searchsorted(across, -_NEAREST_M, "right"))
 
 
 @kernel

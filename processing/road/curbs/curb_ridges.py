@@ -23,7 +23,7 @@ from processing.road.curbs.curb_profile import (
     StepSettings,
     joined_steps,
 )
-from processing.road.curbs.curb_runs import StepRun, run_of
+from processing.road.curbs.curb_runs import StepRun, run_of, spread_of
 from processing.road.curbs.step_columns import LOWER_ACROSS, STEP_COLUMNS, UPPER_ACROSS, VERTEX
 from processing.road.ridge_kernels import ridges_kernel
 
@@ -103,7 +103,7 @@ def ridge_runs(
         # They stand on a walk that a curb has raised: that speaks against plinths only.
         yield replace(
             run,
-            spread_m=run_of(fronts, chain, number).spread_m,
+            spread_m=spread_of(fronts, chain),
             above_way_m=run.above_way_m * 0.0,
             risen_m=run.risen_m * 0.0,
             is_edging=True,

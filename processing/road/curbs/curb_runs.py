@@ -130,14 +130,8 @@ def run_of(steps: PassSteps, chain: Chain, number: int, among: PassSteps | None 
         All steps of the same scanlines, where the chain is not of them.
     """
     rows = steps.table[chain.rows]
-    sections = steps.sections[chain.rows]
-    at = steps.stations_m[sections]
-    every = np.arange(sections[0], sections[-1] + 1)
-    stations = steps.stations_m[every]
-    nearest = _nearest(at, stations)
-    is_seen = np.abs(at[nearest] - stations) <= _SEEN_WITHIN_M
-    weights = np.where(rows[:, FACE_COUNT] > 0, 1.0, 0.5)
-    line = (at, weights, stations, is_seen)
+    every, nearest, line = _line_of(steps, chain)
+    at, _, stations, is_seen = line
     places = (rows[:, LOWER_ACROSS] + rows[:, UPPER_ACROSS]) / 2
     wide = np.abs(rows[:, UPPER_ACROSS] - rows[:, LOWER_ACROSS])
     middle, face = _smooth(places, line), _smooth(wide, line)
@@ -168,6 +162,29 @@ def run_of(steps: PassSteps, chain: Chain, number: int, among: PassSteps | None 
         above_way_m=low + unseen,
         risen_m=_risen(among or steps, (every, middle), side),
     )
+
+
+def spread_of(steps: PassSteps, chain: Chain) -> Floats:
+    """(k,) how far steps of a chain lie off the smooth line through them, m; as of a run."""
+    rows = steps.table[chain.rows]
+    _, nearest, line = _line_of(steps, chain)
+    at, _, stations, is_seen = line
+    places = (rows[:, LOWER_ACROSS] + rows[:, UPPER_ACROSS]) / 2
+    off = np.abs(places - np.interp(at, stations, _smooth(places, line)))
+    spread: Floats = off[nearest] + np.where(is_seen, 0.0, np.nan)
+    return spread
+
+
+def _line_of(steps: PassSteps, chain: Chain) -> tuple[NDArray[np.int64], NDArray[np.int64], _Line]:
+    """(k,) the scanlines of a chain, and which of its steps is nearest to each; where it runs."""
+    sections = steps.sections[chain.rows]
+    at = steps.stations_m[sections]
+    every = np.arange(sections[0], sections[-1] + 1)
+    stations = steps.stations_m[every]
+    nearest = _nearest(at, stations)
+    is_seen = np.abs(at[nearest] - stations) <= _SEEN_WITHIN_M
+    weights = np.where(steps.table[chain.rows, FACE_COUNT] > 0, 1.0, 0.5)
+    return every, nearest, (at, weights, stations, is_seen)
 
 
 def _smooth(values: Floats, line: _Line, reach_m: float = _REACH_M) -> Floats:

@@ -9,9 +9,10 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.image.scanlines import Scanlines
+from processing.road.curbs.curb_chains import chains_of
 from processing.road.curbs.curb_doubts import runs_of, without_doubtful
-from processing.road.curbs.curb_profile import StepSettings
-from processing.road.curbs.curb_runs import StepRun
+from processing.road.curbs.curb_profile import StepSettings, steps_of
+from processing.road.curbs.curb_runs import StepRun, run_of, spread_of
 
 _Floats = NDArray[np.float64]
 SETTINGS = StepSettings()
@@ -140,6 +141,12 @@ def test_where_the_ground_falls_off_beside_the_road_is_no_curb(fall: float) -> N
 
     assert all(run.rises > 0 for run in found(ditch))
     assert found(lambda _station, across: np.where(across > 3.0, -0.2, -fall * across)) == ()
+
+
+def test_the_spread_alone_is_that_of_the_whole_run() -> None:
+    steps = steps_of(scanlines(curb(3.0, 0.15)), SETTINGS)
+    chain = max(chains_of(steps, SETTINGS), key=lambda one: one.rows.size)
+    np.testing.assert_array_equal(spread_of(steps, chain), run_of(steps, chain, 0).spread_m)
 
 
 def test_nothing_measured_gives_nothing() -> None:
