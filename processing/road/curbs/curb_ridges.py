@@ -24,8 +24,8 @@ from processing.road.curbs.curb_profile import (
     joined_steps,
 )
 from processing.road.curbs.curb_runs import StepRun, run_of, spread_of
+from processing.road.curbs.ridge_kernels import ridges_kernel
 from processing.road.curbs.step_columns import LOWER_ACROSS, STEP_COLUMNS, UPPER_ACROSS, VERTEX
-from processing.road.ridge_kernels import ridges_kernel
 
 Floats = NDArray[np.float64]
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from processing.road.curbs.curb_doubts import runs_of, without_doubtful
 from processing.road.curbs.curb_ridges import ridges_of
 from processing.road.curbs.curb_runs import StepRun
+from processing.road.curbs.ridge_kernels import ridges_kernel
 from processing.road.curbs.step_columns import (
     LOWER_HEIGHT,
     SIGN,
@@ -16,7 +17,6 @@ from processing.road.curbs.step_columns import (
     UPPER_ACROSS,
     UPPER_HEIGHT,
 )
-from processing.road.ridge_kernels import ridges_kernel
 from tests.processing.road.test_curb_runs import SETTINGS, Surface, scanlines
 
 _Floats = NDArray[np.float64]
