@@ -43,6 +43,8 @@ def label_text(text: str, encoding: str) -> str:
     words = "".join(one if one.isprintable() else " " for one in text).strip()
     while "%%" in words:  # begins a special character: %%d is a degree sign
         words = words.replace("%%", "％％")
+    # What is drawn is better a twin of the sign than an escape that not every program reads.
+    words = "".join(_read_back(one, encoding) or one for one in words)
     return dxf_text(words, encoding)
 
 
@@ -59,9 +61,15 @@ def _escaped(text: str, place: int, encoding: str) -> str:
         return "^" + chr(code + 0x40)
     if 0x7F <= code <= 0x9F or 0x2028 <= code <= 0x2029 or 0xD800 <= code <= 0xDFFF:
         return f"\\U+{code:04X}"  # ends a line for some readers, or is no character
+    if _read_back(character, encoding) == character:
+        return character
+    units = character.encode("utf-16-be")
+    return "".join(f"\\U+{units[i : i + 2].hex().upper()}" for i in range(0, len(units), 2))
+
+
+def _read_back(character: str, encoding: str) -> str:
+    """What readers make of a character: ¢ 〜 − are ￠ ～ － in cp932; what lacks a byte is nothing."""
     try:
-        character.encode(encoding)
+        return character.encode(encoding).decode(encoding)
     except UnicodeEncodeError:
-        units = character.encode("utf-16-be")
-        return "".join(f"\\U+{units[i : i + 2].hex().upper()}" for i in range(0, len(units), 2))
-    return character
+        return ""
