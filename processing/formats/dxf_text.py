@@ -68,7 +68,7 @@ def _escaped(text: str, place: int, encoding: str) -> str:
 
 
 def _read_back(character: str, encoding: str) -> str:
-    """What readers make of a character: ¢ 〜 − are ￠ ～ － in cp932; what lacks a byte is nothing."""
+    """What readers make of a character: ¢ 〜 − are ￠ ～ － in cp932; of nothing nothing."""
     try:
         return character.encode(encoding).decode(encoding)
     except UnicodeEncodeError:
