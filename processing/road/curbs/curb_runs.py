@@ -16,14 +16,13 @@ from processing.road.curbs.step_columns import (
     FOOT_ROUGH_M,
     LOWER_ACROSS,
     LOWER_HEIGHT,
-    NOISE_M,
     SIGN,
     SURENESS,
     TOP_M,
-    TOP_ROUGH_M,
     UPPER_ACROSS,
     UPPER_HEIGHT,
 )
+from processing.road.rising import nearest_rising
 
 Floats = NDArray[np.float64]
 _Line = tuple[Floats, Floats, Floats, NDArray[np.bool_]]
@@ -60,17 +59,12 @@ class StepRun:
         False: nothing was measured there, the place is bridged.
     face_m : (k,) float64
         Width of the face across, m; great at ramps. NaN where bridged.
-    is_face_seen : (k,) bool
-        Whether points lie on the face; else the lower edge is a guess.
     top_m, foot_m : (k,) float64
         Over which width level ground was seen behind the upper and before the lower edge, m.
     spread_m : (k,) float64
         How far the place as found lies off the smooth line, m; NaN where bridged.
     sureness : (k,) float64
         Height of the step as found, in its standard deviations; 0 where bridged.
-    roughness : (k,) float64
-        How far points behind the upper edge lie off the top, in terms of what is usual on the
-        scanline: about 1 on stone and asphalt, 2 and more on grass. NaN where bridged.
     foot_roughness_m : (k,) float64
         How far points before the lower edge lie off the ground there, m. NaN where bridged.
     above_way_m : (k,) float64
@@ -89,12 +83,10 @@ class StepRun:
     upper: Floats
     is_seen: NDArray[np.bool_]
     face_m: Floats
-    is_face_seen: NDArray[np.bool_]
     top_m: Floats
     foot_m: Floats
     spread_m: Floats
     sureness: Floats
-    roughness: Floats
     foot_roughness_m: Floats
     above_way_m: Floats
     risen_m: Floats
@@ -152,12 +144,10 @@ def run_of(steps: PassSteps, chain: Chain, number: int, among: PassSteps | None 
         upper=upper,
         is_seen=is_seen,
         face_m=wide[nearest] + unseen,
-        is_face_seen=is_seen & (rows[nearest, FACE_COUNT] > 0),
         top_m=np.where(is_seen, rows[nearest, TOP_M], 0.0),
         foot_m=np.where(is_seen, rows[nearest, FOOT_M], 0.0),
         spread_m=off[nearest] + unseen,
         sureness=np.where(is_seen, rows[nearest, SURENESS], 0.0),
-        roughness=rows[nearest, TOP_ROUGH_M] / rows[nearest, NOISE_M] + unseen,
         foot_roughness_m=rows[nearest, FOOT_ROUGH_M] + unseen,
         above_way_m=low + unseen,
         risen_m=_risen(among or steps, (every, middle), side),
@@ -181,7 +171,7 @@ def _line_of(steps: PassSteps, chain: Chain) -> tuple[NDArray[np.int64], NDArray
     at = steps.stations_m[sections]
     every = np.arange(sections[0], sections[-1] + 1)
     stations = steps.stations_m[every]
-    nearest = _nearest(at, stations)
+    nearest = nearest_rising(at, stations)
     is_seen = np.abs(at[nearest] - stations) <= _SEEN_WITHIN_M
     weights = np.where(steps.table[chain.rows, FACE_COUNT] > 0, 1.0, 0.5)
     return every, nearest, (at, weights, stations, is_seen)
@@ -204,15 +194,6 @@ def _placed(steps: PassSteps, every: NDArray[np.int64], across: Floats, height: 
     shift = np.column_stack([across[:, None] * steps.rights[every], height])
     places: Floats = steps.places[every] + shift
     return places
-
-
-def _nearest(at: Floats, places: Floats) -> NDArray[np.int64]:
-    """(k,) index of the nearest of some rising values."""
-    after = np.clip(np.searchsorted(at, places), 1, max(1, at.size - 1))
-    after = np.minimum(after, at.size - 1)
-    before = np.maximum(after - 1, 0)
-    is_before = np.abs(places - at[before]) <= np.abs(at[after] - places)
-    return np.where(is_before, before, after)
 
 
 def _risen(steps: PassSteps, line: tuple[NDArray[np.int64], Floats], side: int) -> Floats:

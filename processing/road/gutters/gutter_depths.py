@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.road.gutters.gutter_joints import LID, JointRow
+from processing.road.rising import nearest_rising
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
@@ -46,10 +47,7 @@ def are_deep(row: JointRow, along_m: _Floats, depth_m: _Floats) -> NDArray[np.bo
     if joints.size == 0:
         return np.ones(middles.size, np.bool_)
     is_lids = _parted(_told(joints, along_m, depth_m))
-    after_it = np.clip(np.searchsorted(joints, middles), 1, max(joints.size - 1, 1))
-    before_it, after_it = after_it - 1, np.minimum(after_it, joints.size - 1)
-    is_before = np.abs(middles - joints[before_it]) < np.abs(middles - joints[after_it])
-    found: NDArray[np.bool_] = is_lids[np.where(is_before, before_it, after_it)]
+    found: NDArray[np.bool_] = is_lids[nearest_rising(joints, middles)]
     return found
 
 
@@ -70,11 +68,7 @@ def _parted(told: _Floats) -> NDArray[np.bool_]:
 
 def _told(joints: _Floats, along_m: _Floats, depth_m: _Floats) -> _Floats:
     """How much likelier each joint is that of lids than a groove, as logarithms."""
-    after = np.clip(np.searchsorted(joints, along_m), 1, max(joints.size - 1, 1))
-    before = after - 1
-    after = np.minimum(after, joints.size - 1)
-    is_before = np.abs(along_m - joints[before]) < np.abs(along_m - joints[after])
-    nearest = np.where(is_before, before, after)
+    nearest = nearest_rising(joints, along_m)
     near = np.abs(along_m - joints[nearest]) < _JOINT_M
     likelier = np.log(np.array(_OF_LIDS) / np.array(_OF_GROOVES))
     worth = likelier[np.searchsorted(_DEPTHS_M, depth_m[near])]
