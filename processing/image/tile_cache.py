@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections import OrderedDict
 from collections.abc import Callable, Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,10 +53,13 @@ class TilePixels:
     points : (h, w) int64
         −1 where empty.
     colours : (h, w, 3) uint8
+    age : int
+        How often the drive had changed when the tile was begun; see :meth:`TileCache.is_current`.
     """
 
     points: NDArray[np.int64]
     colours: NDArray[np.uint8]
+    age: int = 0
 
     @property
     def size_bytes(self) -> int:
@@ -133,6 +136,15 @@ class TileCache:
             if pixels is not None:
                 self._tiles.move_to_end(request)
             return pixels
+
+    def is_current(self, request: TileRequest, pixels: TilePixels) -> bool:
+        """Whether what a tile shows has not changed since it was made.
+
+        For who is told of a tile and looks at it a moment later, when it may have been dropped.
+        """
+        with self._changed:
+            is_kept = self._tiles.get(request) is pixels
+            return is_kept or pixels.age == self._ages.get(request.drive_id, 0)
 
     def request(self, request: TileRequest, done: Done, refused: Refused | None = None) -> None:
         """Load a tile, before all that was asked for earlier, and tell ``done``.
@@ -263,7 +275,7 @@ class TileCache:
     def _load(self, request: TileRequest, age: int, drive_of: Callable[[str], Drive]) -> None:
         made: TilePixels | UserError | None = None
         try:
-            made = self._pixels_of(request, drive_of)
+            made = replace(self._pixels_of(request, drive_of), age=age)
         except UserError as error:
             made = error
         except MemoryError:

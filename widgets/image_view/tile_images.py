@@ -213,8 +213,10 @@ class TileImages(QObject):
     def _on_arrived(self, request: TileRequest, pixels: TilePixels) -> None:
         picture = self._picture
         if picture is not None and request == self._request_for(picture, request.key):
-            slot = (picture.drive.id, picture.image.kind, request.key, 1)
-            self._keep(slot, request, self._drawn(picture, pixels))
+            # One that became old on its way is looked up, or asked for, when it is painted.
+            if self._tiles.is_current(request, pixels):
+                slot = (picture.drive.id, picture.image.kind, request.key, 1)
+                self._keep(slot, request, self._drawn(picture, pixels))
             self.changed.emit()
 
     def _request_for(self, picture: Picture, key: TileKey) -> TileRequest:

@@ -185,6 +185,9 @@ class PlanTiles:
         return TilePoints(tile.number, points, placed.local_xyz, colours, spacing_m)
 
     def _on_tiles_done(self, request: TileRequest, pixels: TilePixels) -> None:
+        if not self._tiles.is_current(request, pixels):
+            self._tiles.request(request, self._on_tiles_done, self._on_tiles_refused)
+            return
         with self._changed:
             self._arrived[request] = pixels
             self._changed.notify_all()

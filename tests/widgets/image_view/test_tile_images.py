@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import pytest
+from PySide6.QtCore import QDeadlineTimer, QThread
 from pytestqt.qtbot import QtBot
 
 from processing.image.kinds import ImageKind
@@ -68,3 +69,22 @@ def test_a_tile_that_another_view_loaded_stands_in_until_the_sharp_one_comes(
     height, width = pixels.points.shape
     assert (stand_in.width(), stand_in.height()) == (height, width)  # rows go to the right
     assert images.available(top) is stand_in
+
+
+def test_a_tile_that_became_old_on_its_way_is_not_shown(
+    images: TileImages, tiles: TileCache, left_drive: Drive, qtbot: QtBot
+) -> None:
+    key = TileKey(0, 0, 0)
+    request = request_for(left_drive, key)
+    images.images([key])
+    # What a loader has told waits in the event queue, which is not served meanwhile.
+    deadline = QDeadlineTimer(30_000)
+    while tiles.get(request) is None and not deadline.hasExpired():
+        QThread.yieldCurrentThread()
+    tiles.drop(left_drive.id)
+    with qtbot.waitSignal(images.changed, timeout=30_000):
+        pass
+    assert images.version == 0
+    with qtbot.waitSignal(images.changed, timeout=30_000):
+        assert not images.images([key])
+    assert list(images.images([key])) == [key]

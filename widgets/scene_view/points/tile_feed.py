@@ -213,6 +213,9 @@ class TileFeed(QObject):
         drive = next((drive for drive, _ in wish.drives if drive.id == request.drive_id), None)
         if drive is None:
             return
+        if not self._tiles.is_current(request, pixels):  # for the wish that was read before
+            self._tiles.request(request, self._on_tiles_done)
+            return
         points = pixels.points.ravel()
         is_filled = points >= 0
         filled = points[is_filled]
