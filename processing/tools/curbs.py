@@ -8,7 +8,12 @@ from dataclasses import dataclass
 from processing.monitor import Monitor, PartMonitor, parts_of
 from processing.points.drive import Drive
 from processing.road.curbs.curb_confidence import CurbFacts, chance_of
-from processing.road.curbs.curb_doubts import step_runs, without_lone_edging, without_rears
+from processing.road.curbs.curb_doubts import (
+    step_runs,
+    without_inner_faces,
+    without_lone_edging,
+    without_rears,
+)
 from processing.road.curbs.curb_edges import EdgeSettings, MeasuredEdges, measured_edges
 from processing.road.curbs.curb_evidence import facts_of, noise_of
 from processing.road.curbs.curb_features import CurbFeature, EdgeLine, features_of
@@ -189,7 +194,9 @@ def find_curbs(
     for number, (drive, part) in enumerate(zip(drives, parts, strict=True)):
         runs.extend(step_runs(drive, number, settings, part))
     # What hides the front of a stone from one scanner doesn't hide it from all.
-    runs = list(without_lone_edging(without_rears(runs, settings), settings))
+    runs = list(
+        without_inner_faces(without_lone_edging(without_rears(runs, settings), settings), settings)
+    )
     features: list[CurbFeature] = []
     for one in measured_curbs(drives, runs, parameters, PartMonitor(monitor, _FINDING, 1.0)):
         chance = chance_of(one.facts)

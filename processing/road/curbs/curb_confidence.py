@@ -16,7 +16,7 @@ from processing.road.curbs.curb_runs import StepRun, median_of
 
 _LEAST_SPREAD_M, _LEAST_ROUGH_M = 0.002, 0.003
 _USUAL_SPREAD_M, _USUAL_SURENESS = 0.01, 10.0
-_LONGEST_M, _WIDEST_M = 20.0, 0.3
+_LONGEST_M, _WIDEST_M, _VEHICLE_M = 20.0, 0.3, 6.0
 
 # Fitted by logistic regression (L2, C = 1, runs weighed by their length up to 30 m) to 1,988 runs
 # of at least 1 m and 3 cm on 16 simulated drives of 12 streets with known curbs, none of the
@@ -116,6 +116,8 @@ def confidence_of(run: StepRun) -> float:
     if not seen.any():
         return 0.0
     spread = math.sqrt(float(np.nanmean(np.minimum(run.spread_m[seen], 0.2) ** 2)))
+    # Blades of a verge hang over a curb's foot; so do vehicles over their tyres, which are short.
+    rough_m = run.foot_cover_m if run.seen_m < _VEHICLE_M else run.foot_roughness_m
     logit = (
         _CONSTANT
         + _SURENESS * math.log(max(_median(run.sureness, run), 0.1) / _USUAL_SURENESS)
@@ -123,8 +125,7 @@ def confidence_of(run: StepRun) -> float:
         + _LENGTH * math.log(min(max(run.seen_m, 0.1), _LONGEST_M))
         + _TOP * min(_median(run.top_m, run), _WIDEST_M)
         + _FOOT * min(_median(run.foot_m, run), _WIDEST_M)
-        + _FOOT_ROUGHNESS
-        * math.log(max(_median(run.foot_roughness_m, run), _LEAST_ROUGH_M) / _LEAST_ROUGH_M)
+        + _FOOT_ROUGHNESS * math.log(max(_median(rough_m, run), _LEAST_ROUGH_M) / _LEAST_ROUGH_M)
     )
     return 1.0 / (1.0 + math.exp(-min(max(logit, -50.0), 50.0)))
 

@@ -117,6 +117,22 @@ def without_rears(runs: Sequence[StepRun], settings: StepSettings) -> tuple[Step
     return tuple(run for run in runs if run.rises > 0 or not _is_rear(run, fronts))
 
 
+def without_inner_faces(runs: Sequence[StepRun], settings: StepSettings) -> tuple[StepRun, ...]:
+    """Runs, of any drives, but for faces of edging stones towards what is planted.
+
+    They rise from the soil behind a curb; the map shows the stone's edge at the walk.
+    """
+    edging = _places([run for run in runs if run.is_edging])
+    return tuple(
+        run
+        for run in runs
+        if run.is_edging
+        or run.rises < 0
+        or not _is_raised(run, settings)
+        or not _is_stone(run, edging)
+    )
+
+
 def without_lone_edging(runs: Sequence[StepRun], settings: StepSettings) -> tuple[StepRun, ...]:
     """Runs, of any drives, but for narrow ridges that no curb runs beside: those of fields."""
     fronts = _fronts(runs, settings)
@@ -157,6 +173,14 @@ def _is_rear(run: StepRun, fronts: Floats) -> bool:
     return bool(beside.mean() >= _BESIDE_SHARE)
 
 
+def _is_stone(run: StepRun, edging: Floats) -> bool:
+    """Whether along some of a run an edging's edge lies a stone's width away."""
+    if not edging.size:
+        return False
+    away = cKDTree(edging[:, :2]).query(run.upper[:, :2], distance_upper_bound=_WIDEST_STONE_M)[0]
+    return bool(np.isfinite(away).mean() >= _BESIDE_SHARE)
+
+
 def _is_beside(run: StepRun, fronts: Floats) -> bool:
     """Whether along most of a run there is a front as far away as planting strips are wide."""
     if not fronts.size:
@@ -166,21 +190,22 @@ def _is_beside(run: StepRun, fronts: Floats) -> bool:
 
 
 def _fronts(runs: Sequence[StepRun], settings: StepSettings) -> Floats:
-    """(n, 3) places of the curbs that stand on the road: in plan, and how high they are."""
-    return np.vstack(
-        [
-            np.empty((0, 3)),
-            *(
-                np.column_stack([run.upper[:, :2], run.heights_m])
-                for run in runs
-                if run.rises > 0 and _is_first(run, settings)
-            ),
-        ]
-    )
+    """Places of the curbs that stand on the road, as :func:`_places` gives them."""
+    return _places([run for run in runs if run.rises > 0 and _is_first(run, settings)])
+
+
+def _places(runs: Sequence[StepRun]) -> Floats:
+    """(n, 3) upper edges in plan and how high the steps are, m."""
+    each = (np.column_stack([run.upper[:, :2], run.heights_m]) for run in runs)
+    return np.vstack([np.empty((0, 3)), *each])
 
 
 def _is_first(run: StepRun, settings: StepSettings) -> bool:
     """Whether a run stands on the road: stones on ground that a curb has raised are edgings."""
-    seen = run.is_seen
-    is_raised = median_of(run.risen_m[seen]) >= settings.least_step_m
-    return not is_raised and median_of(run.above_way_m[seen]) < _ABOVE_ROAD_M
+    is_low = median_of(run.above_way_m[run.is_seen]) < _ABOVE_ROAD_M
+    return is_low and not _is_raised(run, settings)
+
+
+def _is_raised(run: StepRun, settings: StepSettings) -> bool:
+    """Whether a run stands on ground that other steps have raised above the road."""
+    return median_of(run.risen_m[run.is_seen]) >= settings.least_step_m

@@ -12,6 +12,7 @@ from processing.road.curbs.curb_profile import PassSteps
 from processing.road.curbs.link_kernels import smooth_kernel
 from processing.road.curbs.step_columns import (
     FACE_COUNT,
+    FOOT_COVER_M,
     FOOT_M,
     FOOT_ROUGH_M,
     LOWER_ACROSS,
@@ -66,7 +67,9 @@ class StepRun:
     sureness : (k,) float64
         Height of the step as found, in its standard deviations; 0 where bridged.
     foot_roughness_m : (k,) float64
-        How far points before the lower edge lie off the ground there, m. NaN where bridged.
+        How far points of the ground before the lower edge lie off it, m. NaN where bridged.
+    foot_cover_m : (k,) float64
+        The same of all points there, those too that hang over the ground. NaN where bridged.
     above_way_m : (k,) float64
         Height of the lower edge above the road where the vehicle passed it, m. NaN where bridged.
     risen_m : (k,) float64
@@ -88,6 +91,7 @@ class StepRun:
     spread_m: Floats
     sureness: Floats
     foot_roughness_m: Floats
+    foot_cover_m: Floats
     above_way_m: Floats
     risen_m: Floats
     is_edging: bool = False
@@ -149,6 +153,7 @@ def run_of(steps: PassSteps, chain: Chain, number: int, among: PassSteps | None 
         spread_m=off[nearest] + unseen,
         sureness=np.where(is_seen, rows[nearest, SURENESS], 0.0),
         foot_roughness_m=rows[nearest, FOOT_ROUGH_M] + unseen,
+        foot_cover_m=rows[nearest, FOOT_COVER_M] + unseen,
         above_way_m=low + unseen,
         risen_m=_risen(among or steps, (every, middle), side),
     )

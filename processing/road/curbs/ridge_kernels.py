@@ -182,8 +182,7 @@ def _describe(
     row[of.SURENESS] = (top[1] - ground[1]) / math.sqrt(error)
     # The top is level up to its end: nothing says that it is none.
     row[of.TOP_M], row[of.FOOT_M] = _GROUND_M, _GROUND_M
-    row[of.TOP_ROUGH_M], row[of.NOISE_M] = noise, noise
-    row[of.FOOT_ROUGH_M] = ground[2]
+    row[of.FOOT_ROUGH_M], row[of.FOOT_COVER_M] = ground[2], ground[2]
 
 
 def warm_up() -> None:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from processing.kernels import kernel
 from processing.road.curbs.step_columns import (
     FACE_COUNT,
+    FOOT_COVER_M,
     FOOT_ROUGH_M,
     FOOT_SLOPE,
     LOWER_ACROSS,
@@ -18,8 +19,6 @@ from processing.road.curbs.step_columns import (
     SIGN,
     STEP_COLUMNS,
     SURENESS,
-    TOP_M,
-    TOP_ROUGH_M,
     TOP_SLOPE,
     UPPER_ACROSS,
     UPPER_HEIGHT,
@@ -33,10 +32,10 @@ _FOOT_SHARE, _TOP_SHARE = 0.2, 0.8  # of the rise: what is below and above isn't
 _BEYOND_M = 0.06
 _HELD = 0.01  # of squared shares: a few vertices tell no lean, a face is upright then
 _SAME_M = 0.12
-_FOOT_REACH_M = 0.30
+_FOOT_REACH_M, _FACE_OFF_M = 0.30, 0.03  # what is nearer to the edge may be the face's
 _OVER_M, _OVERHEAD_M = 0.15, 1.2  # what lies higher hangs over, is no growth of the ground
 _SEEN_FACE_M, _HIDDEN_M = 0.04, 0.15
-_LEAST_BESIDE_M, _BESIDE_M, _MOST_ROUGH_M = 0.08, 0.16, 0.30
+_BESIDE_M, _MOST_ROUGH_M = 0.16, 0.30
 
 
 @kernel
@@ -157,23 +156,25 @@ def _width(gap: float, count: int, sums: tuple[float, float, float, float]) -> f
 
 @kernel
 def _roughness(x: _Floats, h: _Floats, row: _Floats) -> None:
-    """How far all vertices beside the edges lie off top and foot, m."""
-    top_wide = min(max(row[TOP_M], _LEAST_BESIDE_M), _BESIDE_M)
+    """How far vertices before the lower edge lie off the foot, m.
+
+    What is about as high above the foot as the upper edge is no ground but grows on the top, blades
+    of a verge, or is a vehicle over its tyre; what is as deep below it is in an open gutter, beyond
+    which the ground goes on.
+    """
+    off_ground = _TOP_SHARE * (row[UPPER_HEIGHT] - row[LOWER_HEIGHT])
     sums = np.zeros(4)
     for i in range(x.size):
-        beyond = (x[i] - row[UPPER_ACROSS]) * row[SIGN]
         before = (row[LOWER_ACROSS] - x[i]) * row[SIGN]
-        if 0.0 < beyond <= top_wide:
-            off = h[i] - row[UPPER_HEIGHT] - row[TOP_SLOPE] * beyond
+        if 0.0 < before <= _FOOT_REACH_M:
+            off = h[i] - row[LOWER_HEIGHT] + row[FOOT_SLOPE] * before
             if off < _OVERHEAD_M:
                 sums[0] += min(off * off, _MOST_ROUGH_M**2)
                 sums[1] += 1.0
-        elif 0.0 < before <= _FOOT_REACH_M:
-            off = h[i] - row[LOWER_HEIGHT] + row[FOOT_SLOPE] * before
-            if off < _OVERHEAD_M:
-                sums[2] += min(off * off, _MOST_ROUGH_M**2)
+            if before > _FACE_OFF_M and abs(off) < off_ground:
+                sums[2] += off * off
                 sums[3] += 1.0
-    row[TOP_ROUGH_M] = math.sqrt(sums[0] / max(sums[1], 1.0))
+    row[FOOT_COVER_M] = math.sqrt(sums[0] / max(sums[1], 1.0))
     row[FOOT_ROUGH_M] = math.sqrt(sums[2] / max(sums[3], 1.0))
 
 

@@ -365,7 +365,6 @@ def _describe(line: _Line, step: _Step, limits: _Floats, noise: float, row: _Flo
     row[of.LOWER_HEIGHT], row[of.UPPER_HEIGHT] = low, high
     row[of.LOWER_ACROSS] = at - sign * half_face - line.half
     row[of.UPPER_ACROSS] = at + sign * half_face - line.half
-    row[of.NOISE_M] = math.sqrt(noise)
     row[of.FOOT_M] = _follow(line, at - sign * half_face, (low, foot[3]), -sign)
     row[of.TOP_M] = _follow(line, at + sign * half_face, (high, top[3]), sign)
     return bool(limits[0] <= high - low <= limits[1])
