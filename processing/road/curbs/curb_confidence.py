@@ -28,6 +28,7 @@ _SPREAD = -0.94  # of the logarithm: concrete is straight, plants are not
 _LENGTH = 0.51  # of the logarithm
 _TOP, _FOOT = 4.49, 1.82  # per metre: level ground goes on behind and before a curb
 _FOOT_ROUGHNESS = -1.59  # of the logarithm: pavement lies before a curb, not soil
+_ISLAND, _AS_HIGH = 1.5, 0.3  # what a curb has raised comes down by another, about as far
 
 
 class CurbFacts(NamedTuple):
@@ -127,7 +128,15 @@ def confidence_of(run: StepRun) -> float:
         + _FOOT * min(_median(run.foot_m, run), _WIDEST_M)
         + _FOOT_ROUGHNESS * math.log(max(_median(rough_m, run), _LEAST_ROUGH_M) / _LEAST_ROUGH_M)
     )
+    if run.rises < 0 and _comes_down_again(run):
+        logit += _ISLAND
     return 1.0 / (1.0 + math.exp(-min(max(logit, -50.0), 50.0)))
+
+
+def _comes_down_again(run: StepRun) -> bool:
+    """Whether the ground falls as far as other steps have raised it: the far edge of an island."""
+    high_m = _median(run.heights_m, run)
+    return abs(_median(run.risen_m, run) - high_m) <= _AS_HIGH * high_m
 
 
 def _median(values: NDArray[np.float64], run: StepRun) -> float:

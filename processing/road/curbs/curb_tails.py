@@ -28,7 +28,7 @@ _Recorded = tuple[Sequence[Drive], Sequence[ChosenPoints]]
 _Settings = tuple[EdgeSettings, float]
 _Way = tuple[int, Guide, PooledEdges]  # how many stations it has, its line, what is measured there
 
-REACH_M = 20.0
+REACH_M = 30.0
 """How far a curb is followed beyond its run: round a corner and some way into a side street."""
 
 _AHEAD = 6  # stations at a time
@@ -38,7 +38,7 @@ _LEAP, _LANDING, _LANDED = 24, 8, 7
 """Stations looked over once where a curb ends, lowered to the ground or hidden: 6 m, the length of
 an entrance (Table of mms.md 6.1 bridges 8 m); and how many of how many behind have its edge."""
 _LANDING_M = 0.02
-_FAN = (0.0, 0.06, -0.06, 0.12, -0.12, 0.18, -0.18)
+_FAN = (0.0, 0.06, -0.06, 0.12, -0.12, 0.18, -0.18, 0.26, -0.26, 0.35, -0.35)
 """Directions of a leap, rad: the last stations of a corner tell it within some 10 degrees, and an
 edge is found within 0.25 m aside."""
 _LEAST_GUIDE = 20  # stations of a curb that is looked for farther on
@@ -131,6 +131,7 @@ def _leap(
         if count:
             guides[guide] = _longer(guides[guide], tail, edges, (end, count), is_good)
             is_open[guide, end] = True
+            has_leapt[guide, end] = False
 
 
 def _straight_on(guide: Guide, end: int, aside: float) -> Guide:
