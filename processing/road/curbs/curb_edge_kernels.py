@@ -43,6 +43,7 @@ _NOISY, _NOISIEST_M = 1.5, 0.02
 _TOP_SPACING_M = 0.03
 _ASIDE_M = 0.08
 _RAISED = 0.7  # of the rough step: what lies higher is no soil and little of a face
+_DEEP_M = 0.08
 _LEAST_FACE = 2.5
 _TYPICAL_LEAN = 0.08
 
@@ -178,6 +179,8 @@ def _levels(values: _Floats, span: tuple[int, int], start: _Floats) -> tuple[flo
     low = _middle(values, span, (-0.25, -0.05), -math.inf, 0.4)
     if math.isnan(low):
         low = _middle(values, span, (-0.4, -0.02), -math.inf, 0.4)
+    if low < -_DEEP_M:  # an open gutter, between which and the curb there is some ground
+        low = _middle(values, span, (-0.4, -0.02), -_DEEP_M, 0.8)
     high = math.nan
     if is_hidden:
         # Behind a narrow stone the ground may lie as low as before it; the top is no carriageway.

@@ -33,6 +33,7 @@ _BEYOND_M = 0.06
 _HELD = 0.01  # of squared shares: a few vertices tell no lean, a face is upright then
 _SAME_M = 0.12
 _FOOT_REACH_M, _FACE_OFF_M = 0.30, 0.03  # what is nearer to the edge may be the face's
+_WALL_M = 0.02  # of a gutter: it leans by less
 _OVER_M, _OVERHEAD_M = 0.15, 1.2  # what lies higher hangs over, is no growth of the ground
 _SEEN_FACE_M, _HIDDEN_M = 0.04, 0.15
 _BESIDE_M, _MOST_ROUGH_M = 0.16, 0.30
@@ -159,11 +160,15 @@ def _roughness(x: _Floats, h: _Floats, row: _Floats) -> None:
     """How far vertices before the lower edge lie off the foot, m.
 
     What is about as high above the foot as the upper edge is no ground but grows on the top, blades
-    of a verge, or is a vehicle over its tyre; what is as deep below it is in an open gutter, beyond
-    which the ground goes on.
+    of a verge, or is a vehicle over its tyre; where it falls as deep an open gutter begins.
     """
     off_ground = _TOP_SHARE * (row[UPPER_HEIGHT] - row[LOWER_HEIGHT])
     sums = np.zeros(4)
+    ground_m = _FOOT_REACH_M
+    for i in range(x.size):
+        before = (row[LOWER_ACROSS] - x[i]) * row[SIGN]
+        if 0.0 < before < ground_m and row[LOWER_HEIGHT] - h[i] > off_ground:
+            ground_m = before - _WALL_M
     for i in range(x.size):
         before = (row[LOWER_ACROSS] - x[i]) * row[SIGN]
         if 0.0 < before <= _FOOT_REACH_M:
@@ -171,7 +176,7 @@ def _roughness(x: _Floats, h: _Floats, row: _Floats) -> None:
             if off < _OVERHEAD_M:
                 sums[0] += min(off * off, _MOST_ROUGH_M**2)
                 sums[1] += 1.0
-            if before > _FACE_OFF_M and abs(off) < off_ground:
+            if _FACE_OFF_M < before < ground_m and abs(off) < off_ground:
                 sums[2] += off * off
                 sums[3] += 1.0
     row[FOOT_COVER_M] = math.sqrt(sums[0] / max(sums[1], 1.0))
