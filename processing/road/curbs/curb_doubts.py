@@ -175,18 +175,20 @@ def _is_rear(run: StepRun, fronts: Floats) -> bool:
 
 def _is_stone(run: StepRun, edging: Floats) -> bool:
     """Whether along some of a run an edging's edge lies a stone's width away."""
-    if not edging.size:
-        return False
-    away = cKDTree(edging[:, :2]).query(run.upper[:, :2], distance_upper_bound=_WIDEST_STONE_M)[0]
-    return bool(np.isfinite(away).mean() >= _BESIDE_SHARE)
+    return _share_near(run, edging, _WIDEST_STONE_M) >= _BESIDE_SHARE
 
 
 def _is_beside(run: StepRun, fronts: Floats) -> bool:
     """Whether along most of a run there is a front as far away as planting strips are wide."""
-    if not fronts.size:
-        return False
-    away = cKDTree(fronts[:, :2]).query(run.upper[:, :2], distance_upper_bound=_WIDEST_STRIP_M)[0]
-    return bool(np.isfinite(away).mean() >= _ALONG_SHARE)
+    return _share_near(run, fronts, _WIDEST_STRIP_M) >= _ALONG_SHARE
+
+
+def _share_near(run: StepRun, places: Floats, within_m: float) -> float:
+    """Along how much of a run one of some places is near in plan, 0 to 1."""
+    if not places.size:
+        return 0.0
+    away = cKDTree(places[:, :2]).query(run.upper[:, :2], distance_upper_bound=within_m)[0]
+    return float(np.isfinite(away).mean())
 
 
 def _fronts(runs: Sequence[StepRun], settings: StepSettings) -> Floats:

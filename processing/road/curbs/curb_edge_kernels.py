@@ -30,7 +30,7 @@ STEP_M = 0.25
 """Between stations."""
 
 _LOW, _HIGH, _FACE = 0, 1, 2
-_REACH_M = 0.35  # how far carriageway is looked at
+_REACH_M, _DEEP_M = 0.35, 0.08  # how far and deep carriageway is looked at
 _TOP_M = 0.12  # a stone is at least about as wide
 _CHAMFER_M = 0.03
 _ROUND = 0.32  # of the step, at the top, where an arris may be chamfered or rounded
@@ -40,12 +40,9 @@ _MOST_POINTS = 400  # more make an edge slower, not better
 _LEAST_TOP = 3.0
 _UNSEEN, _ROUGH_M = 0.05, 0.005  # a rough line's height is worth so many points
 _NOISY, _NOISIEST_M = 1.5, 0.02
-_TOP_SPACING_M = 0.03
-_ASIDE_M = 0.08
+_TOP_SPACING_M, _ASIDE_M = 0.03, 0.08
 _RAISED = 0.7  # of the rough step: what lies higher is no soil and little of a face
-_DEEP_M = 0.08
-_LEAST_FACE = 2.5
-_TYPICAL_LEAN = 0.08
+_LEAST_FACE, _TYPICAL_LEAN = 2.5, 0.08
 
 
 @kernel
@@ -179,7 +176,7 @@ def _levels(values: _Floats, span: tuple[int, int], start: _Floats) -> tuple[flo
     low = _middle(values, span, (-0.25, -0.05), -math.inf, 0.4)
     if math.isnan(low):
         low = _middle(values, span, (-0.4, -0.02), -math.inf, 0.4)
-    if low < -_DEEP_M:  # an open gutter, between which and the curb there is some ground
+    if low < -_DEEP_M:  # between an open gutter and the curb there is some ground
         low = _middle(values, span, (-0.4, -0.02), -_DEEP_M, 0.8)
     high = math.nan
     if is_hidden:

@@ -105,6 +105,19 @@ def test_grass_over_the_top_does_not_lift_the_edge() -> None:
     assert found[UPPER_ABOVE] == pytest.approx(0.15, abs=0.01)
 
 
+def test_the_foot_of_a_curb_behind_an_open_gutter_is_the_strip_between() -> None:
+    along, places = curb_points(fall=0.0)
+    across, above = places.T
+    is_open, is_wall = (across > -0.34) & (across < -0.11), (across > -0.11) & (across < -0.08)
+    random = np.random.default_rng(9)
+    above = np.where(is_open, above - 0.3, above)
+    above = np.where(is_wall, random.uniform(-0.3, 0.0, above.size), above)
+    found = measured((along, np.column_stack([np.where(is_wall, -0.1, across), above])))
+    assert found[LOWER_ABOVE] == pytest.approx(0.0, abs=0.01)
+    assert found[UPPER_ABOVE] == pytest.approx(0.15, abs=0.005)
+    assert found[LOWER_ACROSS] == pytest.approx(0.0, abs=0.01)
+
+
 def test_of_a_hidden_face_the_end_of_the_top_is_the_upper_edge() -> None:
     along, places = curb_points()
     is_top = (places[:, 0] > 0.015) & (places[:, 1] > 0.14)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from processing.road.curbs.curb_confidence import confidence_of
 from processing.road.curbs.curb_edge_kernels import (
     ERROR_ACROSS,
     ERROR_HIGH,
@@ -53,6 +54,7 @@ def run_of(from_m: float, to_m: float, *, drive: int = 0, is_back: bool = False)
         spread_m=one * 0.03,
         sureness=one * 20,
         foot_roughness_m=one * 0.003,
+        foot_cover_m=one * 0.003,
         above_way_m=one * -0.05,
         risen_m=one * 0,
     )
@@ -194,3 +196,10 @@ def test_smoothing_bridges_what_is_not_known() -> None:
     values = np.where((np.arange(50) > 20) & (np.arange(50) < 30), np.nan, np.arange(50) * 0.1)
     found = smoothed(values, np.isfinite(values).astype(float), Smoothness(12.0, 0.01))
     np.testing.assert_allclose(found, np.arange(50) * 0.1, atol=1e-6)
+
+
+def test_what_comes_down_as_far_as_it_rose_is_likely_the_far_side_of_an_island() -> None:
+    far = replace(run_of(0.0, 6.0), rises=-1, sureness=np.full(60, 9.0), top_m=np.zeros(60))
+    island = replace(far, risen_m=np.full(60, 0.15))
+    assert confidence_of(island) > confidence_of(far) + 0.1
+    assert confidence_of(replace(far, risen_m=np.full(60, 0.4))) == confidence_of(far)

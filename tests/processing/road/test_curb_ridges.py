@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.road.curbs.curb_doubts import runs_of, without_doubtful
+from processing.road.curbs.curb_doubts import runs_of, without_doubtful, without_inner_faces
 from processing.road.curbs.curb_ridges import ridges_of
 from processing.road.curbs.curb_runs import StepRun
 from processing.road.curbs.ridge_kernels import ridges_kernel
@@ -77,6 +79,18 @@ def test_an_edging_stone_is_one_run_along_its_far_edge() -> None:
     assert longest.seen_m > 11.0
     assert np.abs(longest.upper[:, 0] - 4.5).max() < 0.03
     assert np.abs(longest.heights_m - 0.12).max() < 0.02
+
+
+def test_of_an_edging_stone_the_face_towards_the_strip_is_left_out() -> None:
+    runs = without_doubtful(
+        tuple(runs_of([scanlines(strip())], 0, SETTINGS)), replace(SETTINGS, least_step_m=0.02)
+    )
+    fronts = [run for run in runs if run.rises > 0 and np.median(run.upper[:, 0]) > 4.0]
+    kept = without_inner_faces(runs, SETTINGS)
+    assert fronts
+    assert not [run for run in kept if any(run is front for front in fronts)]
+    assert [run for run in kept if run.is_edging]
+    assert [run for run in kept if np.median(run.upper[:, 0]) < 3.1]
 
 
 def test_the_rear_of_a_kerb_stone_is_no_edging() -> None:

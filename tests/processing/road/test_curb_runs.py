@@ -117,6 +117,30 @@ def test_a_curb_across_the_way_is_a_run_from_left_to_right() -> None:
     assert (crossing[0].rises > 0) == (crossing[0].side < 0)
 
 
+def test_blades_that_hang_over_the_foot_do_not_hide_a_curb() -> None:
+    def verge(_station: float, across: _Floats) -> _Floats:
+        heights = np.where(across > 3.0, 0.15, 0.0)
+        heights[np.searchsorted(across, [2.86, 2.95])] = 0.2
+        return heights
+
+    (run,) = found(verge)
+    assert np.abs(run.lower[:, 0] - 3.0).max() < 0.1  # near enough to be measured
+    assert np.median(run.foot_cover_m) > 0.03
+    assert np.median(run.foot_roughness_m) < 0.01
+
+
+def test_a_curb_behind_an_open_gutter_is_found() -> None:
+    def gutter(_station: float, across: _Floats) -> _Floats:
+        wall = np.interp(across, [2.87, 2.90], [-0.3, 0.0])
+        is_hidden = (across > 2.60) & (across < 2.87)
+        heights = np.where(across > 3.0, 0.15, np.where(across > 2.6, wall, 0.0))
+        return np.where(is_hidden, np.nan, heights)
+
+    runs = [run for run in found(gutter) if abs(np.median(run.lower[:, 0]) - 3.0) < 0.02]
+    assert max(run.seen_m for run in runs) > 11.0
+    assert all(np.median(run.foot_roughness_m) < 0.01 for run in runs)
+
+
 def test_grass_beside_the_road_is_no_curb() -> None:
     random = np.random.default_rng(5)
 
