@@ -132,7 +132,7 @@ def confidence_of(run: StepRun) -> float:
     )
     if run.rises < 0 and _comes_down_again(run):
         logit += _ISLAND
-    return 1.0 / (1.0 + math.exp(-min(max(logit, -50.0), 50.0)))
+    return max(1.0 / (1.0 + math.exp(-min(max(logit, -50.0), 50.0))), run.chance_beside)
 
 
 def _comes_down_again(run: StepRun) -> bool:

@@ -19,6 +19,7 @@ from processing.points.drive import Drive
 from processing.road.curbs.curb_chains import chains_of
 from processing.road.curbs.curb_confidence import confidence_of
 from processing.road.curbs.curb_crossings import crossing_runs
+from processing.road.curbs.curb_pits import tree_pits
 from processing.road.curbs.curb_profile import PassSteps, StepSettings, joined_steps, steps_of
 from processing.road.curbs.curb_ridges import PassRidges, ridge_runs, ridges_of
 from processing.road.curbs.curb_runs import StepRun, median_of, run_of
@@ -108,7 +109,8 @@ def _noted(
 
 def without_doubtful(runs: Sequence[StepRun], settings: StepSettings) -> tuple[StepRun, ...]:
     """The runs of one drive that are taken for curbs."""
-    return without_rears([run for run in runs if is_likely(run, settings)], settings)
+    likely = [run for run in runs if is_likely(run, settings)]
+    return without_rears([*likely, *tree_pits(runs, likely, settings)], settings)
 
 
 def without_rears(runs: Sequence[StepRun], settings: StepSettings) -> tuple[StepRun, ...]:

@@ -66,10 +66,12 @@ def facts_of(
     guide, curb = line
     stations = slice(int(curb.frame[0, 0]), int(curb.frame[-1, 0]) + 1)
     shares = _shares(guide, stations)
-    crossing = _weighed(shares, lambda number: float(not _is_along(runs[number]))) > 0.5
-    short = 1.0
+    # What repeats along a street may cross the way and stand where others have risen.
+    lone = 1.0 - _weighed(shares, lambda number: float(runs[number].chance_beside > 0))
+    crossing = lone * _weighed(shares, lambda number: float(not _is_along(runs[number]))) > 0.5
+    short = lone
     if not crossing:
-        short = max(1.0 - float(curb.is_seen.sum()) * STEP_M / _LONG_M, 0.0)
+        short *= max(1.0 - float(curb.is_seen.sum()) * STEP_M / _LONG_M, 0.0)
     risen_m = min(_weighed(shares, lambda number: _risen_m(runs[number])), _MOST_RISEN_M)
     above_m = _weighed(shares, lambda number: _seen_median(runs[number], "above_way_m"))
     known = np.isfinite(edges.across_error[stations])

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +58,8 @@ class Guide:
         The step run that each place is from; −1 where bridged.
     drive : int
         The first drive that saw it.
+    is_alone : bool
+        It ends at corners: it isn't joined to others nor followed farther.
     """
 
     xyz: _Floats
@@ -70,6 +72,7 @@ class Guide:
     is_along: bool
     runs: _Integers
     drive: int
+    is_alone: bool = False
 
 
 @dataclass(frozen=True)
@@ -85,19 +88,16 @@ class _Piece:
     is_along: bool
     run: int
     drive: int
+    is_alone: bool = False
 
     def cut(self, first: int, stop: int) -> _Piece:
         part = slice(first, stop)
-        return _Piece(
-            self.xyz[part],
-            self.step_m[part],
-            self.width_m[part],
-            self.is_seen[part],
-            self.is_hidden,
-            self.is_edging,
-            self.is_along,
-            self.run,
-            self.drive,
+        return replace(
+            self,
+            xyz=self.xyz[part],
+            step_m=self.step_m[part],
+            width_m=self.width_m[part],
+            is_seen=self.is_seen[part],
         )
 
 
@@ -137,6 +137,7 @@ def joined_again(guides: Sequence[Guide], bridge_m: float) -> tuple[Guide, ...]:
                 guide.is_along,
                 int(np.bincount(of).argmax()) if of.size else 0,
                 guide.drive,
+                guide.is_alone,
             )
         )
     return _joined(pieces, bridge_m)
@@ -173,7 +174,7 @@ def _piece_of(run: StepRun, number: int) -> _Piece | None:
     lean = _at(at, along, upper - lower)
     width = (lean[:, :2] * left).sum(axis=1)
     kind = (run.rises < 0, run.is_edging, is_left_high)
-    return _Piece(smooth, step, width, seen, *kind, number, run.drive)
+    return _Piece(smooth, step, width, seen, *kind, number, run.drive, run.chance_beside > 0)
 
 
 def _at(at: _Floats, along: _Floats, values: _Floats) -> _Floats:
@@ -241,7 +242,8 @@ def _links(pieces: Sequence[_Piece], bridge_m: float) -> Iterator[tuple[float, i
     heads = cKDTree(np.array([piece.xyz[0, :2] for piece in pieces]))
     for one, near in enumerate(heads.query_ball_point(tails, bridge_m + STATION_M)):
         for other in near:
-            cost = _cost(pieces[one], pieces[other]) if other != one else math.inf
+            is_alone = other == one or pieces[one].is_alone or pieces[other].is_alone
+            cost = math.inf if is_alone else _cost(pieces[one], pieces[other])
             if math.isfinite(cost):
                 yield cost, one, other
 
@@ -309,4 +311,5 @@ def _guide_of(pieces: Sequence[_Piece]) -> Guide:
         first.is_along,
         np.where(is_near, np.array([piece.run for piece in pieces])[which[nearest]], -1),
         first.drive,
+        first.is_alone,
     )

@@ -75,6 +75,10 @@ class StepRun:
     risen_m : (k,) float64
         What other steps between the vehicle's way and this one add up to, up less down, m: 0 for
         the first from the road, about the curb's height for what stands on the pavement behind it.
+    is_edging : bool
+        The far edge of a narrow edging stone.
+    chance_beside : float
+        How likely it is a curb by others that are like it, 0 to 1; 0: there are none.
     """
 
     drive: int
@@ -95,6 +99,7 @@ class StepRun:
     above_way_m: Floats
     risen_m: Floats
     is_edging: bool = False
+    chance_beside: float = 0.0
 
     @property
     def heights_m(self) -> Floats:

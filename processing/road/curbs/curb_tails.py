@@ -72,8 +72,9 @@ def prolonged(
     parts = parts_of(monitor, [drive.count for drive in drives])
     near = [points_near(one, ends, reach, part) for one, part in zip(drives, parts, strict=True)]
     now = _trimmed(guides, (drives, near), (settings, limits[0]))
-    is_open = np.ones((len(now), 2), np.bool_)
-    has_leapt = np.array([[one.xyz.shape[0] < _LEAST_GUIDE] * 2 for one in now], np.bool_)
+    is_open = np.array([[not one.is_alone] * 2 for one in now], np.bool_)
+    is_short = [one.is_alone or one.xyz.shape[0] < _LEAST_GUIDE for one in now]
+    has_leapt = np.array([[short] * 2 for short in is_short], np.bool_)
     for _ in range(round(REACH_M / (_AHEAD * STEP_M))):
         monitor.check()
         _leap(now, (is_open, has_leapt), (drives, near), (settings, limits[0]))
