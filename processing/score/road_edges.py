@@ -48,7 +48,7 @@ from processing.score.road_tables import (
     reliability_table,
 )
 
-SEEDS = range(971, 983)
+SEEDS = range(983, 995)
 TOOLS = ("curbs", "gutters")
 LEAST_RIGHT = 0.8
 """So much of a line must lie along true edges for it to be right as a candidate."""

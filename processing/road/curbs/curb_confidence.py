@@ -31,6 +31,7 @@ _LENGTH = 0.51  # of the logarithm
 _TOP, _FOOT = 4.49, 1.82  # per metre: level ground goes on behind and before a curb
 _FOOT_ROUGHNESS = -1.59  # of the logarithm: pavement lies before a curb, not soil
 _ISLAND, _AS_HIGH = 1.5, 0.3  # what a curb has raised comes down by another, about as far
+_BELOW_M = 0.15  # so far a road falls to its side by cross slope
 
 
 class CurbFacts(NamedTuple):
@@ -46,7 +47,8 @@ class CurbFacts(NamedTuple):
         stand on a pavement that a curb has already raised.
     above_way_m : float
         How far its foot lies above the road at the vehicle's way, m, −0.1 to 0.1; as `risen_m` the
-        less the longer the line is. Roads drain to their curbs.
+        less the longer the line is. Roads drain to their curbs; what lies 0.25 m below the road is
+        none of it, which speaks neither for nor against (0).
     crossing : float
         1 where it lies rather across the vehicle's way than along it, else 0.
     too_tall_m : float
@@ -136,9 +138,13 @@ def confidence_of(run: StepRun) -> float:
 
 
 def _comes_down_again(run: StepRun) -> bool:
-    """Whether the ground falls as far as other steps have raised it: the far edge of an island."""
+    """Whether the ground falls to the road, as far as other steps have raised it: by an island.
+
+    Levees between fields rise and fall as well, from lower ground.
+    """
     high_m = _median(run.heights_m, run)
-    return abs(_median(run.risen_m, run) - high_m) <= _AS_HIGH * high_m
+    is_on_road = _median(run.above_way_m, run) >= -_BELOW_M
+    return is_on_road and abs(_median(run.risen_m, run) - high_m) <= _AS_HIGH * high_m
 
 
 def _median(values: NDArray[np.float64], run: StepRun) -> float:

@@ -41,6 +41,9 @@ _LEVEL_M, _RISEN_SHARE = 0.02, 0.5
 """Where the ground falls away from the road and what falls is no higher than the road itself, less
 than this share of it having risen before, no island ends but a ditch or a bank begins."""
 
+_DEEP_M, _CHANNEL_M = 0.10, 0.5
+"""What comes up from as deep below the road, over ground as narrow, is the wall of a channel."""
+
 _WIDEST_STONE_M = 0.35  # 25 cm, and both edges are known within some centimetres
 _BESIDE_SHARE = 0.25  # no planting strip is as narrow as a stone
 _ABOVE_ROAD_M = 0.05
@@ -148,7 +151,7 @@ def is_likely(run: StepRun, settings: StepSettings) -> bool:
     high_m = median_of(run.heights_m[run.is_seen])
     if high_m < settings.least_step_m:
         return False
-    if run.rises < 0 and _falls_off(run, high_m):
+    if _falls_off(run, high_m) if run.rises < 0 else _climbs_out(run, high_m):
         return False
     is_high = run.rises > 0 and high_m >= _HIGH_M
     if is_high and median_of(run.face_m[run.is_seen]) > _MOST_LEAN * high_m:
@@ -161,6 +164,16 @@ def _falls_off(run: StepRun, high_m: float) -> bool:
     seen = run.is_seen
     above_m = median_of(run.above_way_m[seen]) + high_m
     return above_m < _LEVEL_M and median_of(run.risen_m[seen]) < _RISEN_SHARE * high_m
+
+
+def _climbs_out(run: StepRun, high_m: float) -> bool:
+    """Whether ground that lies below the road, narrow or fallen before, comes up to its level."""
+    seen = run.is_seen
+    below_m = -median_of(run.above_way_m[seen])
+    if below_m < _DEEP_M or high_m - below_m >= _LEVEL_M:
+        return False
+    is_fallen = median_of(run.risen_m[seen]) <= -_RISEN_SHARE * high_m
+    return is_fallen or median_of(run.foot_m[seen]) < _CHANNEL_M
 
 
 def _is_rear(run: StepRun, fronts: Floats) -> bool:

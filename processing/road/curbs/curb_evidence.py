@@ -31,6 +31,7 @@ _LONG_M = 20.0  # what is longer may well stand behind another curb: a median, t
 _MOST_UNEVEN, _MOST_ROUGH = 1.5, 4.0
 _MOST_RISEN_M, _MOST_ABOVE_M, _MOST_TALL_M, _MOST_FLAT = 0.2, 0.1, 0.2, 0.7
 _ALONG, _HIDDEN = 0.7, 0.5
+_FIELD_M = 0.25  # below the road: no cross slope of a road comes down so far
 _LEAST_STATIONS = 4
 
 
@@ -74,6 +75,7 @@ def facts_of(
         short *= max(1.0 - float(curb.is_seen.sum()) * STEP_M / _LONG_M, 0.0)
     risen_m = min(_weighed(shares, lambda number: _risen_m(runs[number])), _MOST_RISEN_M)
     above_m = _weighed(shares, lambda number: _seen_median(runs[number], "above_way_m"))
+    above_m = 0.0 if above_m < -_FIELD_M else above_m
     known = np.isfinite(edges.across_error[stations])
     part = [one[stations] for one in measures]
     is_faced = bool(known.any() and (edges.face_points[stations][known] > 0).mean() >= FACED)

@@ -203,3 +203,5 @@ def test_what_comes_down_as_far_as_it_rose_is_likely_the_far_side_of_an_island()
     island = replace(far, risen_m=np.full(60, 0.15))
     assert confidence_of(island) > confidence_of(far) + 0.1
     assert confidence_of(replace(far, risen_m=np.full(60, 0.4))) == confidence_of(far)
+    levee = replace(island, above_way_m=np.full(60, -0.3))
+    assert confidence_of(levee) == confidence_of(far)

@@ -167,6 +167,18 @@ def test_where_the_ground_falls_off_beside_the_road_is_no_curb(fall: float) -> N
     assert found(lambda _station, across: np.where(across > 3.0, -0.2, -fall * across)) == ()
 
 
+@pytest.mark.parametrize("is_fall_seen", [True, False])
+def test_where_the_ground_comes_up_to_the_road_from_a_channel_is_no_curb(
+    is_fall_seen: bool,
+) -> None:
+    def channel(_station: float, across: _Floats) -> _Floats:
+        heights = np.where((across > 2.7) & (across < 3.0), -0.3, 0.0)
+        is_hidden = (across > 2.7) & (across < 2.72 if is_fall_seen else across < 2.8)
+        return np.where(is_hidden, np.nan, heights)
+
+    assert not [run for run in found(channel) if run.rises > 0]
+
+
 def test_the_spread_alone_is_that_of_the_whole_run() -> None:
     steps = steps_of(scanlines(curb(3.0, 0.15)), SETTINGS)
     chain = max(chains_of(steps, SETTINGS), key=lambda one: one.rows.size)
