@@ -22,7 +22,7 @@ from processing.road.curbs.curb_crossings import crossing_runs
 from processing.road.curbs.curb_pits import tree_pits
 from processing.road.curbs.curb_profile import PassSteps, StepSettings, joined_steps, steps_of
 from processing.road.curbs.curb_ridges import PassRidges, ridge_runs, ridges_of
-from processing.road.curbs.curb_runs import StepRun, median_of, run_of
+from processing.road.curbs.curb_runs import StepRun, is_raised, median_of, run_of
 from processing.worked_ahead import one_ahead
 
 Floats = NDArray[np.float64]
@@ -133,7 +133,7 @@ def without_inner_faces(runs: Sequence[StepRun], settings: StepSettings) -> tupl
         for run in runs
         if run.is_edging
         or run.rises < 0
-        or not _is_raised(run, settings)
+        or not is_raised(run, settings.least_step_m)
         or not _is_stone(run, edging)
     )
 
@@ -220,9 +220,4 @@ def _places(runs: Sequence[StepRun]) -> Floats:
 def _is_first(run: StepRun, settings: StepSettings) -> bool:
     """Whether a run stands on the road: stones on ground that a curb has raised are edgings."""
     is_low = median_of(run.above_way_m[run.is_seen]) < _ABOVE_ROAD_M
-    return is_low and not _is_raised(run, settings)
-
-
-def _is_raised(run: StepRun, settings: StepSettings) -> bool:
-    """Whether a run stands on ground that other steps have raised above the road."""
-    return median_of(run.risen_m[run.is_seen]) >= settings.least_step_m
+    return is_low and not is_raised(run, settings.least_step_m)

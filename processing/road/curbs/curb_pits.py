@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.road.curbs.curb_profile import StepSettings
-from processing.road.curbs.curb_runs import StepRun, median_of
+from processing.road.curbs.curb_runs import StepRun, is_raised, median_of
 
 _SHORTEST_M, _LONGEST_M = 0.6, 3.0
 _LEAST_SURE = 8.0
@@ -21,8 +21,8 @@ _LIKE_M, _LIKE_LONG_M, _LIKE_RISEN_M = 0.015, 0.5, 0.03
 _LEAST_OTHERS = 2
 _CORNER_M, _CORNER_UP_M = 0.5, 0.1
 CHANCE = 0.8
-"""Of three and more short curbs that are alike nearly all were frames of tree pits on the streets
-that were looked at (seeds 302, 304, 331)."""
+"""Taken, not learnt: of the streets looked at (seeds 301 to 332, 575 to 589) 304, 331 and 583 got
+sections of tree pits by it, and none a false one."""
 
 
 def tree_pits(
@@ -31,7 +31,7 @@ def tree_pits(
     """The sides of tree pits among runs of one drive that aren't likely by themselves."""
     taken = {id(run) for run in likely}
     short = [run for run in runs if id(run) not in taken and _is_short(run, settings)]
-    fronts = _alike([run for run in short if _is_raised(run, settings)])
+    fronts = _alike([run for run in short if is_raised(run, settings.least_step_m)])
     if not fronts:
         return []
     chosen = {id(run) for run in fronts}
@@ -46,10 +46,6 @@ def _is_short(run: StepRun, settings: StepSettings) -> bool:
     seen = run.is_seen
     is_sure = median_of(run.sureness[seen]) >= _LEAST_SURE
     return is_sure and median_of(run.heights_m[seen]) >= settings.least_step_m
-
-
-def _is_raised(run: StepRun, settings: StepSettings) -> bool:
-    return median_of(run.risen_m[run.is_seen]) >= settings.least_step_m
 
 
 def _alike(runs: Sequence[StepRun]) -> list[StepRun]:

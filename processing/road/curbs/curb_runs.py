@@ -120,6 +120,11 @@ def median_of(values: Floats) -> float:
     return float(rising[(rising.size - 1) // 2] + rising[rising.size // 2]) / 2
 
 
+def is_raised(run: StepRun, least_step_m: float) -> bool:
+    """Whether a run stands on ground that other steps have raised above the road."""
+    return median_of(run.risen_m[run.is_seen]) >= least_step_m
+
+
 def run_of(steps: PassSteps, chain: Chain, number: int, among: PassSteps | None = None) -> StepRun:
     """The smooth line through the steps of a chain, at every scanline.
 

@@ -35,11 +35,11 @@ _AHEAD = 6  # stations at a time
 _KNOWN = 8  # stations that say how a line goes on
 _LEAST = 3
 _LEAP, _LANDING, _LANDED = 24, 8, 7
-"""Stations looked over once where a curb ends, lowered to the ground or hidden: 6 m, the length of
-an entrance (Table of mms.md 6.1 bridges 8 m); and how many of how many behind have its edge."""
+"""Stations looked over at a time where a curb ends, lowered to the ground or hidden: 6 m, as long
+as an entrance (Table of mms.md 6.1 bridges 8 m); and how many of how many behind have its edge."""
 _LANDING_M = 0.02
 _FAN = (0.0, 0.06, -0.06, 0.12, -0.12, 0.18, -0.18, 0.26, -0.26, 0.35, -0.35)
-"""Directions of a leap, rad: the last stations of a corner tell it within some 10 degrees, and an
+"""Directions of a leap, rad: the last stations of a corner tell it within some 20 degrees, and an
 edge is found within 0.25 m aside."""
 _LEAST_GUIDE = 20  # stations of a curb that is looked for farther on
 _END = 16  # stations that may lie too far ahead
@@ -115,7 +115,7 @@ def _leap(
     recorded: _Recorded,
     settings: _Settings,
 ) -> None:
-    """Look over what hides or lowers a curb where it ends, once; found ends are open again."""
+    """Look over what hides or lowers a curb where it ends; found ends are open again."""
     is_open, has_leapt = flags
     ends = [(int(guide), int(end)) for guide, end in np.argwhere(~is_open & ~has_leapt)]
     if not ends:
