@@ -34,6 +34,7 @@ _ROOM = 8  # points for one notch that is kept
 _NOISE_FLOOR_M = 0.0025
 """Least noise that depths are counted in: no lid is flatter, so that z_t is four times of it."""
 _LOST_STRENGTH = 0.05
+_SEEN_WHOLE = 3.5  # spacings of points, across openings whose both rims are seen
 _LONGEST_HOLE_M, _WIDEST_HOLE_M = 0.05, 0.20
 
 
@@ -185,15 +186,7 @@ def _found_in(
     spans = np.column_stack([sweeps.starts[first:stop], sweeps.stops[first:stop]]) - start
     rights = way.rights_at(stations)
     noise = _noise(xyz, pulse, spans, places)
-    limits = (
-        parameters.reach_m,
-        parameters.height_range_m,
-        noise,
-        parameters.aside_m,
-        parameters.down_m,
-        parameters.step_m,
-        parameters.noise_factor,
-    )
+    limits = _limits(parameters, noise)
     room = max(len(xyz) // _ROOM, 64)
     found, origin = np.empty((room, FOUND)), np.empty((room, 3), np.int64)
     count = notches_kernel(xyz, pulse, (spans, places, rights), limits, (found, origin))
@@ -201,13 +194,15 @@ def _found_in(
     time = np.asarray(drive.columns["time"])[origin[:, 1] + start]
     between = xyz[origin[:, 2], :2] - xyz[origin[:, 1], :2]
     length = np.maximum(np.hypot(between[:, 0], between[:, 1]), 1e-9)
+    spacing = length / np.maximum(origin[:, 2] - origin[:, 1] + found[:, 7], 1)
+    beyond = _beyond(found, places[origin[:, 0]], spacing, parameters)
     placed = found[:, :3] + way.origin
+    placed[:, :2] += beyond
     station, across = way.stations_of(placed, time)
     is_known = np.isfinite(station)
     beside = np.where(is_known, station, 0.0)
     ahead = way.directions_at(beside)
     along = (between * ahead).sum(axis=1) / length
-    spacing = length / np.maximum(origin[:, 2] - origin[:, 1] + found[:, 7], 1)
     apart = sweeps.advances[first:stop][origin[:, 0]] * np.sqrt(np.maximum(1.0 - along**2, 0.0))
     whole = Notches(
         placed,
@@ -226,6 +221,33 @@ def _found_in(
         raised_m=placed[:, 2] - way.places_at(beside)[:, 2] + height_m,
     )
     yield whole.chosen(is_known)
+
+
+def _limits(
+    parameters: NotchParameters, noise: float
+) -> tuple[float, float, float, float, float, float, float]:
+    """As the kernel takes them."""
+    return (
+        parameters.reach_m,
+        parameters.height_range_m,
+        noise,
+        parameters.aside_m,
+        parameters.down_m,
+        parameters.step_m,
+        parameters.noise_factor,
+    )
+
+
+def _beyond(found: Floats, vehicle: Floats, spacing: Floats, parameters: NotchParameters) -> Floats:
+    """(n, 2) how far the middles of openings lie beyond where they were seen, m.
+
+    A beam that enters a hole near its far rim meets the wall less than z_t below the surface and
+    isn't told from it: of an opening that one or two points are in, the near part is seen.
+    """
+    beam = found[:, :2] - vehicle[:, :2]
+    blind = parameters.down_m / parameters.height_m * beam
+    is_missed = (found[:, 4] < _SEEN_WHOLE * spacing) & (found[:, 3] > 0.0)
+    return np.asarray(np.where(is_missed[:, None], blind / 2, 0.0), np.float64)
 
 
 def _height_above_road(

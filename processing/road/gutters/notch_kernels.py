@@ -1,9 +1,9 @@
 """The loops that follow the surface along a row and note where it is open.
 
-A row is followed from one end to the other. The surface is the straight line through the last
-points taken for it; what dips below and comes back to that line is an opening, what leaves it for
-good is the end of a stretch. Lines are sums over runs of taken points, so a point costs the same
-however many points a line has.
+A row is followed from the vehicle outwards, to each side. The surface is the straight line through
+the last points taken for it; what dips below and comes back to that line is an opening, what leaves
+it for good is the end of a stretch, and so is all of a wall. Lines are sums over runs of taken
+points, so a point costs the same however many points a line has.
 
 Work arrays: ``taken`` (7, n + 1) float64 holds along, height, and the running sums of along,
 height, along², along × height, height²; ``origin`` (2, n) int64 holds the point's place in the row
@@ -16,6 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.kernels import kernel
+from processing.road.gutters.row_kernels import (
+    row_along_kernel,
+    row_points_kernel,
+    row_side_kernel,
+)
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -27,6 +32,7 @@ pulses, pattern."""
 _OPENING, _DENT, _LOST, _JOINT = 1.0, 2.0, 4.0, 8.0
 _FEWEST = 5
 _MOST = 24
+_BEHIND = 2  # points that may do behind an opening, where a wall or a curb follows
 _LINE_M = 0.30
 _BREAK_M = 0.30
 _WIDEST_M = 0.70
@@ -34,7 +40,7 @@ _LOOKED_AT = 80  # points beyond a drop, among which the surface may go on
 _DEEPEST_M = 0.8  # below a gutter's floor there is nothing
 _BELOW = 0.6
 _STEEPEST = 0.3  # walls are even too; no street is as steep as this
-_BEND = 0.03  # 1.8 degrees: what the surface may turn across an opening
+_BEND = 0.06  # 1.8 degrees: what the surface may turn across an opening
 
 
 @kernel
@@ -59,62 +65,25 @@ def notches_kernel(
     longest = 1
     for sweep in range(len(places)):
         longest = max(longest, spans[sweep, 1] - spans[sweep, 0])
-    near = np.empty(longest, np.int64)
+    near, outwards = np.empty(longest, np.int64), np.empty(longest, np.int64)
     along = np.empty(longest)
     taken = np.zeros((7, longest + 1))
     origin = np.empty((2, longest), np.int64)
     count = 0
     for sweep in range(len(places)):
-        size = _near_kernel(
-            xyz, (spans[sweep, 0], spans[sweep, 1]), places[sweep], rights[sweep], limits, near
-        )
-        if size < 2 * _FEWEST:
-            continue
-        _along_kernel(xyz, near, size, along)
-        used = _follow_kernel(xyz, near, along, size, limits, taken, origin)
+        row = (spans[sweep, 0], spans[sweep, 1])
+        size, middle = row_points_kernel(xyz, row, places[sweep], rights[sweep], limits, near)
         before = count
-        count = _weigh_kernel((xyz, pulse, near), taken, origin, used, limits, count, out)
+        for side in range(2):
+            used = row_side_kernel(near, (size, middle), side, outwards)
+            if used < 2 * _FEWEST:
+                continue
+            row_along_kernel(xyz, outwards, used, along)
+            used = _follow_kernel(xyz, outwards, along, used, limits, taken, origin)
+            count = _weigh_kernel((xyz, pulse, outwards), taken, origin, used, limits, count, out)
         for one in range(before, count):
             out[1][one, 0] = sweep
     return count
-
-
-@kernel
-def _near_kernel(
-    xyz: Floats,
-    points: tuple[int, int],
-    place: Floats,
-    right: Floats,
-    limits: tuple[float, float, float, float, float, float, float],
-    near: Integers,
-) -> int:
-    """Points of a row that may be on the road or beside it; how many."""
-    size = 0
-    for point in range(points[0], points[1]):
-        east, north = xyz[point, 0] - place[0], xyz[point, 1] - place[1]
-        across = east * right[0] + north * right[1]
-        if (
-            abs(across) <= limits[0]
-            and abs(north * right[0] - east * right[1]) <= 2.0 * limits[0]
-            and abs(xyz[point, 2] - place[2]) <= limits[1]
-        ):
-            near[size] = point
-            size += 1
-    return size
-
-
-@kernel
-def _along_kernel(xyz: Floats, near: Integers, size: int, along: Floats) -> None:
-    """Where points are along their row: in plan from its first to its last point."""
-    first, last = near[0], near[size - 1]
-    east, north = xyz[last, 0] - xyz[first, 0], xyz[last, 1] - xyz[first, 1]
-    length = max(np.sqrt(east * east + north * north), 1e-9)
-    east, north = east / length, north / length
-    for one in range(size):
-        point = near[one]
-        along[one] = (xyz[point, 0] - xyz[first, 0]) * east + (
-            xyz[point, 1] - xyz[first, 1]
-        ) * north
 
 
 @kernel
@@ -188,7 +157,7 @@ def _follow_kernel(
             # Stricter below than above, so that the line doesn't sink between a grating's bars.
             is_off = off > limit or off < -limit * _BELOW
             # A beam that fell through a hole comes down far beyond it.
-            if is_off and (off < 0.0 or not is_far):
+            if is_off and (off < 0.0 or not is_far) and abs(slope) <= _STEEPEST:
                 line = (level - slope * middle + base, slope, floor, taken[0, used - 1])
                 following = _return_kernel((xyz, near, along), one, size, line)
         if following == one and (is_far or is_off):
@@ -247,7 +216,7 @@ def _weigh_kernel(
     smooth = 1.6 * noise + 0.0015
     stretch_start = 0
     quiet = -1
-    for at in range(1, used - _FEWEST):
+    for at in range(1, used - _BEHIND):
         if origin[1, at] != origin[1, at - 1]:
             stretch_start = at
         before, after = origin[0, at - 1], origin[0, at]
@@ -255,20 +224,15 @@ def _weigh_kernel(
         is_open = after - before > 1 or lost > 0
         if count >= len(out[0]) or at - stretch_start < _FEWEST or at <= quiet:
             continue
-        skip = 0 if is_open else 1
-        if (
-            origin[1, at + _FEWEST - 1 + skip if at + _FEWEST - 1 + skip < used else used - 1]
-            != (origin[1, at])
-        ):
-            continue
+        ahead = at if is_open else at + 1
         lengths = _reach_of(taken, stretch_start, at)
-        ahead = at + skip
-        end = ahead + _FEWEST
+        end = ahead
         while end < used and end - ahead < lengths and origin[1, end] == origin[1, at]:
             end += 1
-        line = _sides(
-            taken, (at, ahead), (at - lengths, min(end, used)), smooth if is_open else np.inf
-        )
+        is_long = is_open and at - stretch_start >= 2 * _FEWEST
+        if end - ahead < (_BEHIND if is_long else _FEWEST):
+            continue
+        line = _sides(taken, (at, ahead), (at - lengths, end), smooth if is_open else np.inf)
         # Noise alone never gets the benefit of a window that happens to be still.
         scale = max(line[4], 0.7 * noise)
         if line[4] > smooth or abs(line[2]) > _STEEPEST:
@@ -305,10 +269,11 @@ def _sides(
 @kernel
 def _lost(pulse: Integers, before: int, after: int, steps: int) -> int:
     """Pulses without return between two points."""
-    if pulse[after] - pulse[before] <= steps:
+    first, last = min(before, after), max(before, after)
+    if pulse[last] - pulse[first] <= steps:
         return 0
     lost = 0
-    for point in range(before + 1, after + 1):
+    for point in range(first + 1, last + 1):
         lost += max(pulse[point] - pulse[point - 1] - 1, 0)
     return lost
 
@@ -357,8 +322,8 @@ def _note_opening(
     found[6] = line[4]
     found[7] = lost
     found[8] = pattern
-    out[1][count, 1] = point
-    out[1][count, 2] = other
+    out[1][count, 1] = min(point, other)
+    out[1][count, 2] = max(point, other)
 
 
 @kernel
@@ -384,8 +349,8 @@ def _note_low(
     found[6] = line[4]
     found[7] = 0.0
     found[8] = _JOINT
-    out[1][count, 1] = near[before]
-    out[1][count, 2] = near[after + 1]
+    out[1][count, 1] = min(near[before], near[after + 1])
+    out[1][count, 2] = max(near[before], near[after + 1])
 
 
 def warm_up() -> None:

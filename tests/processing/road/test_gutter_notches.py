@@ -102,6 +102,20 @@ def test_a_curb_is_no_opening() -> None:
     assert not (found[:, 3] > 0.012).any()
 
 
+def test_holes_close_to_a_wall_are_found_on_both_sides() -> None:
+    rows = Rows(lambda along, across: is_hole(along, np.abs(across)))
+    last = HOLES_FROM_M[1] + HOLE_WIDE_M
+    # Beyond the lid, not what was measured through its holes.
+    is_wall = (np.abs(rows.xyz[:, 1]) > last + 0.035) & (rows.xyz[:, 2] > -DEEP_M / 2)
+    rows.xyz[is_wall, 2] += 0.15
+    found, between = found_in(rows)
+    deep = found[(found[:, 3] > DEEP_M / 2) & (np.abs(found[:, 1]) > HOLES_FROM_M[1] - 0.02)]
+    right, left = (deep[:, 1] < 0).sum(), (deep[:, 1] > 0).sum()
+    assert min(left, right) >= 9
+    assert max(left, right) < 1.5 * min(left, right)
+    assert (between[:, 1] < between[:, 2]).all()
+
+
 def test_grass_is_no_row_of_openings() -> None:
     rows = Rows(nothing_open)
     random = np.random.default_rng(1)
