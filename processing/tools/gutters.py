@@ -17,6 +17,7 @@ from processing.road.gutters.gratings import GratingParameters, gratings_of
 from processing.road.gutters.gutter_confidence import CoverFacts, chance_of, facts_of
 from processing.road.gutters.gutter_gratings import SureCovers, with_gratings
 from processing.road.gutters.gutter_lids import POINTS_WITHIN_M, Cover, covers_of
+from processing.road.gutters.gutter_lines import REACH_M
 from processing.road.gutters.gutter_notches import notches_of
 from processing.road.gutters.gutter_outline import edge_lines
 from processing.road.gutters.gutter_runs import GutterRun, gutter_runs
@@ -54,9 +55,9 @@ class GutterParameters:
     """What an operator may set; defaults by the thesis' Table 7-3 where it has them."""
 
     reach_m: float = length(
-        6.5,
+        REACH_M,
         low=1.0,
-        high=12.0,
+        high=20.0,
         name=Text("Reach beside the vehicle", "探索範囲（車両からの離れ）"),
         explanation=Text(
             "Gutters farther from the vehicle's way are not looked for: few points fall there.",
@@ -182,7 +183,8 @@ def _evidence(
         for found in gratings_of(drive, own, GratingParameters(), monitor)
     )
     passes = [one for drive in drives for one in passes_of(drive)]
-    runs = gutter_runs(passes, notches, parameters.most_missed) if passes else ()
+    missed, reach_m = parameters.most_missed, parameters.reach_m
+    runs = gutter_runs(passes, notches, missed, reach_m, monitor) if passes else ()
     if not runs:
         return [], gratings
     cells = GuideCells([one.axis for one in runs], POINTS_WITHIN_M)

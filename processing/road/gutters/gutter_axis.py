@@ -70,13 +70,15 @@ class GutterAxis:
             m, project CRS.
         """
         found = np.full((3, len(xyz)), np.nan)
-        away, nearest = cKDTree(self.xyz[:, :2]).query(
-            xyz[:, :2], distance_upper_bound=within_m + STEP_M
-        )
-        near = np.flatnonzero(np.isfinite(away))
+        bound = within_m + STEP_M
+        low, high = self.xyz[:, :2].min(axis=0) - bound, self.xyz[:, :2].max(axis=0) + bound
+        boxed = np.flatnonzero(((xyz[:, :2] >= low) & (xyz[:, :2] <= high)).all(axis=1))
+        away, nearest = cKDTree(self.xyz[:, :2]).query(xyz[boxed, :2], distance_upper_bound=bound)
+        is_near = np.isfinite(away)
+        near = boxed[is_near]
         if near.size == 0:
             return found[0], found[1], found[2]
-        at: NDArray[np.int64] = np.asarray(nearest, np.int64)[near]
+        at: NDArray[np.int64] = np.asarray(nearest, np.int64)[is_near]
         right = self.outwards[at]
         off = xyz[near] - self.xyz[at]
         ahead = -right[:, 1] * off[:, 0] + right[:, 0] * off[:, 1]

@@ -60,7 +60,7 @@ LID_TYPES = (
 
 @dataclass(frozen=True)
 class JointNotches:
-    """Notches at the joints of one gutter.
+    """Notches at the joints of one gutter, and between them.
 
     Attributes
     ----------
@@ -70,11 +70,15 @@ class JointNotches:
         How wide the opening is across the gutter.
     square : (n,) float64
         How much the row runs across the gutter: 0 along it, 1 square to it.
+    worth : (n,) float64
+        1 for one at a joint; for those between joints how many at joints are expected for each if
+        they lie there by chance, negative.
     """
 
     across_m: _Floats
     extent_m: _Floats
     square: _Floats
+    worth: _Floats
 
 
 @dataclass(frozen=True)
@@ -110,13 +114,15 @@ def hole_fit(notches: JointNotches) -> HoleFit:
     for square in range(2):
         for kind in range(len(_USUAL_M)):
             chosen = (kinds == kind) & ((notches.square > _SQUARE) == bool(square))
-            counts[square, kind] = np.histogram(notches.across_m[chosen], _EDGES_M)[0]
+            counts[square, kind] = np.histogram(
+                notches.across_m[chosen], _EDGES_M, weights=notches.worth[chosen]
+            )[0]
     gains = np.tensordot(likelihood, counts, axes=3).max(axis=2)
     gains += np.log([[one.share] for one in LID_TYPES])
     gains /= max(1.0, float(counts.sum()))
     which, at = divmod(int(gains.argmax()), places.size)
     gain = float(gains[which, at])
-    return HoleFit(LID_TYPES[which], float(places[at]), gain, int(counts.sum()))
+    return HoleFit(LID_TYPES[which], float(places[at]), gain, max(0, round(float(counts.sum()))))
 
 
 @cache

@@ -14,6 +14,36 @@ _Integers = NDArray[np.int64]
 
 
 @kernel
+def near_kernel(
+    places: tuple[_Floats, _Integers, _Floats], near: tuple[float, int], summed: _Floats
+) -> None:
+    """Sum of the values about each place, its own with them.
+
+    Parameters
+    ----------
+    places : (n,) float64, (n,) int64 and (n,) float64
+        Along, m, rising; cells across; values.
+    near : (float, int)
+        How far along, m, and how many cells across.
+    summed : (n,) float64
+        Result.
+    """
+    along, cells, values = places
+    along_m, across = near
+    first = 0
+    for i in range(along.shape[0]):
+        while along[first] < along[i] - along_m:
+            first += 1
+        total = 0.0
+        for j in range(first, along.shape[0]):
+            if along[j] > along[i] + along_m:
+                break
+            if abs(cells[j] - cells[i]) <= across:
+                total += values[j]
+        summed[i] = total
+
+
+@kernel
 def waves_kernel(
     along: _Floats,
     cells: _Integers,
@@ -116,6 +146,7 @@ def joints_kernel(
 def warm_up() -> None:
     """Compile the kernels."""
     zeros = np.zeros(2)
+    near_kernel((zeros, np.zeros(2, np.int64), zeros), (0.3, 2), np.empty(2))
     waves_kernel(
         zeros,
         np.zeros(2, np.int64),

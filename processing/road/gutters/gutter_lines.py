@@ -12,12 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, uniform_filter, uniform_filter1d
+from scipy.ndimage import maximum_filter1d, uniform_filter1d
 from scipy.spatial import cKDTree
 
 from processing.points.passes import Pass
 from processing.road.gutters.gutter_axis import GutterAxis
-from processing.road.gutters.gutter_kernels import waves_kernel
+from processing.road.gutters.gutter_kernels import near_kernel, waves_kernel
 from processing.road.gutters.notches import Notches
 
 _Floats = NDArray[np.float64]
@@ -26,22 +26,27 @@ _Integers = NDArray[np.int64]
 LENGTHS_M = (0.6, 0.5, 1.0)
 """Lids' lengths met in Japan, the usual one first (JIS A 5372; mms.md, Table 7-2)."""
 
-_REACH_M = 6.5
+REACH_M = 13.0
+"""How far from the way gutters are looked for; the thesis has 6.5 m (mms.md, Table 7-3)."""
+
 _CELL_M = 0.05
-_COUNT = round(2 * _REACH_M / _CELL_M) + 1
-_BAND_CELLS = 9  # holes of one lid lie at most so many cells apart
+_BAND_CELLS = 5  # holes of one lid lie at most so many cells apart
 _WINDOW_STEP_M = 1.0
 _WINDOWS_AT_ONCE = 256
 _LEAST_WEIGHT = 0.3
 _LEAST_STRENGTH = 0.1
 _BEYOND_M = 3.0  # how much farther its joints are looked for than a line is regular
 _SAME_M = 0.04  # notches so near to each other are of one opening
-_ABOUT_M = 0.3  # no two joints are nearer, but bars and weeds are
-_BIN_M = 0.04
+_ABREAST_M = 0.06
+_ABOUT_M = 0.34  # no two joints are nearer, but bars and weeds are
 _LEAST_VOTE = 0.5  # notches that are weaker together have less than a vote
 _ASIDE_CELLS = 2  # how far a gutter moves across the road from window to window
 _CLEAR_M = 0.4
 _LEAST_WINDOWS = 2
+_LINE_WIDE_M = 0.25
+_LAYER_M = 0.02
+_LAYERS = 101
+_LEVEL_M = 10.0  # over which a gutter's height above the way changes little
 
 
 @dataclass(frozen=True)
@@ -58,6 +63,8 @@ class Search:
         Half the length over which a line's windows are averaged.
     seed, followed : float
         How regular a line is at its most regular place at least, and elsewhere.
+    reach_m : float
+        How far from the way.
     """
 
     half_m: float
@@ -65,6 +72,12 @@ class Search:
     pooled_m: float
     seed: float
     followed: float
+    reach_m: float = REACH_M
+
+    @property
+    def cells(self) -> int:
+        """How many across the way."""
+        return round(2 * self.reach_m / _CELL_M) + 1
 
 
 LONG = Search(6.0, np.arange(0.0, 0.021, 0.004), 10.0, 3.3, 2.2)
@@ -92,8 +105,8 @@ class GutterLine:
 
 def gutter_lines(
     passes: Sequence[Pass], notches: Notches, search: Search, bridge_m: float
-) -> tuple[GutterLine, ...]:
-    """Lines of gutters along all passes, found from what all drives measured.
+) -> Iterator[GutterLine]:
+    """Lines of gutters along all passes, found from what all drives measured, one after another.
 
     Parameters
     ----------
@@ -107,24 +120,22 @@ def gutter_lines(
     """
     xyz, strength = notches.xyz, notches.strength
     is_free = strength >= _LEAST_STRENGTH
-    lines: list[GutterLine] = []
     for one in sorted(passes, key=lambda one: -one.length_m):
         if not is_free.any():
-            break
-        station, across = _told(one, xyz[is_free])
-        is_beside = np.isfinite(station) & (np.abs(across) <= _REACH_M)
+            return
+        station, across = _told(one, xyz[is_free], search.reach_m)
+        is_beside = np.isfinite(station) & (np.abs(across) <= search.reach_m)
         chosen = np.flatnonzero(is_free)[is_beside]
         is_free[chosen] = False
         if chosen.size:
             own = (station[is_beside], across[is_beside], strength[chosen], xyz[chosen, 2])
-            lines += _lines_beside(one, own, search, bridge_m)
-    return tuple(lines)
+            yield from _lines_beside(one, own, search, bridge_m)
 
 
-def _told(one: Pass, xyz: _Floats) -> tuple[_Floats, _Floats]:
+def _told(one: Pass, xyz: _Floats, reach_m: float) -> tuple[_Floats, _Floats]:
     """Station and across of places by the nearest part of the way, whoever measured them."""
     way = one.way.places[:, :2] + one.origin[:2]
-    away, nearest = cKDTree(way).query(xyz[:, :2], distance_upper_bound=_REACH_M + 2.0)
+    away, nearest = cKDTree(way).query(xyz[:, :2], distance_upper_bound=reach_m + 2.0)
     station, across = np.full(len(xyz), np.nan), np.full(len(xyz), np.nan)
     near = np.flatnonzero(np.isfinite(away))
     if near.size:
@@ -138,35 +149,66 @@ def _told(one: Pass, xyz: _Floats) -> tuple[_Floats, _Floats]:
 def _lines_beside(
     one: Pass, own: tuple[_Floats, _Floats, _Floats, _Floats], search: Search, bridge_m: float
 ) -> Iterator[GutterLine]:
-    station, across, strength, height = own
-    cells = np.floor((across + _REACH_M) / _CELL_M).astype(np.int64)
+    station, across, strength, _ = own
+    cells = np.floor((across + search.reach_m) / _CELL_M).astype(np.int64)
     places = _one_of_each(station, cells, strength)
     places = places[np.argsort(station[places], kind="stable")]
-    height_of = cKDTree(np.column_stack([station, across]))
     found = _map_of(one, (station[places], cells[places], strength[places]), search)
     for windows, columns in _ridges(found, search, bridge_m):
         regularity = float(found[windows, columns].mean())
-        line = _axis_of(one, (windows, columns), (height_of, height), search.half_m)
+        line = _axis_of(one, (windows, columns), own, search)
         yield GutterLine(line, regularity)
 
 
 def _axis_of(
     one: Pass,
     ridge: tuple[_Integers, _Integers],
-    heights: tuple[cKDTree, _Floats],
-    half_m: float,
+    own: tuple[_Floats, _Floats, _Floats, _Floats],
+    search: Search,
 ) -> GutterAxis:
     windows, columns = ridge
-    height_of, height = heights
     smooth = _smoothed(columns.astype(np.float64))
-    at_m, aside_m = windows * _WINDOW_STEP_M, (smooth + 0.5) * _CELL_M - _REACH_M
-    at_m = np.concatenate([[at_m[0] - half_m - _BEYOND_M], at_m, [at_m[-1] + half_m + _BEYOND_M]])
-    aside_m = np.concatenate([[aside_m[0]], aside_m, [aside_m[-1]]])
-    at_m = np.clip(at_m, -_REACH_M, one.length_m + _REACH_M)
-    line = one.xyz_at(at_m, aside_m)
-    _, near = height_of.query(np.column_stack([at_m, aside_m]), k=min(9, height.size))
-    line[:, 2] = np.median(height[np.asarray(near).reshape(len(at_m), -1)], axis=1)
+    at_m = windows.astype(np.float64) * _WINDOW_STEP_M
+    aside_m: _Floats = (smooth + 0.5) * _CELL_M - search.reach_m
+    raised = _raised(one, (at_m, aside_m), own, search)
+    beyond = search.half_m + _BEYOND_M
+    at_m = np.concatenate([[at_m[0] - beyond], at_m, [at_m[-1] + beyond]])
+    aside_m, raised = np.pad(aside_m, 1, mode="edge"), np.pad(raised, 1, mode="edge")
+    line = one.xyz_at(np.clip(at_m, -search.reach_m, one.length_m + search.reach_m), aside_m)
+    line[:, 2] += raised
     return GutterAxis.through(line)
+
+
+def _raised(
+    one: Pass,
+    line: tuple[_Floats, _Floats],
+    own: tuple[_Floats, _Floats, _Floats, _Floats],
+    search: Search,
+) -> _Floats:
+    """How far above the way notches near a line come most regularly, about each place of it, m.
+
+    A walk beside a gutter lies a curb higher, a field lower, each with notches of its own.
+    """
+    at_m, aside_m = line
+    station, across, strength, height = own
+    near = np.flatnonzero(
+        (station >= at_m[0] - search.half_m) & (station <= at_m[-1] + search.half_m)
+    )
+    near = near[np.abs(across[near] - np.interp(station[near], at_m, aside_m)) <= _LINE_WIDE_M]
+    raised = height[near] - one.xyz_at(station[near], across[near])[:, 2]
+    middle = float(np.median(raised))
+    layers = np.floor((raised - middle) / _LAYER_M).astype(np.int64) + _LAYERS // 2
+    inside = (layers >= 0) & (layers < _LAYERS)
+    near, layers = near[inside], layers[inside]
+    chosen = _one_of_each(station[near], layers, strength[near])
+    chosen = chosen[np.argsort(station[near][chosen], kind="stable")]
+    near, layers = near[chosen], layers[chosen]
+    votes = _votes(station[near], layers, strength[near])
+    power = _power((station[near] - at_m[0], layers, votes), np.ones((at_m.size, _LAYERS)), search)
+    size = 2 * round(_LEVEL_M / _WINDOW_STEP_M) + 1
+    best = uniform_filter1d(power, size, axis=0, mode="nearest").argmax(axis=1)
+    level: _Floats = middle + (best - _LAYERS // 2 + 0.5) * _LAYER_M
+    return _smoothed(level)
 
 
 def _one_of_each(station: _Floats, cells: _Integers, strength: _Floats) -> _Integers:
@@ -188,32 +230,26 @@ def _votes(station: _Floats, cells: _Integers, strength: _Floats) -> tuple[_Floa
     worth, abreast : (n,) float64
         Of each, and of all that lie side by side with it: of the two holes of a joint.
     """
-    bins = ((station - station.min(initial=0.0)) / _BIN_M).astype(np.int64)
-    size = int(bins.max(initial=0)) + 1
-
-    def summed(values: _Floats, along_m: float) -> _Floats:
-        flat = np.bincount(bins * _COUNT + cells, values, minlength=size * _COUNT)
-        window = 2 * round(along_m / _BIN_M) + 1, _BAND_CELLS
-        even = uniform_filter(flat.reshape(size, _COUNT), window, mode="constant")
-        return np.asarray(even[bins, cells] * (window[0] * window[1]), np.float64)
-
-    worth = strength / np.maximum(summed(strength, _ABOUT_M), _LEAST_VOTE)
-    return worth, summed(worth, _SAME_M)
+    about, abreast = np.empty(station.size), np.empty(station.size)
+    near_kernel((station, cells, strength), (_ABOUT_M, _BAND_CELLS // 2), about)
+    worth = strength / np.maximum(about, _LEAST_VOTE)
+    near_kernel((station, cells, worth), (_ABREAST_M, _BAND_CELLS // 2), abreast)
+    return worth, abreast
 
 
 def _map_of(one: Pass, own: tuple[_Floats, _Integers, _Floats], search: Search) -> _Floats:
     """(w, c) how regular notches are about every place beside a pass."""
     station, cells, strength = own
     windows = int(one.length_m / _WINDOW_STEP_M) + 2
-    inside = np.clip(cells, 0, _COUNT - 1)
-    regularity = np.zeros((windows, _COUNT))
+    inside = np.clip(cells, 0, search.cells - 1)
+    regularity = np.zeros((windows, search.cells))
     for first in range(0, windows, _WINDOWS_AT_ONCE):
         stop = min(first + _WINDOWS_AT_ONCE, windows)
         ends = np.array([first, stop]) * _WINDOW_STEP_M + [-search.half_m, search.half_m]
         near = slice(*np.searchsorted(station, ends))
         votes = _votes(station[near], inside[near], strength[near])
         part = (station[near] - first * _WINDOW_STEP_M, inside[near], votes)
-        regularity[first:stop] = _power(part, _scales(one, first, stop, _COUNT), search)
+        regularity[first:stop] = _power(part, _scales(one, (first, stop), search), search)
     if search.pooled_m == 0.0:
         return regularity
     size = 2 * round(search.pooled_m / _WINDOW_STEP_M) + 1
@@ -222,14 +258,14 @@ def _map_of(one: Pass, own: tuple[_Floats, _Integers, _Floats], search: Search) 
     return pooled
 
 
-def _scales(one: Pass, first: int, stop: int, count: int) -> _Floats:
+def _scales(one: Pass, windows: tuple[int, int], search: Search) -> _Floats:
     """(w, c) how long a metre of the way is in each cell: more or less in bends."""
-    at = np.arange(first, stop + 1) * _WINDOW_STEP_M
+    at = np.arange(windows[0], windows[1] + 1) * _WINDOW_STEP_M
     sides = []
-    for aside in (-_REACH_M, _REACH_M):
+    for aside in (-search.reach_m, search.reach_m):
         edge = one.xyz_at(at, np.full(at.size, aside))
         sides.append(np.hypot(*np.diff(edge[:, :2], axis=0).T) / _WINDOW_STEP_M)
-    share = np.linspace(0.0, 1.0, count)[None, :]
+    share = np.linspace(0.0, 1.0, search.cells)[None, :]
     scales: _Floats = sides[0][:, None] * (1 - share) + sides[1][:, None] * share
     return scales
 

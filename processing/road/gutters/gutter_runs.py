@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.monitor import Monitor
 from processing.points.passes import Pass
 from processing.road.gutters.gutter_axis import STEP_M, GutterAxis
 from processing.road.gutters.gutter_depths import are_deep
 from processing.road.gutters.gutter_holes import HoleFit, JointNotches, hole_fit
 from processing.road.gutters.gutter_joints import LID, JointRow, joint_row, joint_worth, lengths_of
-from processing.road.gutters.gutter_lines import LONG, SHORT, GutterLine, gutter_lines
+from processing.road.gutters.gutter_lines import LONG, REACH_M, SHORT, GutterLine, gutter_lines
 from processing.road.gutters.notches import Notches, joined
 
 _Floats = NDArray[np.float64]
 
 _BAND_M = 0.45
+_MOVED_M = 1.5
 _JOINT_M = 0.04
 _WINDOW_M = (1.0, 4.0)  # over which the middle of a gutter is found, by how many notches there are
 _NOTCHES = 12.0
@@ -38,14 +40,17 @@ _LIDS = (
 )
 """What the lids of a gutter may be like: of one length, or of two mixed."""
 _BY_CHANCE = (
-    lengths_of((0.67,), (0.55, 0.86)),
-    lengths_of((0.55,), (0.67, 0.86)),
-    lengths_of((0.86,), (0.55, 0.67)),
-    lengths_of((0.55, 0.67), (0.86,)),
-    lengths_of((0.67, 0.86), (0.55,)),
+    lengths_of((0.67,), (0.455, 0.86)),
+    lengths_of((0.455,), (0.67, 0.86)),
+    lengths_of((0.86,), (0.455, 0.67)),
+    lengths_of((0.455, 0.67), (0.86,)),
+    lengths_of((0.67, 0.86), (0.455,)),
 )
 """The same of lengths that are made nowhere, with their joints apart from those that are."""
 _LEAST_WORTH, _MORE_WORTH, _SURE_WORTH = 6.0, 2.5, 50.0
+_CHANGES_M = 1.0  # lids change their type where they end: at mouths and junctions
+_LEAST_OF_TYPE, _OTHER_TYPE = 6, 3.0
+"""Notches that tell a type, and how much likelier two types must be than one."""
 _LEAST_GAIN = 0.1  # notches that lie anywhere across a line are not those of holes and joints
 
 
@@ -85,7 +90,11 @@ class GutterRun:
 
 
 def gutter_runs(
-    passes: Sequence[Pass], notches: Sequence[Notches], most_missed: int
+    passes: Sequence[Pass],
+    notches: Sequence[Notches],
+    most_missed: int,
+    reach_m: float = REACH_M,
+    monitor: Monitor | None = None,
 ) -> tuple[GutterRun, ...]:
     """Gutters that the notches of all drives show.
 
@@ -97,6 +106,12 @@ def gutter_runs(
         Of each drive.
     most_missed : int
         n_max of equation (7-5): lids in a row whose joints may all be unseen.
+    reach_m : float
+        How far from the way.
+
+    Raises
+    ------
+    Cancelled
     """
     if not notches:
         return ()
@@ -104,12 +119,62 @@ def gutter_runs(
     left = left.chosen(left.strength >= _WEAK)
     found: list[GutterRun] = []
     for search in (LONG, SHORT):
-        for line in gutter_lines(passes, left, search, most_missed * 0.6 + 1.0):
-            run = _run_of(line, left, most_missed)
-            if run is not None:
+        wide = replace(search, reach_m=reach_m)
+        for line in gutter_lines(passes, left, wide, most_missed * 0.6 + 1.0):
+            if monitor is not None:
+                monitor.check()
+            for run in _runs_of(line, left, most_missed):
                 found.append(run)
                 left = left.chosen(~_is_covered(run, left.xyz))
     return tuple(found)
+
+
+def _runs_of(line: GutterLine, notches: Notches, most_missed: int) -> list[GutterRun]:
+    """The gutters along a line: more than one where lids of another type follow."""
+    run = _run_of(line, notches, most_missed)
+    if run is None:
+        return []
+    cut_m = _change(run, notches)
+    if cut_m is None:
+        return [run]
+    at = int(cut_m / STEP_M)
+    axis, parts = run.axis, []
+    for part in (slice(0, at + 1), slice(at, None)):
+        own = GutterAxis(axis.xyz[part], axis.outwards[part])
+        parts += _runs_of(GutterLine(own, line.regularity), notches, most_missed)
+    return parts or [run]
+
+
+def _change(run: GutterRun, notches: Notches) -> float | None:
+    """Where lids of another type begin, m along the axis: at one of the gaps between covers."""
+    row = run.row
+    gaps = np.flatnonzero(row.starts_m[1:] - row.ends_m[:-1] > _CHANGES_M)
+    if gaps.size == 0:
+        return None
+    near = _about(run.axis, notches)
+    along, _, is_on = _on_lids(run.axis, near, None)
+    worth = _worths(along, is_on & (near.strength >= _STRONG), row)
+    told = np.flatnonzero(worth)
+    whole = hole_fit(_joint_notches(run.axis, near.chosen(told), worth[told]))
+    best, found = _OTHER_TYPE, None
+    for cut in (row.ends_m[gaps] + row.starts_m[gaps + 1]) / 2:
+        before = along[told] < cut
+        fits = [
+            hole_fit(_joint_notches(run.axis, near.chosen(some), worth[some]))
+            for some in (told[before], told[~before])
+        ]
+        if min(one.count for one in fits) < _LEAST_OF_TYPE or fits[0].type == fits[1].type:
+            continue
+        more = sum(one.gain * one.count for one in fits) - whole.gain * whole.count
+        if more > best:
+            best, found = more, float(cut)
+    return found
+
+
+def _about(axis: GutterAxis, notches: Notches) -> Notches:
+    """The notches near an axis, wherever it may be moved to."""
+    along, _, above = axis.told(notches.xyz, _MOVED_M)
+    return notches.chosen(np.isfinite(along) & (np.abs(above) <= _MOVED_M))
 
 
 def _is_covered(run: GutterRun, xyz: _Floats) -> NDArray[np.bool_]:
@@ -121,8 +186,7 @@ def _is_covered(run: GutterRun, xyz: _Floats) -> NDArray[np.bool_]:
 
 def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun | None:
     axis = line.axis
-    low, high = axis.xyz.min(axis=0) - 2.0, axis.xyz.max(axis=0) + 2.0
-    near = notches.chosen(((notches.xyz >= low) & (notches.xyz <= high)).all(axis=1))
+    near = _about(axis, notches)
     lids = _lids_along(axis, near)
     if lids is None:
         return None
@@ -132,8 +196,8 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
         row = joint_row((along[is_on], near.strength[is_on]), lids, axis.length_m, most_missed)
         if row is None or row.starts_m.size < _LEAST_COVERS:
             return None
-        at_joint = is_on & (near.strength >= _STRONG)
-        at_joint[at_joint] = _is_at_joint(along[at_joint], row)
+        worth = _worths(along, is_on & (near.strength >= _STRONG), row)
+        at_joint = worth > 0.0
         if not at_joint.any():
             return None
         if holes is None:
@@ -142,7 +206,8 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
             off = holes.type.off(across[at_joint])
             of_hole = np.abs(off) <= holes.type.hole_wide_m / 2 + _ASIDE_M
             axis = _moved(axis, along[at_joint][of_hole], off[of_hole])
-        holes = hole_fit(_at_joints(axis, near.chosen(at_joint)))
+        told = worth != 0.0
+        holes = hole_fit(_joint_notches(axis, near.chosen(told), worth[told]))
         axis = _aside(axis, holes.middle_m)
     if holes is None or holes.gain < _LEAST_GAIN:
         return None
@@ -151,18 +216,18 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
     if row is None or row.starts_m.size < _LEAST_COVERS:
         return None
     is_on &= near.strength >= _STRONG
-    row = row.chosen(are_deep(row, along[is_on], near.depth_m[is_on]))
+    row = row.chosen(are_deep(row, along[is_on], near.depth_m[is_on], holes))
     if row.starts_m.size < _LEAST_COVERS:
         return None
     return GutterRun(axis, row, holes, _length_of(row), line.regularity)
 
 
-def _at_joints(axis: GutterAxis, notches: Notches) -> JointNotches:
+def _joint_notches(axis: GutterAxis, notches: Notches, worth: _Floats) -> JointNotches:
     along, across, _ = axis.told(notches.xyz, _BAND_M)
     known = np.isfinite(across)
     at = np.clip((along[known] / STEP_M).astype(np.int64), 0, len(axis.outwards) - 1)
     square = np.abs((notches.direction[known] * axis.outwards[at]).sum(axis=1))
-    return JointNotches(across[known], notches.width_m[known] * square, square)
+    return JointNotches(across[known], notches.width_m[known] * square, square, worth[known])
 
 
 def _on_lids(
@@ -210,6 +275,20 @@ def _is_at_joint(along: _Floats, row: JointRow) -> NDArray[np.bool_]:
     after = np.clip(np.searchsorted(ends, along), 1, ends.size - 1)
     away = np.minimum(np.abs(along - ends[after - 1]), np.abs(along - ends[after]))
     return np.asarray(away < _JOINT_M)
+
+
+def _worths(along: _Floats, strong: NDArray[np.bool_], row: JointRow) -> _Floats:
+    """What each notch counts: 1 at joints; those on lids take away what chance adds there."""
+    worth = np.zeros(strong.size)
+    worth[strong] = _is_at_joint(along[strong], row)
+    is_lid = row.what == LID
+    starts, ends = row.starts_m[is_lid], row.ends_m[is_lid]
+    if starts.size:
+        one = np.clip(np.searchsorted(starts, along, "right") - 1, 0, starts.size - 1)
+        between = strong & (worth == 0.0) & (along > starts[one]) & (along < ends[one])
+        free_m = float((ends - starts).sum()) - 2 * _JOINT_M * starts.size
+        worth[between] = -2 * _JOINT_M * starts.size / max(free_m, _JOINT_M)
+    return worth
 
 
 def _moved(axis: GutterAxis, along: _Floats, across: _Floats) -> GutterAxis:

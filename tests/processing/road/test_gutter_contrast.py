@@ -65,7 +65,9 @@ def gutter(height_m: float = 0.0) -> GutterRun:
         40.0,
     )
     across = np.tile(HOLES_M, 20)
-    at_joints = JointNotches(across, np.full(across.size, 0.07), np.full(across.size, 0.7))
+    at_joints = JointNotches(
+        across, np.full(across.size, 0.07), np.full(across.size, 0.7), np.ones(across.size)
+    )
     return GutterRun(axis, row, hole_fit(at_joints), LID_M, 10.0)
 
 

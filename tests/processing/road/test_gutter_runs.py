@@ -149,6 +149,31 @@ def test_grooves_between_blocks_are_no_gutter() -> None:
     assert gutter_runs([one], [shallow], 5) == ()
 
 
+def test_a_walk_with_joints_of_its_own_lifts_no_gutter() -> None:
+    one, random = way(1e6), np.random.default_rng(10)
+    gutter = notches_at(one, *holes_seen(random, 0.4))
+    along, across = random.uniform(0, 37, 900), random.uniform(0.2, 1.2, 900)
+    walk = notches_at(one, along, across, 0.15)
+    raised = replace(walk, xyz=walk.xyz + np.array([0.0, 0.0, 0.2]))
+    run, *_ = gutter_runs([one], [gutter, raised], 5)
+    _, _, above = run.axis.told(gutter.xyz, 0.5)
+    np.testing.assert_allclose(above, 0.0, atol=0.05)
+    assert run.row.starts_m.size >= COUNT - 2
+
+
+def test_lids_of_another_type_behind_a_mouth_are_a_gutter_of_their_own() -> None:
+    one, random = way(1e6), np.random.default_rng(11)
+    along = np.repeat(joints(30), 4)
+    twin = random.choice([-HOLES_M, HOLES_M], along.size)
+    behind = notches_at(one, along + 21.4, random.uniform(-0.07, 0.07, along.size))
+    before = notches_at(one, along, twin + random.uniform(-0.04, 0.04, along.size))
+    found = gutter_runs([one], [before, behind], 5)
+    assert sorted((run.holes.type.holes, run.row.starts_m.size) for run in found) == [
+        (1, pytest.approx(30, abs=1)),
+        (2, pytest.approx(30, abs=1)),
+    ]
+
+
 def test_nothing_is_found_where_there_are_no_notches() -> None:
     one = way(1e6)
     assert gutter_runs([one], [], 5) == ()
