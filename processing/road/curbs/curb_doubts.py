@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -144,19 +145,35 @@ def without_lone_edging(runs: Sequence[StepRun], settings: StepSettings) -> tupl
     return tuple(run for run in runs if not run.is_edging or _is_beside(run, fronts))
 
 
+class Looks(NamedTuple):
+    """What the ground about a run says of it, true where it speaks for a curb.
+
+    Attributes
+    ----------
+    is_upright : bool
+        Its face stands, as those of high curbs do.
+    is_of_road : bool
+        The road lies before it: no ditch or bank falls off here, no channel comes up.
+    """
+
+    is_upright: bool
+    is_of_road: bool
+
+
+def looks_of(run: StepRun) -> Looks:
+    """What the ground about a run says of it."""
+    high_m = median_of(run.heights_m[run.is_seen])
+    is_high = run.rises > 0 and high_m >= _HIGH_M
+    is_leaning = is_high and median_of(run.face_m[run.is_seen]) > _MOST_LEAN * high_m
+    is_off = _falls_off(run, high_m) if run.rises < 0 else _climbs_out(run, high_m)
+    return Looks(is_upright=not is_leaning, is_of_road=not is_off)
+
+
 def is_likely(run: StepRun, settings: StepSettings) -> bool:
     """Whether a run by itself looks like a curb."""
-    if run.seen_m < LEAST_LENGTH_M:
+    if run.seen_m < LEAST_LENGTH_M or median_of(run.heights_m[run.is_seen]) < settings.least_step_m:
         return False
-    high_m = median_of(run.heights_m[run.is_seen])
-    if high_m < settings.least_step_m:
-        return False
-    if _falls_off(run, high_m) if run.rises < 0 else _climbs_out(run, high_m):
-        return False
-    is_high = run.rises > 0 and high_m >= _HIGH_M
-    if is_high and median_of(run.face_m[run.is_seen]) > _MOST_LEAN * high_m:
-        return False
-    return confidence_of(run) >= LEAST_CHANCE
+    return all(looks_of(run)) and confidence_of(run) >= LEAST_CHANCE
 
 
 def _falls_off(run: StepRun, high_m: float) -> bool:

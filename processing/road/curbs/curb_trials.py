@@ -16,6 +16,7 @@ from processing.road.curbs.curb_doubts import (
     LEAST_CHANCE,
     LEAST_LENGTH_M,
     is_likely,
+    looks_of,
     runs_of,
     without_doubtful,
 )
@@ -41,6 +42,11 @@ _HEIGHT = Text("Height of the step, median of its run", "段差の高さ（連�
 _HEIGHT_HERE = Text("Height of the step", "段差の高さ")
 _LENGTH = Text("Length seen nearby", "付近で確認できた長さ")
 _CHANCE = Text("Chance to be a curb", "縁石である確率")
+_UPRIGHT = Text("Upright face, no bank of earth", "面が立っている（法面ではない）")
+_OF_ROAD = Text(
+    "Rises from the road, no ditch or channel",
+    "路面から立ち上がる（水路・側溝の壁や路肩の落ち込みではない）",
+)
 _FRONT = Text("Front of the stone, not its rear", "縁石の前面（背面ではない）")
 
 
@@ -55,15 +61,17 @@ def curb_trials(asked: AskedPlace, settings: StepSettings) -> tuple[Trial, ...]:
     """
     about = scanlines_about(asked.drive, asked.xyz, ABOUT_M, ScanlineSettings())
     runs = tuple(runs_of(about, 0, settings))
-    taken = {id(run) for run in without_doubtful(runs, settings)}
+    # Sides of tree pits are taken with another chance: what was measured is the same.
+    taken = {id(run.upper): run for run in without_doubtful(runs, settings)}
     scanlines = asked.scanlines
     found: list[tuple[float, Trial]] = []
     for run in runs:
         across = _crossing(run, scanlines)
         if across is not None:
             place, xyz = across
-            outcomes = _outcomes(run, settings, is_taken=id(run) in taken)
-            found.append((place, Trial(xyz, outcomes, is_taken=id(run) in taken)))
+            is_taken = id(run.upper) in taken
+            outcomes = _outcomes(taken.get(id(run.upper), run), settings, is_taken=is_taken)
+            found.append((place, Trial(xyz, outcomes, is_taken=is_taken)))
     known = [place for place, _ in found]
     for place, trial in _lone_steps(scanlines, settings):
         if all(abs(place - other) > _BESIDE_M for other in known):
@@ -92,6 +100,13 @@ def _outcomes(run: StepRun, settings: StepSettings, *, is_taken: bool) -> tuple[
         Outcome(_LENGTH, seen, LEAST_LENGTH_M, "m", is_met=seen >= LEAST_LENGTH_M),
         Outcome(_CHANCE, chance, LEAST_CHANCE, "", is_met=chance >= LEAST_CHANCE),
     ]
+    if run.is_seen.any():
+        looks = looks_of(run)
+        outcomes += [
+            Outcome(name, np.nan, np.nan, "", is_met=is_met)
+            for name, is_met in ((_UPRIGHT, looks.is_upright), (_OF_ROAD, looks.is_of_road))
+            if is_taken or not is_met
+        ]
     if is_likely(run, settings):
         outcomes.append(Outcome(_FRONT, np.nan, np.nan, "", is_met=is_taken))
     return tuple(outcomes)

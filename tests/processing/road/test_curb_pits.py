@@ -49,6 +49,8 @@ def test_fronts_in_a_row_are_taken_with_the_sides_that_meet_them() -> None:
     begins = [tuple(run.lower[0]) for run in taken]
     assert begins == [tuple(run.lower[0]) for run in [*fronts, *sides]]
     assert all(confidence_of(run) >= CHANCE for run in taken)
+    # The diagnostic layer knows them by what was measured.
+    assert all(one.upper is run.upper for one, run in zip(taken, [*fronts, *sides], strict=True))
     assert all(confidence_of(run) < CHANCE for run in fronts)
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from processing.image.scanlines import Scanlines
 from processing.road.curbs.curb_chains import chains_of
-from processing.road.curbs.curb_doubts import runs_of, without_doubtful
+from processing.road.curbs.curb_doubts import looks_of, runs_of, without_doubtful
 from processing.road.curbs.curb_profile import StepSettings, steps_of
 from processing.road.curbs.curb_runs import StepRun, run_of, spread_of
 
@@ -177,6 +177,19 @@ def test_where_the_ground_comes_up_to_the_road_from_a_channel_is_no_curb(
         return np.where(is_hidden, np.nan, heights)
 
     assert not [run for run in found(channel) if run.rises > 0]
+
+
+def test_what_the_ground_about_a_run_says_is_told_apart() -> None:
+    def all_of(surface: Surface) -> list[StepRun]:
+        return [run for run in runs_of([scanlines(surface)], 3, SETTINGS) if run.seen_m > 5.0]
+
+    (upright,) = all_of(curb(3.0, 0.15))
+    assert looks_of(upright) == (True, True)
+    (bank,) = all_of(curb(3.0, 0.30, lean=0.28))
+    assert looks_of(bank) == (False, True)
+    wall = all_of(lambda _, across: np.where((across > 2.7) & (across < 3.0), -0.3, 0.0))
+    assert all(not looks_of(run).is_of_road for run in wall)
+    assert wall
 
 
 def test_the_spread_alone_is_that_of_the_whole_run() -> None:
