@@ -55,7 +55,7 @@ class JudgedGutters:
 
     Attributes
     ----------
-    missed, false : (n, 3) float64
+    found, missed, false : (n, 3) float64
         Middles of slots along true gutters, m.
     beside : tuple of MappedFeature
         Covers of the result that lie on no gutter.
@@ -64,6 +64,7 @@ class JudgedGutters:
         not; without those on covers that nobody can see.
     """
 
+    found: Floats
     missed: Floats
     false: Floats
     beside: tuple[MappedFeature, ...]
@@ -150,15 +151,17 @@ def judged_gutters(result: MappedFile, truth: MappedFile) -> JudgedGutters:
         As there.
     """
     pieces, areas = _pieces(result, truth)
-    missed, false = [np.empty((0, 3))], [np.empty((0, 3))]
+    found, missed, false = ([np.empty((0, 3))] for _ in range(3))
     runs = runs_of(truth, pieces.truth)
     for run in runs:
         is_found, _ = _on_run(run, areas)
+        found.append(run.slots[run.is_asked & run.has_lid & is_found])
         missed.append(run.slots[run.is_asked & run.has_lid & ~is_found])
         false.append(run.slots[run.is_asked & ~run.has_lid & is_found])
     right = {i for i, j in pieces.pairs if _type(pieces.result[i]) == _type(pieces.truth[j])}
     paired = {i for i, _ in pieces.pairs}
     return JudgedGutters(
+        np.vstack(found),
         np.vstack(missed),
         np.vstack(false),
         tuple(_beside_runs(runs, pieces.result, areas)),

@@ -28,6 +28,7 @@ from processing.score.reliability_svg import reliability_svg
 from processing.score.road_failures import curb_failures
 from processing.score.road_gutter_failures import gutter_failures
 from processing.score.road_pictures import Picture, RoadMaps, painted, write_sheets
+from processing.score.road_reach import Reached, reach_table, reached
 from processing.score.road_scenes import (
     BOTH,
     LENGTH_M,
@@ -48,7 +49,7 @@ from processing.score.road_tables import (
     reliability_table,
 )
 
-SEEDS = range(983, 995)
+SEEDS = range(995, 1007)
 TOOLS = ("curbs", "gutters")
 LEAST_RIGHT = 0.8
 """So much of a line must lie along true edges for it to be right as a candidate."""
@@ -68,6 +69,8 @@ class Answers:
         By tool, what it scored on each street with each head.
     judged : dict
         By tool, the confidence of each candidate and whether it is right.
+    reached : list of Reached
+        What was asked for on each street, by how far from the way it lies.
     failures : list of Failure
     pictures : list
         Of the failures, where they were wanted.
@@ -79,6 +82,7 @@ class Answers:
     judged: dict[str, list[tuple[float, bool]]] = field(
         default_factory=lambda: {t: [] for t in TOOLS}
     )
+    reached: list[Reached] = field(default_factory=list)
     failures: list[Failure] = field(default_factory=list)
     pictures: list[tuple[Failure, Picture]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
@@ -133,6 +137,7 @@ class Answers:
             *gutter_failures(scene.name, covers, truths["gutters"], around, truths["curbs"]),
         ]
         self.failures += found
+        self.reached.append(reached(edges, covers, around))
         if with_pictures:
             maps = {tool: RoadMaps(truths[tool], runs[tool].result) for tool in TOOLS}
             self.pictures += [(one, painted(one, maps[one.tool], around)) for one in found]
@@ -166,6 +171,9 @@ def sections_of(answers: Answers) -> dict[str, str]:
         "## Covered gutters": f"{_ABOUT_GUTTERS}\n{gutters_table(gutters)}",
         "## Curbs and gutters with one head and with both": (
             f"{_ABOUT_HEADS}\n{heads_table(heads['curbs'], heads['gutters'])}"
+        ),
+        "## How far curbs and gutters are found": (
+            f"{_ABOUT_REACH}\n{reach_table(answers.reached)}"
         ),
         "## Where curbs and gutters fail": (
             f"{_ABOUT_FAILURES}\n{failures_table(answers.failures)}"
@@ -227,6 +235,10 @@ _ABOUT_GUTTERS = f"""{_COMMAND}: the same streets. Slots of 0.6 m along the gutt
 counts them; lids and gratings one by one count from half of what both cover together.
 """
 _ABOUT_HEADS = f"""{_COMMAND}: streets recorded by two heads, each alone and both in one run.
+"""
+_ABOUT_REACH = f"""{_COMMAND}: all that is asked for, 2 m sections of edges with dropped curbs and \
+slots of 0.6 m, by how far from the vehicle's way it lies: on other lanes and in side streets few \
+points fall, at flat angles.
 """
 _ABOUT_FAILURES = f"""{_COMMAND} `--pictures FOLDER`: every failure of the tables above, sorted by \
 the truth's labels and things around it; a failure counts under the first type that fits. With \

@@ -13,12 +13,14 @@ import pytest
 
 from processing.score.curb_lines import curb_score, judged_edges
 from processing.score.gutters import gutter_score, judged_gutters
+from processing.score.line_places import Lines
 from processing.score.mapped_features import Floats, MappedFile
 from processing.score.reliability_svg import reliability_svg
 from processing.score.road_edges import TOOLS, Answers, certainties, sections_of
 from processing.score.road_failures import curb_failures
 from processing.score.road_gutter_failures import gutter_failures
 from processing.score.road_pictures import RoadMaps, painted, write_sheets
+from processing.score.road_reach import BANDS_M, reach_table, reached
 from processing.score.road_scenes import BOTH, Cloud, RoadScene, wish_of
 from processing.score.road_surroundings import Failure, Surroundings
 from processing.score.road_tables import ScoredStreet
@@ -80,6 +82,7 @@ def test_what_is_judged_place_by_place_adds_up_to_the_counts() -> None:
     shorter = map_of(GUTTER.features[:-4])
     covers, score = judged_gutters(shorter, GUTTER), gutter_score(shorter, GUTTER)
     assert len(covers.missed) == score.counts_of("slots").misses > 0
+    assert len(covers.found) == score.counts_of("slots").hits > 0
     assert all(is_right for _, is_right in covers.is_right)
     away = moved(GUTTER, north=20.0)
     assert len(judged_gutters(away, GUTTER).beside) == len(GUTTER.features)
@@ -103,6 +106,25 @@ def test_failures_are_sorted_by_what_stands_around_them(tmp_path: Path) -> None:
     second = with_more(CURBS, *moved(map_of(curb_pair(0, 20, 9)), north=0.03).features)
     again = types_of(list(curb_failures("street", judged_edges(second, CURBS), at_wall)))
     assert again == {("false", "second line along a curb"): 20}
+
+
+def test_what_was_asked_for_is_counted_by_how_far_from_the_way_it_lies(tmp_path: Path) -> None:
+    edges = judged_edges(without_each_third(CURBS), CURBS)
+    covers = judged_gutters(map_of(GUTTER.features[:-4]), GUTTER)
+    own = around(tmp_path, cloud_of())
+    own.paths = Lines([ORIGIN + np.array([[-5.0, 0.0, 0.0], [55.0, 0.0, 0.0]])])
+    counts = reached(edges, covers, own)
+    found = sum(int(one.is_found.sum()) for one in edges.values())
+    assert counts["curbs"].sum(axis=0).tolist() == [
+        found,
+        sum(len(one.asked) for one in edges.values()) - found,
+    ]
+    assert counts["gutters"].sum(axis=0).tolist() == [len(covers.found), len(covers.missed)]
+    middle = own.away_m(covers.found[:1])
+    band = int(np.searchsorted(BANDS_M, middle, "right")) - 1
+    assert counts["gutters"][band].sum() == len(covers.found) + len(covers.missed)
+    words = reach_table([counts, counts])
+    assert f"{2 * len(covers.found):,}, {2 * len(covers.missed):,}" in words
 
 
 def test_slots_are_sorted_by_what_covers_them(tmp_path: Path) -> None:
@@ -157,7 +179,7 @@ def test_the_page_has_every_table_and_the_plot_is_a_picture(tmp_path: Path) -> N
     answers.notes.append("a, curbs: The drive has no road.")
     sections = sections_of(answers)
     page = "\n".join(sections.values())
-    assert len(sections) == 5
+    assert len(sections) == 6
     for words in ("**all**", "93.94 %", "80.6 %", "vehicles | 1 |", "9 of 10 (90 %)", "no road"):
         assert words in page
     assert page.count("| 100.0 % | 100.0 % | 100.0 % |") >= 6
