@@ -16,14 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.kernels import kernel
-from processing.road.gutters.row_kernels import (
-    row_along_kernel,
-    row_points_kernel,
-    row_side_kernel,
-)
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+Limits = tuple[float, float, float, float, float, float, float]
 
 FOUND = 9
 """Columns of what is found: x, y, z on the surface, depth, width, significance, sides' RMS, lost
@@ -32,6 +28,7 @@ pulses, pattern."""
 _OPENING, _DENT, _LOST, _JOINT = 1.0, 2.0, 4.0, 8.0
 _FEWEST = 5
 _MOST = 24
+_OVERLAP = 12  # points on the other side with which a side begins
 _BEHIND = 2  # points that may do behind an opening, where a wall or a curb follows
 _LINE_M = 0.30
 _BREAK_M = 0.30
@@ -48,7 +45,7 @@ def notches_kernel(
     xyz: Floats,
     pulse: Integers,
     sweeps: tuple[Integers, Floats, Floats],
-    limits: tuple[float, float, float, float, float, float, float],
+    limits: Limits,
     out: tuple[Floats, Integers],
 ) -> int:
     """Notches of rows; returns how many were noted.
@@ -72,18 +69,63 @@ def notches_kernel(
     count = 0
     for sweep in range(len(places)):
         row = (spans[sweep, 0], spans[sweep, 1])
-        size, middle = row_points_kernel(xyz, row, places[sweep], rights[sweep], limits, near)
+        size, middle = _near_kernel(xyz, row, places[sweep], rights[sweep], limits, near)
         before = count
         for side in range(2):
-            used = row_side_kernel(near, (size, middle), side, outwards)
+            used = _side_kernel(near, (size, middle), side, outwards)
             if used < 2 * _FEWEST:
                 continue
-            row_along_kernel(xyz, outwards, used, along)
-            used = _follow_kernel(xyz, outwards, along, used, limits, taken, origin)
+            _along_kernel(xyz, outwards, used, along)
+            used = _follow_kernel((xyz, outwards, along), used, limits, taken, origin)
             count = _weigh_kernel((xyz, pulse, outwards), taken, origin, used, limits, count, out)
         for one in range(before, count):
             out[1][one, 0] = sweep
     return count
+
+
+@kernel
+def _side_kernel(near: Integers, row: tuple[int, int], side: int, outwards: Integers) -> int:
+    """Points of one side of a row, from the vehicle outwards: from the road to what is rough."""
+    size, middle = row
+    if side == 0:
+        first = max(middle - _OVERLAP, 0)
+        outwards[: size - first] = near[first:size]
+        return size - first
+    count = min(middle + _OVERLAP, size)
+    outwards[:count] = near[:count][::-1]
+    return count
+
+
+@kernel
+def _near_kernel(
+    xyz: Floats, row: tuple[int, int], place: Floats, right: Floats, limits: Limits, near: Integers
+) -> tuple[int, int]:
+    """Points of a row that may be on the road or beside it; how many, and the nearest of them."""
+    size, middle, least = 0, 0, np.inf
+    for point in range(row[0], row[1]):
+        east, north = xyz[point, 0] - place[0], xyz[point, 1] - place[1]
+        across = east * right[0] + north * right[1]
+        ahead, above = north * right[0] - east * right[1], xyz[point, 2] - place[2]
+        if max(abs(across), abs(ahead) / 2.0) <= limits[0] and abs(above) <= limits[1]:
+            near[size] = point
+            if abs(across) < least:
+                least, middle = abs(across), size
+            size += 1
+    return size, middle
+
+
+@kernel
+def _along_kernel(xyz: Floats, near: Integers, size: int, along: Floats) -> None:
+    """Where points are along their row: in plan from its first to its last point."""
+    first, last = near[0], near[size - 1]
+    east, north = xyz[last, 0] - xyz[first, 0], xyz[last, 1] - xyz[first, 1]
+    length = max(np.sqrt(east * east + north * north), 1e-9)
+    east, north = east / length, north / length
+    for one in range(size):
+        point = near[one]
+        along[one] = (xyz[point, 0] - xyz[first, 0]) * east + (
+            xyz[point, 1] - xyz[first, 1]
+        ) * north
 
 
 @kernel
@@ -127,15 +169,10 @@ def _reach_of(taken: Floats, start: int, at: int) -> int:
 
 @kernel
 def _follow_kernel(
-    xyz: Floats,
-    near: Integers,
-    along: Floats,
-    size: int,
-    limits: tuple[float, float, float, float, float, float, float],
-    taken: Floats,
-    origin: Integers,
+    row: tuple[Floats, Integers, Floats], size: int, limits: Limits, taken: Floats, origin: Integers
 ) -> int:
     """Take the points of a row that are on the surface; how many."""
+    xyz, near, along = row
     floor = max(limits[4], limits[6] * limits[2])
     base = xyz[near[0], 2]
     used, start, stretch, one = 0, 0, 0, 0
@@ -159,7 +196,7 @@ def _follow_kernel(
             # A beam that fell through a hole comes down far beyond it.
             if is_off and (off < 0.0 or not is_far) and abs(slope) <= _STEEPEST:
                 line = (level - slope * middle + base, slope, floor, taken[0, used - 1])
-                following = _return_kernel((xyz, near, along), one, size, line)
+                following = _return_kernel(row, one, size, line)
         if following == one and (is_far or is_off):
             start, stretch = used, stretch + 1
         if following > one:
@@ -207,7 +244,7 @@ def _weigh_kernel(
     taken: Floats,
     origin: Integers,
     used: int,
-    limits: tuple[float, float, float, float, float, float, float],
+    limits: Limits,
     count: int,
     out: tuple[Floats, Integers],
 ) -> int:
@@ -285,7 +322,7 @@ def _note_opening(
     taken: Floats,
     at: int,
     line: tuple[float, float, float, float, float, int],
-    limits: tuple[float, float, float, float, float, float, float],
+    limits: Limits,
     count: int,
     out: tuple[Floats, Integers],
 ) -> None:
