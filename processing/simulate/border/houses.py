@@ -224,7 +224,8 @@ def flats(random: Generator, plot: Plot) -> list[Part]:
         middles = (edges[:-1] + edges[1:]) / 2
         at = np.column_stack([middles, np.full(homes, floor * storey + 0.15)])
         parts += windows(at, (float(edges[1] - edges[0]) * 0.6, 1.9), y)
-    shaft = float(random.uniform(-wide / 2 + 0.5, wide / 2 - 3.0))
+    left = -wide / 2 + 0.5
+    shaft = float(random.uniform(left, max(left, wide / 2 - 3.0)))
     top = storeys * storey
     parts.append((block((shaft, shaft + 2.5), (y + 2, y + 5), (top, top + 2.6)), wall))
     return parts

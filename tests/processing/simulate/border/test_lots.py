@@ -73,10 +73,11 @@ def test_lots_follow_each_other_within_their_section() -> None:
             assert side not in section.plan.junctions or not lots
 
 
+@pytest.mark.parametrize("wide_m", [5.0, 9.0])
 @pytest.mark.parametrize("make", BUILDINGS)
-def test_a_building_keeps_within_its_plot_whatever_the_draw(make: Building) -> None:
-    plot = Plot(9.0, 16.0)
-    for number in range(30):
+def test_a_building_keeps_within_its_plot_whatever_the_draw(make: Building, wide_m: float) -> None:
+    plot = Plot(wide_m, 16.0)
+    for number in range(60):
         parts = make(chance(number, "test"), plot)
         vertices = np.concatenate([shape[0] for shape, _ in parts])
         assert np.isfinite(vertices).all()
