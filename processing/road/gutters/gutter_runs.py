@@ -49,8 +49,9 @@ _BY_CHANCE = (
 """The same of lengths that are made nowhere, with their joints apart from those that are."""
 _LEAST_WORTH, _MORE_WORTH, _SURE_WORTH = 6.0, 2.5, 50.0
 _CHANGES_M = 1.0  # lids change their type where they end: at mouths and junctions
-_LEAST_OF_TYPE, _OTHER_TYPE = 6, 3.0
-"""Notches that tell a type, and how much likelier two types must be than one."""
+_ASKED_M, _USUAL_M = 4.0, 0.6
+_LEAST_OF_TYPE, _OTHER_TYPE, _OTHER_WITHOUT_GAP = 6, 3.0, 12.0
+"""Notches that tell a type, and how much likelier two types must be than one: as logarithms."""
 _LEAST_GAIN = 0.1  # notches that lie anywhere across a line are not those of holes and joints
 
 
@@ -146,29 +147,43 @@ def _runs_of(line: GutterLine, notches: Notches, most_missed: int) -> list[Gutte
 
 
 def _change(run: GutterRun, notches: Notches) -> float | None:
-    """Where lids of another type begin, m along the axis: at one of the gaps between covers."""
+    """Where lids of another type begin, m along the axis; None: nowhere.
+
+    Asked at each gap between covers, where types change most, and every few metres.
+    """
     row = run.row
-    gaps = np.flatnonzero(row.starts_m[1:] - row.ends_m[:-1] > _CHANGES_M)
-    if gaps.size == 0:
-        return None
     near = _about(run.axis, notches)
     along, _, is_on = _on_lids(run.axis, near, None)
     worth = _worths(along, is_on & (near.strength >= _STRONG), row)
     told = np.flatnonzero(worth)
-    whole = hole_fit(_joint_notches(run.axis, near.chosen(told), worth[told]))
-    best, found = _OTHER_TYPE, None
-    for cut in (row.ends_m[gaps] + row.starts_m[gaps + 1]) / 2:
-        before = along[told] < cut
-        fits = [
-            hole_fit(_joint_notches(run.axis, near.chosen(some), worth[some]))
-            for some in (told[before], told[~before])
-        ]
-        if min(one.count for one in fits) < _LEAST_OF_TYPE or fits[0].type == fits[1].type:
-            continue
-        more = sum(one.gain * one.count for one in fits) - whole.gain * whole.count
-        if more > best:
-            best, found = more, float(cut)
-    return found
+    if (worth > 0).sum() < 2 * _LEAST_OF_TYPE:
+        return None
+
+    def fit(some: NDArray[np.int64]) -> HoleFit:
+        return hole_fit(_joint_notches(run.axis, near.chosen(some), worth[some]))
+
+    whole = fit(told)
+
+    def more(cut_m: float) -> float:
+        parts = [fit(told[along[told] < cut_m]), fit(told[along[told] >= cut_m])]
+        if min(one.count for one in parts) < _LEAST_OF_TYPE or parts[0].type == parts[1].type:
+            return -np.inf
+        return sum(one.gain * one.count for one in parts) - whole.gain * whole.count
+
+    def best(cuts: _Floats, least: float) -> float | None:
+        gains = [more(float(cut)) for cut in cuts]
+        most = int(np.argmax(gains)) if gains else 0
+        return float(cuts[most]) if gains and gains[most] > least else None
+
+    between = (row.ends_m[:-1] + row.starts_m[1:]) / 2
+    is_gap = row.starts_m[1:] - row.ends_m[:-1] > _CHANGES_M
+    found = best(between[is_gap], _OTHER_TYPE)
+    if found is not None:
+        return found
+    rough = best(between[:: max(1, round(_ASKED_M / _USUAL_M))], _OTHER_WITHOUT_GAP)
+    if rough is None:
+        return None
+    return best(between[np.abs(between - rough) <= _ASKED_M], _OTHER_WITHOUT_GAP)
 
 
 def _about(axis: GutterAxis, notches: Notches) -> Notches:

@@ -161,11 +161,13 @@ def test_a_walk_with_joints_of_its_own_lifts_no_gutter() -> None:
     assert run.row.starts_m.size >= COUNT - 2
 
 
-def test_lids_of_another_type_behind_a_mouth_are_a_gutter_of_their_own() -> None:
+@pytest.mark.parametrize("gap_m", [3.2, JOINT_M])
+def test_lids_of_another_type_are_a_gutter_of_their_own(gap_m: float) -> None:
     one, random = way(1e6), np.random.default_rng(11)
     along = np.repeat(joints(30), 4)
     twin = random.choice([-HOLES_M, HOLES_M], along.size)
-    behind = notches_at(one, along + 21.4, random.uniform(-0.07, 0.07, along.size))
+    far_m = along.max() + gap_m
+    behind = notches_at(one, along + far_m, random.uniform(-0.07, 0.07, along.size))
     before = notches_at(one, along, twin + random.uniform(-0.04, 0.04, along.size))
     found = gutter_runs([one], [before, behind], 5)
     assert sorted((run.holes.type.holes, run.row.starts_m.size) for run in found) == [
