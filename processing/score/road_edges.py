@@ -49,7 +49,7 @@ from processing.score.road_tables import (
     reliability_table,
 )
 
-SEEDS = range(995, 1007)
+SEEDS = range(1007, 1019)
 TOOLS = ("curbs", "gutters")
 LEAST_RIGHT = 0.8
 """So much of a line must lie along true edges for it to be right as a candidate."""

@@ -38,9 +38,9 @@ _HIGH_M, _MOST_LEAN = 0.10, 0.7
 """Faces of high curbs lean by less than 35° (Table 6-1: 30°): banks of earth between fields don't.
 Of low steps too few points tell."""
 
-_LEVEL_M, _RISEN_SHARE = 0.02, 0.5
-"""Where the ground falls away from the road and what falls is no higher than the road itself, less
-than this share of it having risen before, no island ends but a ditch or a bank begins."""
+_LEVEL_M, _LEVEL_SHARE, _RISEN_SHARE = 0.02, 0.25, 0.5
+"""Where the ground falls away from the road and what falls is hardly higher than the road itself,
+less than this share of it having risen before, no island ends but a ditch or a bank begins."""
 
 _DEEP_M, _CHANNEL_M = 0.10, 0.5
 """What comes up from as deep below the road, over ground as narrow, is the wall of a channel."""
@@ -180,7 +180,8 @@ def _falls_off(run: StepRun, high_m: float) -> bool:
     """Whether the ground falls off beside the road: nothing rose before, the road is as high."""
     seen = run.is_seen
     above_m = median_of(run.above_way_m[seen]) + high_m
-    return above_m < _LEVEL_M and median_of(run.risen_m[seen]) < _RISEN_SHARE * high_m
+    is_level = above_m < max(_LEVEL_M, _LEVEL_SHARE * high_m)
+    return is_level and median_of(run.risen_m[seen]) < _RISEN_SHARE * high_m
 
 
 def _climbs_out(run: StepRun, high_m: float) -> bool:

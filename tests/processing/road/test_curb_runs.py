@@ -167,6 +167,14 @@ def test_where_the_ground_falls_off_beside_the_road_is_no_curb(fall: float) -> N
     assert found(lambda _station, across: np.where(across > 3.0, -0.2, -fall * across)) == ()
 
 
+def test_a_shoulder_that_falls_off_into_a_ditch_is_no_curb() -> None:
+    def shoulder(_station: float, across: _Floats) -> _Floats:
+        rise = 0.027 * np.clip((across - 1.5) / 1.0, 0.0, 1.0)
+        return np.where(across > 3.0, -0.30, rise)
+
+    assert found(shoulder) == ()
+
+
 @pytest.mark.parametrize("is_fall_seen", [True, False])
 def test_where_the_ground_comes_up_to_the_road_from_a_channel_is_no_curb(
     is_fall_seen: bool,
