@@ -194,7 +194,9 @@ def _raised(
     near = np.flatnonzero(
         (station >= at_m[0] - search.half_m) & (station <= at_m[-1] + search.half_m)
     )
-    near = near[np.abs(across[near] - np.interp(station[near], at_m, aside_m)) <= _LINE_WIDE_M]
+    is_on = np.abs(across[near] - np.interp(station[near], at_m, aside_m)) <= _LINE_WIDE_M
+    # A line that was smoothed may lie beside its own notches.
+    near = near[is_on] if is_on.any() else near
     raised = height[near] - one.xyz_at(station[near], across[near])[:, 2]
     middle = float(np.median(raised))
     layers = np.floor((raised - middle) / _LAYER_M).astype(np.int64) + _LAYERS // 2
