@@ -37,12 +37,7 @@ def reached(
 
 def reach_table(streets: Sequence[Reached]) -> str:
     """All streets together."""
-    rows = [
-        [
-            "from the way",
-            *("curbs: found, missed", "R", "gutters: found, missed", "R"),
-        ]
-    ]
+    rows = [["from the way", "curbs: found, missed", "R", "gutters: found, missed", "R"]]
     for band, (low, high) in enumerate(pairwise(BANDS_M)):
         name = f"beyond {low:g} m" if np.isinf(high) else f"{low:g} to {high:g} m"
         rows.append([name, *_cells(streets, band)])

@@ -22,6 +22,7 @@ from processing.road.gutters.notches import Notches
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
+_Own = tuple[_Floats, _Floats, _Floats, _Floats]  # stations, across, strengths, heights of notches
 
 LENGTHS_M = (0.6, 0.5, 1.0)
 """Lids' lengths met in Japan, the usual one first (JIS A 5372; mms.md, Table 7-2)."""
@@ -30,22 +31,21 @@ REACH_M = 13.0
 """How far from the way gutters are looked for; the thesis has 6.5 m (mms.md, Table 7-3)."""
 
 _CELL_M = 0.05
-_BAND_CELLS = 5  # holes of one lid lie at most so many cells apart
+_BAND_CELLS = 5  # holes of one lid lie hardly farther apart, nor do their heights
 _WINDOW_STEP_M = 1.0
 _WINDOWS_AT_ONCE = 256
 _LEAST_WEIGHT = 0.3
 _LEAST_STRENGTH = 0.1
 _BEYOND_M = 3.0  # how much farther its joints are looked for than a line is regular
 _SAME_M = 0.04  # notches so near to each other are of one opening
-_ABREAST_M = 0.06
+_ABREAST_M = 0.06  # both holes of a joint, in oblique rows
 _ABOUT_M = 0.34  # no two joints are nearer, but bars and weeds are
 _LEAST_VOTE = 0.5  # notches that are weaker together have less than a vote
 _ASIDE_CELLS = 2  # how far a gutter moves across the road from window to window
 _CLEAR_M = 0.4
 _LEAST_WINDOWS = 2
-_LINE_WIDE_M = 0.25
-_LAYER_M = 0.02
-_LAYERS = 101
+_LINE_WIDE_M = 0.25  # to each side, in which a line's height is looked for
+_LAYER_M, _LAYERS = 0.02, 101  # a metre up and down
 _LEVEL_M = 10.0  # over which a gutter's height above the way changes little
 
 
@@ -146,13 +146,10 @@ def _told(one: Pass, xyz: _Floats, reach_m: float) -> tuple[_Floats, _Floats]:
     return station, across
 
 
-def _lines_beside(
-    one: Pass, own: tuple[_Floats, _Floats, _Floats, _Floats], search: Search, bridge_m: float
-) -> Iterator[GutterLine]:
+def _lines_beside(one: Pass, own: _Own, search: Search, bridge_m: float) -> Iterator[GutterLine]:
     station, across, strength, _ = own
     cells = np.floor((across + search.reach_m) / _CELL_M).astype(np.int64)
     places = _one_of_each(station, cells, strength)
-    places = places[np.argsort(station[places], kind="stable")]
     found = _map_of(one, (station[places], cells[places], strength[places]), search)
     for windows, columns in _ridges(found, search, bridge_m):
         regularity = float(found[windows, columns].mean())
@@ -163,7 +160,7 @@ def _lines_beside(
 def _axis_of(
     one: Pass,
     ridge: tuple[_Integers, _Integers],
-    own: tuple[_Floats, _Floats, _Floats, _Floats],
+    own: _Own,
     search: Search,
 ) -> GutterAxis:
     windows, columns = ridge
@@ -182,7 +179,7 @@ def _axis_of(
 def _raised(
     one: Pass,
     line: tuple[_Floats, _Floats],
-    own: tuple[_Floats, _Floats, _Floats, _Floats],
+    own: _Own,
     search: Search,
 ) -> _Floats:
     """How far above the way notches near a line come most regularly, about each place of it, m.
@@ -203,7 +200,6 @@ def _raised(
     inside = (layers >= 0) & (layers < _LAYERS)
     near, layers = near[inside], layers[inside]
     chosen = _one_of_each(station[near], layers, strength[near])
-    chosen = chosen[np.argsort(station[near][chosen], kind="stable")]
     near, layers = near[chosen], layers[chosen]
     votes = _votes(station[near], layers, strength[near])
     power = _power((station[near] - at_m[0], layers, votes), np.ones((at_m.size, _LAYERS)), search)
@@ -219,7 +215,7 @@ def _one_of_each(station: _Floats, cells: _Integers, strength: _Floats) -> _Inte
     order = np.lexsort((-strength, cells, rough))
     keys = rough[order] * 100_000 + cells[order]
     chosen: _Integers = order[np.concatenate([[True], np.diff(keys) > 0])]
-    return chosen
+    return chosen[np.argsort(station[chosen], kind="stable")]
 
 
 def _votes(station: _Floats, cells: _Integers, strength: _Floats) -> tuple[_Floats, _Floats]:

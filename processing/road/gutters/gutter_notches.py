@@ -17,7 +17,7 @@ from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.points.passes import Pass, passes_of
 from processing.points.turns import Turns
-from processing.road.gutters.notch_kernels import FOUND, notches_kernel
+from processing.road.gutters.notch_kernels import FOUND, Limits, notches_kernel
 from processing.road.gutters.notches import DENT, OPENING, Notches, NotchParameters, joined
 from processing.worked_ahead import in_order
 
@@ -223,9 +223,7 @@ def _found_in(
     yield whole.chosen(is_known)
 
 
-def _limits(
-    parameters: NotchParameters, noise: float
-) -> tuple[float, float, float, float, float, float, float]:
+def _limits(parameters: NotchParameters, noise: float) -> Limits:
     """As the kernel takes them."""
     return (
         parameters.reach_m,

@@ -20,7 +20,7 @@ from processing.road.gutters.notches import Notches, joined
 _Floats = NDArray[np.float64]
 
 _BAND_M = 0.45
-_MOVED_M = 1.5
+_MOVED_M = 1.5  # farther no axis is moved to the middle of its lids
 _JOINT_M = 0.04
 _WINDOW_M = (1.0, 4.0)  # over which the middle of a gutter is found, by how many notches there are
 _NOTCHES = 12.0
@@ -48,8 +48,8 @@ _BY_CHANCE = (
 )
 """The same of lengths that are made nowhere, with their joints apart from those that are."""
 _LEAST_WORTH, _MORE_WORTH, _SURE_WORTH = 6.0, 2.5, 50.0
-_CHANGES_M = 1.0  # lids change their type where they end: at mouths and junctions
-_ASKED_M, _USUAL_M = 4.0, 0.6
+_CHANGES_M = 1.0  # lids change their type most where they end: at mouths and junctions
+_ASKED_M, _USUAL_M = 4.0, 0.6  # how often else it is asked; the length of most lids
 _LEAST_OF_TYPE, _OTHER_TYPE, _OTHER_WITHOUT_GAP = 6, 3.0, 12.0
 """Notches that tell a type, and how much likelier two types must be than one: as logarithms."""
 _LEAST_GAIN = 0.1  # notches that lie anywhere across a line are not those of holes and joints
@@ -121,7 +121,7 @@ def gutter_runs(
     found: list[GutterRun] = []
     for search in (LONG, SHORT):
         wide = replace(search, reach_m=reach_m)
-        for line in gutter_lines(passes, left, wide, most_missed * 0.6 + 1.0):
+        for line in gutter_lines(passes, left, wide, most_missed * _USUAL_M + 1.0):
             if monitor is not None:
                 monitor.check()
             for run in _runs_of(line, left, most_missed):
@@ -171,9 +171,9 @@ def _change(run: GutterRun, notches: Notches) -> float | None:
         return sum(one.gain * one.count for one in parts) - whole.gain * whole.count
 
     def best(cuts: _Floats, least: float) -> float | None:
-        gains = [more(float(cut)) for cut in cuts]
-        most = int(np.argmax(gains)) if gains else 0
-        return float(cuts[most]) if gains and gains[most] > least else None
+        gains = [(more(cut), cut) for cut in cuts.tolist()]
+        gain, cut = max(gains, key=lambda one: one[0], default=(-np.inf, 0.0))
+        return cut if gain > least else None
 
     between = (row.ends_m[:-1] + row.starts_m[1:]) / 2
     is_gap = row.starts_m[1:] - row.ends_m[:-1] > _CHANGES_M
