@@ -1,0 +1,1 @@
+"""Earthwork: volumes between two grounds, their proof, and deviations from a design."""
