@@ -1,0 +1,89 @@
+"""Closed polylines of a drawing (DXF) as areas: how CAD programs draw a boundary."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.errors import BadFile, told_as_user_error
+from processing.text import Text
+
+_CLOSED_M = 1e-3
+"""A polyline whose ends are no farther apart is closed: many CAD programs draw outlines so."""
+
+_ARC_M = 1e-3
+"""Arcs of polylines become chords that leave them by no more."""
+
+
+@dataclass(frozen=True)
+class DrawnOutlines:
+    """Closed polylines of a drawing's model space.
+
+    Attributes
+    ----------
+    by_layer : dict of str to list of (n, 2) float64
+        Easting and northing, m; the first place is not repeated.
+    crs : str
+        ``EPSG:n`` that a drawing of this program names; empty for others.
+    """
+
+    by_layer: dict[str, list[NDArray[np.float64]]]
+    crs: str
+
+
+def outlines_of_dxf(path: Path) -> DrawnOutlines:
+    """The closed polylines of a drawing.
+
+    Numbers are taken as metres whatever the drawing says of its units: templates of CAD programs
+    say millimetres, and survey coordinates are drawn into them in metres all the same.
+
+    Raises
+    ------
+    MissingInput, NoSpace, BadFile
+        It can't be read, or is no DXF.
+    """
+    drawing = _drawing(path)
+    found: dict[str, list[NDArray[np.float64]]] = {}
+    for entity in drawing.modelspace().query("LWPOLYLINE POLYLINE"):
+        outline = _outline(entity)
+        if outline is not None:
+            found.setdefault(entity.dxf.layer, []).append(outline)
+    named = dict(drawing.header.custom_vars.properties).get("CRS", "")
+    return DrawnOutlines(found, named if named.startswith("EPSG:") else "")
+
+
+def _drawing(path: Path) -> Any:  # an ezdxf drawing; ezdxf is not typed here
+    from ezdxf.filemanagement import readfile
+    from ezdxf.lldxf.const import DXFError
+
+    with told_as_user_error(path), path.open("rb"):
+        pass  # the library takes a missing file for a damaged one
+    try:
+        return readfile(path)
+    except (DXFError, OSError, UnicodeDecodeError) as error:
+        raise BadFile(
+            Text("The file is no DXF drawing, or is damaged.", "DXFではないか、壊れています。"),
+            Text.same(str(path)),
+            Text(
+                "Save the boundary as DXF once more, or give it as GeoJSON.",
+                "境界をDXFで保存し直すか、GeoJSONで指定してください。",
+            ),
+        ) from error
+
+
+def _outline(entity: Any) -> NDArray[np.float64] | None:
+    from ezdxf.path import make_path
+
+    if entity.dxftype() == "POLYLINE" and not (entity.is_2d_polyline or entity.is_3d_polyline):
+        return None
+    drawn = list(make_path(entity).flattening(_ARC_M)) if len(entity) > 1 else []
+    places = np.array([(one.x, one.y) for one in drawn], dtype=np.float64).reshape(-1, 2)
+    if len(places) > 1 and float(np.hypot(*(places[0] - places[-1]))) <= _CLOSED_M:
+        places = places[:-1]
+    elif not entity.is_closed:
+        return None
+    return places if len(places) > 2 else None
