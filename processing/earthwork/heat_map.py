@@ -149,8 +149,9 @@ def on_paper(colours: NDArray[np.uint8], is_measured: NDArray[np.bool_]) -> NDAr
     """
     is_drawn = colours[..., 3] > 0
     picture: NDArray[np.uint8] = np.where(is_drawn[..., None], colours[..., :3], np.uint8(255))
-    rows, columns = np.indices(is_drawn.shape, np.int32, sparse=True)
-    is_line = (rows + columns) % _HATCH_PX < _HATCH_WIDTH_PX
+    rows, columns = is_drawn.shape
+    slants = np.arange(rows)[:, None] + np.arange(columns)
+    is_line = slants % _HATCH_PX < _HATCH_WIDTH_PX
     picture[is_drawn & ~is_measured & is_line] = _HATCH_RGB
     return picture
 
