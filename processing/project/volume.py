@@ -1,0 +1,126 @@
+"""What of a volume is kept with a project: what was compared and how, and what came of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import date, datetime
+from enum import Enum
+from uuid import uuid4
+
+from shapely.geometry.base import BaseGeometry
+
+from processing.earthwork.change_grid import ChangeGrid
+from processing.earthwork.volume_result import Registration, VolumeResult, Volumes
+from processing.text import Text
+from processing.tools.parameters import Value
+
+
+class SideKind(Enum):
+    """What a ground that is compared comes from."""
+
+    EPOCH = "epoch"
+    DESIGN = "design"
+    LEVEL = "level"
+
+
+@dataclass(frozen=True)
+class ChosenSide:
+    """One of the two grounds, as it was chosen.
+
+    Attributes
+    ----------
+    kind : SideKind
+        A level's height is among the parameters.
+    name : str
+        What people call it; empty for a level.
+    drives : tuple of str
+        Ids of an epoch's drives.
+    path : str
+        A design's file.
+    measured_on : date or None
+        An epoch's first day, where its points tell.
+    """
+
+    kind: SideKind
+    name: str = ""
+    drives: tuple[str, ...] = ()
+    path: str = ""
+    measured_on: date | None = None
+
+
+@dataclass(frozen=True)
+class VolumeWish:
+    """What is to be compared, and how.
+
+    Attributes
+    ----------
+    before, after : ChosenSide
+    parameters : mapping
+        Of the tool, by the names of its fields.
+    boundary : shapely geometry or None
+        Where earth counts, m, project CRS; None: wherever both grounds are.
+    line : shapely geometry or None
+        Along which sections are cut.
+    break_lines : tuple of shapely geometry
+        Lines in space that triangles don't cross.
+    """
+
+    before: ChosenSide
+    after: ChosenSide
+    parameters: Mapping[str, Value]
+    boundary: BaseGeometry | None = None
+    line: BaseGeometry | None = None
+    break_lines: tuple[BaseGeometry, ...] = ()
+
+
+@dataclass(frozen=True)
+class KeptVolume:
+    """A volume without its map.
+
+    Attributes
+    ----------
+    id : str
+        Unique for ever.
+    made : datetime
+        With its time zone.
+    version : int
+        The tool's.
+    crs : str
+        ``EPSG:n`` of all coordinates; empty when unknown.
+    """
+
+    id: str
+    made: datetime
+    version: int
+    crs: str
+    wish: VolumeWish
+    volumes: Volumes
+    method: str
+    grid_m: float
+    registration: Registration | None
+    notes: tuple[Text, ...]
+
+    def with_map(self, change: ChangeGrid) -> VolumeResult:
+        """The result as it was computed."""
+        return VolumeResult(
+            self.volumes, self.method, self.grid_m, change, self.registration, self.notes
+        )
+
+
+def new_volume(
+    wish: VolumeWish, result: VolumeResult, *, crs: str, version: int, made: datetime
+) -> KeptVolume:
+    """A volume with an id that no other has."""
+    return KeptVolume(
+        id=uuid4().hex,
+        made=made,
+        version=version,
+        crs=crs,
+        wish=wish,
+        volumes=result.volumes,
+        method=result.method,
+        grid_m=result.grid_m,
+        registration=result.registration,
+        notes=result.notes,
+    )

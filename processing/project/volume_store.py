@@ -1,0 +1,158 @@
+"""The volumes of a project, each with its map.
+
+Each has a folder of its own below ``results/volumes``, which takes its place by one rename: it is
+there whole or not at all. Its numbers are read when they are listed, its map only when it is shown.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from processing.earthwork.change_grid import ChangeGrid
+from processing.errors import BadFile, MissingInput, told_as_user_error
+from processing.ground.cells import CellGrid
+from processing.project.volume import KeptVolume
+from processing.project.volume_facts import Facts, damaged, grid_of, kept_of, values_of
+
+_RESULTS, _VOLUMES = "results", "volumes"
+_FACTS = "volume.json"
+_ARRAYS = {
+    "before": np.dtype(np.float32),
+    "after": np.dtype(np.float32),
+    "is_measured": np.dtype(np.bool_),
+    "inside": np.dtype(np.float32),
+}
+
+
+def write_volume(kept: KeptVolume, change: ChangeGrid, folder: Path) -> None:
+    """Write a volume with its map into a new folder, which :meth:`VolumeStore.add` takes in.
+
+    Raises
+    ------
+    NoSpace, MissingInput, BadFile
+        What the operating system says; what was written so far is removed.
+    """
+    with told_as_user_error(folder):
+        folder.mkdir(parents=True)
+        try:
+            for name, dtype in _ARRAYS.items():
+                values = np.ascontiguousarray(getattr(change, name), dtype)
+                with (folder / f"{name}.npy").open("wb") as file:
+                    np.save(file, values)
+                    _flush(file.fileno())
+            with (folder / _FACTS).open("w", encoding="utf-8") as text:
+                json.dump(values_of(kept, change.grid), text, ensure_ascii=False)
+                text.flush()
+                _flush(text.fileno())
+        except BaseException:
+            shutil.rmtree(folder, ignore_errors=True)
+            raise
+
+
+class VolumeStore:
+    """The volumes of a project.
+
+    Parameters
+    ----------
+    project : Path
+        Its folder.
+    """
+
+    def __init__(self, project: Path) -> None:
+        self._home = project / _RESULTS / _VOLUMES
+
+    def all(self) -> tuple[KeptVolume, ...]:
+        """All volumes, the first one first; what can't be read is left out."""
+        folders = self._home.iterdir() if self._home.is_dir() else ()
+        found = []
+        for folder in folders:
+            with suppress(BadFile, MissingInput):
+                found.append(kept_of(_read_facts(folder), folder))
+        return tuple(sorted(found, key=lambda one: (one.made, one.id)))
+
+    def add(self, kept: KeptVolume, folder: Path) -> None:
+        """Take in a written folder on the project's own disk.
+
+        Raises
+        ------
+        NoSpace, MissingInput, BadFile
+            The folder stays where it is.
+        """
+        with told_as_user_error(folder):
+            self._home.mkdir(parents=True, exist_ok=True)
+            folder.rename(self._home / kept.id)
+
+    def read_map(self, id_: str) -> ChangeGrid:
+        """The map of a volume; its arrays stay on the disk until they are looked at.
+
+        Raises
+        ------
+        MissingInput, BadFile
+            It is gone or damaged.
+        """
+        folder = self._home / id_
+        facts = _read_facts(folder)
+        try:
+            grid = grid_of(facts["grid"])
+        except (KeyError, TypeError, ValueError) as error:
+            raise damaged(folder / _FACTS) from error
+        arrays = {name: _mapped(folder / f"{name}.npy", grid) for name in _ARRAYS}
+        return ChangeGrid(grid, **arrays)
+
+    def remove(self, id_: str) -> None:
+        """Forget a volume for good; there is none of that id afterwards.
+
+        Raises
+        ------
+        NoSpace
+            It is still there.
+        """
+        folder = self._home / id_
+        if Path(id_).name != id_ or not folder.is_dir():
+            return
+        with told_as_user_error(folder):
+            # Without its facts it is none any more, whatever else a system keeps open.
+            (folder / _FACTS).unlink(missing_ok=True)
+        shutil.rmtree(folder, ignore_errors=True)
+
+    def remove_leftovers(self) -> None:
+        """Remove what a killed program was removing."""
+        for folder in tuple(self._home.iterdir()) if self._home.is_dir() else ():
+            if folder.is_dir() and not (folder / _FACTS).exists():
+                shutil.rmtree(folder, ignore_errors=True)
+
+
+def _flush(file: int) -> None:
+    # Renamed before its content is on the disk, a file could be empty after a power cut.
+    os.fsync(file)
+
+
+def _mapped(path: Path, grid: CellGrid) -> Any:  # each array has its own dtype
+    with told_as_user_error(path):
+        try:
+            values = np.load(path, mmap_mode="r", allow_pickle=False)
+        except (ValueError, EOFError) as error:
+            raise damaged(path) from error
+    if values.shape != (grid.rows, grid.columns) or values.dtype != _ARRAYS[path.stem]:
+        raise damaged(path)
+    return values
+
+
+def _read_facts(folder: Path) -> Facts:  # what JSON holds
+    path = folder / _FACTS
+    with told_as_user_error(path):
+        text = path.read_bytes()
+    try:
+        facts = json.loads(text)
+    except ValueError as error:
+        raise damaged(path) from error
+    if not isinstance(facts, dict):
+        raise damaged(path)
+    return facts
