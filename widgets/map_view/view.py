@@ -37,6 +37,7 @@ from widgets.map_view.plan_enclosed import points_below
 from widgets.map_view.plan_feed import PlanFeed, PlanWish, ShownPlan, whole_frame
 from widgets.map_view.plan_lay import PlanLay, Spot, frame_of, on_plan
 from widgets.map_view.plan_pictures import PlanPictures
+from widgets.map_view.volume_layer import VolumeLayer
 from widgets.map_view.way import Way, ways_of
 from widgets.parts.opening_page import OpeningPage
 from widgets.plane_view.feature_hits import Points
@@ -101,6 +102,7 @@ class MapView(PlaneView):
         self._age = 0
         self._is_closed = False
         self._pictures = PlanPictures()
+        self._volume = VolumeLayer(shared.volume, self, language)
         self._feed = PlanFeed(tiles)
         self._feed.pictured.connect(self._on_feed_pictured)
         self._empty = OpeningPage(self.tr("A recording is shown here from above."), self)
@@ -112,6 +114,7 @@ class MapView(PlaneView):
         shared.view_settings.look_changed.connect(self._on_settings_look_changed)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
         shared.view_settings.hidden_drives_changed.connect(self._on_settings_image_changed)
+        self._volume.outdated.connect(self.set_ground_stale)
         self._read_drives()
 
     # What others ask.
@@ -180,6 +183,7 @@ class MapView(PlaneView):
     @override
     def paint_ground(self, painter: QPainter, viewport: PlaneViewport) -> None:
         self._pictures.paint(painter, viewport)
+        self._volume.paint(painter, viewport)
         paint_fields_of_view(painter, viewport, self._fields, self._best_field)
         paint_ways(painter, viewport, self._ways)
 
@@ -189,6 +193,7 @@ class MapView(PlaneView):
             paint_slab(painter, viewport, self._slab)
         paint_scale_bar(painter, viewport)
         paint_north(painter, viewport)
+        self._volume.paint_frame(painter, viewport)
 
     @override
     def place_at(self, place: Spot, reach: float, *, exact: bool) -> Place | None:

@@ -8,6 +8,7 @@ from widgets.shared.cursor import Cursor
 from widgets.shared.label_palette import LabelPalette
 from widgets.shared.map_changes import MapChanges
 from widgets.shared.selection import Selection
+from widgets.shared.shown_volume import ShownVolume
 from widgets.shared.sketch import Sketch
 from widgets.shared.snap_state import SnapState
 from widgets.shared.view_settings import ViewSettings
@@ -24,3 +25,4 @@ class SharedState:
     sketch: Sketch
     snap: SnapState
     labels: LabelPalette = field(default_factory=LabelPalette)
+    volume: ShownVolume = field(default_factory=ShownVolume)
