@@ -1,0 +1,318 @@
+"""What a given surface has to be before it is measured against, and its outline with holes.
+
+A volume needs one height at each place. Walls give none and are left out; triangles that lie over
+each other give two, and only a surveyor knows which is meant: they are refused unless they do no
+more than meet badly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from processing.earthwork.plan_buckets import bucketed, buckets_of_triangles
+from processing.earthwork.triangle_surface import TriangleSurface
+from processing.errors import Unsuitable
+from processing.kernels import kernel
+from processing.text import Text
+
+Floats = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+
+_SAME_PLACE_M = 1e-6
+_MEETS_M = 1e-3
+"""Triangles that lie over each other by less only meet badly: files have whole millimetres."""
+
+_BORNE_SHARE = 1e-4
+"""Part of the area that may be covered twice: it changes no volume that is told."""
+
+_BORNE_M2 = 0.01
+_LEAST_HOLE_M2 = 0.01
+_CORNERS = 12
+
+_READ_AGAIN = Text(
+    "Write the surface again in the program that it comes from.",
+    "作成元のソフトウェアで面データを出力し直してください。",
+)
+
+
+@dataclass(frozen=True)
+class CheckedSurface:
+    """A surface that can be measured against.
+
+    Attributes
+    ----------
+    surface : TriangleSurface
+        Without what was left out.
+    vertical, repeated : int
+        Triangles that were left out: without width in plan, and those that are there already.
+    covered_twice_m2 : float
+        Seen from above; little.
+    notes : tuple of Text
+        The same in sentences; empty where there is nothing to tell.
+    """
+
+    surface: TriangleSurface
+    vertical: int
+    repeated: int
+    covered_twice_m2: float
+    notes: tuple[Text, ...]
+
+
+def check_surface(surface: TriangleSurface) -> CheckedSurface:
+    """A surface as a volume needs it.
+
+    Raises
+    ------
+    Unsuitable
+        No triangle, or only vertical ones; a corner that is not there or is no number; triangles
+        that lie over each other by more than they meet badly.
+    """
+    _check_corners(surface)
+    is_repeated = _repeated(surface)
+    is_vertical = surface.is_vertical & ~is_repeated
+    kept = ~is_repeated & ~is_vertical
+    if not kept.any():
+        raise Unsuitable(
+            Text(
+                "The surface has no triangle that is seen from above.",
+                "面データに平面積をもつ三角形がありません。",
+            ),
+            _name_of(surface),
+            Text("Choose another surface.", "別の面データを指定してください。"),
+        )
+    left = surface
+    if not kept.all():
+        left = TriangleSurface(surface.xyz, surface.corners[kept], surface.name)
+    twice = _covered_twice(left)
+    vertical, repeated = int(is_vertical.sum()), int(is_repeated.sum())
+    notes = []
+    if vertical:
+        notes.append(
+            Text(
+                f"{vertical} vertical triangles of the surface bear no volume and were left out.",
+                f"面データの鉛直な三角形{vertical}個は、体積をもたないため除外しました。",
+            )
+        )
+    if repeated:
+        notes.append(
+            Text(
+                f"{repeated} triangles that the surface has twice were counted once.",
+                f"面データに重複する三角形{repeated}個は、1回だけ数えました。",
+            )
+        )
+    if twice >= _BORNE_M2:
+        notes.append(
+            Text(
+                f"Triangles of the surface overlap at their edges by {twice:.2f} m² in all.",
+                f"面データの三角形が辺に沿って合計{twice:.2f} m²重なっています。",
+            )
+        )
+    return CheckedSurface(left, vertical, repeated, twice, tuple(notes))
+
+
+def outline(surface: TriangleSurface) -> shapely.Geometry:
+    """The area that a surface covers, seen from above.
+
+    Returns
+    -------
+    shapely.Polygon or shapely.MultiPolygon
+        With holes where triangles are missing; gaps below 0.01 m², where triangles meet badly,
+        are closed. m, project CRS.
+    """
+    triangles = surface.plan_triangles(np.array([*surface.origin[:2], 0.0]))
+    plan = triangles[:, :, :2].reshape(-1, 2)
+    corner, first = _merged(plan)
+    corner = corner.reshape(-1, 3)
+    sides = np.concatenate([corner[:, [0, 1]], corner[:, [1, 2]], corner[:, [2, 0]]])
+    sides.sort(axis=1)
+    keys, counts = np.unique(sides[:, 0] * len(plan) + sides[:, 1], return_counts=True)
+    ends = np.stack(np.divmod(keys[counts % 2 == 1], len(plan)), axis=1)
+    # Made one net first: where a long side lies along two short ones, both would enclose nothing.
+    lines = shapely.union_all(shapely.linestrings(plan[first[ends]]))
+    covered = shapely.build_area(lines)
+    whole = []
+    for part in shapely.get_parts(covered):
+        holes = [ring for ring in part.interiors if shapely.Polygon(ring).area >= _LEAST_HOLE_M2]
+        if part.area >= _SAME_PLACE_M:
+            whole.append(shapely.Polygon(part.exterior, holes))
+    joined = shapely.orient_polygons(whole[0] if len(whole) == 1 else shapely.MultiPolygon(whole))
+    return shapely.transform(joined, lambda places: places + surface.origin[:2])
+
+
+def holes_of(surface: TriangleSurface) -> tuple[shapely.Geometry, ...]:
+    """What the outline of a surface encloses but no triangle covers, as polygons, largest first."""
+    rings = [ring for part in shapely.get_parts(outline(surface)) for ring in part.interiors]
+    holes = [shapely.Polygon(ring) for ring in rings]
+    return tuple(sorted(holes, key=lambda hole: -float(hole.area)))
+
+
+def _check_corners(surface: TriangleSurface) -> None:
+    if not len(surface.corners):
+        raise Unsuitable(
+            Text("The surface has no triangle.", "面データに三角形がありません。"),
+            _name_of(surface),
+            Text("Choose a surface of triangles (TIN).", "TINの面データを指定してください。"),
+        )
+    is_unknown = ((surface.corners < 0) | (surface.corners >= len(surface.xyz))).any(axis=1)
+    if is_unknown.any():
+        raise _flawed(
+            surface,
+            int(is_unknown.argmax()),
+            Text("has a corner that is not there", "存在しない頂点を参照しています"),
+        )
+    is_broken = ~np.isfinite(surface.xyz[surface.corners]).all(axis=(1, 2))
+    if is_broken.any():
+        raise _flawed(
+            surface,
+            int(is_broken.argmax()),
+            Text("has a corner whose position is no number", "頂点の座標が数値ではありません"),
+        )
+
+
+def _flawed(surface: TriangleSurface, triangle: int, has: Text) -> Unsuitable:
+    return Unsuitable(
+        Text(
+            "Triangle {number} of the surface {has}.", "面データの{number}番目の三角形は{has}。"
+        ).filled(number=triangle + 1, has=has),
+        _name_of(surface),
+        _READ_AGAIN,
+    )
+
+
+def _name_of(surface: TriangleSurface) -> Text:
+    return Text("Surface {name}", "面データ {name}").filled(name=surface.name or "–")
+
+
+def _merged(places: Floats) -> tuple[Numbers, Numbers]:
+    """A number for each place, the same for those at one, and the first place of each number."""
+    whole = np.round(places / _SAME_PLACE_M).astype(np.int64)
+    order = np.lexsort(whole.T)
+    is_new = np.concatenate([[True], np.any(np.diff(whole[order], axis=0) != 0, axis=1)])
+    number = np.empty(len(places), np.int64)
+    number[order] = np.cumsum(is_new) - 1
+    return number, order[is_new]
+
+
+def _repeated(surface: TriangleSurface) -> NDArray[np.bool_]:
+    """Triangles whose three corners are those of an earlier one: (t,) bool."""
+    number, _ = _merged(surface.xyz[surface.corners.ravel()] - surface.origin)
+    corners = np.sort(number.reshape(-1, 3), axis=1)
+    order = np.lexsort(corners.T)
+    is_repeated = np.zeros(len(corners), bool)
+    is_repeated[order[1:]] = np.all(np.diff(corners[order], axis=0) == 0, axis=1)
+    return is_repeated
+
+
+def _covered_twice(surface: TriangleSurface) -> float:
+    """Area that more than one triangle covers, m²."""
+    triangles = surface.plan_triangles(surface.origin)
+    buckets = bucketed(triangles)
+    found = np.zeros(4)
+    held = (buckets.starts, buckets.triangles)
+    _overlap_kernel(triangles, held, buckets_of_triangles(buckets), found)
+    area, _, east, north = found.tolist()
+    if area <= max(_BORNE_SHARE * surface.plan_area_m2(), _BORNE_M2):
+        return area
+    easting, northing = surface.origin[0] + east, surface.origin[1] + north
+    raise Unsuitable(
+        Text(
+            f"Triangles of the surface lie over each other on {area:.2f} m².",
+            f"面データの三角形が{area:.2f} m²にわたって重なっています。",
+        ),
+        Text(
+            "{name}, most at easting {easting:.2f}, northing {northing:.2f}",
+            "{name}、最大の箇所は東{easting:.2f} 北{northing:.2f}",
+        ).filled(name=_name_of(surface), easting=easting, northing=northing),
+        Text(
+            "Give a surface with one height at each place, without its lower or inner faces.",
+            "各地点の高さが1つに決まる面データ（底面や内側の面を除いたもの）を指定してください。",
+        ),
+    )
+
+
+@kernel
+def _is_apart(one: Floats, other: Floats) -> bool:
+    """Whether a side of ``one`` has all of the other triangle beyond it, but for rounding."""
+    for side in range(3):
+        start, end = one[side], one[(side + 1) % 3]
+        dx, dy = end[0] - start[0], end[1] - start[1]
+        reach = _MEETS_M * np.hypot(dx, dy)
+        is_beyond = True
+        for corner in range(3):
+            turn = dx * (other[corner, 1] - start[1]) - dy * (other[corner, 0] - start[0])
+            if turn > reach:
+                is_beyond = False
+                break
+        if is_beyond:
+            return True
+    return False
+
+
+@kernel
+def _shared_area(one: Floats, other: Floats, work: Floats) -> float:
+    """Area that two counterclockwise triangles share (Sutherland and Hodgman 1974)."""
+    count = 3
+    work[0, :3] = other[:, :2]
+    for side in range(3):
+        start, end = one[side], one[(side + 1) % 3]
+        dx, dy = end[0] - start[0], end[1] - start[1]
+        figure, clipped = work[side % 2], work[(side + 1) % 2]
+        left = 0
+        for corner in range(count):
+            here, there = figure[corner], figure[(corner + 1) % count]
+            a = dx * (here[1] - start[1]) - dy * (here[0] - start[0])
+            b = dx * (there[1] - start[1]) - dy * (there[0] - start[0])
+            if a >= 0.0:
+                clipped[left] = here
+                left += 1
+            if (a >= 0.0) != (b >= 0.0):
+                clipped[left] = here + a / (a - b) * (there - here)
+                left += 1
+        count = left
+    area = 0.0
+    figure = work[1]
+    for corner in range(1, count - 1):
+        u, v = figure[corner] - figure[0], figure[corner + 1] - figure[0]
+        area += 0.5 * (u[0] * v[1] - u[1] * v[0])
+    return area
+
+
+@kernel
+def _overlap_kernel(
+    triangles: Floats,
+    buckets: tuple[Numbers, Numbers],
+    of_triangles: tuple[Numbers, Numbers],
+    found: Floats,
+) -> None:
+    """Area covered twice, and of the pair that shares most its area and a place in it."""
+    starts, held = buckets
+    firsts, bucket_of = of_triangles
+    work = np.empty((2, _CORNERS, 2))
+    # Two triangles meet in several buckets and are looked at once.
+    looked_at = np.full(triangles.shape[0], -1, np.int64)
+    for one in range(triangles.shape[0]):
+        for bucket in bucket_of[firsts[one] : firsts[one + 1]]:
+            for other in held[starts[bucket] : starts[bucket + 1]]:
+                if other >= one:
+                    break
+                if looked_at[other] == one:
+                    continue
+                looked_at[other] = one
+                a, b = triangles[one], triangles[other]
+                if _is_apart(a, b) or _is_apart(b, a):
+                    continue
+                area = _shared_area(a, b, work)
+                found[0] += area
+                if area > found[1]:
+                    found[1] = area
+                    found[2:] = work[1, 0]
+
+
+def warm_up() -> None:
+    """Compile the kernels of this file."""
+    corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    check_surface(TriangleSurface(corners, np.array([[0, 1, 2]])))
