@@ -7,6 +7,7 @@ of both: there a small shift in plan is a large one in height.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
@@ -91,10 +92,13 @@ def design_faces(
 
 def _merged(outlines: NDArray[np.object_]) -> shapely.Geometry:
     """One area of many triangles."""
-    merged = shapely.coverage_union_all(outlines)
     # Many times faster, but only right where triangles meet at their corners.
-    is_whole = np.isclose(shapely.area(merged), shapely.area(outlines).sum(), rtol=1e-9)
-    return merged if is_whole and shapely.is_valid(merged) else shapely.union_all(outlines)
+    with suppress(shapely.GEOSException):
+        merged = shapely.coverage_union_all(outlines)
+        is_whole = np.isclose(shapely.area(merged), shapely.area(outlines).sum(), rtol=1e-9)
+        if is_whole and shapely.is_valid(merged):
+            return merged
+    return shapely.union_all(outlines)
 
 
 @dataclass(frozen=True)

@@ -199,7 +199,7 @@ def test_faces_are_the_same_where_each_triangle_has_corners_of_its_own() -> None
 
 def test_areas_are_right_where_a_corner_lies_on_another_triangle_s_side() -> None:
     places = np.array([[0, 0], [10, 0], [10, 10], [0, 10], [5, 5], [5, 0]], np.float64)
-    xyz = np.column_stack([places + [WEST, SOUTH], np.full(6, 20.0)])
+    xyz = np.column_stack([places + np.array([WEST, SOUTH]), np.full(6, 20.0)])
     # Beside the corner in the middle of the diagonal lies a triangle that has it on its side.
     corners = np.array([[0, 5, 4], [5, 1, 4], [1, 2, 4], [0, 2, 3]])
     (flat,) = judged(0.0, TriangleSurface(xyz, corners, "")).faces
