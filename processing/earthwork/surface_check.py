@@ -13,25 +13,21 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from processing.earthwork.overlay_kernels import overlap_kernel
 from processing.earthwork.plan_buckets import bucketed, buckets_of_triangles
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import Unsuitable
-from processing.kernels import kernel
 from processing.text import Text
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 _SAME_PLACE_M = 1e-6
-_MEETS_M = 1e-3
-"""Triangles that lie over each other by less only meet badly: files have whole millimetres."""
-
 _BORNE_SHARE = 1e-4
 """Part of the area that may be covered twice: it changes no volume that is told."""
 
 _BORNE_M2 = 0.01
 _LEAST_HOLE_M2 = 0.01
-_CORNERS = 12
 
 _READ_AGAIN = Text(
     "Write the surface again in the program that it comes from.",
@@ -213,7 +209,7 @@ def _covered_twice(surface: TriangleSurface) -> float:
     buckets = bucketed(triangles)
     found = np.zeros(4)
     held = (buckets.starts, buckets.triangles)
-    _overlap_kernel(triangles, held, buckets_of_triangles(buckets), found)
+    overlap_kernel(triangles, held, buckets_of_triangles(buckets), found)
     area, _, east, north = found.tolist()
     if area <= max(_BORNE_SHARE * surface.plan_area_m2(), _BORNE_M2):
         return area
@@ -234,85 +230,7 @@ def _covered_twice(surface: TriangleSurface) -> float:
     )
 
 
-@kernel
-def _is_apart(one: Floats, other: Floats) -> bool:
-    """Whether a side of ``one`` has all of the other triangle beyond it, but for rounding."""
-    for side in range(3):
-        start, end = one[side], one[(side + 1) % 3]
-        dx, dy = end[0] - start[0], end[1] - start[1]
-        reach = _MEETS_M * np.hypot(dx, dy)
-        is_beyond = True
-        for corner in range(3):
-            turn = dx * (other[corner, 1] - start[1]) - dy * (other[corner, 0] - start[0])
-            if turn > reach:
-                is_beyond = False
-                break
-        if is_beyond:
-            return True
-    return False
-
-
-@kernel
-def _shared_area(one: Floats, other: Floats, work: Floats) -> float:
-    """Area that two counterclockwise triangles share (Sutherland and Hodgman 1974)."""
-    count = 3
-    work[0, :3] = other[:, :2]
-    for side in range(3):
-        start, end = one[side], one[(side + 1) % 3]
-        dx, dy = end[0] - start[0], end[1] - start[1]
-        figure, clipped = work[side % 2], work[(side + 1) % 2]
-        left = 0
-        for corner in range(count):
-            here, there = figure[corner], figure[(corner + 1) % count]
-            a = dx * (here[1] - start[1]) - dy * (here[0] - start[0])
-            b = dx * (there[1] - start[1]) - dy * (there[0] - start[0])
-            if a >= 0.0:
-                clipped[left] = here
-                left += 1
-            if (a >= 0.0) != (b >= 0.0):
-                clipped[left] = here + a / (a - b) * (there - here)
-                left += 1
-        count = left
-    area = 0.0
-    figure = work[1]
-    for corner in range(1, count - 1):
-        u, v = figure[corner] - figure[0], figure[corner + 1] - figure[0]
-        area += 0.5 * (u[0] * v[1] - u[1] * v[0])
-    return area
-
-
-@kernel
-def _overlap_kernel(
-    triangles: Floats,
-    buckets: tuple[Numbers, Numbers],
-    of_triangles: tuple[Numbers, Numbers],
-    found: Floats,
-) -> None:
-    """Area covered twice, and of the pair that shares most its area and a place in it."""
-    starts, held = buckets
-    firsts, bucket_of = of_triangles
-    work = np.empty((2, _CORNERS, 2))
-    # Two triangles meet in several buckets and are looked at once.
-    looked_at = np.full(triangles.shape[0], -1, np.int64)
-    for one in range(triangles.shape[0]):
-        for bucket in bucket_of[firsts[one] : firsts[one + 1]]:
-            for other in held[starts[bucket] : starts[bucket + 1]]:
-                if other >= one:
-                    break
-                if looked_at[other] == one:
-                    continue
-                looked_at[other] = one
-                a, b = triangles[one], triangles[other]
-                if _is_apart(a, b) or _is_apart(b, a):
-                    continue
-                area = _shared_area(a, b, work)
-                found[0] += area
-                if area > found[1]:
-                    found[1] = area
-                    found[2:] = work[1, 0]
-
-
 def warm_up() -> None:
-    """Compile the kernels of this file."""
+    """Compile the kernels."""
     corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
     check_surface(TriangleSurface(corners, np.array([[0, 1, 2]])))

@@ -37,3 +37,29 @@ def scattered_surface(
     random = np.random.default_rng(seed)
     corners = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
     return meshed(np.concatenate([corners, random.uniform(0, 1, (count, 2))]) * size_m, height)
+
+
+def frustum(
+    bottom_m: float, top_m: float, tall_m: float, sides: int, origin: ArrayLike = SURVEYED
+) -> TriangleSurface:
+    """A heap with regular bottom and top, given by the radii of their corners."""
+    ways = np.arange(sides) * (2 * np.pi / sides)
+    ring = np.column_stack([np.cos(ways), np.sin(ways), np.zeros(sides)])
+    foot, crest = ring * bottom_m, ring * top_m + np.array([0.0, 0.0, tall_m])
+    xyz = np.concatenate([foot, crest, [[0.0, 0.0, tall_m]]]) + np.asarray(origin, np.float64)
+    one = np.arange(sides)
+    other = (one + 1) % sides
+    corners = np.concatenate(
+        [
+            np.column_stack([one, other, sides + other]),
+            np.column_stack([one, sides + other, sides + one]),
+            np.column_stack([sides + one, sides + other, np.full(sides, 2 * sides)]),
+        ]
+    )
+    return TriangleSurface(xyz, corners)
+
+
+def frustum_m3(bottom_m: float, top_m: float, tall_m: float, sides: int) -> float:
+    """Volume of :func:`frustum`: h / 3 (A + a + sqrt(A a))."""
+    bottom, top = (sides / 2 * r**2 * np.sin(2 * np.pi / sides) for r in (bottom_m, top_m))
+    return float(tall_m / 3 * (bottom + top + np.sqrt(bottom * top)))

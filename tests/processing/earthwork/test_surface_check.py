@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
-from processing.earthwork import surface_check
+from processing.earthwork.overlay_kernels import overlap_kernel
 from processing.earthwork.plan_buckets import bucketed, buckets_of_triangles
 from processing.earthwork.surface_check import check_surface, holes_of, outline
 from processing.earthwork.triangle_surface import TriangleSurface
@@ -129,7 +129,7 @@ def test_the_overlap_kernel_gives_what_shapely_gives_compiled_or_not() -> None:
     pairs = [
         shapely.intersection(polygons[i], polygons[j]).area for i in range(12) for j in range(i)
     ]
-    for kernel in (surface_check._overlap_kernel, surface_check._overlap_kernel.py_func):
+    for kernel in (overlap_kernel, overlap_kernel.py_func):
         found = np.zeros(4)
         held = (buckets.starts, buckets.triangles)
         kernel(figures, held, buckets_of_triangles(buckets), found)
