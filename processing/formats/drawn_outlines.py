@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import BadFile, told_as_user_error
+from processing.formats.dxf_document import APP_ID
 from processing.text import Text
 
 _CLOSED_M = 1e-3
@@ -52,8 +53,13 @@ def outlines_of_dxf(path: Path) -> DrawnOutlines:
         outline = _outline(entity)
         if outline is not None:
             found.setdefault(entity.dxf.layer, []).append(outline)
-    named = dict(drawing.header.custom_vars.properties).get("CRS", "")
-    return DrawnOutlines(found, named if named.startswith("EPSG:") else "")
+    return DrawnOutlines(found, _system(drawing))
+
+
+def _system(drawing: Any) -> str:
+    layer = drawing.layers.get("0")
+    told = [value for _, value in layer.get_xdata(APP_ID)] if layer.has_xdata(APP_ID) else []
+    return next((str(value) for value in told if str(value).startswith("EPSG:")), "")
 
 
 def _drawing(path: Path) -> Any:  # an ezdxf drawing; ezdxf is not typed here

@@ -1,26 +1,27 @@
-"""DXF for CAD: the map in metres, a layer for each kind, symbols as blocks, names as texts.
-
-R2018 is UTF-8 by definition; R2000 has a code page, which is cp932 here, as the CAD programs of
-Japanese offices expect.
-"""
+"""DXF for CAD: the map in metres, a layer for each kind, symbols as blocks, names as texts."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from io import TextIOWrapper
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
-from typing_extensions import override
 
-from processing.errors import OutOfRange, Unsuitable, use_one_of
+from processing.errors import Unsuitable
 from processing.formats.dxf_bodies import BODY_SUFFIX, add_body
+from processing.formats.dxf_document import (
+    APP_ID,
+    ENCODINGS,
+    DxfDocument,
+    DxfVersion,
+    check_one_of,
+)
 from processing.formats.dxf_labels import LABEL_HEIGHT_M, label_of
 from processing.formats.dxf_symbols import add_symbol_block
-from processing.formats.dxf_text import dxf_strings, dxf_text, label_text
+from processing.formats.dxf_text import dxf_strings, dxf_text
 from processing.formats.safe_write import written_safely
 from processing.monitor import Monitor, SilentMonitor
 from processing.project.catalogue import LINE_TYPES, Catalogue, FeatureKind, Geometry
@@ -28,21 +29,13 @@ from processing.project.feature import AttributeValue, Feature, Position, Status
 from processing.project.solids import solid_of, thickness_of
 from processing.text import Text
 
-DxfVersion = Literal["R2000", "R2018"]
-
-APP_ID = "ZUKA"
-"""Application id of the extended data: id, kind, status, confidence, then the attributes."""
-
 CANDIDATE_SUFFIX = "_候補"
 LABEL_SUFFIX = "_文字"
 
-_ENCODINGS: Mapping[str, str] = {"R2000": "cp932", "R2018": "utf-8"}
-_STYLE, _FONT, _FONT_FAMILY = "JAPANESE", "msgothic.ttc", "MS Gothic"
 _DIRECTIONS = ("direction_deg", "facing_deg")
 _INT32 = 1 << 31
 _MOST_XDATA_BYTES = 16_000
 _CHECK_EVERY = 16  # features
-_CHECK_WRITES = 4096
 
 
 def write_dxf(
@@ -84,8 +77,7 @@ def write_dxf(
     UserError
         What :func:`processing.formats.safe_write.written_safely` raises; `Cancelled`.
     """
-    _check_one_of(version, _ENCODINGS)
-    _check_one_of(encoding, _ENCODINGS.values())
+    check_one_of(encoding, ENCODINGS.values())
     monitor = monitor or SilentMonitor()
     drawing = _Drawing(catalogue, version, crs)
     for number, feature in enumerate(features):
@@ -95,7 +87,7 @@ def write_dxf(
             drawing.add(feature)
     drawing.finish()
     with written_safely(path, never=never) as temporary:
-        drawing.write(temporary, monitor)
+        drawing.document.write(temporary, monitor)
 
 
 @dataclass(frozen=True)
@@ -110,36 +102,20 @@ class _Drawing:
     """A drawing being filled."""
 
     def __init__(self, catalogue: Catalogue, version: DxfVersion, crs: str) -> None:
-        from ezdxf import units
-        from ezdxf.filemanagement import new
-
         self._catalogue = catalogue
-        self._is_r2000 = version == "R2000"
-        self._encoding = _ENCODINGS[version]
-        self.doc = new(version)
-        self.doc.encoding = "cp932"  # the code page that even UTF-8 files name
-        self.doc.units = units.M
+        self.document = DxfDocument(version)
+        self._doc, self._space = self.document.doc, self.document.space
         self._lowest = [math.inf] * 3
         self._highest = [-math.inf] * 3
-        style = self.doc.styles.add(_STYLE, font=_FONT)
-        style.set_extended_font_data(_FONT_FAMILY)
-        self.doc.appids.add(APP_ID)
-        self._set_header(crs or "unknown")
-        for name, pattern in LINE_TYPES.items():
-            if pattern:
-                total = sum(abs(length) for length in pattern)
-                self.doc.linetypes.add(name.upper(), pattern=[total, *pattern], description=name)
-        self._space = self.doc.modelspace()
-
-    def _set_header(self, crs: str) -> None:
-        header = self.doc.header
-        header["$MEASUREMENT"] = 1
+        header = self._doc.header
         header["$LTSCALE"] = 1.0
         header["$LUNITS"] = 2
         header["$LUPREC"] = 3
-        header.custom_vars.append("CRS", crs)
-        # R2000 has no properties of its own.
-        self.doc.layers.get("0").set_xdata(APP_ID, [(1000, "CRS"), (1000, crs)])
+        self.document.tell_system(crs)
+        for name, pattern in LINE_TYPES.items():
+            if pattern:
+                total = sum(abs(length) for length in pattern)
+                self._doc.linetypes.add(name.upper(), pattern=[total, *pattern], description=name)
 
     def add(self, feature: Feature) -> None:
         """Draw a feature."""
@@ -172,7 +148,7 @@ class _Drawing:
             case Geometry.POINT:
                 entities: list[Any] = [self._space.add_point(positions[0], dxfattribs=attributes)]
                 if kind.symbol:
-                    block = add_symbol_block(self.doc, kind.symbol)
+                    block = add_symbol_block(self._doc, kind.symbol)
                     turned = {**attributes, "rotation": _rotation_deg(feature)}
                     entities.append(
                         self._space.add_blockref(block, positions[0], dxfattribs=turned)
@@ -206,59 +182,38 @@ class _Drawing:
         own: dict[str, Any] = {}
         if (kind.aci, kind.colour) != (first.aci, first.colour):
             own["color"] = kind.aci
-            if not self._is_r2000:
+            if not self.document.is_r2000:
                 own["true_color"] = int(kind.colour[1:], 16)
         if kind.line_type != first.line_type:
             own["linetype"] = kind.line_type.upper()
         return _Looks(layer, own)
 
     def _need_layer(self, layer: str, kind: FeatureKind) -> None:
-        if layer in self.doc.layers:
+        if layer in self._doc.layers:
             return
-        self._check_encodable(layer)
+        self.document.require_encodable(layer)
         first = self._catalogue.of_layer(kind.layer)[0]
         looks: dict[str, Any] = {"color": first.aci, "linetype": first.line_type.upper()}
-        if not self._is_r2000:
+        if not self.document.is_r2000:
             looks["true_color"] = int(first.colour[1:], 16)
-        self.doc.layers.add(layer, **looks)
-
-    def _check_encodable(self, layer: str) -> None:
-        try:
-            layer.encode(self._encoding)
-        except UnicodeEncodeError as error:
-            raise Unsuitable(
-                Text(
-                    "The layer's name has characters that Shift_JIS (cp932) lacks.",
-                    "画層名にShift_JIS（cp932）で表せない文字があります。",
-                ),
-                Text.same(layer),
-                Text(
-                    "Export as DXF 2018, or change the layer in the catalogue.",
-                    "DXF 2018で書き出すか、カタログの画層名を変更してください。",
-                ),
-            ) from error
+        self._doc.layers.add(layer, **looks)
 
     def _add_label(self, kind: FeatureKind, feature: Feature, looks: _Looks) -> None:
-        from ezdxf.enums import TextEntityAlignment
-
         label = label_of(kind, feature)
-        words = label_text(label.words, self._encoding) if label else ""
-        if label is None or not words:
+        if label is None:
             return
         layer = looks.layer + LABEL_SUFFIX
         self._need_layer(layer, kind)
         attributes = {
             "layer": layer,
-            "style": _STYLE,
             "height": LABEL_HEIGHT_M,
             "rotation": label.rotation_deg,
             **{key: value for key, value in looks.own.items() if key != "linetype"},
         }
-        text = self._space.add_text(words, dxfattribs=attributes)
-        text.set_placement(label.place, align=TextEntityAlignment[label.align])
+        self.document.write_text(label.words, label.place, label.align, attributes)
 
     def _extended_data(self, feature: Feature) -> list[tuple[int, Any]]:
-        encoding = self._encoding
+        encoding = self.document.encoding
         data: list[tuple[int, Any]] = [
             (1000, dxf_text(feature.id, encoding)),
             (1000, feature.kind),
@@ -283,40 +238,8 @@ class _Drawing:
 
     def finish(self) -> None:
         """Set the extent and what is seen when the file is opened."""
-        if math.inf in self._lowest:
-            return
-        lowest, highest = tuple(self._lowest), tuple(self._highest)
-        self._space.reset_extents(lowest, highest)
-        self.doc.header["$EXTMIN"] = lowest
-        self.doc.header["$EXTMAX"] = highest
-        width, depth = (highest[axis] - lowest[axis] for axis in (0, 1))
-        middle = tuple((highest[axis] + lowest[axis]) / 2 for axis in (0, 1))
-        # Windows are about twice as wide as high.
-        self.doc.set_modelspace_vport(max(depth, width / 2, 10.0) * 1.1, middle)
-
-    def write(self, path: Path, monitor: Monitor) -> None:
-        """Write the file with the line ends of Windows, where its readers are."""
-        with (
-            path.open("wb") as file,
-            _Watched(file, self._encoding, "dxfreplace", "\r\n") as text,
-        ):
-            text.monitor = monitor
-            self.doc.write(text)
-
-
-class _Watched(TextIOWrapper):
-    """A text file whose writing the user can stop."""
-
-    monitor: Monitor = SilentMonitor()
-    _writes = 0
-
-    @override
-    def write(self, text: str, /) -> int:
-        """Write, and now and then ask whether to go on."""
-        self._writes += 1
-        if self._writes % _CHECK_WRITES == 0:
-            self.monitor.check()
-        return super().write(text)
+        if math.inf not in self._lowest:
+            self.document.show(tuple(self._lowest), tuple(self._highest))
 
 
 def _rotation_deg(feature: Feature) -> float:
@@ -337,15 +260,6 @@ def _tags(value: AttributeValue, encoding: str) -> list[tuple[int, Any]]:
     if isinstance(value, float) and math.isfinite(value):
         return [(1040, value)]
     return [(1000, piece) for piece in dxf_strings(str(value), encoding)]
-
-
-def _check_one_of(value: str, allowed: Iterable[str]) -> None:
-    if value not in allowed:
-        raise OutOfRange(
-            Text("DXF files are not written like this.", "このようなDXFは書き出せません。"),
-            Text.same(value),
-            use_one_of(allowed),
-        )
 
 
 def _refusal(feature: Feature, what: Text, remedy: Text) -> Unsuitable:

@@ -9,16 +9,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from io import TextIOWrapper
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from processing.errors import OutOfRange, Unsuitable
-from processing.formats.dxf import DxfVersion
-from processing.formats.dxf_text import dxf_text, label_text
+from processing.formats.dxf_document import DxfDocument, DxfVersion
 from processing.formats.safe_write import written_safely
+from processing.monitor import SilentMonitor
 from processing.section.profile import Crossing, Profile
 from processing.text import Language, Text
 
@@ -32,9 +30,6 @@ _LAYERS: Mapping[str, int] = {  # AutoCAD colour indices
     TEXT_LAYER: 7,
     TITLE_LAYER: 7,
 }
-_ENCODINGS: Mapping[str, str] = {"R2000": "cp932", "R2018": "utf-8"}
-_STYLE, _FONT, _FONT_FAMILY = "JAPANESE", "msgothic.ttc", "MS Gothic"
-
 _TEXT_M = 0.0025
 """Height of texts on paper."""
 
@@ -109,34 +104,20 @@ def write_profile_dxf(
         )
     sheet = _Sheet(profile, look)
     sheet.draw()
-    encoding = _ENCODINGS[look.version]
-    with (
-        written_safely(path, never=never) as temporary,
-        temporary.open("wb") as file,
-        TextIOWrapper(file, encoding, "dxfreplace", "\r\n") as text,
-    ):
-        sheet.doc.write(text)
+    with written_safely(path, never=never) as temporary:
+        sheet.document.write(temporary, SilentMonitor())
 
 
 class _Sheet:
     """A drawing being filled."""
 
     def __init__(self, profile: Profile, look: ProfileLook) -> None:
-        from ezdxf import units
-        from ezdxf.filemanagement import new
-
         self._profile = profile
         self._look = look
-        self._encoding = _ENCODINGS[look.version]
-        self.doc = new(look.version)
-        self.doc.encoding = "cp932"  # the code page that even UTF-8 files name
-        self.doc.units = units.M
-        self.doc.header["$MEASUREMENT"] = 1
-        style = self.doc.styles.add(_STYLE, font=_FONT)
-        style.set_extended_font_data(_FONT_FAMILY)
+        self.document = DxfDocument(look.version)
+        self._layers, self._space = self.document.doc.layers, self.document.space
         for layer, colour in _LAYERS.items():
-            self.doc.layers.add(layer, color=colour)
-        self._space = self.doc.modelspace()
+            self._layers.add(layer, color=colour)
         self._text_m = _TEXT_M * look.scale
         ground = np.concatenate(profile.ground)
         heights = [*ground[:, 1].tolist(), *(one.height_m for one in profile.crossings)]
@@ -167,9 +148,7 @@ class _Sheet:
             self._draw_crossing(crossing)
         self._draw_title()
         low, high = (self._left, self._below(4)), (self._right, self._y(self._top))
-        self.doc.header["$EXTMIN"], self.doc.header["$EXTMAX"] = (*low, 0.0), (*high, 0.0)
-        middle = (low[0] + high[0]) / 2, (low[1] + high[1]) / 2
-        self.doc.set_modelspace_vport(max(high[1] - low[1], (high[0] - low[0]) / 2) * 1.2, middle)
+        self.document.show(low, high)
 
     def _y(self, height_m: float) -> float:
         return (height_m - self._datum) * self._look.exaggeration
@@ -206,9 +185,9 @@ class _Sheet:
 
     def _draw_crossing(self, crossing: Crossing) -> None:
         layer = crossing.layer
-        if layer not in self.doc.layers:
-            self._check_encodable(layer)
-            self.doc.layers.add(layer, color=crossing.aci)
+        if layer not in self._layers:
+            self.document.require_encodable(layer)
+            self._layers.add(layer, color=crossing.aci)
         looks = {"layer": layer}
         place = crossing.offset_m, self._y(crossing.height_m)
         head = place[0], place[1] + 4 * self._text_m
@@ -260,35 +239,11 @@ class _Sheet:
         layer: str = TEXT_LAYER,
         rotation_deg: float = 0.0,
     ) -> None:
-        from ezdxf.enums import TextEntityAlignment
-
-        attributes: dict[str, Any] = {
-            "layer": layer,
-            "style": _STYLE,
-            "height": self._text_m,
-            "rotation": rotation_deg,
-        }
-        written = label_text(words, self._encoding)
-        if written:
-            text = self._space.add_text(written, dxfattribs=attributes)
-            text.set_placement(place, align=TextEntityAlignment[align])
+        attributes = {"layer": layer, "height": self._text_m, "rotation": rotation_deg}
+        self.document.write_text(words, place, align, attributes)
 
     def _said(self, text: Text) -> str:
         return text.spoken(self._look.language)
-
-    def _check_encodable(self, layer: str) -> None:
-        if dxf_text(layer, self._encoding) != layer:
-            raise Unsuitable(
-                Text(
-                    "The layer's name has characters that Shift_JIS (cp932) lacks.",
-                    "画層名にShift_JIS（cp932）で表せない文字があります。",
-                ),
-                Text.same(layer),
-                Text(
-                    "Export as DXF 2018, or change the layer in the catalogue.",
-                    "DXF 2018で書き出すか、カタログの画層名を変更してください。",
-                ),
-            )
 
 
 def _step(least: float) -> float:

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from processing.errors import OutOfRange, Unsuitable, use_one_of
-from processing.formats.dxf import DxfVersion, write_dxf
+from processing.formats.dxf import write_dxf
+from processing.formats.dxf_document import DxfVersion
 from processing.formats.geojson import write_geojson
 from processing.formats.geopackage import write_geopackage
 from processing.formats.ledger_columns import TableStyle

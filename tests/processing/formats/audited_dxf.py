@@ -7,7 +7,8 @@ from typing import Any
 
 import ezdxf.filemanagement
 
-from processing.formats.dxf import DxfVersion, write_dxf
+from processing.formats.dxf import write_dxf
+from processing.formats.dxf_document import DxfVersion
 from processing.project.catalogue import Catalogue
 from processing.project.feature import Feature
 

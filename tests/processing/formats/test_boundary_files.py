@@ -16,6 +16,7 @@ import shapely
 from processing.errors import BadFile, MissingInput, OutOfRange, Unsuitable
 from processing.formats.boundary_files import Boundary, read_boundary
 from processing.formats.dxf import write_dxf
+from processing.formats.dxf_document import DxfVersion
 from processing.project.catalogue import Geometry, read_catalogue
 from processing.project.feature import Feature, Vertex
 from resources import path_of
@@ -234,13 +235,14 @@ def test_of_several_layers_one_must_be_named(tmp_path: Path, name: str) -> None:
         read_boundary(path, layer="third")
 
 
+@pytest.mark.parametrize("version", ["R2000", "R2018"])
 def test_an_area_that_the_program_drew_is_a_boundary_with_its_reference_system(
-    tmp_path: Path,
+    tmp_path: Path, version: DxfVersion
 ) -> None:
     catalogue = read_catalogue(path_of("catalogue/level500.toml"))
     kind = next(one for one in catalogue if one.geometry is Geometry.AREA)
     site = Feature("a", kind.id, Geometry.AREA, tuple(Vertex((x, y, 1.0)) for x, y in box(0, 10)))
-    write_dxf(tmp_path / "a.dxf", [site], catalogue, crs="EPSG:6677")
+    write_dxf(tmp_path / "a.dxf", [site], catalogue, crs="EPSG:6677", version=version)
     read = read_boundary(tmp_path / "a.dxf", crs="EPSG:6677")
     assert (read.crs, area_of(read)) == ("EPSG:6677", pytest.approx(100.0))
 

@@ -15,7 +15,8 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from processing.errors import Cancelled, OutOfRange, Unsuitable
-from processing.formats.dxf import APP_ID, DxfVersion, write_dxf
+from processing.formats.dxf import write_dxf
+from processing.formats.dxf_document import APP_ID, DxfVersion
 from processing.monitor import SilentMonitor
 from processing.project.catalogue import LINE_TYPES, Catalogue, Geometry, read_catalogue
 from processing.project.catalogue_file import symbol_names

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from processing.formats.dxf import APP_ID, DxfVersion
+from processing.formats.dxf_document import APP_ID, DxfVersion
 from processing.project.catalogue import Catalogue, Geometry, read_catalogue
 from processing.project.feature import Feature, Position, Status, Vertex
 from resources import path_of
