@@ -91,7 +91,9 @@ def design_faces(
 
 
 def _merged(outlines: NDArray[np.object_]) -> shapely.Geometry:
-    """One area of many triangles."""
+    """One area of many triangles; of none, an empty one, which has an outline."""
+    if not len(outlines):
+        return shapely.Polygon()
     # Many times faster, but only right where triangles meet at their corners.
     with suppress(shapely.GEOSException):
         merged = shapely.coverage_union_all(outlines)
