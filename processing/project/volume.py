@@ -36,8 +36,8 @@ class ChosenSide:
         What people call it; empty for a level.
     drives : tuple of str
         Ids of an epoch's drives.
-    path : str
-        A design's file.
+    path, surface : str
+        A design's file, and which surface in it where there are several.
     measured_on : date or None
         An epoch's first day, where its points tell.
     """
@@ -46,6 +46,7 @@ class ChosenSide:
     name: str = ""
     drives: tuple[str, ...] = ()
     path: str = ""
+    surface: str = ""
     measured_on: date | None = None
 
 

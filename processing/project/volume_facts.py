@@ -103,6 +103,7 @@ def _side_values(side: ChosenSide) -> Facts:
         "name": side.name,
         "drives": list(side.drives),
         "path": side.path,
+        "surface": side.surface,
         "measured_on": None if day is None else day.isoformat(),
     }
 
@@ -114,6 +115,7 @@ def _side_of(values: Facts) -> ChosenSide:
         str(values["name"]),
         tuple(map(str, values["drives"])),
         str(values["path"]),
+        str(values["surface"]),
         None if day is None else date.fromisoformat(day),
     )
 

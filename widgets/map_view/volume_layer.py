@@ -35,7 +35,9 @@ _PLATE = QColor(16, 18, 22, 205)
 _EDGE = QColor(16, 18, 22, 190)
 _LINE = QColor("#fff7d6")
 _LINE_PX, _INDEX_PX, _EDGE_MORE_PX = 1.0, 2.0, 1.5
-_SWATCH_PX, _GAP_PX, _MARGIN_PX, _TOP_PX = 18.0, 6.0, 8.0, 74.0
+_SWATCH_PX, _GAP_PX, _MARGIN_PX = 18.0, 6.0, 8.0
+_TOP_PX = 72.0
+"""Above is the arrow to the north."""
 
 
 class VolumeLayer(QObject):
@@ -80,7 +82,7 @@ class VolumeLayer(QObject):
         self._paint_contours(painter, viewport)
 
     def paint_frame(self, painter: QPainter, viewport: PlaneViewport) -> None:
-        """What the colours say, at the right; and what the map says beside the mouse."""
+        """What the colours say, at the lower right; and what the map says beside the mouse."""
         if self._volume.drawn is None:
             return
         self._paint_legend(painter, viewport)
@@ -116,8 +118,8 @@ class VolumeLayer(QObject):
         wide = max(widest + _SWATCH_PX + _GAP_PX, metrics.horizontalAdvance(title))
         line = metrics.height() + 1.0
         wide, high = wide + 2 * _MARGIN_PX, (len(rows) + 2) * line + _MARGIN_PX + 2.0
-        plate = QRectF(viewport.width - wide - 8.0, _TOP_PX, wide, high)
-        if plate.bottom() > viewport.height or plate.left() < 0:
+        plate = QRectF(viewport.width - wide - 8.0, viewport.height - high - 8.0, wide, high)
+        if plate.top() < _TOP_PX or plate.left() < 0:
             return  # in a small window the map itself is more
         painter.fillRect(plate, _PLATE)
         left, top = plate.left() + _MARGIN_PX, plate.top() + _MARGIN_PX / 2

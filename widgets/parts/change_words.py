@@ -17,8 +17,8 @@ _FILLED = Text(
 
 def signed(value: float, digits: int = 3) -> str:
     """A difference with its sign, as surveyors read it: ``+0.234``, ``−1.050``, ``0.000``."""
-    words = f"{abs(value):.{digits}f}"
-    if not float(words):
+    words = f"{abs(value):,.{digits}f}"
+    if not words.strip("0.,"):
         return words
     return f"−{words}" if value < 0 else f"+{words}"
 

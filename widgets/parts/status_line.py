@@ -6,8 +6,10 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QLabel, QStatusBar, QToolButton, QWidget
 
+from processing.earthwork.change_reading import ChangeReading
 from processing.text import Language, Text
 from widgets.panels.jobs_panel import JobView, time_left
+from widgets.parts.change_words import change_words
 from widgets.parts.number_field import coordinate
 from widgets.parts.progress_bar import ProgressBar
 from widgets.shared.cursor import Place
@@ -58,6 +60,8 @@ class StatusLine(QStatusBar):
         self._cancel.setAutoRaise(True)
         self._cancel.setFixedSize(20, 20)
         self._cancel.clicked.connect(self._on_cancel_clicked)
+        self._change = QLabel(self)
+        self._change.setFont(_digits_of(self))
         self._place = QLabel(self)
         self._place.setFont(_digits_of(self))
         self._place.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
@@ -65,11 +69,13 @@ class StatusLine(QStatusBar):
         self.addPermanentWidget(self._progress)
         self.addPermanentWidget(self._job_words)
         self.addPermanentWidget(self._cancel)
+        self.addPermanentWidget(self._change)
         self.addPermanentWidget(self._place)
         self.addPermanentWidget(self._crs)
         shared.cursor.moved.connect(self._on_cursor_changed)
         shared.cursor.hovered.connect(self._on_cursor_changed)
         shared.map_changes.drives_changed.connect(self._on_drives_changed)
+        shared.volume.hovered.connect(self._on_volume_hovered)
         self.show_job(None)
         self._on_drives_changed()
 
@@ -77,6 +83,11 @@ class StatusLine(QStatusBar):
     def place_text(self) -> str:
         """The coordinates that are shown; empty where there are none."""
         return self._place.text()
+
+    @property
+    def change_text(self) -> str:
+        """What the map of change says under the mouse; empty where it says nothing."""
+        return self._change.text()
 
     @property
     def job_text(self) -> str:
@@ -117,6 +128,10 @@ class StatusLine(QStatusBar):
             return
         easting, northing, height = (coordinate(value) for value in place.xyz)
         self._place.setText(f"E {easting}  N {northing}  H {height}")
+
+    def _on_volume_hovered(self, reading: ChangeReading | None) -> None:
+        words = "" if reading is None else change_words(reading).spoken(self._language)
+        self._change.setText(f"Δ {words}" if words else "")
 
     def _on_drives_changed(self) -> None:
         has_drives = bool(self._source.drives())

@@ -22,7 +22,7 @@ from widgets.plane_view.viewport import PlaneViewport
 from widgets.section_view.feed import SectionFeed, SectionPicture, SectionWish
 from widgets.section_view.frame import BOTTOM_PX, LEFT_PX, paint_frame
 from widgets.section_view.ground import GroundPainter, ground_y
-from widgets.section_view.ground_line import paint_ground_legend, paint_ground_lines
+from widgets.section_view.ground_layers import GroundLayers
 from widgets.section_view.lay import SectionLay
 from widgets.section_view.lines import SectionLines
 from widgets.section_view.marks import NamedMark, SectionMarks, mark_under, marks_of, paint_marks
@@ -87,6 +87,7 @@ class SectionPane(PlaneView):
         self._settings = SectionSettings()
         self._is_closed = False
         self._points = GroundPainter()
+        self._ground = GroundLayers(shared.volume, self, language)
         self._trials = TrialMarks(language)
         self._parameters: Mapping[str, object] = {}
         self.is_pinned = self.is_mouse_here = self.is_clicking = False
@@ -206,7 +207,7 @@ class SectionPane(PlaneView):
         if picture is None or marks is None:
             return
         selected = self._shared.selection.features
-        paint_ground_lines(painter, viewport, picture.wish.cut, picture.ground)
+        self._ground.paint(painter, viewport, picture)
         self._trials.paint(painter, picture, viewport)
         paint_marks(painter, marks, viewport, catalogue, selected)
         words = frame_words(
@@ -218,7 +219,7 @@ class SectionPane(PlaneView):
             is_empty=not picture.points.size,
         )
         paint_frame(painter, viewport, picture.wish.cut, words)
-        paint_ground_legend(painter, viewport, picture.ground, self._language)
+        self._ground.paint_legend(painter, viewport, picture)
         self._trials.paint_words(painter, picture, viewport)
         named = self._named
         if named is not None:
@@ -248,9 +249,7 @@ class SectionPane(PlaneView):
     @override
     def points_inside(self, outline: QPolygonF) -> Mapping[str, NDArray[np.int64]]:
         picture = self._picture
-        if picture is None:
-            return {}
-        return points_within(picture, self.viewport, outline)
+        return {} if picture is None else points_within(picture, self.viewport, outline)
 
     @override
     def reach_box(self) -> NDArray[np.float64] | None:

@@ -26,7 +26,7 @@ from processing.text import Text
 
 MADE = datetime(2026, 5, 1, 12, tzinfo=UTC)
 BEFORE = ChosenSide(SideKind.EPOCH, "施工前", ("a", "b"), measured_on=date(2026, 4, 1))
-DESIGN = ChosenSide(SideKind.DESIGN, "設計", path="/設計/面.xml")
+DESIGN = ChosenSide(SideKind.DESIGN, "設計", path="/設計/面.xml", surface="天端")
 SHIFT = Registration((0.01, -0.02, 0.003), (0.001, 0.002, 0.0005), 812.5, True, False)
 
 

@@ -1,0 +1,106 @@
+"""Both grounds of a shown volume in a section, with cut and fill between them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from PySide6.QtGui import QColor, QImage
+from pytestqt.qtbot import QtBot
+
+from processing.earthwork.change_grid import ChangeGrid
+from processing.ground.cells import CellGrid
+from tests.widgets.builders import OpenMap, imported_drive
+from tests.widgets.section_view.conftest import Hand, shown
+from widgets.section_view.change_lines import ChangePainter
+from widgets.shared.shown_volume import ShownVolume
+
+BEFORE, AFTER = QColor("#f0e442"), QColor("#ff8c5a")
+SIZE_M = 0.1
+
+
+@pytest.fixture
+def hand(qtbot: QtBot, tmp_path: Path) -> Hand:
+    """Give a section across a street of ten metres."""
+    return shown(qtbot, OpenMap((imported_drive(tmp_path / "street"),)))
+
+
+def _change(hand: Hand, cut_m: float, fill_m: float) -> ChangeGrid:
+    """Half of the window's height up: level before; lower left of the middle, higher right."""
+    lay, viewport, cut = hand.pane.lay(), hand.pane.viewport, hand.view.cut
+    assert lay is not None
+    assert cut is not None
+    height_m = lay.height_of(viewport.to_plane(0.0, viewport.height * 0.5)[1])
+    corner = np.array([*(np.array(cut.middle[:2]) - 30.0), height_m])
+    count = 600
+    grid = CellGrid(corner, SIZE_M, count, count)
+    middles = (np.arange(count) + 0.5) * SIZE_M - 30.0
+    east, north = np.meshgrid(middles, middles)
+    is_left = east * cut.direction[0] + north * cut.direction[1] < 0
+    after = np.where(is_left, -cut_m, fill_m).astype(np.float32)
+    shape = (count, count)
+    ones = np.ones(shape, np.float32)
+    return ChangeGrid(grid, np.zeros(shape, np.float32), after, np.ones(shape, np.bool_), ones)
+
+
+def _pixels(hand: Hand) -> NDArray[np.uint8]:
+    image = hand.pane.grab().toImage().convertToFormat(QImage.Format.Format_RGBA8888)
+    flat = np.frombuffer(image.constBits(), np.uint8)
+    return flat.reshape(image.height(), -1, 4)[:, :, :3].copy()
+
+
+def _rows_of(pixels: NDArray[np.uint8], colour: QColor, column: int) -> NDArray[np.int64]:
+    """Rows below the legend in which a column has a line's colour."""
+    wanted = np.array(colour.getRgb()[:3])
+    is_line = np.abs(pixels[130:, column].astype(int) - wanted).max(axis=1) < 24
+    return np.flatnonzero(is_line) + 130
+
+
+def test_lines_lie_at_the_heights_of_both_grounds_and_go_with_the_map(hand: Hand) -> None:
+    volume = hand.map.shared.volume
+    hand.do(lambda: hand.view.use_settings(replace(hand.view.settings, shows_ground=False)))
+    volume.show(_change(hand, cut_m=0.5, fill_m=0.8))
+    pixels, viewport = _pixels(hand), hand.pane.viewport
+    middle = float(viewport.to_screen(np.zeros((1, 2)))[0, 0])
+    before_y = viewport.height * 0.5
+    for side, change_m in ((-1, -0.5), (1, 0.8)):
+        column = int(middle + side * 100)
+        rows = _rows_of(pixels, BEFORE, column)
+        assert np.abs(rows - before_y).min() <= 1.5
+        rows = _rows_of(pixels, AFTER, column)
+        assert np.abs(rows - (before_y - change_m * viewport.scale_y)).min() <= 1.5
+    volume.use_look(replace(volume.look, is_shown=False))
+    assert not _rows_of(_pixels(hand), AFTER, int(middle + 100)).size
+    hand.view.close()
+
+
+def test_cut_is_blue_and_fill_is_orange(hand: Hand) -> None:
+    hand.do(lambda: hand.view.use_settings(replace(hand.view.settings, shows_ground=False)))
+    plain = _pixels(hand).astype(int)
+    hand.map.shared.volume.show(_change(hand, cut_m=0.6, fill_m=0.6))
+    tinted, viewport = _pixels(hand).astype(int), hand.pane.viewport
+    middle = int(viewport.to_screen(np.zeros((1, 2)))[0, 0])
+    half = int(0.3 * viewport.scale_y)
+    for side, row in ((-1, 0.5 * viewport.height + half), (1, 0.5 * viewport.height - half)):
+        red, _, blue = (tinted - plain)[int(row), middle + side * 100]
+        assert (blue > red) if side < 0 else (red > blue)
+    hand.view.close()
+
+
+def test_a_cut_beside_the_map_has_no_lines(hand: Hand) -> None:
+    cut = hand.view.cut
+    assert cut is not None
+    volume = ShownVolume()
+    painter = ChangePainter(volume)
+    assert painter.line_in(cut) is None
+    change = _change(hand, 0.5, 0.5)
+    volume.show(change)
+    line = painter.line_in(cut)
+    assert line is not None
+    assert painter.line_in(cut) is line, "a cut is looked up once"
+    east, north, height = cut.middle
+    assert painter.line_in(replace(cut, middle=(east + 500.0, north, height))) is None
+    hand.view.close()

@@ -1,0 +1,186 @@
+"""VolumeForm: what is compared with what, within what, and how."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from enum import Enum
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import (
+    QCheckBox,
+    QComboBox,
+    QFormLayout,
+    QLabel,
+    QPushButton,
+    QSizePolicy,
+    QVBoxLayout,
+    QWidget,
+)
+
+from processing.project.epochs import Epoch
+from processing.text import Language, Text
+from widgets.panels.parameter_form import ParameterForm
+from widgets.panels.volume.side_box import SideBox
+
+
+class Within(Enum):
+    """Where earth counts."""
+
+    EVERYTHING = "everything"
+    SELECTED = "selected"
+    FILE = "file"
+
+
+class VolumeForm(QWidget):
+    """Two grounds, a boundary, lines, and the parameters of the tool.
+
+    Parameters
+    ----------
+    parameters : type
+        The tool's frozen dataclass of fields.
+    language : Language
+
+    Signals
+    -------
+    changed()
+        Something is chosen otherwise.
+    run_requested(), ground_requested()
+        The buttons.
+    boundary_wanted()
+        A file is to be chosen; :meth:`take_boundary` gives it.
+
+    Attributes
+    ----------
+    before, after : SideBox
+    """
+
+    changed = Signal()
+    run_requested = Signal()
+    ground_requested = Signal()
+    boundary_wanted = Signal()
+
+    def __init__(
+        self,
+        parameters: type[Any],  # each tool has a dataclass of its own
+        language: Language,
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self._language: Language = language
+        self._boundary: Path | None = None
+        self._reason: Callable[[], Text | None] | None = None
+        self._needs_ground: Callable[[], bool] | None = None
+        self.before, self.after = SideBox(self), SideBox(self)
+        self._within = QComboBox(self)
+        self._within.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self._with_lines = QCheckBox(self.tr("Use the selected lines"), self)
+        self._with_lines.setToolTip(
+            self.tr("As break lines of triangles; a single one also as the axis of sections")
+        )
+        self.parameters = ParameterForm(parameters, language, self)
+        self._why_not = QLabel(self)
+        self._why_not.setWordWrap(True)
+        self._ground = QPushButton(self.tr("Find the ground of both"), self)
+        self._run = QPushButton(self.tr("Compute the volume"), self)
+        self._lay_out()
+        self._fill_within(Within.EVERYTHING)
+        for box in (self.before, self.after):
+            box.chosen.connect(self.refresh)
+        self._within.activated.connect(self._on_within_activated)
+        self.parameters.changed.connect(self.changed)
+        self._run.clicked.connect(self.run_requested)
+        self._ground.clicked.connect(self.ground_requested)
+        self.refresh()
+
+    def _lay_out(self) -> None:
+        rows = QFormLayout()
+        rows.setContentsMargins(0, 0, 0, 0)
+        rows.setHorizontalSpacing(8)
+        rows.setVerticalSpacing(4)
+        rows.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
+        rows.addRow(self.tr("Before"), self.before)
+        rows.addRow(self.tr("After"), self.after)
+        rows.addRow(self.tr("Within"), self._within)
+        rows.addRow(self._with_lines)
+        layout = QVBoxLayout(self)
+        layout.setContentsMargins(8, 8, 8, 8)
+        layout.setSpacing(4)
+        layout.addLayout(rows)
+        layout.addWidget(self.parameters)
+        layout.addWidget(self._why_not)
+        layout.addWidget(self._ground)
+        layout.addWidget(self._run)
+        layout.addStretch(1)
+
+    @property
+    def within(self) -> Within:
+        """Where earth counts."""
+        return Within(self._within.currentData())
+
+    @property
+    def boundary(self) -> Path | None:
+        """The file of the boundary, where it comes from one."""
+        return self._boundary if self.within is Within.FILE else None
+
+    @property
+    def uses_lines(self) -> bool:
+        """Whether the selected lines of the map count."""
+        return self._with_lines.isChecked()
+
+    def ask_reason_from(self, reason: Callable[[], Text | None]) -> None:
+        """Ask this why nothing can be computed now; None: it can."""
+        self._reason = reason
+        self.refresh()
+
+    def ask_ground_from(self, needs_ground: Callable[[], bool]) -> None:
+        """Ask this whether the ground of an epoch is still to be found."""
+        self._needs_ground = needs_ground
+        self.refresh()
+
+    def show_epochs(self, epochs: Sequence[Epoch]) -> None:
+        """List the epochs of the project, the older one as what was before."""
+        self.before.show_epochs(epochs, 0)
+        self.after.show_epochs(epochs, 1)
+        self.refresh()
+
+    def take_boundary(self, path: Path) -> None:
+        """Count only what is within the area of a file."""
+        self._boundary = path
+        self._fill_within(Within.FILE)
+        self.changed.emit()
+
+    def start_anew(self) -> None:
+        """Another project is open, or none."""
+        for box in (self.before, self.after):
+            box.forget_designs()
+        self._boundary = None
+        self._fill_within(Within.EVERYTHING)
+
+    def refresh(self) -> None:
+        """Ask again whether it can be computed."""
+        reason = None if self._reason is None else self._reason()
+        lacks_ground = reason is None and self._needs_ground is not None and self._needs_ground()
+        self._run.setEnabled(reason is None and not lacks_ground)
+        said = "" if reason is None else reason.spoken(self._language)
+        if lacks_ground:
+            said = self.tr("The ground has not been told from what stands on it yet.")
+        self._why_not.setText(said)
+        self._why_not.setVisible(bool(said))
+        self._ground.setVisible(lacks_ground)
+
+    def _fill_within(self, chosen: Within) -> None:
+        self._within.clear()
+        self._within.addItem(self.tr("Everything"), Within.EVERYTHING.value)
+        self._within.addItem(self.tr("Selected areas"), Within.SELECTED.value)
+        name = self.tr("Area from a file…") if self._boundary is None else self._boundary.name
+        self._within.addItem(name, Within.FILE.value)
+        self._within.setCurrentIndex(list(Within).index(chosen))
+
+    def _on_within_activated(self) -> None:
+        if self.within is Within.FILE:
+            if self._boundary is None:
+                self._fill_within(Within.EVERYTHING)  # until there is one
+            self.boundary_wanted.emit()
+        self.changed.emit()

@@ -1,0 +1,170 @@
+"""VolumePanel: compare two grounds, look at what came of it, and give it out."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from PySide6.QtCore import QSignalBlocker, Qt, Signal
+from PySide6.QtWidgets import (
+    QComboBox,
+    QFrame,
+    QHBoxLayout,
+    QLabel,
+    QMenu,
+    QPushButton,
+    QScrollArea,
+    QSizePolicy,
+    QTabWidget,
+    QToolButton,
+    QVBoxLayout,
+    QWidget,
+)
+
+from processing.project.volume import KeptVolume
+from processing.text import Language, Text
+from widgets.panels.volume.look_form import LookForm
+from widgets.panels.volume.side_box import side_words
+from widgets.panels.volume.volume_form import VolumeForm
+from widgets.panels.volume.volume_table import VolumeTable
+from widgets.shared.shared_state import SharedState
+
+_FORM, _RESULT = range(2)
+
+
+class VolumePanel(QWidget):
+    """Two pages: the form, and the chosen result with its look and its exports.
+
+    Parameters
+    ----------
+    shared : SharedState
+    parameters : type
+        Of the tool ``volume``.
+    exports : sequence of (str, Text)
+        Ids and names of what can be given out.
+    language : Language
+
+    Signals
+    -------
+    volume_chosen(id: str), removal_requested(id: str), export_requested(id: str)
+        The last one names the export.
+
+    Attributes
+    ----------
+    form : VolumeForm
+    table : VolumeTable
+    """
+
+    volume_chosen = Signal(str)
+    removal_requested = Signal(str)
+    export_requested = Signal(str)
+
+    def __init__(
+        self,
+        shared: SharedState,
+        parameters: type[Any],  # each tool has a dataclass of its own
+        exports: Sequence[tuple[str, Text]],
+        language: Language,
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(parent)
+        self._language: Language = language
+        self.form = VolumeForm(parameters, language, self)
+        self.table = VolumeTable(language, self)
+        self._list = QComboBox(self)
+        self._list.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self._list.setToolTip(self.tr("Volumes computed so far"))
+        self._remove = QToolButton(self)
+        self._remove.setText("✕")
+        self._remove.setToolTip(self.tr("Remove this result"))
+        self._export = QPushButton(self.tr("Export"), self)
+        menu = QMenu(self._export)
+        for id_, name in exports:
+            action = menu.addAction(name.spoken(language))
+            action.setObjectName(id_)
+            action.triggered.connect(self._exporting(id_))
+        self._export.setMenu(menu)
+        self._look = LookForm(shared.volume, self)
+        self._nothing = QLabel(self.tr("No volume has been computed yet."), self)
+        self._nothing.setWordWrap(True)
+        self._pages = QTabWidget(self)
+        self._lay_out()
+        self._list.activated.connect(self._on_list_activated)
+        self._remove.clicked.connect(self._on_remove_clicked)
+        self.show_volumes((), "")
+
+    def _lay_out(self) -> None:
+        chosen = QHBoxLayout()
+        chosen.setSpacing(4)
+        chosen.addWidget(self._list, 1)
+        chosen.addWidget(self._remove)
+        result = QWidget(self)
+        below = QVBoxLayout(result)
+        below.setContentsMargins(8, 8, 8, 8)
+        below.setSpacing(8)
+        below.addLayout(chosen)
+        for part in (self._nothing, self.table, self._look, self._export):
+            below.addWidget(part)
+        below.addStretch(1)
+        self._pages.setDocumentMode(True)
+        for page, title in ((self.form, self.tr("Compare")), (result, self.tr("Result"))):
+            area = QScrollArea(self)
+            area.setWidgetResizable(True)
+            area.setFrameShape(QFrame.Shape.NoFrame)
+            area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+            area.setWidget(page)
+            self._pages.addTab(area, title)
+        whole = QVBoxLayout(self)
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.addWidget(self._pages)
+
+    @property
+    def chosen(self) -> str:
+        """Id of the result that is shown; empty without one."""
+        return str(self._list.currentData() or "")
+
+    @property
+    def export_menu(self) -> QMenu:
+        """What the button of exports offers."""
+        return self._export.menu()
+
+    def show_volumes(self, volumes: Sequence[KeptVolume], chosen: str) -> None:
+        """List results, the newest first, and show the numbers of one."""
+        newest = tuple(reversed(volumes))
+        is_other = chosen != self.chosen
+        with QSignalBlocker(self._list):
+            self._list.clear()
+            for kept in newest:
+                self._list.addItem(self._name_of(kept), kept.id)
+            self._list.setCurrentIndex(self._list.findData(chosen))
+        shown = next((kept for kept in newest if kept.id == chosen), None)
+        if shown is not None:
+            self.table.show_volume(shown)
+        self._nothing.setVisible(not newest)
+        for widget in (self._list, self._remove):
+            widget.setVisible(bool(newest))
+        for part in (self.table, self._look, self._export):
+            part.setVisible(shown is not None)
+        if is_other:
+            self._pages.setCurrentIndex(_RESULT if shown is not None else _FORM)
+
+    def _name_of(self, kept: KeptVolume) -> str:
+        moment = kept.made.astimezone().strftime("%Y-%m-%d %H:%M")
+        return self.tr("{moment}  {before} → {after}").format(
+            moment=moment,
+            before=side_words(kept.wish.before),
+            after=side_words(kept.wish.after),
+        )
+
+    def _exporting(self, id_: str) -> Any:  # a slot that forgets whether the action is checked
+        def export() -> None:
+            self.export_requested.emit(id_)
+
+        return export
+
+    def _on_list_activated(self) -> None:
+        self.volume_chosen.emit(self.chosen)
+
+    def _on_remove_clicked(self) -> None:
+        if self.chosen:
+            self.removal_requested.emit(self.chosen)
