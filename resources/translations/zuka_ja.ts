@@ -1003,7 +1003,7 @@ kept</source>
     </message>
     <message>
         <source>None</source>
-        <translation type="unfinished">なし</translation>
+        <translation>なし</translation>
     </message>
     <message>
         <source>Of the difference</source>
@@ -2261,7 +2261,7 @@ kept</source>
     </message>
     <message>
         <source>Export</source>
-        <translation type="unfinished">書き出し</translation>
+        <translation>書き出し</translation>
     </message>
     <message>
         <source>No volume has been computed yet.</source>
