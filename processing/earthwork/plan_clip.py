@@ -12,7 +12,8 @@ from processing.ground.cells import CellGrid
 
 Floats = NDArray[np.float64]
 
-_CELLS_ALONG = 700
+_FEWEST_CELLS_ALONG, _MOST_CELLS_ALONG = 16, 700
+_CELLS_EACH = 2.0
 
 
 def clipped(triangles: Floats, boundary: shapely.Geometry) -> Floats:
@@ -42,7 +43,9 @@ def _sorted_out(
     plan = triangles[:, :, :2]
     low, high = plan.min(axis=1), plan.max(axis=1)
     corner = low.min(axis=0)
-    size = float((high.max(axis=0) - corner).max()) / _CELLS_ALONG
+    wanted = int(np.sqrt(_CELLS_EACH * len(triangles)))
+    along = min(max(wanted, _FEWEST_CELLS_ALONG), _MOST_CELLS_ALONG)
+    size = float((high.max(axis=0) - corner).max()) / along
     last = np.floor((high - corner) / size).astype(np.int64) + 1
     first = np.floor((low - corner) / size).astype(np.int64)
     columns, rows = last.max(axis=0).tolist()

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from processing.earthwork.overlay_kernels import overlap_kernel
 from processing.earthwork.plan_buckets import bucketed, buckets_of_triangles
+from processing.earthwork.same_places import numbered_places
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import Unsuitable
 from processing.text import Text
@@ -28,6 +29,7 @@ _BORNE_SHARE = 1e-4
 
 _BORNE_M2 = 0.01
 _LEAST_HOLE_M2 = 0.01
+_LEAST_PART_M2 = 1e-6
 
 _READ_AGAIN = Text(
     "Write the surface again in the program that it comes from.",
@@ -121,7 +123,7 @@ def outline(surface: TriangleSurface) -> shapely.Geometry:
     """
     triangles = surface.plan_triangles(np.array([*surface.origin[:2], 0.0]))
     plan = triangles[:, :, :2].reshape(-1, 2)
-    corner, first = _merged(plan)
+    corner, first = numbered_places(plan, _SAME_PLACE_M)
     corner = corner.reshape(-1, 3)
     sides = np.concatenate([corner[:, [0, 1]], corner[:, [1, 2]], corner[:, [2, 0]]])
     sides.sort(axis=1)
@@ -133,7 +135,7 @@ def outline(surface: TriangleSurface) -> shapely.Geometry:
     whole = []
     for part in shapely.get_parts(covered):
         holes = [ring for ring in part.interiors if shapely.Polygon(ring).area >= _LEAST_HOLE_M2]
-        if part.area >= _SAME_PLACE_M:
+        if part.area >= _LEAST_PART_M2:
             whole.append(shapely.Polygon(part.exterior, holes))
     joined = shapely.orient_polygons(whole[0] if len(whole) == 1 else shapely.MultiPolygon(whole))
     return shapely.transform(joined, lambda places: places + surface.origin[:2])
@@ -183,19 +185,10 @@ def _name_of(surface: TriangleSurface) -> Text:
     return Text("Surface {name}", "面データ {name}").filled(name=surface.name or "–")
 
 
-def _merged(places: Floats) -> tuple[Numbers, Numbers]:
-    """A number for each place, the same for those at one, and the first place of each number."""
-    whole = np.round(places / _SAME_PLACE_M).astype(np.int64)
-    order = np.lexsort(whole.T)
-    is_new = np.concatenate([[True], np.any(np.diff(whole[order], axis=0) != 0, axis=1)])
-    number = np.empty(len(places), np.int64)
-    number[order] = np.cumsum(is_new) - 1
-    return number, order[is_new]
-
-
 def _repeated(surface: TriangleSurface) -> NDArray[np.bool_]:
     """Triangles whose three corners are those of an earlier one: (t,) bool."""
-    number, _ = _merged(surface.xyz[surface.corners.ravel()] - surface.origin)
+    places = surface.xyz[surface.corners.ravel()] - surface.origin
+    number, _ = numbered_places(places, _SAME_PLACE_M)
     corners = np.sort(number.reshape(-1, 3), axis=1)
     order = np.lexsort(corners.T)
     is_repeated = np.zeros(len(corners), bool)
