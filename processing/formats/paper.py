@@ -74,6 +74,12 @@ class Paper:
         self._canvas.showPage()
         self.page += 1
 
+    def foot(self, software: str, margin_mm: float) -> None:
+        """Say below the page what made it, and its number."""
+        y = self.height_mm - margin_mm + 2.0
+        self.text(margin_mm, y, software, 7.0, colour=GREY)
+        self.text(self.width_mm - margin_mm, y, str(self.page), 7.0, "right", colour=GREY)
+
     def save(self) -> None:
         """End the last page and write the file."""
         self._canvas.save()

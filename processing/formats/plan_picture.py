@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.earthwork.heat_map import ColourClass, class_colours, on_paper
+from processing.earthwork.as_built import AsBuiltResult
+from processing.earthwork.change_grid import ChangeGrid
+from processing.earthwork.heat_map import SHARE_CLASSES, ColourClass, class_colours, on_paper
 from processing.formats.paper import GREY, Paper, Rgb
 from processing.ground.cells import CellGrid
 from processing.text import Text
@@ -44,27 +46,38 @@ class PlanPicture:
     north: float
 
 
-def plan_picture(
+def as_built_plan(result: AsBuiltResult) -> PlanPicture:
+    """Deviation ÷ limit of every cell; grey under lines where a cell has no data."""
+    is_measured = np.ones(result.percent.shape, np.bool_)
+    shares = (is_measured, result.is_judged)
+    return _plan(result.grid, result.percent, SHARE_CLASSES, shares)
+
+
+def change_plan(change: ChangeGrid, classes: tuple[ColourClass, ...]) -> PlanPicture:
+    """Change of every cell; under lines where a ground was not measured but filled in."""
+    held = np.isfinite(change.change_m)
+    return _plan(change.grid, change.change_m, classes, (change.is_measured, held))
+
+
+def _plan(
     grid: CellGrid,
     values: NDArray[np.float32],
     classes: tuple[ColourClass, ...],
-    *,
-    is_measured: NDArray[np.bool_],
-    is_judged: NDArray[np.bool_] | None = None,
+    shares: tuple[NDArray[np.bool_], NDArray[np.bool_]],
 ) -> PlanPicture:
-    """A grid of values as it is printed, cut to what it holds.
+    """Values as they are printed, cut to what they hold.
 
     Parameters
     ----------
     values : (rows, columns) float32
         Rows count north; NaN where there is none.
-    is_measured : (rows, columns) bool
-        Elsewhere slanting lines are drawn.
-    is_judged : (rows, columns) bool, optional
-        Cells that ought to have a value: without one they are grey under the lines.
+    shares : two of (rows, columns) bool
+        Cells that were measured, elsewhere slanting lines are drawn; cells that ought to have a
+        value: without one they are grey under the lines.
     """
+    is_measured, is_judged = shares
     has_value = np.isfinite(values)
-    shown = has_value if is_judged is None else has_value | is_judged
+    shown = has_value | is_judged
     rows, columns = _span(shown.sum(axis=1)), _span(shown.sum(axis=0))
     part = (slice(rows[0], rows[1]), slice(columns[0], columns[1]))
     values, is_measured, shown = values[part], (is_measured & has_value)[part], shown[part]
@@ -232,7 +245,7 @@ def _draw_bar(paper: Paper, at: tuple[float, float], scale: int) -> None:
     for number in range(parts):
         fill: Rgb = (0, 0, 0) if number % 2 == 0 else (255, 255, 255)
         paper.box((x + number * part_mm, y), (part_mm, 1.4), fill=fill)
-    for number in sorted({0, parts // 2 if parts > 1 else 0, parts}):
+    for number in range(0, parts + 1, 1 if part_mm > 8.0 else parts):
         words = f"{number * step:g}"
         paper.text(x + number * part_mm, y + 3.0, words, _TYPE, "centre")
     end = x + parts * part_mm
