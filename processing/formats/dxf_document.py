@@ -79,6 +79,12 @@ class DxfDocument:
         # R2000 has no properties of its own.
         self.doc.layers.get("0").set_xdata(APP_ID, [(1000, "CRS"), (1000, told)])
 
+    def add_layer(self, name: str, aci: int, rgb: tuple[int, int, int] | None = None) -> None:
+        """Add a layer of a colour; R2000 takes the index alone."""
+        layer = self.doc.layers.add(name, color=aci)
+        if rgb is not None and not self.is_r2000:
+            layer.rgb = rgb
+
     def require_encodable(self, layer: str) -> None:
         """Refuse a layer's name that the version's bytes can't hold.
 

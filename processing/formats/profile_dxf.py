@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from processing.errors import OutOfRange, Unsuitable
+from processing.formats.drawing_scale import decimals_of, grid_step, rounded_down
 from processing.formats.dxf_document import DxfDocument, DxfVersion
 from processing.formats.safe_write import written_safely
 from processing.monitor import SilentMonitor
@@ -38,8 +39,6 @@ _GRID_M = 0.01
 
 _MARGIN_M = 0.5
 """So much is shown below and above what is drawn."""
-
-_STEPS = tuple(step * 10.0**power for power in range(-2, 4) for step in (1.0, 2.0, 5.0))
 
 
 @dataclass(frozen=True)
@@ -121,12 +120,12 @@ class _Sheet:
         self._text_m = _TEXT_M * look.scale
         ground = np.concatenate(profile.ground)
         heights = [*ground[:, 1].tolist(), *(one.height_m for one in profile.crossings)]
-        self._step_x = _step(_GRID_M * look.scale)
-        self._step_y = _step(_GRID_M * look.scale / look.exaggeration)
-        self._left = _floor(min(ground[0, 0], self._least_offset), self._step_x)
-        self._right = -_floor(-max(ground[-1, 0], self._most_offset), self._step_x)
-        self._datum = _floor(min(heights) - _MARGIN_M, self._step_y)
-        self._top = -_floor(-max(heights) - _MARGIN_M, self._step_y)
+        self._step_x = grid_step(_GRID_M * look.scale)
+        self._step_y = grid_step(_GRID_M * look.scale / look.exaggeration)
+        self._left = rounded_down(min(ground[0, 0], self._least_offset), self._step_x)
+        self._right = -rounded_down(-max(ground[-1, 0], self._most_offset), self._step_x)
+        self._datum = rounded_down(min(heights) - _MARGIN_M, self._step_y)
+        self._top = -rounded_down(-max(heights) - _MARGIN_M, self._step_y)
 
     @property
     def _least_offset(self) -> float:
@@ -161,13 +160,13 @@ class _Sheet:
         for number in range(round((self._top - self._datum) / self._step_y) + 1):
             height = self._datum + number * self._step_y
             self._line((self._left, self._y(height)), (self._right, self._y(height)))
-            words = f"{height:.{_decimals(self._step_y)}f}"
+            words = f"{height:.{decimals_of(self._step_y)}f}"
             place = self._left - self._text_m / 2, self._y(height)
             self._write(words if number else f"DL={words}", place, "MIDDLE_RIGHT")
         for number in range(round((self._right - self._left) / self._step_x) + 1):
             offset = self._left + number * self._step_x
             self._line((offset, 0.0), (offset, top))
-            words = f"{offset:.{_decimals(self._step_x)}f}"
+            words = f"{offset:.{decimals_of(self._step_x)}f}"
             self._write(words, (offset, self._below(0.7)), "MIDDLE_CENTER")
             ground_m = self._profile.ground_at(offset)
             if ground_m is not None:
@@ -209,7 +208,7 @@ class _Sheet:
                 ).filled(
                     scale=look.scale,
                     heights=heights,
-                    datum=f"{self._datum:.{_decimals(self._step_y)}f}",
+                    datum=f"{self._datum:.{decimals_of(self._step_y)}f}",
                     width=cut.width_m,
                 )
             ),
@@ -244,19 +243,6 @@ class _Sheet:
 
     def _said(self, text: Text) -> str:
         return text.spoken(self._look.language)
-
-
-def _step(least: float) -> float:
-    """The smallest of 1, 2, 5 × 10^k metres that is not less."""
-    return next((step for step in _STEPS if step >= least * 0.999), _STEPS[-1])
-
-
-def _floor(value: float, step: float) -> float:
-    return math.floor(value / step) * step
-
-
-def _decimals(step: float) -> int:
-    return max(0, -math.floor(math.log10(step) + 1e-9))
 
 
 def _azimuth_deg(direction: tuple[float, float]) -> float:
