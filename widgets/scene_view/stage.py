@@ -26,6 +26,7 @@ from vtkmodules.vtkRenderingOpenGL2 import (
 
 from widgets.scene_view.backdrop import BACKGROUND
 from widgets.scene_view.camera import Camera
+from widgets.scene_view.map.change_surface import ChangeSurface
 from widgets.scene_view.map.feature_actors import FeatureActors
 from widgets.scene_view.map.solid_actors import SolidActors
 from widgets.scene_view.points.tile_actors import PointSizes, TileActors
@@ -76,6 +77,7 @@ class Stage:
         self._observer = self._window.AddObserver(vtkCommand.StartEvent, self._on_window_start)
         self.widget.frameSwapped.connect(self._on_widget_frame_swapped)
         self.tiles = TileActors(self._cloud)
+        self.change = ChangeSurface(self._cloud)
         self.solids = SolidActors(self._layers[1])
         self.features = FeatureActors(*self._layers[2:])
 
@@ -129,6 +131,7 @@ class Stage:
         self._is_closed = True
         self._window.RemoveObserver(self._observer)
         self.tiles.close()
+        self.change.clear()
         self.solids.clear()
         self.features.clear()
         self._set_pass(None)

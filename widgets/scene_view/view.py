@@ -338,6 +338,7 @@ class SceneView(QWidget):
 
     def _clip(self) -> None:
         self._finder.clip_to(self.clipping.clip)
+        self._map.clip_to(self.clipping.clip)
         if self._cloud is not None:
             self._cloud.clip_to(self.clipping.clip)
 
@@ -362,8 +363,7 @@ class SceneView(QWidget):
         return self._hits.place_under(QPointF(self.width() / 2, self.height() / 2))
 
     def _local(self, place: Place) -> Floats:
-        local_xyz: Floats = np.array(place.xyz) - self._drives.origin
-        return local_xyz
+        return np.asarray(np.array(place.xyz) - self._drives.origin, np.float64)
 
     def _words(self) -> str:
         if not self._drives.with_kinds:

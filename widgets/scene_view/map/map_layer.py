@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from processing.image.clip import Clip
 from processing.project.catalogue import Catalogue
 from processing.project.feature import Feature, Status
 from processing.project.solids import thickness_of
@@ -22,7 +23,7 @@ if TYPE_CHECKING:  # importing it imports VTK, which is done after the view was 
 
 
 class MapLayer(QObject):
-    """Reads features from the document, keeps those that are drawn, and draws them.
+    """Reads features from the document and draws them, and the map of change of a volume.
 
     Parameters
     ----------
@@ -53,16 +54,24 @@ class MapLayer(QObject):
         self._shapes = FeatureShapes(np.zeros(3), ())
         self.flat: FlatShapes = flattened(())
         self.replaced = ""
+        self._clip: Clip | None = None
         self._soon = QTimer(self, singleShot=True, interval=0)
         self._soon.timeout.connect(self.outdated)
         shared.map_changes.features_changed.connect(self._on_map_features_changed)
         shared.selection.features_changed.connect(self._soon.start)
         shared.view_settings.shown_features_changed.connect(self._soon.start)
         shared.sketch.changed.connect(self._on_sketch_changed)
+        shared.volume.changed.connect(self._soon.start)
+        shared.volume.look_changed.connect(self._soon.start)
 
     def read_all(self) -> None:
         """Take over all features, about the document's origin."""
         self._shapes = FeatureShapes(self._source.origin(), self._source.features())
+        self._soon.start()
+
+    def clip_to(self, clip: Clip | None) -> None:
+        """Draw the map of change only in this part of space; features are drawn everywhere."""
+        self._clip = clip
         self._soon.start()
 
     def catch_up(self) -> None:
@@ -78,6 +87,8 @@ class MapLayer(QObject):
         self.flat = flattened(seen)
         if stage is None:
             return
+        volume = self._shared.volume
+        stage.change.show(volume.drawn, volume.look, self._source.origin(), self._clip)
         # Imported here: it draws by VTK.
         from widgets.scene_view.map.feature_actors import StyledShape
         from widgets.scene_view.map.solid_actors import Body
