@@ -63,3 +63,31 @@ def frustum_m3(bottom_m: float, top_m: float, tall_m: float, sides: int) -> floa
     """Volume of :func:`frustum`: h / 3 (A + a + sqrt(A a))."""
     bottom, top = (sides / 2 * r**2 * np.sin(2 * np.pi / sides) for r in (bottom_m, top_m))
     return float(tall_m / 3 * (bottom + top + np.sqrt(bottom * top)))
+
+
+EMBANKMENT_LONG_M, CREST_M, BATTER = 60.0, 6.0, 1.5
+LOW_M, HIGH_M = 1.0, 5.0
+
+
+def embankment_lines() -> list[Floats]:
+    """Crests, toes and ends of an embankment along easting 0 to 60, that grows from 1 to 5 m.
+
+    Its crest is 6 m wide and level across, its sides go 1.5 m out for each metre down.
+    """
+    half = CREST_M / 2
+    lines = []
+    for side in (-1.0, 1.0):
+        for out, rises in ((0.0, 1.0), (1.0, 0.0)):
+            line = [
+                [along, side * (half + out * BATTER * tall), rises * tall]
+                for along, tall in ((0.0, LOW_M), (EMBANKMENT_LONG_M, HIGH_M))
+            ]
+            lines.append(np.array(line))
+    return [line + SURVEYED for line in lines]
+
+
+def embankment_m3() -> float:
+    """Volume of that embankment: the area w h + m h² of its sections, integrated."""
+    areas = CREST_M * (LOW_M + HIGH_M) / 2
+    areas += BATTER * (LOW_M**2 + LOW_M * HIGH_M + HIGH_M**2) / 3
+    return EMBANKMENT_LONG_M * areas
