@@ -78,3 +78,40 @@ def parts_with_ground(offsets: Floats, heights: Floats) -> list[Floats]:
     breaks = np.flatnonzero(np.diff(has_ground.astype(np.int8))) + 1
     both = np.column_stack([offsets, heights])
     return [part for part in np.split(both, breaks) if len(part) > 1 and np.isfinite(part).all()]
+
+
+def moved_parts(section: DrawnSection) -> list[tuple[bool, Floats]]:
+    """What lies between the two grounds of a section, cut apart where they cross.
+
+    Returns
+    -------
+    list of (bool, (k, 2) float64)
+        True for cut; corners, offset and height, along the earlier ground and back along the
+        later one.
+    """
+    heights = np.column_stack([section.before, section.after])
+    has_both = np.isfinite(heights).all(axis=1)
+    breaks = np.flatnonzero(np.diff(has_both.astype(np.int8))) + 1
+    both = np.column_stack([section.offsets, heights])
+    parts = [part for part in np.split(both, breaks) if np.isfinite(part).all()]
+    return [lens for part in parts for lens in _lenses(part)]
+
+
+def _lenses(part: Floats) -> list[tuple[bool, Floats]]:
+    """Cut and fill between two lines: (n, 3), offset, earlier and later height, all known."""
+    change = part[:, 2] - part[:, 1]
+    crosses = np.flatnonzero(change[:-1] * change[1:] < 0)
+    share = change[crosses] / (change[crosses] - change[crosses + 1])
+    between = part[crosses] + share[:, None] * (part[crosses + 1] - part[crosses])
+    between[:, 2] = between[:, 1]
+    places = np.insert(part, crosses + 1, between, axis=0)
+    change = places[:, 2] - places[:, 1]
+    side = np.sign(change[:-1] + change[1:])  # of each stretch
+    bounds = np.flatnonzero(np.diff(side)) + 1
+    lenses = []
+    for start, end in zip([0, *bounds], [*bounds, len(side)], strict=True):
+        if end > start and side[start]:
+            stretch = places[start : end + 1]
+            outline = np.concatenate([stretch[:, [0, 1]], stretch[::-1][:, [0, 2]]])
+            lenses.append((bool(side[start] < 0), outline))
+    return lenses
