@@ -176,6 +176,8 @@ def _drawn(plan: Floats, wish: LineWish) -> Floats | None:
         return None
     if wish.simplify_m <= 0.0:
         return plan
-    simple: Floats = shapely.get_coordinates(shapely.simplify(line, wish.simplify_m))
+    simple: Floats = shapely.get_coordinates(
+        shapely.simplify(line, wish.simplify_m, preserve_topology=False)
+    )
     # A closed line that becomes a stroke there and back is smaller than what is left out.
     return None if len(simple) < 4 and np.array_equal(simple[0], simple[-1]) else simple
