@@ -2276,8 +2276,16 @@ kept</source>
         <translation>結果</translation>
     </message>
     <message>
+        <source>Heat map</source>
+        <translation>ヒートマップ</translation>
+    </message>
+    <message>
         <source>{moment}  {before} → {after}</source>
         <translation>{moment}  {before} → {after}</translation>
+    </message>
+    <message>
+        <source>{before} → {after}, computed {moment}</source>
+        <translation>{before} → {after}（{moment} 計算）</translation>
     </message>
 </context>
 <context>

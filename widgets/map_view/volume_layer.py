@@ -15,6 +15,7 @@ from PySide6.QtGui import (
 )
 from typing_extensions import override
 
+from processing.earthwork.contours import LevelLine
 from processing.earthwork.heat_map import change_classes
 from processing.text import Language, Text
 from widgets.map_view.heat_picture import UNMEASURED, HeatPicture
@@ -23,7 +24,7 @@ from widgets.parts.change_words import change_words
 from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.shared.screen_marks import paint_note
-from widgets.shared.shown_volume import ShownContour, ShownVolume
+from widgets.shared.shown_volume import ShownVolume
 from widgets.shared.sketch import Note
 
 _TITLE = Text("Height difference", "標高差")
@@ -65,7 +66,7 @@ class VolumeLayer(QObject):
         self._language: Language = language
         self._mouse: QPointF | None = None
         self._heat = HeatPicture()
-        self._held: tuple[ShownContour, ...] = ()
+        self._held: tuple[LevelLine, ...] = ()
         self._paths: tuple[QPainterPath, QPainterPath] = QPainterPath(), QPainterPath()
         volume.changed.connect(self.outdated)
         volume.look_changed.connect(self.outdated)
@@ -153,11 +154,11 @@ class VolumeLayer(QObject):
         painter.restore()
 
 
-def _path_of(contours: tuple[ShownContour, ...], *, is_index: bool) -> QPainterPath:
+def _path_of(contours: tuple[LevelLine, ...], *, is_index: bool) -> QPainterPath:
     path = QPainterPath()
     for contour in contours:
-        if contour.is_index is is_index and len(contour.xy) > 1:
-            places = np.asarray(on_plan(contour.xy)).tolist()
+        if contour.is_index is is_index and len(contour.xyz) > 1:
+            places = np.asarray(on_plan(contour.xyz)).tolist()
             path.moveTo(*places[0])
             for place in places[1:]:
                 path.lineTo(*place)

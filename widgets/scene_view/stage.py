@@ -77,7 +77,7 @@ class Stage:
         self._observer = self._window.AddObserver(vtkCommand.StartEvent, self._on_window_start)
         self.widget.frameSwapped.connect(self._on_widget_frame_swapped)
         self.tiles = TileActors(self._cloud)
-        self.change = ChangeSurface(self._cloud)
+        self.change = ChangeSurface(self._layers[1])
         self.solids = SolidActors(self._layers[1])
         self.features = FeatureActors(*self._layers[2:])
 

@@ -6,15 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
-import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.change_reading import ChangeReading, reading_at
+from processing.earthwork.contours import LevelLine
 from widgets.shared.cursor import Place
-
-Floats = NDArray[np.float64]
 
 LEAST_LIMIT_M, MOST_LIMIT_M = 0.01, 100.0
 
@@ -51,24 +48,6 @@ class VolumeLook:
     interval_m: float = 0.1
 
 
-@dataclass(frozen=True, eq=False)
-class ShownContour:
-    """One line of equal height or equal change.
-
-    Attributes
-    ----------
-    xy : (n, 2) float64
-        m, project CRS.
-    value_m : float
-    is_index : bool
-        Drawn thicker: every fifth one.
-    """
-
-    xy: Floats
-    value_m: float
-    is_index: bool
-
-
 class ShownVolume(QObject):
     """One map, or none; setting what is already set emits nothing.
 
@@ -92,7 +71,7 @@ class ShownVolume(QObject):
         super().__init__(parent)
         self._change: ChangeGrid | None = None
         self._look = VolumeLook()
-        self._contours: tuple[ShownContour, ...] = ()
+        self._contours: tuple[LevelLine, ...] = ()
         self._reading: ChangeReading | None = None
         self._is_exact = False
 
@@ -112,7 +91,7 @@ class ShownVolume(QObject):
         return self._look
 
     @property
-    def contours(self) -> tuple[ShownContour, ...]:
+    def contours(self) -> tuple[LevelLine, ...]:
         """The lines that are drawn over it; none while it is hidden."""
         return self._contours if self.drawn is not None else ()
 
@@ -147,7 +126,7 @@ class ShownVolume(QObject):
             self._look = look
             self.look_changed.emit(look)
 
-    def take_contours(self, change: ChangeGrid, contours: Sequence[ShownContour]) -> None:
+    def take_contours(self, change: ChangeGrid, contours: Sequence[LevelLine]) -> None:
         """Draw these, unless another map is shown by now."""
         if change is self._change:
             self._contours = tuple(contours)

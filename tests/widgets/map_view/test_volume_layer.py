@@ -10,11 +10,12 @@ from PySide6.QtCore import QPoint
 from PySide6.QtGui import QColor
 
 from processing.earthwork.change_grid import ChangeGrid
+from processing.earthwork.contours import LevelLine
 from processing.earthwork.heat_map import change_classes
 from processing.ground.cells import CellGrid
 from tests.widgets.map_view.conftest import Hand
 from widgets.shared.cursor import Place
-from widgets.shared.shown_volume import ShownContour, VolumeLook
+from widgets.shared.shown_volume import VolumeLook
 
 SIZE_M = 0.05
 OPAQUE = VolumeLook(limit_m=1.0, opacity=1.0)
@@ -128,10 +129,10 @@ def test_the_mouse_reads_the_map_where_no_point_is_too(hand: Hand, change: Chang
 
 
 def test_contours_are_painted_over_the_colours(hand: Hand, change: ChangeGrid) -> None:
-    places = np.array([_middle(change, row, 20).xyz[:2] for row in (5, 50)])
+    places = np.array([_middle(change, row, 20).xyz for row in (5, 50)])
     at = hand.spot(_middle(change, 27, 20))
     plain = _colour(hand, at)
-    lines = (ShownContour(places, 0.5, is_index=True),)
+    lines = (LevelLine(0.5, is_index=True, xyz=places),)
     hand.map.shared.volume.take_contours(change, lines)
     picture = hand.view.grab().toImage()
     assert any(picture.pixelColor(at + QPoint(x, 0)) != plain for x in range(-2, 3))

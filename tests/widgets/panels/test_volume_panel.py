@@ -17,6 +17,7 @@ from processing.project.volume import ChosenSide, KeptVolume, SideKind, VolumeWi
 from processing.text import Text
 from processing.tools.parameters import length
 from tests.widgets.builders import OpenMap
+from widgets.panels.volume.look_form import LookForm
 from widgets.panels.volume.side_box import SideBox
 from widgets.panels.volume.volume_form import Within
 from widgets.panels.volume.volume_panel import VolumePanel
@@ -191,7 +192,7 @@ def test_exports_are_offered_by_name(qtbot: QtBot, panel: VolumePanel) -> None:
 def test_range_and_contours_are_what_all_views_show(panel: VolumePanel, street: OpenMap) -> None:
     panel.show_volumes((_kept("a"),), "a")
     volume = street.shared.volume
-    limit, interval = panel.findChildren(NumberField)[-2:]
+    limit, interval = panel.findChildren(LookForm)[0].findChildren(NumberField)
     limit.setValue(0.25)
     assert volume.look.limit_m == 0.25
     assert not interval.isEnabled()

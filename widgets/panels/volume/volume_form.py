@@ -23,6 +23,7 @@ from processing.project.epochs import Epoch
 from processing.text import Language, Text
 from widgets.panels.parameter_form import ParameterForm
 from widgets.panels.volume.side_box import SideBox
+from widgets.parts.scrolled import scrolled
 
 
 class Within(Enum):
@@ -104,15 +105,24 @@ class VolumeForm(QWidget):
         rows.addRow(self.tr("After"), self.after)
         rows.addRow(self.tr("Within"), self._within)
         rows.addRow(self._with_lines)
+        fields = QWidget(self)
+        above = QVBoxLayout(fields)
+        above.setContentsMargins(8, 8, 8, 4)
+        above.setSpacing(4)
+        above.addLayout(rows)
+        above.addWidget(self.parameters)
+        above.addStretch(1)
+        below = QVBoxLayout()
+        below.setContentsMargins(8, 4, 8, 8)
+        below.setSpacing(4)
+        # Below what scrolls: they stay in sight whatever field is at hand.
+        for widget in (self._why_not, self._ground, self._run):
+            below.addWidget(widget)
         layout = QVBoxLayout(self)
-        layout.setContentsMargins(8, 8, 8, 8)
-        layout.setSpacing(4)
-        layout.addLayout(rows)
-        layout.addWidget(self.parameters)
-        layout.addWidget(self._why_not)
-        layout.addWidget(self._ground)
-        layout.addWidget(self._run)
-        layout.addStretch(1)
+        layout.setContentsMargins(0, 0, 0, 0)
+        layout.setSpacing(0)
+        layout.addWidget(scrolled(fields), 1)
+        layout.addLayout(below)
 
     @property
     def within(self) -> Within:

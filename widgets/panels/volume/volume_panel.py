@@ -8,12 +8,10 @@ from typing import Any
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QComboBox,
-    QFrame,
     QHBoxLayout,
     QLabel,
     QMenu,
     QPushButton,
-    QScrollArea,
     QSizePolicy,
     QTabWidget,
     QToolButton,
@@ -27,13 +25,14 @@ from widgets.panels.volume.look_form import LookForm
 from widgets.panels.volume.side_box import side_words
 from widgets.panels.volume.volume_form import VolumeForm
 from widgets.panels.volume.volume_table import VolumeTable
+from widgets.parts.scrolled import scrolled
 from widgets.shared.shared_state import SharedState
 
 _FORM, _RESULT = range(2)
 
 
 class VolumePanel(QWidget):
-    """Two pages: the form, and the chosen result with its look and its exports.
+    """Three pages: the form, the chosen result with its exports, and how its map is shown.
 
     Parameters
     ----------
@@ -98,22 +97,21 @@ class VolumePanel(QWidget):
         chosen.setSpacing(4)
         chosen.addWidget(self._list, 1)
         chosen.addWidget(self._remove)
-        result = QWidget(self)
+        result, look = QWidget(self), QWidget(self)
         below = QVBoxLayout(result)
-        below.setContentsMargins(8, 8, 8, 8)
-        below.setSpacing(8)
         below.addLayout(chosen)
-        for part in (self._nothing, self.table, self._look, self._export):
+        for part in (self._nothing, self.table, self._export):
             below.addWidget(part)
-        below.addStretch(1)
+        heat = QVBoxLayout(look)
+        heat.addWidget(self._look)
+        for column in (below, heat):
+            column.setContentsMargins(8, 8, 8, 8)
+            column.setSpacing(8)
+            column.addStretch(1)
         self._pages.setDocumentMode(True)
-        for page, title in ((self.form, self.tr("Compare")), (result, self.tr("Result"))):
-            area = QScrollArea(self)
-            area.setWidgetResizable(True)
-            area.setFrameShape(QFrame.Shape.NoFrame)
-            area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-            area.setWidget(page)
-            self._pages.addTab(area, title)
+        self._pages.addTab(self.form, self.tr("Compare"))
+        self._pages.addTab(scrolled(result), self.tr("Result"))
+        self._pages.addTab(scrolled(look), self.tr("Heat map"))
         whole = QVBoxLayout(self)
         whole.setContentsMargins(0, 0, 0, 0)
         whole.addWidget(self._pages)
@@ -134,8 +132,9 @@ class VolumePanel(QWidget):
         is_other = chosen != self.chosen
         with QSignalBlocker(self._list):
             self._list.clear()
-            for kept in newest:
+            for number, kept in enumerate(newest):
                 self._list.addItem(self._name_of(kept), kept.id)
+                self._list.setItemData(number, self._facts_of(kept), Qt.ItemDataRole.ToolTipRole)
             self._list.setCurrentIndex(self._list.findData(chosen))
         shown = next((kept for kept in newest if kept.id == chosen), None)
         if shown is not None:
@@ -143,17 +142,24 @@ class VolumePanel(QWidget):
         self._nothing.setVisible(not newest)
         for widget in (self._list, self._remove):
             widget.setVisible(bool(newest))
-        for part in (self.table, self._look, self._export):
+        for part in (self.table, self._export):
             part.setVisible(shown is not None)
+        self._look.setEnabled(shown is not None)
         if is_other:
             self._pages.setCurrentIndex(_RESULT if shown is not None else _FORM)
 
     def _name_of(self, kept: KeptVolume) -> str:
-        moment = kept.made.astimezone().strftime("%Y-%m-%d %H:%M")
+        sides = kept.wish.before, kept.wish.after
+        before, after = (side.name or side_words(side) for side in sides)
         return self.tr("{moment}  {before} → {after}").format(
-            moment=moment,
+            moment=_moment(kept), before=before, after=after
+        )
+
+    def _facts_of(self, kept: KeptVolume) -> str:
+        return self.tr("{before} → {after}, computed {moment}").format(
             before=side_words(kept.wish.before),
             after=side_words(kept.wish.after),
+            moment=_moment(kept),
         )
 
     def _exporting(self, id_: str) -> Any:  # a slot that forgets whether the action is checked
@@ -168,3 +174,7 @@ class VolumePanel(QWidget):
     def _on_remove_clicked(self) -> None:
         if self.chosen:
             self.removal_requested.emit(self.chosen)
+
+
+def _moment(kept: KeptVolume) -> str:
+    return kept.made.astimezone().strftime("%Y-%m-%d %H:%M")

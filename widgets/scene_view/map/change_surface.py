@@ -94,6 +94,8 @@ class ChangeSurface:
             self._limit_m = math.nan
             self._actor = _actor_of(self._faces)
             self._renderer.AddActor(self._actor)
+        if self._actor is not None:
+            self._actor.GetProperty().SetOpacity(look.opacity)
         if self._actor is not None and self._faces is not None and look.limit_m != self._limit_m:
             self._limit_m = look.limit_m
             data = self._actor.GetMapper().GetInput()
@@ -149,6 +151,8 @@ def _actor_of(faces: _Faces) -> vtkActor:
     mapper.SetInputData(data)
     actor = vtkActor()
     actor.SetMapper(mapper)
+    # Near ground hides far ground, though the points shine through both.
+    actor.ForceOpaqueOn()
     look = actor.GetProperty()
     look.SetAmbient(_AMBIENT)
     look.SetDiffuse(_DIFFUSE)
