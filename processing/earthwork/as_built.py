@@ -206,33 +206,26 @@ def judge_as_built(
     if not faces:
         raise _not_on_design(design, _NO_FACE)
     grid = _grid([plans[one.face] for one in faces], rules.cell_m)
-    judged = [
-        _JudgedFace(one, plans[one.face], inside_shares(plans[one.face], grid)) for one in faces
-    ]
-    for one in judged:
-        shapely.prepare(one.plan)
+    judged = [_judged_face(one, plans[one.face], grid) for one in faces]
     keys, deviations = _deviations(ground, design, judged, grid, monitor)
     if not len(keys):
         raise _not_on_design(design, _NO_POINT)
     cells = grid.rows * grid.columns
     values = cell_medians(keys, deviations, len(judged) * cells).reshape(len(judged), -1)
-    map_m, percent = _maps(values, judged)
+    results = [
+        _face_result(table, one, value, grid.size_m)
+        for one, value in zip(judged, values, strict=True)
+    ]
     shape = (grid.rows, grid.columns)
-    whole = np.add.reduce([one.shares for one in judged])
-    return AsBuiltResult(
-        table=table,
-        work_type=work_type,
-        rules=rules,
-        faces=tuple(
-            _face_result(table, one, value, grid.size_m)
-            for one, value in zip(judged, values, strict=True)
-        ),
-        points=len(keys),
-        grid=grid,
-        deviation_m=map_m.reshape(shape),
-        percent=percent.reshape(shape),
-        is_judged=whole >= 0.5,
-    )
+    map_m, percent = (one.reshape(shape) for one in _maps(values, judged))
+    is_judged = np.add.reduce([one.shares for one in judged]) >= 0.5
+    facts = (table, work_type, rules, tuple(results), len(keys))
+    return AsBuiltResult(*facts, grid, map_m, percent, is_judged)
+
+
+def _judged_face(limits: FaceLimits, plan: shapely.Geometry, grid: CellGrid) -> _JudgedFace:
+    shapely.prepare(plan)
+    return _JudgedFace(limits, plan, inside_shares(plan, grid))
 
 
 def _grid(plans: list[shapely.Geometry], cell_m: float) -> CellGrid:

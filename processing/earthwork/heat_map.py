@@ -20,6 +20,9 @@ _CHANGE_COLOURS = ("#08306b", "#2b6bb0", "#5f9fd3", "#a9cfe9", "#f6f6f6",
 _SHARE_STEPS = (-100.0, -80.0, -50.0, 0.0, 50.0, 80.0, 100.0)
 _SHARE_COLOURS = ("#1c1160", "#2f70b3", "#7fadd9", "#c9dff2",
                   "#fdf0dc", "#f8b765", "#d9701f", "#8a0f2e")  # fmt: skip
+CUT_RGB, FILL_RGB = (95, 159, 211), (243, 166, 79)
+"""Of what was taken away and what was put there, where only the two are told apart."""
+
 _LIMIT_SHARE = 98.0
 _SMALLEST_LIMIT_M = 0.02
 _HATCH_PX = 8
