@@ -57,6 +57,8 @@ class EndAreaVolume:
         where one is missing.
     notes : tuple of Text
         What a reader of the number has to know.
+    between : tuple of Moments
+        What lies between each station and the next: cut and fill, m³, and widths, m².
     """
 
     method: str
@@ -66,6 +68,7 @@ class EndAreaVolume:
     area_m2: float
     missing_m2: float
     notes: tuple[Text, ...]
+    between: tuple[Moments, ...]
 
     @property
     def net_m3(self) -> float:
@@ -161,7 +164,8 @@ def _volume(
     )
     # Where sections cross each other a part may count negatively; a sum never should.
     cut, fill, area, missing = (max(0.0, value) for value in (cut, fill, area, missing))
-    return EndAreaVolume(method, sections, cut, fill, area, missing, _notes(sections, ends))
+    notes = _notes(sections, ends)
+    return EndAreaVolume(method, sections, cut, fill, area, missing, notes, tuple(parts))
 
 
 def _notes(

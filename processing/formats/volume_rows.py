@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -51,7 +51,10 @@ _METHODS: Mapping[str, Text] = {
     "grid": Text("Grid of cells (point height method)", "点高法（メッシュ法）"),
     "tin": Text("TIN against TIN, exact (prismoidal)", "TIN×TIN（プリズモイダル法・厳密解）"),
     "end-area": Text("Average end areas along a line", "平均断面法"),
-    "prismoidal": Text("Frustums between sections along a line", "角錐台公式（断面法）"),
+    "prismoidal": Text(
+        "Prismoidal formula along a line, L/6 (A1 + 4Am + A2)",
+        "角柱公式（プリズモイダル公式・断面法）L/6 (A1 + 4Am + A2)",
+    ),
 }
 _UNCERTAINTY = Text(
     "Cut, fill and net are each expected to lie within ± {value} m³ of what is stated, in 95 of "
@@ -92,7 +95,8 @@ class VolumeFacts:
     line : SectionedLine or None
         Sections across a line, where the method is along one, or as figures.
     between : tuple of (float, float)
-        Cut and fill from each section to the next, m³; empty: mean end areas times distance.
+        Cut and fill told at each section but the first, m³; NaN at one that is halfway only.
+        Empty: mean of the areas at both ends times the distance.
     """
 
     work: WorkFacts
@@ -219,11 +223,10 @@ def section_rows(facts: VolumeFacts) -> tuple[SectionRow, ...]:
 
 def section_sums(rows: Sequence[SectionRow]) -> tuple[float, float, float]:
     """Distance, cut and fill of all sections together: m, m³, m³."""
-    held = [row for row in rows if not math.isnan(row.distance_m)]
     return (
-        math.fsum(row.distance_m for row in held),
-        math.fsum(row.cut_m3 for row in held),
-        math.fsum(row.fill_m3 for row in held),
+        _sum(row.distance_m for row in rows),
+        _sum(row.cut_m3 for row in rows),
+        _sum(row.fill_m3 for row in rows),
     )
 
 
@@ -253,3 +256,7 @@ def _registration(found: Registration | None) -> tuple[Text, ...]:
     done = _NOT_CORRECTED if found.is_significant else _NOT_NEEDED
     done = _CORRECTED if found.is_corrected else done
     return (Text(f"{shift.en} {done.en}", f"{shift.ja}{done.ja}"),)
+
+
+def _sum(values: Iterable[float]) -> float:
+    return math.fsum(value for value in values if not math.isnan(value))

@@ -116,7 +116,7 @@ def test_the_report_states_what_the_rule_asks_for(tmp_path: Path) -> None:
         ("grid", "点高法", "Grid of cells"),
         ("tin", "プリズモイダル法", "TIN against TIN"),
         ("end-area", "平均断面法", "Average end areas"),
-        ("prismoidal", "角錐台公式", "Frustums"),
+        ("prismoidal", "角柱公式", "Prismoidal formula"),
     ],
 )
 def test_each_method_has_its_name(tmp_path: Path, method: str, ja: str, en: str) -> None:
