@@ -1,4 +1,4 @@
-"""What drawings and exchange files of earthwork are made of: sections along a line, contours."""
+"""What drawings and exchange files of earthwork make of sections along a line."""
 
 from __future__ import annotations
 
@@ -7,34 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.earthwork.cross_sections import CrossSection
+
 Floats = NDArray[np.float64]
 
-
-@dataclass(frozen=True)
-class DrawnSection:
-    """Two grounds across a line at one of its stations.
-
-    Attributes
-    ----------
-    station_m : float
-        Along the line, in plan.
-    name : str
-        As offices name it (``No.1+5.0``).
-    offsets : (n,) float64
-        m, ascending; left of the line is negative.
-    before, after : (n,) float64
-        Heights there, m; NaN without ground.
-    cut_m2, fill_m2 : float
-        Between the two, neither negative.
-    """
-
-    station_m: float
-    name: str
-    offsets: Floats
-    before: Floats
-    after: Floats
-    cut_m2: float
-    fill_m2: float
+_INTERVAL_M, _LEAST_REST_M = 20.0, 0.005
 
 
 @dataclass(frozen=True)
@@ -44,32 +21,18 @@ class SectionedLine:
     Attributes
     ----------
     xy : (k, 2) float64
-        Easting and northing of its corners, m, project CRS.
-    start_m : float
-        Station of the first corner.
+        Easting and northing of its corners, m, project CRS; stations count from the first.
     """
 
     name: str
     xy: Floats
-    start_m: float
-    sections: tuple[DrawnSection, ...]
+    sections: tuple[CrossSection, ...]
 
 
-@dataclass(frozen=True)
-class DrawnContour:
-    """A line of one height.
-
-    Attributes
-    ----------
-    xy : (k, 2) float64
-        m, project CRS; the last place is the first one where it is closed.
-    is_index : bool
-        One of those that are drawn heavier and told by their height (計曲線).
-    """
-
-    xy: Floats
-    height_m: float
-    is_index: bool
+def station_name(station_m: float) -> str:
+    """A station as road offices name it: No. 1 is at 20 m, No.1+5.00 five metres on."""
+    number, rest = divmod(round(station_m, 2), _INTERVAL_M)
+    return f"No.{number:.0f}" + (f"+{rest:.2f}" if rest >= _LEAST_REST_M else "")
 
 
 def parts_with_ground(offsets: Floats, heights: Floats) -> list[Floats]:
@@ -80,8 +43,8 @@ def parts_with_ground(offsets: Floats, heights: Floats) -> list[Floats]:
     return [part for part in np.split(both, breaks) if len(part) > 1 and np.isfinite(part).all()]
 
 
-def moved_parts(section: DrawnSection) -> list[tuple[bool, Floats]]:
-    """What lies between the two grounds of a section, cut apart where they cross.
+def moved_parts(section: CrossSection) -> list[tuple[bool, Floats]]:
+    """What lies between the two grounds of a section within the boundary, cut where they cross.
 
     Returns
     -------
@@ -89,12 +52,12 @@ def moved_parts(section: DrawnSection) -> list[tuple[bool, Floats]]:
         True for cut; corners, offset and height, along the earlier ground and back along the
         later one.
     """
-    heights = np.column_stack([section.before, section.after])
-    has_both = np.isfinite(heights).all(axis=1)
-    breaks = np.flatnonzero(np.diff(has_both.astype(np.int8))) + 1
-    both = np.column_stack([section.offsets, heights])
-    parts = [part for part in np.split(both, breaks) if np.isfinite(part).all()]
-    return [lens for part in parts for lens in _lenses(part)]
+    places = np.column_stack([section.offsets_m, section.before, section.after])
+    is_known = np.isfinite(places.sum(axis=1))
+    counts = section.is_inside & is_known[:-1] & is_known[1:]
+    bounds = np.flatnonzero(np.diff(counts.astype(np.int8), prepend=0, append=0))
+    stretches = [places[start : end + 1] for start, end in bounds.reshape(-1, 2).tolist()]
+    return [lens for stretch in stretches for lens in _lenses(stretch)]
 
 
 def _lenses(part: Floats) -> list[tuple[bool, Floats]]:

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Self
+from typing import Any
 
+import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 _OUTER, _HOLE = 1, 0  # DXF group 92: 1 is an external path
 _EVEN_ODD = 0
 _AREAS_A_HATCH = 64
 _LAYER_COLOUR = 256
-_INDICES = range(10, 250)
+_INDICES = (*range(10, 250), 255)
 """Colour indices that look the same on white and black."""
 
 
@@ -31,16 +33,25 @@ class Ink:
     aci: int
     rgb: tuple[int, int, int] | None = None
 
-    @classmethod
-    def of_rgb(cls, rgb: tuple[int, int, int]) -> Self:
-        """A colour with the index that comes closest to it."""
-        from ezdxf.colors import DXF_DEFAULT_COLORS, int2rgb
 
-        def apart(index: int) -> int:
-            known = int2rgb(DXF_DEFAULT_COLORS[index])
-            return sum((one - other) ** 2 for one, other in zip(known, rgb, strict=True))
+def inks_of(colours: Sequence[tuple[int, int, int]]) -> tuple[Ink, ...]:
+    """Inks for a legend: no two have the same index, each is near to its colour as eyes see it."""
+    from ezdxf.colors import DXF_DEFAULT_COLORS, int2rgb
+    from scipy.optimize import linear_sum_assignment
 
-        return cls(min((*_INDICES, 255), key=apart), rgb)
+    known = np.array([int2rgb(DXF_DEFAULT_COLORS[index]) for index in _INDICES])
+    apart = _lab(np.array(colours))[:, None] - _lab(known)
+    _, chosen = linear_sum_assignment((apart**2).sum(axis=2))
+    pairs = zip(chosen.tolist(), colours, strict=True)
+    return tuple(Ink(_INDICES[index], rgb) for index, rgb in pairs)
+
+
+def _lab(rgb: NDArray[np.int64]) -> NDArray[np.float32]:
+    """Colours (n, 3) as CIE L*a*b*, in which distances are those that eyes see."""
+    import cv2
+
+    found = cv2.cvtColor((rgb[None] / 255.0).astype(np.float32), cv2.COLOR_RGB2LAB)
+    return np.asarray(found[0], dtype=np.float32)
 
 
 def add_areas(

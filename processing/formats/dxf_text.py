@@ -5,6 +5,9 @@ CAD programs read ``\U+XXXX`` (UTF-16 units) in every version, and ``^J`` for co
 
 from __future__ import annotations
 
+_TWINS = {"²": "2", "³": "3"}
+"""How signs are written where they are missing: m2."""
+
 _LONGEST_BYTES = 250  # of one string of extended data; the format allows 255
 
 
@@ -44,7 +47,7 @@ def label_text(text: str, encoding: str) -> str:
     while "%%" in words:  # begins a special character: %%d is a degree sign
         words = words.replace("%%", "％％")
     # What is drawn is better a twin of the sign than an escape that not every program reads.
-    words = "".join(_read_back(one, encoding) or one for one in words)
+    words = "".join(_read_back(one, encoding) or _TWINS.get(one, one) for one in words)
     return dxf_text(words, encoding)
 
 

@@ -17,12 +17,12 @@ from numpy.typing import NDArray
 
 from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.class_areas import class_areas
-from processing.earthwork.drawing_parts import DrawnContour
+from processing.earthwork.contours import LevelLine
 from processing.earthwork.heat_map import ColourClass
 from processing.errors import Unsuitable
 from processing.formats.drawing_scale import fitting_scale, grid_step
 from processing.formats.dxf_document import DxfDocument, DxfVersion
-from processing.formats.dxf_fills import Ink, add_areas, add_box
+from processing.formats.dxf_fills import Ink, add_areas, add_box, inks_of
 from processing.formats.safe_write import written_safely
 from processing.monitor import Monitor, SilentMonitor
 from processing.text import Language, Text
@@ -90,7 +90,7 @@ class EarthworkPlan:
     title: tuple[Text, ...] = ()
     change: ChangeGrid | None = None
     classes: tuple[ColourClass, ...] = ()
-    contours: tuple[DrawnContour, ...] = ()
+    contours: tuple[LevelLine, ...] = ()
     boundary: tuple[Floats, ...] = ()
     crs: str = ""
 
@@ -170,10 +170,10 @@ class _Sheet:
         areas = class_areas(plan.change, plan.classes)
         rows = []
         digits = _digits(plan.classes)
-        for number, one in enumerate(plan.classes):
+        inks = inks_of([one.rgb for one in plan.classes])
+        for number, (one, ink) in enumerate(zip(plan.classes, inks, strict=True)):
             words = one.label(digits, "m")
             layer = f"{CHANGE_LAYER}{number + 1}_{_as_layer(words.ja)}"
-            ink = Ink.of_rgb(one.rgb)
             self.document.add_layer(layer, ink.aci, ink.rgb)
             rows.append((layer, self._said(words)))
             monitor.check()
@@ -197,23 +197,22 @@ class _Sheet:
         }.items():
             self.document.add_layer(layer, ink.aci, ink.rgb)
         self.document.doc.layers.get(INDEX_LAYER).dxf.lineweight = 30  # 1/100 mm
-        digits = max((_digits_of(one.height_m) for one in contours if one.is_index), default=0)
+        digits = max((_digits_of(one.level_m) for one in contours if one.is_index), default=0)
         for number, one in enumerate(contours):
             if number % _CHECK_EVERY == 0:
                 monitor.check()
-            is_closed = len(one.xy) > 2 and bool((one.xy[0] == one.xy[-1]).all())
             layer = INDEX_LAYER if one.is_index else CONTOUR_LAYER
             self._space.add_lwpolyline(
-                one.xy[: len(one.xy) - is_closed].tolist(),
-                close=is_closed,
-                dxfattribs={"layer": layer, "elevation": one.height_m},
+                one.xyz[: len(one.xyz) - one.is_closed, :2].tolist(),
+                close=one.is_closed,
+                dxfattribs={"layer": layer, "elevation": one.level_m},
             )
             if one.is_index:
-                self._label(one, f"{one.height_m:.{digits}f}")
+                self._label(one, f"{one.level_m:.{digits}f}")
 
-    def _label(self, contour: DrawnContour, words: str) -> None:
+    def _label(self, contour: LevelLine, words: str) -> None:
         """Write a contour's height along it, upright; over colours on a plate of white."""
-        steps = np.hypot(*np.diff(contour.xy, axis=0).T)
+        steps = np.hypot(*np.diff(contour.xyz[:, :2], axis=0).T)
         along = np.append(0.0, np.cumsum(steps))
         length = float(along[-1])
         if length < _LEAST_LABELLED_M * self._scale:
@@ -224,7 +223,7 @@ class _Sheet:
         for number in range(count):
             at = length * (number + 0.5) / count
             start, end, middle = (
-                np.array([np.interp(place, along, contour.xy[:, axis]) for axis in (0, 1)])
+                np.array([np.interp(place, along, contour.xyz[:, axis]) for axis in (0, 1)])
                 for place in (max(at - half, 0.0), min(at + half, length), at)
             )
             direction = math.atan2(*(end - start)[::-1])
@@ -235,13 +234,13 @@ class _Sheet:
             if self._plan.change is None:
                 middle = middle + 0.75 * height * up
             else:
-                self._draw_plate(middle, half * right, 0.7 * height * up, contour.height_m)
+                self._draw_plate(middle, half * right, 0.7 * height * up, contour.level_m)
             looks = {
                 "layer": LABEL_LAYER,
                 "height": height,
                 "rotation": math.degrees(direction) % 360.0,
             }
-            place = (*middle.tolist(), contour.height_m)
+            place = (*middle.tolist(), contour.level_m)
             self.document.write_text(words, place, "MIDDLE_CENTER", looks)
 
     def _draw_plate(self, middle: Floats, right: Floats, up: Floats, height_m: float) -> None:
@@ -313,7 +312,7 @@ class _Sheet:
 
 
 def _extent(plan: EarthworkPlan, path: Path) -> tuple[Floats, Floats]:
-    parts = [*plan.boundary, *(one.xy for one in plan.contours)]
+    parts = [*plan.boundary, *(one.xyz[:, :2] for one in plan.contours)]
     if plan.change is not None:
         rows, columns = np.nonzero(np.isfinite(plan.change.change_m))
         if len(rows):

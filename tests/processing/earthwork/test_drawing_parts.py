@@ -10,7 +10,9 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from processing.earthwork.drawing_parts import DrawnSection, moved_parts, parts_with_ground
+from processing.earthwork.cross_sections import CrossSection
+from processing.earthwork.drawing_parts import moved_parts, parts_with_ground, station_name
+from tests.processing.formats.earthwork_sections import cross_section
 
 NO = np.nan
 heights = st.lists(
@@ -19,8 +21,8 @@ heights = st.lists(
 OFFSETS = np.array([-4.0, -2.0, -1.0, 0.0, 0.5, 3.0, 7.0])
 
 
-def section(before: list[float], after: list[float]) -> DrawnSection:
-    return DrawnSection(0.0, "", OFFSETS, np.array(before), np.array(after), 0.0, 0.0)
+def section(before: list[float], after: list[float]) -> CrossSection:
+    return cross_section(0.0, OFFSETS.tolist(), before, after)
 
 
 def test_lines_that_cross_enclose_cut_and_fill() -> None:
@@ -64,3 +66,25 @@ def test_without_ground_there_is_nothing() -> None:
     assert moved_parts(section([NO] * 7, [0.0] * 7)) == []
     assert moved_parts(section([0.0] * 7, [0.0] * 7)) == []
     assert parts_with_ground(OFFSETS, np.full(7, NO)) == []
+
+
+def test_what_the_boundary_leaves_out_is_not_filled() -> None:
+    one = section([0.0] * 7, [1.0] * 7)
+    one.is_inside[[0, 3]] = False
+    areas = [shapely.Polygon(outline).area for _, outline in moved_parts(one)]
+    assert areas == pytest.approx([2.0, 6.5])
+
+
+@pytest.mark.parametrize(
+    ("station_m", "name"),
+    [
+        (0.0, "No.0"),
+        (20.0, "No.1"),
+        (24.999, "No.1+5.00"),
+        (59.9999, "No.3"),
+        (60.1, "No.3+0.10"),
+        (105.128, "No.5+5.13"),
+    ],
+)
+def test_stations_are_named_by_twenty_metres(station_m: float, name: str) -> None:
+    assert station_name(station_m) == name

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import shapely
 
-from processing.earthwork.drawing_parts import DrawnSection
+from processing.earthwork.cross_sections import CrossSection
 from processing.errors import Cancelled, InUse, OutOfRange, Unsuitable
 from processing.formats.dxf_document import DxfVersion
 from processing.formats.section_sheet_dxf import (
@@ -24,23 +24,26 @@ from processing.formats.section_sheet_dxf import (
     write_section_sheet_dxf,
 )
 from processing.text import Text
+from tests.processing.formats.earthwork_sections import cross_section
 
 NO = np.nan
 OFFSETS = np.array([-6.0, -3.0, 0.0, 3.0, 6.0])
 TITLE = Text("Sections", "横断図")
 
 
-def section(number: int, base: float = 100.0) -> DrawnSection:
+def section(number: int, base: float = 100.0) -> CrossSection:
     """A cut of 1 m between −3 and 3, a fill of half a metre at the right end."""
     before = np.full(5, base + number)
     after = before + np.array([0.0, -1.0, -1.0, 0.0, 0.5])
-    return DrawnSection(20.0 * number, f"No.{number}", OFFSETS, before, after, 6.0, 0.75)
+    return cross_section(
+        20.0 * number, OFFSETS.tolist(), before.tolist(), after.tolist(), cut_m2=6.0, fill_m2=0.75
+    )
 
 
 SECTIONS = [section(number) for number in range(5)]
 
 
-def drawn(path: Path, sections: list[DrawnSection], look: SectionLook | None = None) -> Any:
+def drawn(path: Path, sections: list[CrossSection], look: SectionLook | None = None) -> Any:
     write_section_sheet_dxf(path, sections, TITLE, look)
     doc = ezdxf.filemanagement.readfile(path)
     audit = doc.audit()
@@ -88,9 +91,12 @@ def test_cut_and_fill_are_filled_to_their_areas(tmp_path: Path) -> None:
 
 
 def test_each_section_is_named_with_its_areas(tmp_path: Path) -> None:
-    words = [one.dxf.text for one in texts(drawn(tmp_path / "a.dxf", SECTIONS), TEXT_LAYER)]
-    assert "No.3 （測点 60.00 m）" in words
-    assert words.count("切土 6.00 m² 盛土 0.75 m²") == 5
+    for version in ("R2000", "R2018"):
+        doc = drawn(tmp_path / "a.dxf", SECTIONS, SectionLook(version=version))
+        words = [one.dxf.text for one in texts(doc, TEXT_LAYER)]
+        assert "No.3 （測点 60.00 m）" in words
+        square = "m2" if version == "R2000" else "m²"
+        assert words.count(f"切土 6.00 {square} 盛土 0.75 {square}") == 5
 
 
 @pytest.mark.parametrize("version", ["R2000", "R2018"])
@@ -126,18 +132,16 @@ def test_sections_share_no_room_and_go_up_the_columns(tmp_path: Path, count: int
 
 
 def test_ground_that_is_missing_interrupts_a_line(tmp_path: Path) -> None:
-    holed = DrawnSection(
-        0.0, "No.0", OFFSETS, np.array([1.0, 1.0, NO, 1.0, 1.0]), np.full(5, NO), 0.0, 0.0
-    )
+    holed = cross_section(0.0, OFFSETS.tolist(), [1.0, 1.0, NO, 1.0, 1.0], [NO] * 5)
     doc = drawn(tmp_path / "a.dxf", [holed])
     assert [len(one) for one in lines(doc, BEFORE_LAYER)] == [2, 2]
     assert lines(doc, AFTER_LAYER) == []
 
 
 def test_a_section_without_ground_is_left_out_and_none_at_all_refused(tmp_path: Path) -> None:
-    empty = DrawnSection(0.0, "empty", OFFSETS, np.full(5, NO), np.full(5, NO), 0.0, 0.0)
+    empty = cross_section(0.0, OFFSETS.tolist(), [NO] * 5, [NO] * 5)
     doc = drawn(tmp_path / "a.dxf", [empty, section(1)])
-    assert not any("empty" in one.dxf.text for one in texts(doc, TEXT_LAYER))
+    assert not any("No.0" in one.dxf.text for one in texts(doc, TEXT_LAYER))
     for sections in ([], [empty]):
         with pytest.raises(Unsuitable, match="No section has ground"):
             write_section_sheet_dxf(tmp_path / "b.dxf", sections, TITLE)
