@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from processing.earthwork.height_surfaces import HeightSurface
 from processing.errors import OutOfRange, Unsuitable
 from processing.monitor import Monitor
 from processing.section.stations import Stations
@@ -22,31 +22,8 @@ _MOST_PLACES = 50_000_000
 _SAME_OFFSET_M = 1e-9
 
 
-class HeightSurface(Protocol):
-    """A ground that knows its height at a place."""
-
-    def heights_at(self, xy: Floats) -> Floats:
-        """Heights of places (n, 2): (n,) float64, m; NaN where there is no ground."""
-
-
 @dataclass(frozen=True)
-class LevelSurface:
-    """A ground that is at one height everywhere.
-
-    Attributes
-    ----------
-    height_m : float
-    """
-
-    height_m: float
-
-    def heights_at(self, xy: Floats) -> Floats:
-        """The height, for each place: (n,) float64, m."""
-        return np.full(len(xy), self.height_m)
-
-
-@dataclass(frozen=True)
-class SectionLine:
+class SectionLayout:
     """A line in plan and the sections across it.
 
     Attributes
@@ -153,7 +130,7 @@ class _Placed:
         return places
 
 
-def stations_of(line: SectionLine) -> Floats:
+def stations_of(line: SectionLayout) -> Floats:
     """Where its sections are: (s,) float64, m, rising from 0 to its length.
 
     Raises
@@ -177,7 +154,7 @@ def stations_of(line: SectionLine) -> Floats:
 
 
 def cross_sections(
-    line: SectionLine,
+    line: SectionLayout,
     stations_m: Floats,
     grounds: tuple[HeightSurface, HeightSurface],
     monitor: Monitor,
@@ -206,7 +183,7 @@ def cross_sections(
     return tuple(found)
 
 
-def _check_line(line: SectionLine) -> None:
+def _check_line(line: SectionLayout) -> None:
     sizes = (line.half_width_m, line.interval_m, line.step_m)
     if not all(np.isfinite(size) and size > 0.0 for size in sizes):
         raise OutOfRange(
@@ -225,11 +202,11 @@ def _check_line(line: SectionLine) -> None:
         )
 
 
-def _measured(line: SectionLine) -> Stations:
+def _measured(line: SectionLayout) -> Stations:
     return Stations(np.column_stack([line.xy, np.zeros(len(line.xy))]))
 
 
-def _blocks(line: SectionLine, stations_m: Floats) -> Iterator[Floats]:
+def _blocks(line: SectionLayout, stations_m: Floats) -> Iterator[Floats]:
     each = int(2 * line.half_width_m / line.step_m) + 2
     count = max(1, _PLACES_AT_ONCE // each)
     for start in range(0, len(stations_m), count):
@@ -237,7 +214,7 @@ def _blocks(line: SectionLine, stations_m: Floats) -> Iterator[Floats]:
 
 
 def _placed(
-    line: SectionLine, measured: Stations, station_m: float, boundary: shapely.Geometry | None
+    line: SectionLayout, measured: Stations, station_m: float, boundary: shapely.Geometry | None
 ) -> _Placed:
     """The offsets of a section, those where it meets the boundary among them."""
     place = np.array(measured.place_at(station_m)[:2])

@@ -23,12 +23,12 @@ from numpy.typing import NDArray
 
 from processing.earthwork.cross_sections import (
     CrossSection,
-    HeightSurface,
     Moments,
-    SectionLine,
+    SectionLayout,
     cross_sections,
     stations_of,
 )
+from processing.earthwork.height_surfaces import HeightSurface
 from processing.errors import Unsuitable
 from processing.monitor import Monitor
 from processing.text import Text
@@ -77,7 +77,7 @@ class EndAreaVolume:
 
 
 def end_area_volume(
-    line: SectionLine,
+    line: SectionLayout,
     grounds: tuple[HeightSurface, HeightSurface],
     monitor: Monitor,
     boundary: shapely.Geometry | None = None,
@@ -106,7 +106,7 @@ def end_area_volume(
 
 
 def prismoidal_volume(
-    line: SectionLine,
+    line: SectionLayout,
     grounds: tuple[HeightSurface, HeightSurface],
     monitor: Monitor,
     boundary: shapely.Geometry | None = None,

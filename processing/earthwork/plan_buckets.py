@@ -12,7 +12,7 @@ from processing.kernels import kernel
 Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
-_TRIANGLES_EACH = 2.0
+_SMALLEST_M = 1e-6
 _MOST_BUCKETS = 4_000_000
 _MOST_ENTRIES_EACH = 16
 _FEW_ENTRIES = 1_000_000
@@ -47,19 +47,22 @@ class PlanBuckets:
 
 
 def bucketed(triangles: Floats) -> PlanBuckets:
-    """Buckets that each hold a few triangles, fewer buckets where thin triangles cross many.
+    """Buckets about as large as most triangles; larger ones where there would be too many.
+
+    The size of the triangles counts, not that of the plan: a road that runs aslant leaves most of
+    its plan empty, and a surface may have one corner far away.
 
     Parameters
     ----------
     triangles : (t, 3, 3) float64
-        Corners; t at least 1.
+        Corners, finite; t at least 1.
     """
     plan = triangles[:, :, :2].reshape(-1, 2)
     low, high = plan.min(axis=0), plan.max(axis=0)
     size = high - low
-    wanted = max(1.0, len(triangles) / _TRIANGLES_EACH)
-    # A plan without any width is as many buckets long as it would be wide and long.
-    side = max(float(np.sqrt(size.prod() / wanted)), float(size.max()) / wanted, 1e-6)
+    wide = np.ptp(triangles[:, :, :2], axis=1).max(axis=1)
+    least = float(max(np.sqrt(size.prod() / _MOST_BUCKETS), size.max() / _MOST_BUCKETS))
+    side = max(float(np.median(wide)), least, _SMALLEST_M)
     most = _MOST_ENTRIES_EACH * len(triangles) + _FEW_ENTRIES
     while True:
         columns, rows = (int(count) for count in np.floor(size / side).astype(np.int64) + 1)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -9,14 +11,16 @@ from numpy.typing import NDArray
 from processing.earthwork.boundary import inside_shares
 from processing.earthwork.overlay_kernels import pieces_kernel
 from processing.ground.cells import CellGrid
+from processing.monitor import Monitor, SilentMonitor
 
 Floats = NDArray[np.float64]
 
 _FEWEST_CELLS_ALONG, _MOST_CELLS_ALONG = 16, 700
 _CELLS_EACH = 2.0
+_CUT_AT_ONCE = 10_000
 
 
-def clipped(triangles: Floats, boundary: shapely.Geometry) -> Floats:
+def clipped(triangles: Floats, boundary: shapely.Geometry, monitor: Monitor) -> Floats:
     """What of triangles lies within a boundary: (k, 3, 3) float64, counterclockwise.
 
     Those that the boundary doesn't touch come first, unchanged; what is left of the others is cut
@@ -32,8 +36,7 @@ def clipped(triangles: Floats, boundary: shapely.Geometry) -> Floats:
     if not len(triangles):
         return triangles
     inside, on_edge = _sorted_out(triangles, boundary)
-    cut = _cut(triangles[on_edge], boundary)
-    return np.concatenate([triangles[inside], cut])
+    return np.concatenate([triangles[inside], *_cut(triangles[on_edge], boundary, monitor)])
 
 
 def _sorted_out(
@@ -66,8 +69,8 @@ def _is_near(found: Floats, wanted: Floats | float) -> NDArray[np.bool_]:
     return is_near
 
 
-def _cut(triangles: Floats, boundary: shapely.Geometry) -> Floats:
-    """What is left of triangles on the edge of the boundary: (k, 3, 3) float64.
+def _cut(triangles: Floats, boundary: shapely.Geometry, monitor: Monitor) -> Iterator[Floats]:
+    """What is left of triangles on the edge of the boundary, in blocks of (k, 3, 3) float64.
 
     The boundary is cut into triangles first: then a boundary of a thousand corners costs each
     triangle only what is near it.
@@ -76,17 +79,20 @@ def _cut(triangles: Floats, boundary: shapely.Geometry) -> Floats:
     rings = shapely.get_coordinates(shapely.orient_polygons(figures)).reshape(-1, 4, 2)
     others = np.zeros((len(rings), 3, 3))
     others[:, :, :2] = rings[:, :3]
-    low, high = triangles[:, :, :2].min(axis=1), triangles[:, :, :2].max(axis=1)
-    of_triangle, numbers = shapely.STRtree(figures).query(shapely.box(*low.T, *high.T))
-    firsts = np.searchsorted(of_triangle, np.arange(len(triangles) + 1))
-    held = (firsts.astype(np.int64), numbers.astype(np.int64))
-    pieces = np.empty((pieces_kernel(triangles, others, held, np.empty((0, 3, 3))), 3, 3))
-    pieces_kernel(triangles, others, held, pieces)
-    return pieces
+    tree = shapely.STRtree(figures)
+    for start in range(0, len(triangles), _CUT_AT_ONCE):
+        monitor.check()
+        block = triangles[start : start + _CUT_AT_ONCE]
+        low, high = block[:, :, :2].min(axis=1), block[:, :, :2].max(axis=1)
+        of_triangle, numbers = tree.query(shapely.box(*low.T, *high.T))
+        firsts = np.searchsorted(of_triangle, np.arange(len(block) + 1))
+        held = (firsts.astype(np.int64), numbers.astype(np.int64))
+        pieces = np.empty((pieces_kernel(block, others, held, np.empty((0, 3, 3))), 3, 3))
+        pieces_kernel(block, others, held, pieces)
+        yield pieces
 
 
 def warm_up() -> None:
     """Compile the kernel."""
-    clipped(
-        np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]]), shapely.box(0, 0, 1, 1)
-    )
+    triangle = np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]])
+    clipped(triangle, shapely.box(0.0, 0.0, 0.5, 0.5), SilentMonitor())

@@ -104,11 +104,14 @@ def volume_between(
     """
     origin = np.minimum(before.origin, after.origin)
     area = None if boundary is None else _moved(boundary, origin)
-    one, other = (_within(surface, area, origin) for surface in (before, after))
+    one = _within(before, area, origin, monitor)
+    monitor.check()
+    other = _within(after, area, origin, monitor)
     monitor.check()
     if not len(one) or not len(other):
         raise _apart()
     buckets = bucketed(other)
+    monitor.check()
     frame = (buckets.west, buckets.south, buckets.size_m, buckets.rows, buckets.columns)
     ends = _block_ends(one, buckets)
 
@@ -154,7 +157,7 @@ def volume_to_level(
         The surface is not within the boundary.
     """
     area = None if boundary is None else _moved(boundary, before.origin)
-    triangles = _within(before, area, before.origin)
+    triangles = _within(before, area, before.origin, monitor)
     if not len(triangles):
         raise _apart()
     ends = [*range(0, len(triangles), _TRIANGLES_IN_BLOCK), len(triangles)]
@@ -173,9 +176,12 @@ def _moved(boundary: shapely.Geometry, origin: Floats) -> shapely.Geometry:
     return shapely.transform(boundary, lambda places: places - origin[:2])
 
 
-def _within(surface: TriangleSurface, boundary: shapely.Geometry | None, origin: Floats) -> Floats:
+def _within(
+    surface: TriangleSurface, boundary: shapely.Geometry | None, origin: Floats, monitor: Monitor
+) -> Floats:
     triangles = surface.plan_triangles(origin)
-    return triangles if boundary is None else clipped(triangles, boundary)
+    monitor.check()
+    return triangles if boundary is None else clipped(triangles, boundary, monitor)
 
 
 def _left(whole: float, part: float) -> float:

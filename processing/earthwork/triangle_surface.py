@@ -96,17 +96,22 @@ class TriangleSurface:
         """A place near the triangles that is subtracted before any arithmetic: (3,) float64, m."""
         if not len(self.corners):
             return np.zeros(3)
-        origin: Floats = np.floor(self.xyz[self.corners.ravel()].min(axis=0))
+        places = self.xyz[self.corners.ravel()]
+        known = places[np.isfinite(places).all(axis=1)]
+        origin: Floats = np.floor(known.min(axis=0)) if len(known) else np.zeros(3)
         return origin
 
     @cached_property
     def is_vertical(self) -> NDArray[np.bool_]:
-        """Triangles without width in plan, on which no place lies: (t,) bool."""
+        """Triangles without width in plan, on which no place lies: (t,) bool.
+
+        Those with a corner that is no number are among them.
+        """
         figures = self.xyz[self.corners] - self.origin
         sides = np.roll(figures, -1, axis=1) - figures
         longest = np.hypot(sides[:, :, 0], sides[:, :, 1]).max(axis=1, initial=_NO_WIDTH_M)
-        is_vertical: NDArray[np.bool_] = np.abs(twice_areas(figures)) <= _NO_WIDTH_M * longest
-        return is_vertical
+        is_seen: NDArray[np.bool_] = np.abs(twice_areas(figures)) > _NO_WIDTH_M * longest
+        return ~(is_seen & np.isfinite(figures).all(axis=(1, 2)))
 
     def plan_triangles(self, origin: Floats) -> Floats:
         """The triangles that are seen from above, counterclockwise: (k, 3, 3) float64, a copy.

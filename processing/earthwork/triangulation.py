@@ -28,6 +28,7 @@ from processing.earthwork.plan_clip import clipped
 from processing.earthwork.same_places import numbered_places
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import Unsuitable
+from processing.monitor import Monitor
 from processing.text import Text
 
 Floats = NDArray[np.float64]
@@ -52,7 +53,8 @@ _MOST_ROUNDS = 60
 
 def triangulated_ground(
     xyz: Floats,
-    break_lines: Sequence[Floats] = (),
+    break_lines: Sequence[Floats],
+    monitor: Monitor,
     *,
     longest_m: float | None = None,
     boundary: shapely.Geometry | None = None,
@@ -91,15 +93,18 @@ def triangulated_ground(
         joined = break_net(break_lines, agree_within_m)
         net = BreakNet(joined.xyz - origin, joined.segments)
         points = _away_from_lines(points, net)
+        monitor.check()
         net = _cut_to_edges(net, points)
+    monitor.check()
     corners, triangles = _delaunay(points, net, origin)
+    monitor.check()
     if longest_m is not None:
         sides = corners[triangles] - corners[np.roll(triangles, 1, axis=1)]
         triangles = triangles[np.hypot(sides[:, :, 0], sides[:, :, 1]).max(axis=1) <= longest_m]
     surface = TriangleSurface(corners + origin, triangles)
     surface = TriangleSurface(surface.xyz, triangles[~surface.is_vertical])
     if boundary is not None and len(surface.corners):
-        surface = clipped_surface(surface, boundary)
+        surface = clipped_surface(surface, boundary, monitor)
     if not len(surface.corners):
         raise Unsuitable(
             Text("No triangle of the ground is left.", "地盤の三角形が1つも残りません。"),
@@ -112,7 +117,9 @@ def triangulated_ground(
     return surface
 
 
-def clipped_surface(surface: TriangleSurface, boundary: shapely.Geometry) -> TriangleSurface:
+def clipped_surface(
+    surface: TriangleSurface, boundary: shapely.Geometry, monitor: Monitor
+) -> TriangleSurface:
     """A surface that ends at a boundary; triangles that it cuts are cut into smaller ones.
 
     Parameters
@@ -122,7 +129,7 @@ def clipped_surface(surface: TriangleSurface, boundary: shapely.Geometry) -> Tri
     """
     origin = np.array([*surface.origin[:2], 0.0])
     local = shapely.transform(boundary, lambda places: places - origin[:2])
-    pieces = clipped(surface.plan_triangles(origin), local).reshape(-1, 3)
+    pieces = clipped(surface.plan_triangles(origin), local, monitor).reshape(-1, 3)
     corners, firsts = numbered_places(pieces, _ROUNDING_M)
     return TriangleSurface(pieces[firsts] + origin, corners.reshape(-1, 3), surface.name)
 

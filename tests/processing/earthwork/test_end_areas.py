@@ -11,16 +11,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from processing.earthwork.cross_sections import (
-    LevelSurface,
-    SectionLine,
+    SectionLayout,
     cross_sections,
     stations_of,
 )
 from processing.earthwork.end_areas import end_area_volume, prismoidal_volume
+from processing.earthwork.height_surfaces import GridSurface, LevelSurface
 from processing.earthwork.tin_volume import volume_between
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.earthwork.triangulation import triangulated_ground
 from processing.errors import Cancelled, OutOfRange, Unsuitable
+from processing.ground.cells import CellGrid
 from processing.monitor import SilentMonitor
 from tests.processing.earthwork.bodies import (
     BATTER,
@@ -57,13 +58,16 @@ def embankment() -> tuple[TriangleSurface, TriangleSurface]:
         for one, other in ((0, 1), (2, 3), (0, 2))
         for at in (0, 1)
     ]
-    return triangulated_ground(around), triangulated_ground(around, [*lines, *ends])
+    return (
+        triangulated_ground(around, (), QUIET),
+        triangulated_ground(around, [*lines, *ends], QUIET),
+    )
 
 
 def test_all_methods_side_by_side_on_an_embankment_of_known_volume() -> None:
     before, after = embankment()
     expected = embankment_m3()
-    line = SectionLine(EAST + SURVEYED[:2], half_width_m=15.0, interval_m=20.0, step_m=0.02)
+    line = SectionLayout(EAST + SURVEYED[:2], half_width_m=15.0, interval_m=20.0, step_m=0.02)
     tin = volume_between(before, after, QUIET)
     prisms = prismoidal_volume(line, (before, after), QUIET)
     ends = end_area_volume(line, (before, after), QUIET)
@@ -80,15 +84,15 @@ def test_all_methods_side_by_side_on_an_embankment_of_known_volume() -> None:
 
 
 def test_stations_end_at_the_end_of_the_line() -> None:
-    line = SectionLine(EAST, 5.0, 25.0)
+    line = SectionLayout(EAST, 5.0, 25.0)
     assert stations_of(line).tolist() == [0.0, 25.0, 50.0, 60.0]
-    assert stations_of(SectionLine(EAST, 5.0, 20.0)).tolist() == [0.0, 20.0, 40.0, 60.0]
-    assert stations_of(SectionLine(EAST, 5.0, 100.0)).tolist() == [0.0, 60.0]
+    assert stations_of(SectionLayout(EAST, 5.0, 20.0)).tolist() == [0.0, 20.0, 40.0, 60.0]
+    assert stations_of(SectionLayout(EAST, 5.0, 100.0)).tolist() == [0.0, 60.0]
 
 
 def test_the_profiles_of_a_section_and_its_sides() -> None:
     before = Shape(lambda x, y: 0.1 * y)
-    line = SectionLine(EAST, 5.0, 30.0, 1.0)
+    line = SectionLayout(EAST, 5.0, 30.0, 1.0)
     section = cross_sections(line, np.array([30.0]), (before, LEVEL), QUIET)[0]
     assert section.place == pytest.approx([30.0, 0.0])
     assert section.offsets_m == pytest.approx(np.arange(-5.0, 6.0))
@@ -105,7 +109,7 @@ def test_a_change_of_sign_within_a_step_is_split_exactly(
 ) -> None:
     after = Shape(lambda x, y: height + slope * y)
     section = cross_sections(
-        SectionLine(EAST, 6.0, 60.0, step), np.array([7.0]), (LEVEL, after), QUIET
+        SectionLayout(EAST, 6.0, 60.0, step), np.array([7.0]), (LEVEL, after), QUIET
     )[0]
     places = np.linspace(-6.0, 6.0, 20_001)
     change = height - slope * places
@@ -126,7 +130,7 @@ def test_on_a_curve_areas_count_with_the_way_of_their_centroid() -> None:
     expected = np.pi / 4 * (36.0**2 - 32.0**2)
     for turned in (1, -1):
         xy = 30.0 * np.column_stack([np.cos(ways), np.sin(ways)])[::turned]
-        line = SectionLine(xy + SURVEYED[:2], 8.0, 5.0, 0.01)
+        line = SectionLayout(xy + SURVEYED[:2], 8.0, 5.0, 0.01)
         after = Shape(lambda x, y: ring(x - SURVEYED[0], y - SURVEYED[1]))
         found = end_area_volume(line, (LEVEL, after), QUIET)
         assert found.fill_m3 == pytest.approx(expected, rel=2e-3)
@@ -138,10 +142,10 @@ def test_on_a_curve_areas_count_with_the_way_of_their_centroid() -> None:
 def test_a_line_that_bends_within_the_width_is_told() -> None:
     ways = np.linspace(0.0, np.pi / 2, 50)
     xy = 5.0 * np.column_stack([np.cos(ways), np.sin(ways)])
-    found = end_area_volume(SectionLine(xy, 8.0, 2.0), (LEVEL, LevelSurface(1.0)), QUIET)
+    found = end_area_volume(SectionLayout(xy, 8.0, 2.0), (LEVEL, LevelSurface(1.0)), QUIET)
     assert "cross each other" in found.notes[0].en
     inner = end_area_volume(
-        SectionLine(xy, 8.0, 2.0),
+        SectionLayout(xy, 8.0, 2.0),
         (LEVEL, LevelSurface(1.0)),
         QUIET,
         shapely.Point(0, 0).buffer(9).difference(shapely.Point(0, 0).buffer(4)),
@@ -153,7 +157,7 @@ def test_only_what_is_within_the_boundary_counts() -> None:
     boundary = shapely.Polygon(
         [[10, -4], [50, -4], [50, 3], [10, 3]], [[[20, -1], [40, -1], [40, 1], [20, 1]]]
     )
-    line = SectionLine(EAST, 7.0, 0.5)
+    line = SectionLayout(EAST, 7.0, 0.5)
     found = prismoidal_volume(line, (LEVEL, LevelSurface(2.0)), QUIET, boundary)
     # The ends of area and hole lie within intervals, or on their ends.
     assert found.fill_m3 == pytest.approx(2.0 * (40 * 7 - 20 * 2), rel=0.02)
@@ -166,7 +170,7 @@ def test_only_what_is_within_the_boundary_counts() -> None:
 def test_two_parts_of_a_boundary_add_up() -> None:
     ground = scattered_surface(300, 3, lambda x, y: np.sin(x) + 0.1 * y)
     xy = np.array([[1.0, 9.0], [19.0, 12.0]]) + SURVEYED[:2]
-    line = SectionLine(xy, 6.0, 3.0)
+    line = SectionLayout(xy, 6.0, 3.0)
     grounds = (LevelSurface(SURVEYED[2] + 1.0), ground)
     west, south = SURVEYED[:2]
     parts = [
@@ -183,7 +187,7 @@ def test_two_parts_of_a_boundary_add_up() -> None:
 
 def test_there_and_back_cut_and_fill_are_exchanged() -> None:
     ground = scattered_surface(300, 3, lambda x, y: np.sin(x) + 0.1 * y)
-    line = SectionLine(np.array([[1.0, 9.0], [9.0, 9.0], [19.0, 12.0]]) + SURVEYED[:2], 6.0, 3.0)
+    line = SectionLayout(np.array([[1.0, 9.0], [9.0, 9.0], [19.0, 12.0]]) + SURVEYED[:2], 6.0, 3.0)
     level = LevelSurface(SURVEYED[2] + 1.0)
     there = end_area_volume(line, (level, ground), QUIET)
     back = end_area_volume(line, (ground, level), QUIET)
@@ -194,7 +198,7 @@ def test_there_and_back_cut_and_fill_are_exchanged() -> None:
 
 def test_width_without_ground_is_told_where_it_is_most() -> None:
     holed = Shape(lambda x, y: np.where((np.abs(y) < 2.0) & (x > 35.0), np.nan, 1.0))
-    found = end_area_volume(SectionLine(EAST, 6.0, 20.0, 0.1), (LEVEL, holed), QUIET)
+    found = end_area_volume(SectionLayout(EAST, 6.0, 20.0, 0.1), (LEVEL, holed), QUIET)
     widths = [section.missing_m for section in found.sections]
     assert widths == pytest.approx([0.0, 0.0, 4.0, 4.0], abs=0.21)
     assert "2 of 4 sections" in found.notes[0].en
@@ -205,30 +209,30 @@ def test_width_without_ground_is_told_where_it_is_most() -> None:
 @pytest.mark.parametrize(
     "line",
     [
-        SectionLine(EAST, 0.0),
-        SectionLine(EAST, 5.0, -1.0),
-        SectionLine(EAST, 5.0, 20.0, 0.0),
-        SectionLine(EAST, np.nan),
-        SectionLine(EAST, 50.0, 1e-4, 1e-4),
+        SectionLayout(EAST, 0.0),
+        SectionLayout(EAST, 5.0, -1.0),
+        SectionLayout(EAST, 5.0, 20.0, 0.0),
+        SectionLayout(EAST, np.nan),
+        SectionLayout(EAST, 50.0, 1e-4, 1e-4),
     ],
 )
-def test_sizes_that_cant_be_are_refused(line: SectionLine) -> None:
+def test_sizes_that_cant_be_are_refused(line: SectionLayout) -> None:
     with pytest.raises(OutOfRange):
         end_area_volume(line, (LEVEL, LEVEL), QUIET)
 
 
 def test_lines_that_are_none_and_lines_off_the_ground_are_refused() -> None:
     with pytest.raises(Unsuitable, match="no length"):
-        end_area_volume(SectionLine(EAST[:1], 5.0), (LEVEL, LEVEL), QUIET)
+        end_area_volume(SectionLayout(EAST[:1], 5.0), (LEVEL, LEVEL), QUIET)
     with pytest.raises(Unsuitable, match="without position"):
-        end_area_volume(SectionLine(EAST * np.nan, 5.0), (LEVEL, LEVEL), QUIET)
+        end_area_volume(SectionLayout(EAST * np.nan, 5.0), (LEVEL, LEVEL), QUIET)
     with pytest.raises(Unsuitable, match="No cross-section"):
         end_area_volume(
-            SectionLine(EAST, 5.0), (LEVEL, LEVEL), QUIET, shapely.box(99, 99, 100, 100)
+            SectionLayout(EAST, 5.0), (LEVEL, LEVEL), QUIET, shapely.box(99, 99, 100, 100)
         )
     before, _ = embankment()
     with pytest.raises(Unsuitable, match="No cross-section"):
-        prismoidal_volume(SectionLine(EAST, 5.0), (LEVEL, before), QUIET)
+        prismoidal_volume(SectionLayout(EAST, 5.0), (LEVEL, before), QUIET)
 
 
 def test_many_sections_come_in_blocks_and_can_be_stopped() -> None:
@@ -240,13 +244,32 @@ def test_many_sections_come_in_blocks_and_can_be_stopped() -> None:
             if self.checks == 3:
                 raise Cancelled
 
-    line = SectionLine(EAST, 30.0, 0.05, 0.01)
+    line = SectionLayout(EAST, 30.0, 0.05, 0.01)
     with pytest.raises(Cancelled):
         end_area_volume(line, (LEVEL, LEVEL), Counting())
     stations = [
         one.station_m
         for one in end_area_volume(
-            SectionLine(EAST, 30.0, 0.2, 0.05), (LEVEL, LEVEL), QUIET
+            SectionLayout(EAST, 30.0, 0.2, 0.05), (LEVEL, LEVEL), QUIET
         ).sections
     ]
     assert all(one < other for one, other in pairwise(stations))
+
+
+def test_grounds_of_cells_are_cut_as_well_and_holes_are_no_larger_than_their_cells() -> None:
+    _, column = np.mgrid[:40, :60]
+    grid = CellGrid(np.array([*SURVEYED[:2], 12.0]), 0.5, 40, 60)
+    heights = (0.1 * (column + 0.5) * 0.5).astype(np.float32)
+    heights[10:14, 20:30] = np.nan
+    ground = GridSurface(grid, heights)
+    places = np.random.default_rng(0).uniform(-2, 32, (3000, 2))
+    found = ground.heights_at(places + SURVEYED[:2])
+    cell = np.floor(places / 0.5).astype(int)
+    inside = np.all((places >= 0) & (places < [30.0, 20.0]), axis=1)
+    hole = (cell[:, 1] >= 10) & (cell[:, 1] < 14) & (cell[:, 0] >= 20) & (cell[:, 0] < 30)
+    assert np.array_equal(np.isfinite(found), inside & ~hole)
+    known = np.isfinite(found)
+    assert np.allclose(found[known], 12.0 + 0.1 * places[known, 0], atol=0.1 * 0.25 + 1e-6)
+    line = SectionLayout(np.array([[2.0, 10.0], [8.0, 10.0]]) + SURVEYED[:2], 5.0, 1.0, 0.05)
+    filled = end_area_volume(line, (ground, LevelSurface(14.0)), QUIET)
+    assert filled.fill_m3 == pytest.approx(6.0 * 10.0 * (2.0 - 0.5), rel=1e-6)

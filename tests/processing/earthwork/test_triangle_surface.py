@@ -68,6 +68,27 @@ def test_walls_and_no_triangles_hold_no_place() -> None:
     assert none.plan_area_m2() == 0.0
 
 
+def test_a_triangle_whose_corner_is_no_number_holds_no_place() -> None:
+    good, bad = [[0, 0, 1], [4, 0, 1], [0, 4, 1]], [[4, 4, 1], [4, 0, 1], [0, np.nan, 1]]
+    low = [[0, 0, 1], [0, 4, 1], [-4, 4, np.nan]]
+    surface = surface_of([good, bad, low], origin=SURVEYED)
+    places = np.array([[1.0, 1.0], [3.0, 3.0], [-1.0, 3.0]]) + SURVEYED[:2]
+    assert surface.heights_at(places) == pytest.approx(
+        [SURVEYED[2] + 1, np.nan, np.nan], nan_ok=True
+    )
+    assert surface.plan_area_m2() == pytest.approx(8.0)
+
+
+def test_a_corner_far_away_leaves_the_buckets_as_small_as_the_triangles() -> None:
+    near = scattered_surface(3000, seed=1, height=lambda x, y: x)
+    far = surface_of([[[0, 0, 0], [0, 1, 0], [90_000.0, 90_000.0, 0]]], origin=SURVEYED)
+    xyz = np.concatenate([near.xyz, far.xyz])
+    both = TriangleSurface(xyz, np.concatenate([near.corners, far.corners + len(near.xyz)]))
+    assert both._buckets.size_m < 100.0
+    corners = both.heights_at(far.xyz[:, :2])
+    assert np.isfinite(corners).all()
+
+
 def test_slopes_area_and_extent() -> None:
     corners = [
         [[0, 0, 0], [4, 0, 0], [0, 3, 0]],

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from processing.earthwork.surface_check import check_surface, outline
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.earthwork.triangulation import clipped_surface, triangulated_ground
 from processing.errors import Unsuitable
+from processing.monitor import SilentMonitor
 from tests.processing.earthwork.bodies import SURVEYED
 
 
@@ -23,6 +26,10 @@ def scattered(count: int, seed: int = 0, size_m: float = 20.0) -> np.ndarray:
     corners = size_m * np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
     plan = np.concatenate([corners, plan])
     return np.column_stack([plan, np.zeros(len(plan))]) + SURVEYED
+
+
+def made(xyz: np.ndarray, lines: Sequence[np.ndarray] = (), **options: Any) -> TriangleSurface:
+    return triangulated_ground(xyz, lines, SilentMonitor(), **options)
 
 
 def line(*places: tuple[float, float, float]) -> np.ndarray:
@@ -56,7 +63,7 @@ def is_chain_of_edges(surface: TriangleSurface, drawn: np.ndarray) -> bool:
 def test_points_become_a_surface_through_all_of_them() -> None:
     xyz = scattered(500)
     xyz[:, 2] += np.sin(xyz[:, 0])
-    surface = triangulated_ground(xyz)
+    surface = made(xyz)
     assert surface.plan_area_m2() == pytest.approx(400.0)
     assert np.allclose(surface.heights_at(xyz[:, :2]), xyz[:, 2], atol=1e-9)
     assert check_surface(surface).notes == ()
@@ -64,7 +71,7 @@ def test_points_become_a_surface_through_all_of_them() -> None:
 
 def test_points_at_one_place_become_one_at_their_mean_height() -> None:
     xyz = np.concatenate([scattered(30), scattered(30) + np.array([0, 0, 1.0])])
-    surface = triangulated_ground(xyz)
+    surface = made(xyz)
     assert len(surface.xyz) == 34
     assert np.allclose(surface.xyz[:, 2], SURVEYED[2] + 0.5)
 
@@ -72,7 +79,7 @@ def test_points_at_one_place_become_one_at_their_mean_height() -> None:
 def test_rows_that_are_no_numbers_are_passed_over() -> None:
     xyz = scattered(40)
     broken = np.concatenate([xyz, [[np.nan, 0, 0], [0, 0, np.nan], [np.inf, 0, 0]]])
-    assert np.array_equal(triangulated_ground(broken).xyz, triangulated_ground(xyz).xyz)
+    assert np.array_equal(made(broken).xyz, made(xyz).xyz)
 
 
 def test_a_crest_between_points_is_kept_sharp() -> None:
@@ -80,7 +87,7 @@ def test_a_crest_between_points_is_kept_sharp() -> None:
     local = xyz - SURVEYED
     xyz[:, 2] += np.maximum(0.0, local[:, 0] - 9.0)
     crest = line((9.0, 0.0, 0.0), (9.0, 20.0, 0.0))
-    surface = triangulated_ground(xyz, [crest])
+    surface = made(xyz, [crest])
     assert is_chain_of_edges(surface, crest)
     places = np.random.default_rng(1).uniform(0.5, 19.5, (4000, 2))
     expected = np.maximum(0.0, places[:, 0] - 9.0) + SURVEYED[2]
@@ -93,7 +100,7 @@ def test_noisy_points_beside_the_line_dont_spoil_it() -> None:
     beside = np.column_stack([np.full(300, 9.0), np.linspace(0.1, 19.9, 300), np.full(300, 0.3)])
     beside[:, 0] += np.random.default_rng(2).normal(0, 0.02, 300)
     crest = line((9.0, 0.0, 0.0), (9.0, 20.0, 0.0))
-    surface = triangulated_ground(np.concatenate([xyz, beside + SURVEYED]), [crest])
+    surface = made(np.concatenate([xyz, beside + SURVEYED]), [crest])
     assert is_chain_of_edges(surface, crest)
     along = np.column_stack([np.full(500, 9.0), np.linspace(0, 20, 500)]) + SURVEYED[:2]
     assert np.allclose(surface.heights_at(along), SURVEYED[2], atol=1e-9)
@@ -103,7 +110,7 @@ def test_noisy_points_beside_the_line_dont_spoil_it() -> None:
 
 def test_heights_along_a_sloping_line_are_on_the_line() -> None:
     drawn = line((2.0, 3.0, 0.0), (17.0, 12.0, 6.0), (18.0, 19.0, 1.0))
-    surface = triangulated_ground(scattered(600, seed=5), [drawn])
+    surface = made(scattered(600, seed=5), [drawn])
     assert is_chain_of_edges(surface, drawn)
     share = np.linspace(0, 1, 200)[:, None]
     for start, end in pairwise(drawn):
@@ -121,7 +128,7 @@ def test_any_lines_become_edges_and_the_surface_stays_whole(
         np.column_stack([random.uniform(1, 19, (n, 2)), np.full(n, 0.2)]) + SURVEYED
         for n in random.integers(2, 5, lines)
     ]
-    surface = triangulated_ground(scattered(count, seed), drawn)
+    surface = made(scattered(count, seed), drawn)
     assert surface.plan_area_m2() == pytest.approx(400.0, rel=1e-6)
     for one in drawn:
         assert is_chain_of_edges(surface, one)
@@ -135,7 +142,7 @@ def test_lines_that_meet_at_a_small_angle_come_to_an_end(degrees: float) -> None
         line((1.0, 1.0, 0.0), (18.0, 1.0, 0.0)),
         line((1.0, 1.0, 0.0), (1 + 17 * np.cos(way), 1 + 17 * np.sin(way), 0.0)),
     ]
-    surface = triangulated_ground(scattered(400), drawn)
+    surface = made(scattered(400), drawn)
     assert all(is_chain_of_edges(surface, one) for one in drawn)
     assert len(surface.xyz) < 3000
 
@@ -144,17 +151,17 @@ def test_points_on_a_square_grid_leave_the_diagonal_no_choice() -> None:
     row, column = np.mgrid[:11, :11]
     grid = np.column_stack([column.ravel(), row.ravel(), np.zeros(121)]) + SURVEYED
     diagonal = line((0.0, 0.0, 1.0), (10.0, 10.0, 1.0))
-    surface = triangulated_ground(grid, [diagonal])
+    surface = made(grid, [diagonal])
     assert is_chain_of_edges(surface, diagonal)
 
 
 def test_crossing_lines_at_one_height_are_joined_and_at_two_are_refused() -> None:
     one = line((2.0, 10.0, 1.0), (18.0, 10.0, 1.0))
     other = line((10.0, 2.0, 1.02), (10.0, 18.0, 1.02))
-    surface = triangulated_ground(scattered(200), [one, other])
+    surface = made(scattered(200), [one, other])
     assert surface.heights_at(SURVEYED[None, :2] + 10.0) == pytest.approx(SURVEYED[2] + 1.01)
     with pytest.raises(Unsuitable, match=r"differ by 0.50 m.*Easting -35990.000, northing -11990"):
-        triangulated_ground(scattered(200), [one, other + np.array([0, 0, 0.48])])
+        made(scattered(200), [one, other + np.array([0, 0, 0.48])])
 
 
 def test_a_line_that_ends_on_another_is_joined_to_it() -> None:
@@ -172,14 +179,14 @@ def test_lines_drawn_twice_and_along_each_other_count_once() -> None:
     part = line((5.0, 10.0, 0.0), (11.0, 10.0, 0.0))
     net = break_net([one, one[::-1], part], 0.05)
     assert len(net.segments) == 3
-    surface = triangulated_ground(scattered(100), [one, one[::-1], part])
+    surface = made(scattered(100), [one, one[::-1], part])
     assert is_chain_of_edges(surface, one)
 
 
 def test_a_closed_line_and_one_that_crosses_itself_are_taken() -> None:
     ring = line((3.0, 3.0, 0), (15.0, 3.0, 0), (15.0, 15.0, 0), (3.0, 15.0, 0), (3.0, 3.0, 0))
     loop = line((2.0, 2.0, 0), (16.0, 16.0, 0), (16.0, 2.0, 0), (2.0, 16.0, 0))
-    surface = triangulated_ground(scattered(100), [ring, loop])
+    surface = made(scattered(100), [ring, loop])
     assert is_chain_of_edges(surface, ring)
     assert is_chain_of_edges(surface, loop)
 
@@ -196,15 +203,15 @@ def test_a_closed_line_and_one_that_crosses_itself_are_taken() -> None:
 def test_lines_that_are_none_are_refused(drawn: np.ndarray, says: str) -> None:
     good = line((2.0, 10.0, 0.0), (18.0, 10.0, 0.0))
     with pytest.raises(Unsuitable, match=says):
-        triangulated_ground(scattered(50), [good, drawn])
+        made(scattered(50), [good, drawn])
 
 
 def test_unmeasured_ground_stays_unmeasured() -> None:
     xyz = scattered(3000, seed=6)
     local = xyz - SURVEYED
     is_gap = np.hypot(local[:, 0] - 10.0, local[:, 1] - 10.0) < 4.0
-    whole = triangulated_ground(xyz[~is_gap])
-    surface = triangulated_ground(xyz[~is_gap], longest_m=2.0)
+    whole = made(xyz[~is_gap])
+    surface = made(xyz[~is_gap], longest_m=2.0)
     middle = SURVEYED[None, :2] + 10.0
     assert np.isfinite(whole.heights_at(middle)).all()
     assert np.isnan(surface.heights_at(middle)).all()
@@ -218,12 +225,14 @@ def test_the_surface_ends_at_the_boundary() -> None:
     )
     xyz = scattered(400, seed=7)
     xyz[:, 2] += 0.2 * (xyz[:, 0] - SURVEYED[0])
-    surface = triangulated_ground(xyz, boundary=boundary)
+    surface = made(xyz, boundary=boundary)
     assert surface.plan_area_m2() == pytest.approx(boundary.area, rel=1e-9)
     assert shapely.symmetric_difference(outline(surface), boundary).area < 1e-6
     middles = surface.xyz[surface.corners].mean(axis=1)
     assert np.allclose(middles[:, 2], SURVEYED[2] + 0.2 * (middles[:, 0] - SURVEYED[0]), atol=1e-8)
-    assert check_surface(clipped_surface(surface, boundary.buffer(-0.5))).notes == ()
+    assert (
+        check_surface(clipped_surface(surface, boundary.buffer(-0.5), SilentMonitor())).notes == ()
+    )
 
 
 @pytest.mark.parametrize(
@@ -238,19 +247,19 @@ def test_the_surface_ends_at_the_boundary() -> None:
 )
 def test_too_few_places_are_refused(xyz: np.ndarray) -> None:
     with pytest.raises(Unsuitable, match="no three places"):
-        triangulated_ground(xyz)
+        made(xyz)
 
 
 def test_nothing_left_is_refused() -> None:
     with pytest.raises(Unsuitable, match="No triangle"):
-        triangulated_ground(scattered(10), longest_m=0.01)
+        made(scattered(10), longest_m=0.01)
     with pytest.raises(Unsuitable, match="No triangle"):
-        triangulated_ground(scattered(10), boundary=shapely.box(0, 0, 1, 1))
+        made(scattered(10), boundary=shapely.box(0, 0, 1, 1))
 
 
 def test_break_lines_alone_make_a_surface() -> None:
     low = line((0.0, 0.0, 0.0), (20.0, 0.0, 0.0))
     high = line((0.0, 5.0, 5.0), (20.0, 5.0, 5.0))
-    surface = triangulated_ground(np.empty((0, 3)), [low, high])
+    surface = made(np.empty((0, 3)), [low, high])
     assert surface.slopes_deg() == pytest.approx(45.0)
     assert surface.plan_area_m2() == pytest.approx(100.0)
