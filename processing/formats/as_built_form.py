@@ -31,7 +31,14 @@ from processing.formats.paper import (
     written_paper,
 )
 from processing.formats.paper_table import Cell, Row, Table
-from processing.formats.plan_picture import NO_VALUE, as_built_plan, draw_legend, draw_plan
+from processing.formats.plan_picture import (
+    NO_VALUE,
+    PlanPicture,
+    as_built_plan,
+    draw_legend,
+    draw_plan,
+    plan_parts,
+)
 from processing.monitor import Monitor, SilentMonitor
 from processing.text import Language, Text
 
@@ -40,6 +47,7 @@ _WIDTHS = (15.0, 35.0, 34.0, 40.0, 14.0)
 _LEGEND_MM = 38.0
 _FOOT_MM = 3.0
 _NOTE_SIZES = (6.5, 6.0, 5.5)
+_PART = Text("{title}, part {number} of {count}", "{title} {number}/{count}")
 _NOTES = Text("Notes", "備考")
 _NEXT_PAGE = Text("Notes: see the next page.", "備考は次のページ。")
 
@@ -85,18 +93,33 @@ def write_as_built_form(
         paper.text(left, top + 2.2, MAP_TITLE, 8.5, width=right - left)
         size = (right - left - _LEGEND_MM - 3.0, bottom - top - 5.0)
         draw_plan(paper, (left, top + 5.0), size, plan)
-        draw_legend(
-            paper,
-            (right - _LEGEND_MM, top + 5.0),
-            SHARE_CLASSES,
-            (0, "%"),
-            ((NO_DATA, NO_VALUE),),
-            width=_LEGEND_MM,
-        )
+        _draw_share_legend(paper, (right - _LEGEND_MM, top + 5.0))
         paper.foot(facts.work.software, _MARGIN_MM)
+        _draw_parts(paper, plan, facts.work.software, monitor)
         if left_over:
             _draw_more_notes(paper, left_over, facts.work.software)
         monitor.check()
+
+
+def _draw_parts(paper: Paper, plan: PlanPicture, software: str, monitor: Monitor) -> None:
+    """A long site again, in parts that can be read."""
+    right, bottom = paper.width_mm - _MARGIN_MM, paper.height_mm - _MARGIN_MM - _FOOT_MM
+    top = _MARGIN_MM + 8.0
+    size = (right - _MARGIN_MM - _LEGEND_MM - 3.0, bottom - top)
+    scale, parts = plan_parts(plan, size)
+    for number, part in enumerate(parts, 1):
+        monitor.check()
+        paper.next_page()
+        title = _PART.filled(title=MAP_TITLE, number=number, count=len(parts))
+        paper.text(_MARGIN_MM, _MARGIN_MM + 3.0, title, 11.0)
+        draw_plan(paper, (_MARGIN_MM, top), size, part, scale)
+        _draw_share_legend(paper, (right - _LEGEND_MM, top))
+        paper.foot(software, _MARGIN_MM)
+
+
+def _draw_share_legend(paper: Paper, corner: tuple[float, float]) -> None:
+    extra = ((NO_DATA, NO_VALUE),)
+    draw_legend(paper, corner, SHARE_CLASSES, (0, "%"), extra, width=_LEGEND_MM)
 
 
 def _draw_head(paper: Paper, result: AsBuiltResult, facts: AsBuiltFacts) -> float:

@@ -234,5 +234,6 @@ def _count(count: int, beside: str, unit: Text) -> Text:
 
 
 def _share(count: int, whole: int, *, digits: int) -> Text:
-    share = f"{100 * count / whole:.{digits}f}" if whole else "—"
-    return _count(count, share, Text.same("%"))
+    if not whole:
+        return Text("0", "0 点")
+    return _count(count, f"{100 * count / whole:.{digits}f}", Text.same("%"))

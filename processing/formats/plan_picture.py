@@ -20,7 +20,12 @@ _WANTED_PX = 900
 _LEFT_MM, _BELOW_MM, _FOOT_MM = 4.5, 4.5, 8.5
 _TICK_APART_MM = 24.0
 _BAR_MM = 36.0
+_ROOM = 1.04
 _TYPE = 6.5
+_LEGIBLE = 2500
+"""Of smaller scales a cell of a metre is hardly seen."""
+_PART_SCALES = (500, 1000, 2000, 2500, 5000)
+_MOST_PARTS, _MOST_LOOKED_AT = 12, 2000
 _LEGEND_ROW_MM, _LEGEND_BOX_MM = 4.8, 7.0
 
 NO_VALUE: Rgb = (228, 228, 228)
@@ -102,12 +107,22 @@ def _plan(
 
 
 def draw_plan(
-    paper: Paper, corner: tuple[float, float], size_mm: tuple[float, float], plan: PlanPicture
+    paper: Paper,
+    corner: tuple[float, float],
+    size_mm: tuple[float, float],
+    plan: PlanPicture,
+    scale: int | None = None,
 ) -> None:
-    """Draw a map with its frame, coordinates, scale bar and north arrow within a rectangle."""
+    """Draw a map with its frame, coordinates, scale bar and north arrow within a rectangle.
+
+    Parameters
+    ----------
+    scale : int, optional
+        Denominator; without, that of :func:`scale_of`.
+    """
     frame = (corner[0] + _LEFT_MM, corner[1])
-    frame_mm = (size_mm[0] - _LEFT_MM, size_mm[1] - _BELOW_MM - _FOOT_MM)
-    scale = _round_scale(plan, frame_mm)
+    frame_mm = frame_of(size_mm)
+    scale = scale or scale_of(plan, size_mm)
     wide, high = (plan.east - plan.west), (plan.north - plan.south)
     picture_mm = (wide * 1000 / scale, high * 1000 / scale)
     left = frame[0] + 0.5 * (frame_mm[0] - picture_mm[0])
@@ -118,6 +133,40 @@ def draw_plan(
     foot = frame[1] + frame_mm[1] + _BELOW_MM + 0.5 * _FOOT_MM
     _draw_bar(paper, (frame[0], foot), scale)
     _draw_north(paper, (frame[0] + frame_mm[0] - 4.0, foot))
+
+
+def frame_of(size_mm: tuple[float, float]) -> tuple[float, float]:
+    """Size of the frame of a map that is drawn within a rectangle, mm."""
+    return size_mm[0] - _LEFT_MM, size_mm[1] - _BELOW_MM - _FOOT_MM
+
+
+def scale_of(plan: PlanPicture, size_mm: tuple[float, float]) -> int:
+    """The largest round scale at which a map fits into a rectangle: its denominator."""
+    frame_mm = frame_of(size_mm)
+    wide, high = plan.east - plan.west, plan.north - plan.south
+    needed = 1000 * max(wide / frame_mm[0], high / frame_mm[1]) * _ROOM
+    return next(
+        round(step * 10.0**power)
+        for power in range(1, 9)
+        for step in (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
+        if step * 10.0**power >= needed
+    )
+
+
+def plan_parts(
+    plan: PlanPicture, size_mm: tuple[float, float]
+) -> tuple[int, tuple[PlanPicture, ...]]:
+    """A map in parts at a legible scale, from the north-west on: the scale and the parts.
+
+    Where the whole is legible in the rectangle, or many parts would be needed, there are none.
+    Parts without a value are left out.
+    """
+    whole = scale_of(plan, size_mm)
+    for scale in _PART_SCALES if whole > _LEGIBLE else ():
+        parts = _parts_at(plan, size_mm, scale) if scale < whole else ()
+        if 0 < len(parts) <= _MOST_PARTS:
+            return scale, parts
+    return whole, ()
 
 
 def draw_legend(
@@ -153,6 +202,25 @@ def draw_legend(
     return y
 
 
+def _parts_at(
+    plan: PlanPicture, size_mm: tuple[float, float], scale: int
+) -> tuple[PlanPicture, ...]:
+    rows, columns = plan.rgb.shape[:2]
+    pixel_m = (plan.east - plan.west) / columns
+    wide, high = (int(length * scale / 1000 / _ROOM / pixel_m) for length in frame_of(size_mm))
+    if wide < 1 or high < 1 or (rows // high + 1) * (columns // wide + 1) > _MOST_LOOKED_AT:
+        return ()
+    parts = []
+    for top in range(0, rows, high):
+        for left in range(0, columns, wide):
+            rgb = plan.rgb[top : top + high, left : left + wide]
+            if (rgb < 255).any():
+                west, north = plan.west + left * pixel_m, plan.north - top * pixel_m
+                east, south = west + rgb.shape[1] * pixel_m, north - rgb.shape[0] * pixel_m
+                parts.append(PlanPicture(rgb, west, south, east, north))
+    return tuple(parts)
+
+
 def _span(held: NDArray[np.int64]) -> tuple[int, int]:
     """First and one after the last; all where nothing is held."""
     places = np.flatnonzero(held)
@@ -176,18 +244,6 @@ def _reduced(
     kept = np.take_along_axis(of_block[0], farthest, axis=2)[..., 0]
     measured = np.take_along_axis(of_block[1], farthest, axis=2)[..., 0]
     return kept, measured > 0.0, of_block[2].max(axis=2) > 0.0
-
-
-def _round_scale(plan: PlanPicture, frame_mm: tuple[float, float]) -> int:
-    """The largest round scale at which the picture fits: its denominator."""
-    wide, high = plan.east - plan.west, plan.north - plan.south
-    needed = 1000 * max(wide / frame_mm[0], high / frame_mm[1]) * 1.04
-    return next(
-        round(step * 10.0**power)
-        for power in range(1, 9)
-        for step in (1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
-        if step * 10.0**power >= needed
-    )
 
 
 def _round_step(least_m: float) -> float:

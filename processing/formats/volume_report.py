@@ -18,7 +18,13 @@ from processing.formats.paper import (
     written_paper,
 )
 from processing.formats.paper_table import Cell, Row, Table
-from processing.formats.plan_picture import PlanPicture, change_plan, draw_legend, draw_plan
+from processing.formats.plan_picture import (
+    PlanPicture,
+    change_plan,
+    draw_legend,
+    draw_plan,
+    plan_parts,
+)
 from processing.formats.section_figures import draw_section
 from processing.formats.volume_rows import (
     MAP_TITLE,
@@ -47,7 +53,8 @@ _LABEL_MM = 30.0
 _HEAD_SIZE, _TYPE = 10.5, 8.5
 _LEGEND_ROWS = 5
 _LEGEND_MM = 27.0
-_FIGURE_MM = 60.0
+_FIGURE_MM, _HEADING_MM = 60.0, 6.0
+_PART = Text("{title}, part {number} of {count}", "{title} {number}/{count}")
 _WORK = Text("Work", "工事")
 _SURFACES = Text("Surfaces", "比較した地盤面")
 _METHOD = Text("Method", "計算方法")
@@ -90,7 +97,8 @@ def write_volume_report(
         _draw_numbers(paper, result, facts)
         monitor.check()
         _next_page(paper, facts)
-        _draw_map(paper, plan, limit_m)
+        _draw_map(paper, plan, limit_m, MAP_TITLE)
+        _draw_parts(paper, plan, limit_m, facts)
         monitor.check()
         _draw_section_table(paper, facts)
         _draw_figures(paper, facts, monitor)
@@ -115,7 +123,7 @@ def _bottom(paper: Paper) -> float:
 
 def _draw_heading(paper: Paper, y: float, words: Text) -> float:
     paper.text(_MARGIN_MM, y + 2.5, words, _HEAD_SIZE, width=_width(paper))
-    return y + 6.0
+    return y + _HEADING_MM
 
 
 def _draw_numbers(paper: Paper, result: VolumeResult, facts: VolumeFacts) -> None:
@@ -180,10 +188,25 @@ def _draw_remarks(paper: Paper, y: float, said: Sequence[Text], facts: VolumeFac
         y = paper.lines(_MARGIN_MM + indent, y, lines, _TYPE) + 0.8
 
 
-def _draw_map(paper: Paper, plan: PlanPicture, limit_m: float) -> None:
-    y = _draw_heading(paper, _MARGIN_MM, MAP_TITLE)
-    size = (_width(paper), _bottom(paper) - y - _LEGEND_MM)
-    draw_plan(paper, (_MARGIN_MM, y), size, plan)
+def _draw_parts(paper: Paper, plan: PlanPicture, limit_m: float, facts: VolumeFacts) -> None:
+    """A large site again, in parts that can be read."""
+    scale, parts = plan_parts(plan, _map_size(paper))
+    for number, part in enumerate(parts, 1):
+        _next_page(paper, facts)
+        title = _PART.filled(title=MAP_TITLE, number=number, count=len(parts))
+        _draw_map(paper, part, limit_m, title, scale)
+
+
+def _map_size(paper: Paper) -> tuple[float, float]:
+    return _width(paper), _bottom(paper) - _MARGIN_MM - _HEADING_MM - _LEGEND_MM
+
+
+def _draw_map(
+    paper: Paper, plan: PlanPicture, limit_m: float, title: Text, scale: int | None = None
+) -> None:
+    y = _draw_heading(paper, _MARGIN_MM, title)
+    size = _map_size(paper)
+    draw_plan(paper, (_MARGIN_MM, y), size, plan, scale)
     classes = change_classes(limit_m)
     unit = (class_digits(limit_m), "m")
     top, half = y + size[1] + 3.0, _width(paper) / 2
