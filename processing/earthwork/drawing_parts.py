@@ -7,11 +7,37 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.earthwork.cross_sections import CrossSection
-
 Floats = NDArray[np.float64]
 
-_INTERVAL_M, _LEAST_REST_M = 20.0, 0.005
+
+@dataclass(frozen=True)
+class DrawnSection:
+    """Two grounds across a line at one of its stations.
+
+    Attributes
+    ----------
+    station_m : float
+        Along the line, in plan.
+    name : str
+        As offices name it (``No.1+5.00``).
+    offsets : (n,) float64
+        m, ascending; left of the line is negative.
+    before, after : (n,) float64
+        Heights there, m; NaN without ground.
+    cut_m2, fill_m2 : float
+        Between the two within the boundary, neither negative.
+    is_inside : (n − 1,) bool or None
+        Which of the steps from one offset to the next are within the boundary; None for all.
+    """
+
+    station_m: float
+    name: str
+    offsets: Floats
+    before: Floats
+    after: Floats
+    cut_m2: float
+    fill_m2: float
+    is_inside: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
@@ -21,18 +47,15 @@ class SectionedLine:
     Attributes
     ----------
     xy : (k, 2) float64
-        Easting and northing of its corners, m, project CRS; stations count from the first.
+        Easting and northing of its corners, m, project CRS.
+    start_m : float
+        Station of the first corner.
     """
 
     name: str
     xy: Floats
-    sections: tuple[CrossSection, ...]
-
-
-def station_name(station_m: float) -> str:
-    """A station as road offices name it: No. 1 is at 20 m, No.1+5.00 five metres on."""
-    number, rest = divmod(round(station_m, 2), _INTERVAL_M)
-    return f"No.{number:.0f}" + (f"+{rest:.2f}" if rest >= _LEAST_REST_M else "")
+    start_m: float
+    sections: tuple[DrawnSection, ...]
 
 
 def parts_with_ground(offsets: Floats, heights: Floats) -> list[Floats]:
@@ -43,7 +66,7 @@ def parts_with_ground(offsets: Floats, heights: Floats) -> list[Floats]:
     return [part for part in np.split(both, breaks) if len(part) > 1 and np.isfinite(part).all()]
 
 
-def moved_parts(section: CrossSection) -> list[tuple[bool, Floats]]:
+def moved_parts(section: DrawnSection) -> list[tuple[bool, Floats]]:
     """What lies between the two grounds of a section within the boundary, cut where they cross.
 
     Returns
@@ -52,9 +75,11 @@ def moved_parts(section: CrossSection) -> list[tuple[bool, Floats]]:
         True for cut; corners, offset and height, along the earlier ground and back along the
         later one.
     """
-    places = np.column_stack([section.offsets_m, section.before, section.after])
+    places = np.column_stack([section.offsets, section.before, section.after])
     is_known = np.isfinite(places.sum(axis=1))
-    counts = section.is_inside & is_known[:-1] & is_known[1:]
+    counts = is_known[:-1] & is_known[1:]
+    if section.is_inside is not None:
+        counts &= section.is_inside
     bounds = np.flatnonzero(np.diff(counts.astype(np.int8), prepend=0, append=0))
     stretches = [places[start : end + 1] for start, end in bounds.reshape(-1, 2).tolist()]
     return [lens for stretch in stretches for lens in _lenses(stretch)]

@@ -23,6 +23,7 @@ def drawn_line(volume: EndAreaVolume, line: SectionLine, name: str) -> Sectioned
             one.after,
             one.cut_m2,
             one.fill_m2,
+            one.is_inside,
         )
         for one in volume.sections
     )

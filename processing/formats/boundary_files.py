@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -148,12 +149,15 @@ def _of_geopackage(path: Path, layer: str) -> tuple[list[Any], str]:
     found: dict[str, list[Any]] = {}
     systems: dict[str, str] = {}
     try:
-        for name in pyogrio.list_layers(path)[:, 0]:
-            facts, _, shapes, _ = pyogrio.raw.read(path, layer=name, columns=[])
-            parts = shapely.get_parts(shapely.force_2d(shapely.from_wkb(shapes)))
-            areas = [part for part in _flattened(parts) if not part.is_empty]
-            if areas:
-                found[name], systems[name] = areas, facts["crs"] or ""
+        with warnings.catch_warnings():
+            # Of GDAL, about what other programs left out of the file: what counts is what it reads.
+            warnings.simplefilter("ignore", RuntimeWarning)
+            for name in pyogrio.list_layers(path)[:, 0]:
+                facts, _, shapes, _ = pyogrio.raw.read(path, layer=name, columns=[])
+                parts = shapely.get_parts(shapely.force_2d(shapely.from_wkb(shapes)))
+                areas = [part for part in _flattened(parts) if not part.is_empty]
+                if areas:
+                    found[name], systems[name] = areas, facts["crs"] or ""
     except (DataLayerError, DataSourceError, shapely.errors.GEOSException) as error:
         raise BadFile(
             Text(

@@ -47,30 +47,30 @@ def outlines_of_dxf(path: Path) -> DrawnOutlines:
     MissingInput, NoSpace, BadFile
         It can't be read, or is no DXF.
     """
-    drawing = _drawing(path)
-    found: dict[str, list[NDArray[np.float64]]] = {}
-    for entity in drawing.modelspace().query("LWPOLYLINE POLYLINE"):
-        outline = _outline(entity)
-        if outline is not None:
-            found.setdefault(entity.dxf.layer, []).append(outline)
-    return DrawnOutlines(found, _system(drawing))
-
-
-def _system(drawing: Any) -> str:
-    layer = drawing.layers.get("0")
-    told = [value for _, value in layer.get_xdata(APP_ID)] if layer.has_xdata(APP_ID) else []
-    return next((str(value) for value in told if str(value).startswith("EPSG:")), "")
-
-
-def _drawing(path: Path) -> Any:  # an ezdxf drawing; ezdxf is not typed here
     from ezdxf.filemanagement import readfile
     from ezdxf.lldxf.const import DXFError
 
     with told_as_user_error(path), path.open("rb"):
         pass  # the library takes a missing file for a damaged one
+    found: dict[str, list[NDArray[np.float64]]] = {}
     try:
-        return readfile(path)
-    except (DXFError, OSError, UnicodeDecodeError) as error:
+        drawing = readfile(path)
+        for entity in drawing.modelspace().query("LWPOLYLINE POLYLINE"):
+            outline = _outline(entity)
+            if outline is not None:
+                found.setdefault(entity.dxf.layer, []).append(outline)
+        return DrawnOutlines(found, _system(drawing))
+    # Damage comes out of the library as whatever it stumbles over.
+    except (
+        DXFError,
+        OSError,
+        ValueError,
+        TypeError,
+        AttributeError,
+        LookupError,
+        ArithmeticError,
+        StopIteration,
+    ) as error:
         raise BadFile(
             Text("The file is no DXF drawing, or is damaged.", "DXFではないか、壊れています。"),
             Text.same(str(path)),
@@ -79,6 +79,12 @@ def _drawing(path: Path) -> Any:  # an ezdxf drawing; ezdxf is not typed here
                 "境界をDXFで保存し直すか、GeoJSONで指定してください。",
             ),
         ) from error
+
+
+def _system(drawing: Any) -> str:  # an ezdxf drawing; ezdxf is not typed here
+    layer = drawing.layers.get("0")
+    told = [value for _, value in layer.get_xdata(APP_ID)] if layer.has_xdata(APP_ID) else []
+    return next((str(value) for value in told if str(value).startswith("EPSG:")), "")
 
 
 def _outline(entity: Any) -> NDArray[np.float64] | None:

@@ -18,8 +18,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.earthwork.cross_sections import CrossSection
-from processing.earthwork.drawing_parts import SectionedLine, parts_with_ground, station_name
+from processing.earthwork.drawing_parts import DrawnSection, SectionedLine, parts_with_ground
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import Unsuitable
 from processing.formats.landxml_systems import names_of_system
@@ -248,7 +247,7 @@ def _alignment(line: SectionedLine, facts: LandXmlFacts) -> Iterator[str]:
     corners = _rounded(line.xy[np.append(True, moved)][:, ::-1], decimals)
     lengths = [float(np.hypot(*(end - start))) for start, end in pairwise(corners)]
     names = ["BP", *(f"IP.{number}" for number in range(1, len(corners) - 1)), "EP"]
-    told = f'length="{sum(lengths):.{decimals}f}" staStart="{0:.{decimals}f}"'
+    told = f'length="{sum(lengths):.{decimals}f}" staStart="{line.start_m:.{decimals}f}"'
     yield f"<Alignments><Alignment name={_quoted(line.name or '1')} {told}><CoordGeom>"
     ends = list(zip(names, corners.tolist(), strict=True))
     for length, (start, end) in zip(lengths, pairwise(ends), strict=True):
@@ -265,12 +264,12 @@ def _alignment(line: SectionedLine, facts: LandXmlFacts) -> Iterator[str]:
     yield "</Alignment></Alignments>"
 
 
-def _section(section: CrossSection, facts: LandXmlFacts) -> str:
-    name, station = station_name(section.station_m), f"{section.station_m:.{facts.decimals}f}"
-    words = [f'<CrossSect name={_quoted(name)} sta="{station}">']
+def _section(section: DrawnSection, facts: LandXmlFacts) -> str:
+    station = f"{section.station_m:.{facts.decimals}f}"
+    words = [f'<CrossSect name={_quoted(section.name)} sta="{station}">']
     grounds = (section.before, section.after)
     for name, heights in zip(facts.section_names, grounds, strict=True):
-        parts = parts_with_ground(section.offsets_m, heights)
+        parts = parts_with_ground(section.offsets, heights)
         lists = [
             " ".join(
                 f"{value:.{facts.decimals}f}"

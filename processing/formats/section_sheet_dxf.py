@@ -16,8 +16,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from processing.earthwork.cross_sections import CrossSection
-from processing.earthwork.drawing_parts import moved_parts, parts_with_ground, station_name
+from processing.earthwork.drawing_parts import DrawnSection, moved_parts, parts_with_ground
 from processing.errors import OutOfRange, Unsuitable
 from processing.formats.drawing_scale import decimals_of, fitting_scale, grid_step, rounded_down
 from processing.formats.dxf_document import DxfDocument, DxfVersion
@@ -83,7 +82,7 @@ class SectionLook:
 
 def write_section_sheet_dxf(
     path: Path,
-    sections: Iterable[CrossSection],
+    sections: Iterable[DrawnSection],
     title: Text,
     look: SectionLook | None = None,
     *,
@@ -94,7 +93,7 @@ def write_section_sheet_dxf(
 
     Parameters
     ----------
-    sections : iterable of CrossSection
+    sections : iterable of DrawnSection
         In the order of their stations; one without ground is left out.
     never : iterable of Path
         Files that must not be overwritten.
@@ -173,9 +172,9 @@ class _Layout:
         )
 
 
-def _layout(sections: list[CrossSection], look: SectionLook) -> _Layout:
-    left = min(float(one.offsets_m[0]) for one in sections)
-    right = max(float(one.offsets_m[-1]) for one in sections)
+def _layout(sections: list[DrawnSection], look: SectionLook) -> _Layout:
+    left = min(float(one.offsets[0]) for one in sections)
+    right = max(float(one.offsets[-1]) for one in sections)
     high = max(float(np.ptp(_heights(one))) for one in sections)
     scale = look.scale or fitting_scale((right - left, high * look.exaggeration), _ROOM_M)
     step_x = grid_step(_GRID_M * scale)
@@ -198,7 +197,7 @@ def _layout(sections: list[CrossSection], look: SectionLook) -> _Layout:
 class _Sheet:
     """A sheet being drawn."""
 
-    def __init__(self, sections: list[CrossSection], look: SectionLook) -> None:
+    def __init__(self, sections: list[DrawnSection], look: SectionLook) -> None:
         self._look = look
         self._layout = _layout(sections, look)
         self.document = DxfDocument(look.version)
@@ -207,7 +206,7 @@ class _Sheet:
             self.document.add_layer(layer, ink.aci, ink.rgb)
         self.document.doc.layers.get(AFTER_LAYER).dxf.lineweight = 30  # 1/100 mm
 
-    def draw(self, sections: list[CrossSection], title: Text, monitor: Monitor) -> None:
+    def draw(self, sections: list[DrawnSection], title: Text, monitor: Monitor) -> None:
         """Draw all sections, then what is said of them together."""
         count = len(sections)
         width, height = self._layout.pitch
@@ -219,7 +218,7 @@ class _Sheet:
         top = self._draw_title(title, down * height)
         self.document.show((0.0, 0.0), (-(-count // down) * width, top))
 
-    def _draw_section(self, section: CrossSection, corner: tuple[float, float]) -> None:
+    def _draw_section(self, section: DrawnSection, corner: tuple[float, float]) -> None:
         layout = self._layout
         datum = rounded_down(float(_heights(section).min()) - layout.margin, layout.step_y)
         x = corner[0] + _LEFT_TEXTS * layout.text_m
@@ -234,7 +233,7 @@ class _Sheet:
             area = shapely.Polygon(placed(outline))
             add_areas(self._space, [area], CUT_LAYER if is_cut else FILL_LAYER)
         for layer, heights in ((BEFORE_LAYER, section.before), (AFTER_LAYER, section.after)):
-            for part in parts_with_ground(section.offsets_m, heights):
+            for part in parts_with_ground(section.offsets, heights):
                 self._space.add_lwpolyline(placed(part).tolist(), dxfattribs={"layer": layer})
         self._draw_words(section, (x, y + layout.size[1]))
 
@@ -262,7 +261,7 @@ class _Sheet:
             at = x - layout.left
             self._line((at, y), (at, y + height + layout.text_m / 2), AXIS_LAYER)
 
-    def _draw_words(self, section: CrossSection, corner: tuple[float, float]) -> None:
+    def _draw_words(self, section: DrawnSection, corner: tuple[float, float]) -> None:
         """Name, station and areas above the frame."""
         size = self._layout.text_m
         areas = Text(
@@ -271,7 +270,7 @@ class _Sheet:
         station = Text("{name}  (station {m:.2f} m)", "{name}　（測点 {m:.2f} m）")
         lines = (
             areas.filled(cut=section.cut_m2, fill=section.fill_m2),
-            station.filled(name=station_name(section.station_m), m=section.station_m),
+            station.filled(name=section.name, m=section.station_m),
         )
         for number, line in enumerate(lines):
             place = (corner[0], corner[1] + (1.0 + 1.8 * number) * size)
@@ -306,8 +305,8 @@ class _Sheet:
         return text.spoken(self._look.language)
 
 
-def _heights(section: CrossSection) -> Floats:
+def _heights(section: DrawnSection) -> Floats:
     """All heights of a section that are drawn."""
     grounds = (section.before, section.after)
-    parts = [part for one in grounds for part in parts_with_ground(section.offsets_m, one)]
+    parts = [part for one in grounds for part in parts_with_ground(section.offsets, one)]
     return np.concatenate([np.empty(0), *(part[:, 1] for part in parts)])

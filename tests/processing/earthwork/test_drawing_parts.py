@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -10,9 +11,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from processing.earthwork.cross_sections import CrossSection
-from processing.earthwork.drawing_parts import moved_parts, parts_with_ground, station_name
-from tests.processing.formats.earthwork_sections import cross_section
+from processing.earthwork.drawing_parts import DrawnSection, moved_parts, parts_with_ground
 
 NO = np.nan
 heights = st.lists(
@@ -21,8 +20,8 @@ heights = st.lists(
 OFFSETS = np.array([-4.0, -2.0, -1.0, 0.0, 0.5, 3.0, 7.0])
 
 
-def section(before: list[float], after: list[float]) -> CrossSection:
-    return cross_section(0.0, OFFSETS.tolist(), before, after)
+def section(before: list[float], after: list[float]) -> DrawnSection:
+    return DrawnSection(0.0, "", OFFSETS, np.array(before), np.array(after), 0.0, 0.0)
 
 
 def test_lines_that_cross_enclose_cut_and_fill() -> None:
@@ -69,22 +68,7 @@ def test_without_ground_there_is_nothing() -> None:
 
 
 def test_what_the_boundary_leaves_out_is_not_filled() -> None:
-    one = section([0.0] * 7, [1.0] * 7)
-    one.is_inside[[0, 3]] = False
+    is_inside = np.array([False, True, True, False, True, True])
+    one = replace(section([0.0] * 7, [1.0] * 7), is_inside=is_inside)
     areas = [shapely.Polygon(outline).area for _, outline in moved_parts(one)]
     assert areas == pytest.approx([2.0, 6.5])
-
-
-@pytest.mark.parametrize(
-    ("station_m", "name"),
-    [
-        (0.0, "No.0"),
-        (20.0, "No.1"),
-        (24.999, "No.1+5.00"),
-        (59.9999, "No.3"),
-        (60.1, "No.3+0.10"),
-        (105.128, "No.5+5.13"),
-    ],
-)
-def test_stations_are_named_by_twenty_metres(station_m: float, name: str) -> None:
-    assert station_name(station_m) == name

@@ -278,3 +278,19 @@ def test_a_coordinate_that_is_no_number_is_told_with_its_feature(tmp_path: Path)
     path.write_text('{"type": "Polygon", "coordinates": [[[0, 0], ["1,5", 0], [1, 1], [0, 0]]]}')
     with pytest.raises(BadFile, match=r"is no place.*a\.geojson, feature 1"):
         read_boundary(path)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (" 10\r\n1e+20", " 10\r\n1e+p"),
+        (" 10\r\n1e+20", " 10\r\n"),
+        ("LWPOLYLINE", "LWPOLYLINE\r\n  0"),
+    ],
+)
+def test_a_drawing_that_is_damaged_inside_says_so(tmp_path: Path, old: str, new: str) -> None:
+    path = as_dxf(tmp_path / "a.dxf", [box(0, 10)])
+    content = path.read_bytes().replace(b"\n", b"\r\n").replace(b"\r\r", b"\r")
+    path.write_bytes(content.replace(old.encode(), new.encode(), 1))
+    with pytest.raises((BadFile, Unsuitable), match=r"a\.dxf"):
+        read_boundary(path)

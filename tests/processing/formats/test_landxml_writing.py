@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
-from processing.earthwork.drawing_parts import SectionedLine
+from processing.earthwork.drawing_parts import DrawnSection, SectionedLine
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import Cancelled, InUse, Unsuitable
 from processing.formats.landxml import read_landxml
@@ -24,7 +24,6 @@ from processing.formats.landxml_writing import (
     write_landxml,
 )
 from processing.text import Text
-from tests.processing.formats.earthwork_sections import cross_section
 
 SPACE = {"l": "http://www.landxml.org/schema/LandXML-1.2"}
 FACTS = LandXmlFacts(
@@ -51,14 +50,20 @@ NO = np.nan
 LINE = SectionedLine(
     "中心線",
     np.array([[-8000.0, -36000.0], [-8000.0, -36000.0], [-7960.0, -35970.0], [-7960.0, -35900.0]]),
+    -20.0,
     (
-        cross_section(
+        DrawnSection(
             0.0,
-            [-5.0, -2.5, 0.0, 2.5, 5.0, 7.5],
-            [12.0, 12.1, NO, 12.2, 12.3, NO],
-            [11.0, 11.0, 11.0, 11.0, 11.0, 11.0],
+            "No.0",
+            np.array([-5.0, -2.5, 0.0, 2.5, 5.0, 7.5]),
+            np.array([12.0, 12.1, NO, 12.2, 12.3, NO]),
+            np.array([11.0, 11.0, 11.0, 11.0, 11.0, 11.0]),
+            3.0,
+            0.0,
         ),
-        cross_section(25.0, [-1.0, 1.0], [NO, NO], [1.0, NO]),
+        DrawnSection(
+            20.0, "No.1", np.array([-1.0, 1.0]), np.array([NO, NO]), np.array([1.0, NO]), 0.0, 0.0
+        ),
     ),
 )
 
@@ -131,7 +136,7 @@ def test_j_landxml_says_what_its_rules_ask_for(tmp_path: Path) -> None:
 def test_the_line_and_its_sections_are_an_alignment(tmp_path: Path) -> None:
     root = written(tmp_path / "a.xml", line=LINE)
     alignment = root.find("l:Alignments/l:Alignment", SPACE)
-    assert dict(alignment.attrib) == {"name": "中心線", "length": "120.000", "staStart": "0.000"}
+    assert dict(alignment.attrib) == {"name": "中心線", "length": "120.000", "staStart": "-20.000"}
     lines = alignment.findall("l:CoordGeom/l:Line", SPACE)
     assert [
         (one.get("length"), *((end.get("name"), end.text) for end in one)) for one in lines
@@ -149,7 +154,7 @@ def test_the_line_and_its_sections_are_an_alignment(tmp_path: Path) -> None:
             "-5.000 11.000 -2.500 11.000 0.000 11.000 2.500 11.000 5.000 11.000 7.500 11.000"
         ],
     }
-    assert (second.get("name"), len(second)) == ("No.1+5.00", 0)
+    assert (second.get("name"), len(second)) == ("No.1", 0)
 
 
 def test_sections_alone_are_a_file_too(tmp_path: Path) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import shapely
 
-from processing.earthwork.cross_sections import CrossSection
+from processing.earthwork.drawing_parts import DrawnSection
 from processing.errors import Cancelled, InUse, OutOfRange, Unsuitable
 from processing.formats.dxf_document import DxfVersion
 from processing.formats.section_sheet_dxf import (
@@ -24,26 +24,23 @@ from processing.formats.section_sheet_dxf import (
     write_section_sheet_dxf,
 )
 from processing.text import Text
-from tests.processing.formats.earthwork_sections import cross_section
 
 NO = np.nan
 OFFSETS = np.array([-6.0, -3.0, 0.0, 3.0, 6.0])
 TITLE = Text("Sections", "横断図")
 
 
-def section(number: int, base: float = 100.0) -> CrossSection:
+def section(number: int, base: float = 100.0) -> DrawnSection:
     """A cut of 1 m between −3 and 3, a fill of half a metre at the right end."""
     before = np.full(5, base + number)
     after = before + np.array([0.0, -1.0, -1.0, 0.0, 0.5])
-    return cross_section(
-        20.0 * number, OFFSETS.tolist(), before.tolist(), after.tolist(), cut_m2=6.0, fill_m2=0.75
-    )
+    return DrawnSection(20.0 * number, f"No.{number}", OFFSETS, before, after, 6.0, 0.75)
 
 
 SECTIONS = [section(number) for number in range(5)]
 
 
-def drawn(path: Path, sections: list[CrossSection], look: SectionLook | None = None) -> Any:
+def drawn(path: Path, sections: list[DrawnSection], look: SectionLook | None = None) -> Any:
     write_section_sheet_dxf(path, sections, TITLE, look)
     doc = ezdxf.filemanagement.readfile(path)
     audit = doc.audit()
@@ -132,14 +129,16 @@ def test_sections_share_no_room_and_go_up_the_columns(tmp_path: Path, count: int
 
 
 def test_ground_that_is_missing_interrupts_a_line(tmp_path: Path) -> None:
-    holed = cross_section(0.0, OFFSETS.tolist(), [1.0, 1.0, NO, 1.0, 1.0], [NO] * 5)
+    holed = DrawnSection(
+        0.0, "No.0", OFFSETS, np.array([1.0, 1.0, NO, 1.0, 1.0]), np.full(5, NO), 0.0, 0.0
+    )
     doc = drawn(tmp_path / "a.dxf", [holed])
     assert [len(one) for one in lines(doc, BEFORE_LAYER)] == [2, 2]
     assert lines(doc, AFTER_LAYER) == []
 
 
 def test_a_section_without_ground_is_left_out_and_none_at_all_refused(tmp_path: Path) -> None:
-    empty = cross_section(0.0, OFFSETS.tolist(), [NO] * 5, [NO] * 5)
+    empty = DrawnSection(0.0, "No.0", OFFSETS, np.full(5, NO), np.full(5, NO), 0.0, 0.0)
     doc = drawn(tmp_path / "a.dxf", [empty, section(1)])
     assert not any("No.0" in one.dxf.text for one in texts(doc, TEXT_LAYER))
     for sections in ([], [empty]):
