@@ -2264,6 +2264,10 @@ kept</source>
         <translation>書き出し</translation>
     </message>
     <message>
+        <source>The work type whose limits the as-built form has</source>
+        <translation>出来形管理の規格値に用いる工種です</translation>
+    </message>
+    <message>
         <source>No volume has been computed yet.</source>
         <translation>計算結果はまだありません。</translation>
     </message>

@@ -53,7 +53,8 @@ def street() -> OpenMap:
 @pytest.fixture
 def panel(qtbot: QtBot, street: OpenMap) -> VolumePanel:
     exports = (("report", Text("Report", "報告書")), ("xml", Text("Surface", "面")))
-    shown = VolumePanel(street.shared, Mesh, exports, "en")
+    work_types = (("fill", Text("Embankment", "盛土")), ("cut", Text("Cutting", "掘削")))
+    shown = VolumePanel(street.shared, Mesh, exports, work_types, language="en")
     qtbot.addWidget(shown)
     shown.resize(280, 700)
     shown.show()
@@ -187,6 +188,19 @@ def test_exports_are_offered_by_name(qtbot: QtBot, panel: VolumePanel) -> None:
     with qtbot.waitSignal(panel.export_requested) as told:
         actions[1].trigger()
     assert told.args == ["xml"]
+
+
+def test_a_work_type_is_chosen_where_a_design_is_compared(panel: VolumePanel) -> None:
+    panel.show_volumes((_kept("a"),), "a")
+    panel.offer_exports({"xml"})
+    assert [one.text() for one in panel.export_menu.actions() if one.isVisible()] == ["Surface"]
+    (box,) = [one for one in panel.findChildren(QComboBox) if one.findText("Embankment") >= 0]
+    panel.offer_work_types(is_wanted=False)
+    assert not box.isVisible()
+    panel.offer_work_types(is_wanted=True)
+    assert box.isVisible()
+    _pick(box, "Cutting")
+    assert panel.work_type == "cut"
 
 
 def test_range_and_contours_are_what_all_views_show(panel: VolumePanel, street: OpenMap) -> None:

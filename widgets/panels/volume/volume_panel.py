@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
@@ -39,8 +39,8 @@ class VolumePanel(QWidget):
     shared : SharedState
     parameters : type
         Of the tool ``volume``.
-    exports : sequence of (str, Text)
-        Ids and names of what can be given out.
+    exports, work_types : sequence of (str, Text)
+        Ids and names of what can be given out, and of what as-built limits are told for.
     language : Language
 
     Signals
@@ -63,6 +63,8 @@ class VolumePanel(QWidget):
         shared: SharedState,
         parameters: type[Any],  # each tool has a dataclass of its own
         exports: Sequence[tuple[str, Text]],
+        work_types: Sequence[tuple[str, Text]],
+        *,
         language: Language,
         parent: QWidget | None = None,
     ) -> None:
@@ -83,6 +85,11 @@ class VolumePanel(QWidget):
             action.setObjectName(id_)
             action.triggered.connect(self._exporting(id_))
         self._export.setMenu(menu)
+        self._work_types = QComboBox(self)
+        self._work_types.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
+        self._work_types.setToolTip(self.tr("The work type whose limits the as-built form has"))
+        for id_, name in work_types:
+            self._work_types.addItem(name.spoken(language), id_)
         self._look = LookForm(shared.volume, self)
         self._nothing = QLabel(self.tr("No volume has been computed yet."), self)
         self._nothing.setWordWrap(True)
@@ -100,7 +107,7 @@ class VolumePanel(QWidget):
         result, look = QWidget(self), QWidget(self)
         below = QVBoxLayout(result)
         below.addLayout(chosen)
-        for part in (self._nothing, self.table, self._export):
+        for part in (self._nothing, self.table, self._work_types, self._export):
             below.addWidget(part)
         heat = QVBoxLayout(look)
         heat.addWidget(self._look)
@@ -126,6 +133,20 @@ class VolumePanel(QWidget):
         """What the button of exports offers."""
         return self._export.menu()
 
+    @property
+    def work_type(self) -> str:
+        """Id of the work type whose limits count; empty where there is none."""
+        return str(self._work_types.currentData() or "")
+
+    def offer_exports(self, ids: Collection[str]) -> None:
+        """Offer only these of the exports."""
+        for action in self.export_menu.actions():
+            action.setVisible(action.objectName() in ids)
+
+    def offer_work_types(self, *, is_wanted: bool) -> None:
+        """Let a work type be chosen, where a ground is compared with a design."""
+        self._work_types.setVisible(is_wanted)
+
     def show_volumes(self, volumes: Sequence[KeptVolume], chosen: str) -> None:
         """List results, the newest first, and show the numbers of one."""
         newest = tuple(reversed(volumes))
@@ -144,6 +165,7 @@ class VolumePanel(QWidget):
             widget.setVisible(bool(newest))
         for part in (self.table, self._export):
             part.setVisible(shown is not None)
+        self._work_types.setVisible(self._work_types.isVisible() and shown is not None)
         self._look.setEnabled(shown is not None)
         if is_other:
             self._pages.setCurrentIndex(_RESULT if shown is not None else _FORM)
