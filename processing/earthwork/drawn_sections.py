@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from processing.earthwork.cross_sections import SectionLine
+from processing.earthwork.cross_sections import SectionLayout
 from processing.earthwork.drawing_parts import DrawnSection, SectionedLine
 from processing.earthwork.end_areas import EndAreaVolume
 
@@ -12,7 +12,7 @@ _STAKES_M = 20.0
 _SAME_M = 0.005
 
 
-def drawn_line(volume: EndAreaVolume, line: SectionLine, name: str) -> SectionedLine:
+def drawn_line(volume: EndAreaVolume, line: SectionLayout, name: str) -> SectionedLine:
     """A line with the sections that its volume was had from."""
     sections = tuple(
         DrawnSection(

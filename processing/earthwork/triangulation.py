@@ -106,14 +106,7 @@ def triangulated_ground(
     if boundary is not None and len(surface.corners):
         surface = clipped_surface(surface, boundary, monitor)
     if not len(surface.corners):
-        raise Unsuitable(
-            Text("No triangle of the ground is left.", "地盤の三角形が1つも残りません。"),
-            Text("Longest edge and boundary", "最大辺長と境界"),
-            Text(
-                "Allow longer edges, or choose a boundary on the measured ground.",
-                "最大辺長を長くするか、計測した地盤の上に境界を指定してください。",
-            ),
-        )
+        raise _none_left()
     return surface
 
 
@@ -132,6 +125,17 @@ def clipped_surface(
     pieces = clipped(surface.plan_triangles(origin), local, monitor).reshape(-1, 3)
     corners, firsts = numbered_places(pieces, _ROUNDING_M)
     return TriangleSurface(pieces[firsts] + origin, corners.reshape(-1, 3), surface.name)
+
+
+def _none_left() -> Unsuitable:
+    return Unsuitable(
+        Text("No triangle of the ground is left.", "地盤の三角形が1つも残りません。"),
+        Text("Longest edge and boundary", "最大辺長と境界"),
+        Text(
+            "Allow longer edges, or choose a boundary on the measured ground.",
+            "最大辺長を長くするか、計測した地盤の上に境界を指定してください。",
+        ),
+    )
 
 
 def _too_few(count: int) -> Unsuitable:
