@@ -34,7 +34,7 @@ def boundary_polygon(rings: Sequence[Floats], extent: Extent | None = None) -> s
     Parameters
     ----------
     rings : sequence of (n, 2) float64
-        Corners in order, in either sense, closed or not, m, project CRS.
+        Corners in order, in either sense, closed or not, m, project CRS; heights are passed over.
     extent : tuple of float or None
         Where there is ground: the boundary has to reach into it.
 
@@ -103,7 +103,7 @@ def inside_shares(polygon: shapely.Geometry, grid: CellGrid) -> NDArray[np.float
 
 def _corners(ring: Floats, number: int) -> Floats:
     """Corners of a ring without its closing one and without those that repeat the one before."""
-    places = np.asarray(ring, np.float64).reshape(-1, 2)
+    places = np.asarray(ring, np.float64)[:, :2]
     broken = np.flatnonzero(~np.isfinite(places).all(axis=1))
     if broken.size:
         raise Unsuitable(

@@ -29,7 +29,7 @@ class SectionLayout:
     Attributes
     ----------
     xy : (k, 2) float64
-        m, project CRS.
+        m, project CRS; heights are passed over.
     half_width_m : float
         Of a section, to either side.
     interval_m : float
@@ -203,7 +203,7 @@ def _check_line(line: SectionLayout) -> None:
 
 
 def _measured(line: SectionLayout) -> Stations:
-    return Stations(np.column_stack([line.xy, np.zeros(len(line.xy))]))
+    return Stations(np.column_stack([line.xy[:, :2], np.zeros(len(line.xy))]))
 
 
 def _blocks(line: SectionLayout, stations_m: Floats) -> Iterator[Floats]:

@@ -113,7 +113,7 @@ def prismoidal_volume(
 ) -> EndAreaVolume:
     """Volume by the areas at both ends and halfway; parameters and errors as end areas have them.
 
-    Exact where each interval is a body between two level sections, as a wedge or a frustum is.
+    Exact where straight lines lead from each section to the next, as in a wedge or a frustum.
     """
     stations = stations_of(line)
     halfway = (stations[:-1] + stations[1:]) / 2

@@ -51,7 +51,7 @@ class TriangleSurface:
         xy : (n, 2) float64
             m, project CRS.
         """
-        places = np.ascontiguousarray(np.asarray(xy, np.float64).reshape(-1, 2))
+        places = np.ascontiguousarray(np.asarray(xy, np.float64)[:, :2])
         heights = np.full(len(places), np.nan)
         if not len(self._triangles):
             return heights
@@ -64,8 +64,12 @@ class TriangleSurface:
             held = (buckets.starts, buckets.triangles)
             _heights_kernel(local, self._triangles, frame, held, heights[part])
 
-        for _ in in_order(fill, range(0, len(places), _BLOCK)):
-            pass
+        starts = range(0, len(places), _BLOCK)
+        if len(starts) == 1:  # a place under the mouse is worth no threads
+            fill(0)
+        else:
+            for _ in in_order(fill, starts):
+                pass
         heights += origin[2]
         return heights
 

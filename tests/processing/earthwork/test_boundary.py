@@ -41,6 +41,11 @@ def test_a_ring_may_be_closed_or_not_and_go_either_way_round() -> None:
         assert polygon.exterior.is_ccw
 
 
+def test_heights_of_a_ring_are_passed_over() -> None:
+    ring = np.column_stack([SQUARE, np.arange(4.0)])
+    assert boundary_polygon([ring]).equals(boundary_polygon([SQUARE]))
+
+
 def test_a_ring_within_a_ring_is_a_hole_and_one_apart_is_another_part() -> None:
     with_hole = boundary_polygon([SQUARE * 0.2 + 4.0, SQUARE])
     assert with_hole.area == pytest.approx(96.0)

@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from processing.earthwork.cross_sections import LevelSurface, SectionLayout
+from processing.earthwork.cross_sections import SectionLayout
 from processing.earthwork.drawn_sections import drawn_line, station_name, volumes_between
 from processing.earthwork.end_areas import end_area_volume, prismoidal_volume
+from processing.earthwork.height_surfaces import LevelSurface
 from processing.monitor import SilentMonitor
 
 LINE = SectionLayout(np.array([[0.0, 0.0], [30.0, 0.0], [50.0, 20.0]]), 5.0, interval_m=10.0)

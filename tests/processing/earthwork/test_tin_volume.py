@@ -15,6 +15,8 @@ from processing.earthwork.tin_volume import TinVolume, volume_between, volume_to
 from processing.earthwork.triangle_surface import TriangleSurface, twice_areas
 from processing.errors import Cancelled, Unsuitable
 from processing.monitor import SilentMonitor
+from processing.simulate.sites.heights import HeightGrid
+from processing.simulate.sites.volumes import cut_and_fill
 from tests.processing.earthwork.bodies import (
     SURVEYED,
     frustum,
@@ -135,6 +137,29 @@ def test_the_volume_is_that_of_polygons_clipped_one_by_one(seed: int, count: int
     assert (found.cut_m3, found.fill_m3, found.area_m2) == pytest.approx(
         by_shapely(before, after), rel=1e-7, abs=1e-7
     )
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_volume_is_that_of_the_truth_of_simulated_sites(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    grids = [HeightGrid(random.normal(0, 1, (13, 17)).astype(np.float32), 0.5) for _ in range(2)]
+    ring = np.array([[0.7, 0.3], [7.1, 1.2], [6.6, 5.2], [4.1, 2.2], [1.1, 5.7]])
+    truth = cut_and_fill(grids[0], grids[1], ring)
+    before, after = (halves_of(grid.z, grid.res) for grid in grids)
+    found = volume_between(before, after, QUIET, moved(shapely.Polygon(ring), SURVEYED))
+    assert found.cut_m3 == pytest.approx(truth.cut_m3.sum(), rel=1e-8)
+    assert found.fill_m3 == pytest.approx(truth.fill_m3.sum(), rel=1e-8)
+
+
+def halves_of(z: np.ndarray, res: float) -> TriangleSurface:
+    """Triangles over nodes, each cell halved from its lower left to its upper right corner."""
+    row, column = np.mgrid[: z.shape[0], : z.shape[1]]
+    xyz = np.column_stack([column.ravel() * res, row.ravel() * res, z.ravel()]) + SURVEYED
+    number = np.arange(z.size).reshape(z.shape)
+    low, right = number[:-1, :-1].ravel(), number[:-1, 1:].ravel()
+    up, high = number[1:, :-1].ravel(), number[1:, 1:].ravel()
+    halves = [np.column_stack([low, right, high]), np.column_stack([low, high, up])]
+    return TriangleSurface(xyz, np.concatenate(halves))
 
 
 @given(st.integers(0, 10_000))
