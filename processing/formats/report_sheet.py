@@ -28,6 +28,7 @@ Value = Text | str | float | int | None
 # Shift_JIS has another minus, dash and wave than Unicode's first, and no raised digits.
 _CP932 = str.maketrans("〜−—‖²³", "～－―∥23")
 _PICTURE_PX = 560
+_WIDEST, _LINE_POINTS = 40.0, 15.0
 _FORMATS = {1: "#,##0.0", 2: "#,##0.00", 3: "#,##0.000"}
 
 
@@ -173,8 +174,15 @@ def _fill(sheet: Worksheet, report: ReportSheet, language: Language) -> None:
             if row.is_head:
                 cell.font = Font(bold=True, size=14 if len(row.cells) == 1 else None)
                 cell.fill = head if len(row.cells) > 1 else PatternFill()
-    for column, width in enumerate(_widths(report, columns, language)):
+    widths = _widths(report, columns, language)
+    for column, width in enumerate(widths):
         sheet.column_dimensions[chr(ord("A") + column)].width = width
+    for number, row in enumerate(report.rows, 1):
+        if len(row.cells) == 2 and columns > 2:
+            # What a name has to say takes the rest of the row; a merged cell finds no height.
+            sheet.merge_cells(start_row=number, end_row=number, start_column=2, end_column=columns)
+            lines = -(-_wide(row.cells[1], language) // sum(widths[1:]))
+            sheet.row_dimensions[number].height = _LINE_POINTS * max(lines, 1)
     sheet.page_setup.orientation = "landscape"
     sheet.page_setup.paperSize = sheet.PAPERSIZE_A4
     sheet.page_setup.fitToHeight = 0
@@ -206,10 +214,16 @@ def _widths(report: ReportSheet, columns: int, language: Language) -> list[float
         # What stands alone may run over its neighbours, and so may the values of two.
         if len(row.cells) > 2:
             for column, value in enumerate(row.cells):
-                if isinstance(value, (Text, str)):
-                    wide = sum(1 + (ord(one) > 255) for one in _spoken(value, language))
-                    widths[column] = max(widths[column], min(wide + 2.0, 40.0))
+                wide = _wide(value, language) + 2.0
+                widths[column] = max(widths[column], min(wide, _WIDEST))
     return widths
+
+
+def _wide(value: Value, language: Language) -> float:
+    """How wide words are, in digits; Japanese characters are twice as wide."""
+    if not isinstance(value, (Text, str)):
+        return 0.0
+    return float(sum(1 + (ord(one) > 255) for one in _spoken(value, language)))
 
 
 def _add_picture(sheet: Worksheet, picture: SheetPicture, column: int, language: Language) -> None:

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.earthwork.drawing_parts import DrawnSection, parts_with_ground
+from processing.earthwork.drawing_parts import DrawnSection, moved_parts, parts_with_ground
 from processing.earthwork.heat_map import CUT_RGB, FILL_RGB
 from processing.formats.paper import BLACK, GREY, THIN_MM, Paper, Rgb
 from processing.text import Text
@@ -52,36 +51,13 @@ def draw_section(
         y = frame[1] + (top - places[:, 1]) / (top - bottom) * frame_mm[1]
         return list(zip(x.tolist(), y.tolist(), strict=True))
 
-    for outline, colour in _between(section):
-        paper.area(placed(outline), colour)
+    for is_cut, outline in moved_parts(section):
+        paper.area(placed(outline), CUT_RGB if is_cut else FILL_RGB)
     for part in parts_with_ground(section.offsets, section.before):
         paper.line(placed(part), 0.2, GREY, dash_mm=(1.2, 0.8))
     for part in parts_with_ground(section.offsets, section.after):
         paper.line(placed(part), 0.25, BLACK)
     paper.box(frame, frame_mm, THIN_MM)
-
-
-def _between(section: DrawnSection) -> Iterator[tuple[Floats, Rgb]]:
-    """Outlines of what lies between the two grounds, each wholly cut or wholly fill."""
-    both = np.column_stack([section.offsets, section.before, section.after])
-    both = _with_crossings(both)
-    change = 0.5 * (both[1:, 2] - both[1:, 1] + both[:-1, 2] - both[:-1, 1])
-    kinds = np.where(np.isfinite(change), np.sign(change), 0.0)
-    starts = np.flatnonzero(np.diff(kinds, prepend=np.nan) != 0.0)
-    for start, stop in zip(starts, [*starts[1:], len(kinds)], strict=True):
-        if kinds[start] != 0.0:
-            run = both[start : stop + 1]
-            outline = np.concatenate([run[:, [0, 1]], run[::-1][:, [0, 2]]])
-            yield outline, FILL_RGB if kinds[start] > 0 else CUT_RGB
-
-
-def _with_crossings(both: Floats) -> Floats:
-    """Offsets with both heights, and the places where the grounds cross between two of them."""
-    change = both[:, 2] - both[:, 1]
-    crosses = np.flatnonzero(change[:-1] * change[1:] < 0.0)
-    share = change[crosses] / (change[crosses] - change[crosses + 1])
-    places = both[crosses] + share[:, None] * (both[crosses + 1] - both[crosses])
-    return np.insert(both, crosses + 1, places, axis=0)
 
 
 def _draw_ticks(

@@ -212,6 +212,7 @@ def test_the_workbook_has_the_numbers_as_numbers_and_the_map(tmp_path: Path) -> 
     assert sheet["B2"].value == "=1+1"
     assert sheet["B2"].data_type == "s"
     assert lines["測点・範囲", "a b"] == [None] * 4
+    assert "B2:F2" in {str(one) for one in sheet.merged_cells.ranges}
     assert len(sheet._images) == 1
 
 
