@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -106,5 +107,5 @@ def add_box(
     (x, y), (width, height) = low, size
     add_areas(space, [shapely.box(x, y, x + width, y + height)], layers[0], lines_m=lines_m)
     corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
-    for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
+    for start, end in pairwise([*corners, corners[0]]):
         space.add_line(start, end, dxfattribs={"layer": layers[1]})

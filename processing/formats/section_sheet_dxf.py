@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -243,20 +244,20 @@ class _Sheet:
         (x, y), (width, height) = low, layout.size
         for number in range(layout.rows + 1):
             at = y + number * layout.step_y * layout.exaggeration
-            is_frame = number in (0, layout.rows)
-            self._line((x, at), (x + width, at), FRAME_LAYER if is_frame else GRID_LAYER)
+            self._line((x, at), (x + width, at), GRID_LAYER)
             words = f"{datum + number * layout.step_y:.{max(1, decimals_of(layout.step_y))}f}"
             place = (x - layout.text_m / 2, at)
             self._write(words if number else f"DL={words}", place, "MIDDLE_RIGHT")
-        columns = round(width / layout.step_x)
-        for number in range(columns + 1):
+        for number in range(round(width / layout.step_x) + 1):
             at = x + number * layout.step_x
-            layer = FRAME_LAYER if number in (0, columns) else GRID_LAYER
-            self._line((at, y), (at, y + height), layer)
+            self._line((at, y), (at, y + height), GRID_LAYER)
             # Without a minus before zero.
             offset = round(layout.left + number * layout.step_x, 6) + 0.0
             words = f"{offset:.{decimals_of(layout.step_x)}f}"
             self._write(words, (at, y - layout.text_m), "TOP_CENTER")
+        corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
+        for start, end in pairwise([*corners, corners[0]]):
+            self._line(start, end, FRAME_LAYER)
         if layout.left <= 0.0 <= layout.right:
             at = x - layout.left
             self._line((at, y), (at, y + height + layout.text_m / 2), AXIS_LAYER)
