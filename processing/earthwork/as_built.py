@@ -260,9 +260,9 @@ def _deviations(
     faces: list[_JudgedFace],
     grid: CellGrid,
     monitor: Monitor,
-) -> tuple[NDArray[np.int64], NDArray[np.float32]]:
+) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
     """Cell and deviation of every point that counts; cells of a second face follow the first's."""
-    keys, deviations = [np.empty(0, np.int64)], [np.empty(0, np.float32)]
+    keys, deviations = [np.empty(0, np.int32)], [np.empty(0, np.float32)]
     cells = grid.rows * grid.columns
     for block in ground.blocks():
         monitor.check()
@@ -274,7 +274,7 @@ def _deviations(
             on_face = np.flatnonzero(face.holds(xyz[:, :2], cell))
             off = xyz[on_face, 2] - design.heights_at(xyz[on_face, :2])
             is_told = np.isfinite(off)
-            keys.append(cell[on_face][is_told] + number * cells)
+            keys.append((cell[on_face][is_told] + number * cells).astype(np.int32))
             deviations.append(off[is_told].astype(np.float32))
     return np.concatenate(keys), np.concatenate(deviations)
 

@@ -9,19 +9,20 @@ from processing.kernels import kernel
 
 
 def cell_medians(
-    cells: NDArray[np.int64], values: NDArray[np.float32], count: int
+    cells: NDArray[np.int32], values: NDArray[np.float32], count: int
 ) -> NDArray[np.float32]:
     """The median of each cell's values: (count,) float32; NaN in a cell without any.
 
     Parameters
     ----------
-    cells : (n,) int64
+    cells : (n,) int32
         Cell of each value, 0 to ``count`` − 1.
     values : (n,) float32
         Finite.
     """
     starts = np.zeros(count + 1, np.int64)
-    np.cumsum(np.bincount(cells, minlength=count), out=starts[1:])
+    _count_kernel(cells, starts[1:])
+    np.cumsum(starts, out=starts)
     gathered = np.empty(len(values), np.float32)
     _gather_kernel(cells, values, starts[:-1].copy(), gathered)
     medians = np.full(count, np.nan, np.float32)
@@ -30,8 +31,14 @@ def cell_medians(
 
 
 @kernel
+def _count_kernel(cells: NDArray[np.int32], counts: NDArray[np.int64]) -> None:
+    for number in range(cells.shape[0]):
+        counts[cells[number]] += 1
+
+
+@kernel
 def _gather_kernel(
-    cells: NDArray[np.int64],
+    cells: NDArray[np.int32],
     values: NDArray[np.float32],
     next_of_cell: NDArray[np.int64],
     gathered: NDArray[np.float32],
@@ -57,4 +64,4 @@ def _median_kernel(
 
 def warm_up() -> None:
     """Compile the kernels of this file."""
-    cell_medians(np.array([0, 1, 1], np.int64), np.array([1.0, 2.0, 3.0], np.float32), 3)
+    cell_medians(np.array([0, 1, 1], np.int32), np.array([1.0, 2.0, 3.0], np.float32), 3)

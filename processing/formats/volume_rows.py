@@ -27,7 +27,7 @@ SURFACE_COLUMNS = (
     Text("Name", "名称"),
     Text("Date", "年月日"),
     Text("File", "データ"),
-    Text("Points", "点数"),
+    Text("Count", "点数・面数"),
 )
 QUANTITY_COLUMNS = (
     Text("Quantity", "項目"),

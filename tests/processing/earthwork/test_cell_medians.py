@@ -11,7 +11,7 @@ from processing.earthwork.cell_medians import cell_medians
 
 @given(st.data(), st.integers(0, 60))
 def test_medians_are_numpy_s(data: st.DataObject, count: int) -> None:
-    cells = data.draw(arrays(np.int64, count, elements=st.integers(0, 6)))
+    cells = data.draw(arrays(np.int32, count, elements=st.integers(0, 6)))
     values = data.draw(arrays(np.float32, count, elements=st.floats(-2, 2, width=32)))
     found = cell_medians(cells, values, 7)
     for cell in range(7):
@@ -21,8 +21,11 @@ def test_medians_are_numpy_s(data: st.DataObject, count: int) -> None:
 
 
 def test_kernels_do_as_plain_python_does() -> None:
-    cells, values = np.array([2, 0, 2, 2]), np.array([3, 1, 2, 9], np.float32)
+    cells, values = np.array([2, 0, 2, 2], np.int32), np.array([3, 1, 2, 9], np.float32)
     starts = np.array([0, 1, 1, 4])
+    counts = np.zeros(3, np.int64)
+    module._count_kernel.py_func(cells, counts)
+    assert counts.tolist() == [1, 0, 3]
     gathered, medians = np.zeros(4, np.float32), np.full(3, np.nan, np.float32)
     module._gather_kernel.py_func(cells, values, starts[:-1].copy(), gathered)
     module._median_kernel.py_func(gathered, starts, medians)
