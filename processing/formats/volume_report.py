@@ -134,7 +134,7 @@ def _draw_numbers(paper: Paper, result: VolumeResult, facts: VolumeFacts) -> Non
     pairs = Table(_MARGIN_MM, (_LABEL_MM, half - _LABEL_MM) * 2, _TYPE)
     y = pairs.draw(paper, y, _paired(work_rows(facts))) + _GAP_MM
     y = _draw_heading(paper, y, _SURFACES)
-    surfaces = Table(_MARGIN_MM, (20.0, 44.0, 27.0, 52.0, width - 143.0), _TYPE)
+    surfaces = Table(_MARGIN_MM, (18.0, 42.0, 31.0, 52.0, width - 143.0), _TYPE)
     rows: list[Row] = [[Cell(words, "centre", is_head=True) for words in SURFACE_COLUMNS]]
     for name, *values in surface_rows(facts):
         cells = [Cell(value) for value in values[:-1]]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from processing.earthwork.as_built import AsBuiltResult, AsBuiltRules, Item, judge_as_built
 from processing.earthwork.limits import AsBuiltLimits, Face
 from processing.earthwork.limits_file import as_built_limits
-from processing.earthwork.sides import EpochGround
+from processing.earthwork.sides import EpochGround, GroundBlock
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import Cancelled, OutOfRange, Unsuitable
 from processing.monitor import SilentMonitor
@@ -220,13 +220,13 @@ def test_cells_without_points_lower_the_density_and_are_told() -> None:
     design = embankment()
     whole = measured_on(design, constant(0.0))
 
-    def half() -> list[object]:
+    def half() -> list[GroundBlock]:
         return [
             replace(block, xyz=block.xyz[block.xyz[:, 1] < SOUTH + LENGTH_M / 2])
             for block in whole.blocks()
         ]
 
-    ground = EpochGround("half", half)  # type: ignore[arg-type]
+    ground = EpochGround("half", half)
     result = judge_as_built(ground, design, (as_built_limits(), ROAD), SilentMonitor())
     top = result.faces[0]
     assert top.density_per_m2 == pytest.approx(0.5, abs=0.05)
@@ -240,13 +240,13 @@ def test_a_face_without_a_value_fails_without_numbers() -> None:
     design = embankment()
     whole = measured_on(design, constant(0.0))
 
-    def top_only() -> list[object]:
+    def top_only() -> list[GroundBlock]:
         return [
             replace(block, xyz=block.xyz[np.abs(block.xyz[:, 2] - 24.0) < 1e-6])
             for block in whole.blocks()
         ]
 
-    ground = EpochGround("top", top_only)  # type: ignore[arg-type]
+    ground = EpochGround("top", top_only)
     result = judge_as_built(ground, design, (as_built_limits(), ROAD), SilentMonitor())
     top, slope = result.faces
     assert top.passes
@@ -288,6 +288,40 @@ def test_a_design_without_triangles_is_told() -> None:
     ground = measured_on(embankment(), constant(0.0))
     with pytest.raises(Unsuitable, match="no area to judge"):
         judge_as_built(ground, design, (as_built_limits(), ROAD), SilentMonitor())
+
+
+def test_a_boundary_beside_the_design_is_told() -> None:
+    with pytest.raises(Unsuitable, match="no area to judge"):
+        judged(0.0, boundary=shapely.box(0.0, 0.0, 10.0, 10.0))
+
+
+def test_a_design_without_a_face_of_the_work_type_is_told() -> None:
+    table = as_built_limits()
+    road = table[ROAD]
+    slopes = replace(road, faces=tuple(one for one in road.faces if one.face is Face.SLOPE))
+    flat = TriangleSurface(
+        np.array([[WEST, SOUTH, 5.0], [WEST + 9, SOUTH, 5.0], [WEST, SOUTH + 9, 5.0]]),
+        np.array([[0, 1, 2]]),
+        "flat.xml",
+    )
+    with pytest.raises(Unsuitable, match="none of the faces") as told:
+        judged(0.0, flat, table=replace(table, work_types=(slopes,)))
+    assert "flat.xml" in told.value.where.ja
+
+
+def test_points_that_are_nowhere_are_passed_over() -> None:
+    design = embankment()
+    whole = measured_on(design, constant(0.01))
+
+    def broken() -> list[GroundBlock]:
+        blocks = [GroundBlock(block.xyz.copy(), block.station) for block in whole.blocks()]
+        blocks[0].xyz[::7, 2] = np.nan
+        blocks[1].xyz[::5, 0] = np.nan
+        return [*blocks, GroundBlock(np.empty((0, 3)), np.empty(0, np.uint16))]
+
+    limits = (as_built_limits(), ROAD)
+    result = judge_as_built(EpochGround("", broken), design, limits, SilentMonitor())
+    assert result.faces[0].mean_m == pytest.approx(0.01, abs=1e-6)
 
 
 @pytest.mark.parametrize("cell_m", [0.0, -1.0, 1.5, math.nan])
