@@ -20,12 +20,12 @@ class GroundBlock:
     ----------
     xyz : (n, 3) float64
         m, project CRS.
-    station : (n,) uint16
-        Which set-up of the scanner measured each: points of one share its errors.
+    station : int
+        Which set-up of the scanner measured them: they share its errors.
     """
 
     xyz: NDArray[np.float64]
-    station: NDArray[np.uint16]
+    station: int
 
 
 @dataclass(frozen=True)
@@ -37,6 +37,14 @@ class EpochGround:
     name : str
         What people call it.
     blocks : callable
+    low, high : (3,) float64
+        Corners of the box that holds all points, ground or not, m.
+    stands : (k, 3) float64
+        Where the scanner stood, m, project CRS; none where it moved, and where nothing tells.
+    stations : tuple of int
+        Whose places these are, as blocks tell.
+    measured : callable or None
+        All points that are no noise, ground or not, in blocks.
     crs : str
         ``EPSG:n``, or empty when unknown.
     measured_on : date or None
@@ -45,6 +53,11 @@ class EpochGround:
 
     name: str
     blocks: Callable[[], Iterable[GroundBlock]]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+    stands: NDArray[np.float64]
+    stations: tuple[int, ...] = ()
+    measured: Callable[[], Iterable[GroundBlock]] | None = None
     crs: str = ""
     measured_on: date | None = None
 

@@ -7,6 +7,7 @@ Deliveries count seconds of the day, of the GPS week, since 1980 (standard), or 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from datetime import UTC, date, datetime, timedelta
 from enum import Enum
 
 import numpy as np
@@ -23,6 +24,7 @@ LEAP_S = 18.0
 """GPS time less UTC since 2017."""
 
 _LEAST_SHARE = 0.9
+_START = datetime(1980, 1, 6, tzinfo=UTC)
 
 
 class ClockKind(Enum):
@@ -76,6 +78,21 @@ def kind_of(times: ArrayLike, *, is_adjusted_standard: bool | None = None) -> Cl
         is_old = is_adjusted_standard is False and low > 0
         return ClockKind.STANDARD if is_old else ClockKind.ADJUSTED_STANDARD
     return ClockKind.UNKNOWN
+
+
+def day_of(time_s: float, hours_ahead: float = 0.0) -> date | None:
+    """The day of a GPS time; None where the clock doesn't tell the day.
+
+    Parameters
+    ----------
+    hours_ahead : float
+        By which the place's time is ahead of UTC.
+    """
+    kind = kind_of([time_s])
+    if kind not in (ClockKind.STANDARD, ClockKind.ADJUSTED_STANDARD):
+        return None
+    since = time_s + (ADJUSTMENT_S if kind is ClockKind.ADJUSTED_STANDARD else 0.0)
+    return (_START + timedelta(seconds=since - LEAP_S, hours=hours_ahead)).date()
 
 
 def is_of_week(first_s: float, last_s: float) -> bool:

@@ -1,0 +1,83 @@
+"""The ground points of drives that were recorded together, as an epoch of a site."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from datetime import date
+
+import numpy as np
+
+from processing.earthwork.sides import EpochGround, GroundBlock
+from processing.earthwork.standing_places import standing_place
+from processing.errors import MissingInput
+from processing.ground.drive_points import Chunk, DrivePoints, read_ahead
+from processing.ground.ground_columns import GROUND
+from processing.monitor import Monitor
+from processing.points.clock import day_of
+from processing.points.drive import Drive
+from processing.text import Text
+
+_AT_ONCE = 1 << 17
+_HOURS_AHEAD = 9.0  # of Japan
+
+
+def ground_of_drives(drives: tuple[Drive, ...], monitor: Monitor, *, name: str = "") -> EpochGround:
+    """The ground of an epoch: points of class 2 by the class that counts.
+
+    Parameters
+    ----------
+    name : str
+        What to call it; the names of the drives otherwise.
+
+    Raises
+    ------
+    MissingInput
+        No point is ground: it was not looked for yet.
+    Cancelled
+    """
+    points = DrivePoints(drives, _AT_ONCE, monitor)
+    name = name or ", ".join(dict.fromkeys(drive.info.name for drive in drives))
+    if not any(np.any(points.codes(chunk) == GROUND) for chunk in points.chunks):
+        raise MissingInput(
+            Text("No point is classified as ground.", "地面に分類された点がありません。"),
+            Text.same(name),
+            Text(
+                "Run the tool “Ground” on both epochs first.",
+                "先に両時期の点群で「地面抽出」を実行してください。",
+            ),
+        )
+
+    def block_of(chunk: Chunk) -> GroundBlock:
+        is_ground = points.codes(chunk) == GROUND
+        return GroundBlock(points.measured_xyz(chunk)[is_ground], chunk.drive)
+
+    def blocks() -> Iterator[GroundBlock]:
+        return read_ahead(block_of, points.chunks)
+
+    def everything_of(chunk: Chunk) -> GroundBlock:
+        return GroundBlock(points.xyz(chunk), chunk.drive)
+
+    def measured() -> Iterator[GroundBlock]:
+        return read_ahead(everything_of, points.chunks)
+
+    places = [standing_place(drive) for drive in drives]
+    stations = tuple(number for number, place in enumerate(places) if place is not None)
+    return EpochGround(
+        name,
+        blocks,
+        low=np.min([drive.info.lowest for drive in drives], axis=0),
+        high=np.max([drive.info.highest for drive in drives], axis=0),
+        stands=np.array([places[number] for number in stations]).reshape(-1, 3),
+        stations=stations,
+        measured=measured,
+        crs=next((drive.info.crs for drive in drives if drive.info.crs), ""),
+        measured_on=_day_of(drives),
+    )
+
+
+def _day_of(drives: tuple[Drive, ...]) -> date | None:
+    for drive in drives:
+        times = drive.columns["time"][:1] if drive.columns.has("time") else np.empty(0)
+        if times.size and np.isfinite(times[0]):
+            return day_of(float(times[0]), _HOURS_AHEAD)
+    return None

@@ -1,0 +1,148 @@
+"""GroundCells: the ground points of an epoch counted into cells, one mean height in each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.earthwork.sides import EpochGround
+from processing.errors import OutOfRange
+from processing.ground.cells import MOST_CELLS, CellGrid
+from processing.kernels import kernel
+from processing.monitor import Monitor
+from processing.text import Text
+
+Floats = NDArray[np.float64]
+
+_X, _Y, _Z = range(3)
+
+
+@dataclass(frozen=True)
+class GroundCells:
+    """Ground points of one epoch by cell; row = north, column = east.
+
+    Attributes
+    ----------
+    grid : CellGrid
+    counts : (rows, columns) int32
+        Points in a cell.
+    heights : (rows, columns) float64
+        Mean height, m above the grid's origin, carried to the middle of the cell along the
+        ground's slope; NaN without a point.
+    """
+
+    grid: CellGrid
+    counts: NDArray[np.int32]
+    heights: Floats
+
+    @property
+    def is_counted(self) -> NDArray[np.bool_]:
+        """Cells with a point: (rows, columns) bool."""
+        is_counted: NDArray[np.bool_] = self.counts > 0
+        return is_counted
+
+
+def grid_over(
+    low: tuple[float, float], high: tuple[float, float], size_m: float, height_m: float
+) -> CellGrid:
+    """Cells over a rectangle, their corners on whole multiples of the mesh.
+
+    So the same place falls into the same cell, whatever else was measured.
+
+    Parameters
+    ----------
+    low, high : (float, float)
+        Corners, m, project CRS.
+    height_m : float
+        What heights are counted from.
+
+    Raises
+    ------
+    OutOfRange
+        More cells than memory holds.
+    """
+    first = np.floor(np.asarray(low) / size_m + 1e-9).astype(np.int64)
+    last = np.ceil(np.asarray(high) / size_m - 1e-9).astype(np.int64)
+    columns, rows = (int(count) for count in np.maximum(last - first, 1))
+    if rows * columns > MOST_CELLS:
+        raise OutOfRange(
+            Text("The mesh is too fine for so large an area.", "範囲に対して格子が細かすぎます。"),
+            Text(
+                f"{rows * columns:,} cells of {size_m:g} m; {MOST_CELLS:,} are possible.",
+                f"{size_m:g} mの格子が{rows * columns:,}個（上限{MOST_CELLS:,}個）",
+            ),
+            Text(
+                "Choose a larger mesh, or a boundary around the work.",
+                "格子間隔を大きくするか、施工範囲の境界を指定してください。",
+            ),
+        )
+    origin = np.array([first[0] * size_m, first[1] * size_m, height_m])
+    return CellGrid(origin, size_m, rows, columns)
+
+
+def ground_cells(
+    epoch: EpochGround,
+    grid: CellGrid,
+    monitor: Monitor,
+    shift_m: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> GroundCells:
+    """Count the ground points of an epoch into cells.
+
+    Parameters
+    ----------
+    shift_m : (float, float, float)
+        Taken from every point first.
+    """
+    counts = np.zeros((grid.rows, grid.columns), np.int32)
+    sums = np.zeros((grid.rows, grid.columns, 3))
+    origin = grid.origin + np.asarray(shift_m)
+    for block in epoch.blocks():
+        monitor.check()
+        _sum_kernel(np.ascontiguousarray(block.xyz), origin, grid.size_m, counts, sums)
+    heights = _carried_to_middles(counts, sums, grid.size_m)
+    return GroundCells(grid, counts, heights)
+
+
+def _carried_to_middles(counts: NDArray[np.int32], sums: Floats, size_m: float) -> Floats:
+    """Where points lie to one side of a cell, their mean says the height of that side."""
+    with np.errstate(invalid="ignore"):
+        means = sums / counts[..., None]
+    heights = means[..., _Z]
+    slope_x, slope_y = (_slope(heights, size_m, axis) for axis in (1, 0))
+    carried: Floats = heights - slope_x * means[..., _X] - slope_y * means[..., _Y]
+    return carried
+
+
+def _slope(heights: Floats, size_m: float, axis: int) -> Floats:
+    """Rise per metre along an axis from the neighbours that there are; 0 where there is none."""
+    z = np.moveaxis(heights, axis, 0)
+    step = np.full((z.shape[0] + 1, *z.shape[1:]), np.nan)
+    step[1:-1] = (z[1:] - z[:-1]) / size_m
+    back, ahead = step[:-1], step[1:]
+    both = np.where(np.isnan(back), ahead, np.where(np.isnan(ahead), back, (back + ahead) / 2))
+    return np.moveaxis(np.nan_to_num(both), 0, axis)
+
+
+@kernel
+def _sum_kernel(
+    xyz: Floats, origin: Floats, size_m: float, counts: NDArray[np.int32], sums: Floats
+) -> None:
+    rows, columns = counts.shape
+    for point in range(xyz.shape[0]):
+        x, y = xyz[point, 0] - origin[0], xyz[point, 1] - origin[1]
+        # NaN fails each of these tests.
+        if not (x >= 0.0 and y >= 0.0 and x < columns * size_m and y < rows * size_m):
+            continue
+        column, row = min(int(x / size_m), columns - 1), min(int(y / size_m), rows - 1)
+        counts[row, column] += 1
+        sums[row, column, 0] += x - (column + 0.5) * size_m
+        sums[row, column, 1] += y - (row + 0.5) * size_m
+        sums[row, column, 2] += xyz[point, 2] - origin[2]
+
+
+def warm_up() -> None:
+    """Compile the kernel of this file."""
+    counts, sums = np.zeros((1, 1), np.int32), np.zeros((1, 1, 3))
+    _sum_kernel(np.zeros((1, 3)), np.zeros(3), 1.0, counts, sums)

@@ -1,0 +1,114 @@
+"""Whether two epochs lie on each other, told by ground that did not change."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.earthwork.ground_cells import GroundCells
+from processing.earthwork.volume_result import Registration
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+_FARTHEST_M = 0.3
+_BIN_M = 0.005
+_NEAR_M = 0.05
+_ROUNDS = 12
+_LEAST_AREA_M2 = 25.0
+_PATCH_M = 5.0
+_SURE = 3.0
+_MATTERS_M = 0.01
+_GENTLE = 0.1
+_FEWEST = 50
+
+
+def registration_of(before: GroundCells, after: GroundCells) -> Registration | None:
+    """By how much the later epoch lies off, from stable ground; None where too little is stable.
+
+    The most frequent change of height within 0.3 m is that of ground nobody touched. On it a shift
+    to the side shows as change on slopes: ``change = up − slope · sideways``, fitted robustly.
+
+    References
+    ----------
+    Nuth and Kääb 2011, co-registration by slope and aspect.
+    """
+    size_m = before.grid.size_m
+    change = after.heights - before.heights
+    slope_x, slope_y = _slopes(before.heights, size_m)
+    known = np.isfinite(change) & np.isfinite(slope_x) & np.isfinite(slope_y)
+    if known.sum() < _FEWEST:
+        return None
+    peak = _most_frequent(change[known])
+    stable = known & (np.abs(change - peak) <= _NEAR_M)
+    terms = np.column_stack([-slope_x[stable], -slope_y[stable], np.ones(int(stable.sum()))])
+    values = change[stable]
+    area_m2 = stable.sum() * size_m**2
+    if area_m2 < _LEAST_AREA_M2:
+        return None
+    shift, weights = _robust_fit(terms, values)
+    misses = values - terms @ shift
+    patches = _patch_means(misses, weights, stable, max(1, round(_PATCH_M / size_m)))
+    sure = _sureness(terms, weights, patches)
+    is_significant = bool(np.any((np.abs(shift) > _MATTERS_M) & (np.abs(shift) > _SURE * sure)))
+    east, north, up = (float(value) for value in shift)
+    return Registration(
+        shift_m=(east, north, up),
+        sure_m=(float(sure[0]), float(sure[1]), float(sure[2])),
+        stable_area_m2=float(area_m2),
+        is_significant=is_significant,
+        is_corrected=False,
+    )
+
+
+def _slopes(heights: Floats, size_m: float) -> tuple[Floats, Floats]:
+    east, north = np.full(heights.shape, np.nan), np.full(heights.shape, np.nan)
+    east[:, 1:-1] = (heights[:, 2:] - heights[:, :-2]) / (2 * size_m)
+    north[1:-1] = (heights[2:] - heights[:-2]) / (2 * size_m)
+    return east, north
+
+
+def _most_frequent(change: Floats) -> float:
+    near = change[np.abs(change) <= _FARTHEST_M]
+    if near.size == 0:
+        return 0.0
+    counts, edges = np.histogram(near, np.arange(-_FARTHEST_M, _FARTHEST_M + _BIN_M, _BIN_M))
+    smooth = np.convolve(counts, np.ones(5), mode="same")
+    best = int(np.argmax(smooth))
+    return float(edges[best] + edges[best + 1]) / 2
+
+
+def _robust_fit(terms: Floats, values: Floats) -> tuple[Floats, Floats]:
+    """The shift and the weight of each cell (Geman and McClure)."""
+    weights = np.ones(len(values))
+    # On level ground nothing tells of a shift to the side: it is then taken for none.
+    rest = np.diag([_GENTLE**2, _GENTLE**2, 0.0])
+    shift: Floats = np.zeros(3)
+    for _ in range(_ROUNDS):
+        form = terms.T @ (terms * weights[:, None]) + rest
+        shift = np.asarray(np.linalg.solve(form, terms.T @ (weights * values)), np.float64)
+        misses = values - terms @ shift
+        spread = max(1.4826 * float(np.median(np.abs(misses))), 1e-4)
+        weights = 1.0 / np.square(1.0 + np.square(misses / (2.0 * spread)))
+    return shift, weights
+
+
+def _patch_means(misses: Floats, weights: Floats, stable: Mask, cells: int) -> Floats:
+    """Mean misses of patches: errors of a scanner's place don't average out within one."""
+    rows, columns = np.nonzero(stable)
+    across = -(-stable.shape[1] // cells)
+    patch = rows // cells * across + columns // cells
+    sums = np.bincount(patch, weights * misses)
+    counts = np.bincount(patch, weights)
+    means: Floats = sums[counts > cells] / counts[counts > cells]
+    return means
+
+
+def _sureness(terms: Floats, weights: Floats, patches: Floats) -> Floats:
+    """Standard deviations, m, as if each patch were one measurement."""
+    if len(patches) < 2:
+        return np.full(3, np.inf)
+    form = terms.T @ (terms * weights[:, None]) * (len(patches) / weights.sum())
+    spread = max(float(np.std(patches)), 1e-4)
+    sure: Floats = spread * np.sqrt(np.diag(np.linalg.pinv(form)))
+    return sure

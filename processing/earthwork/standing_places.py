@@ -1,0 +1,138 @@
+"""Where a scanner stood on its tripod, told by the order in which it measured.
+
+A tripod's head turns slowly while its mirror spins: for a moment all beams lie in one upright
+plane through the scanner. Seen from above, points measured within a moment lie on a line through
+it, and lines of many moments meet where it stood. Its mirror turns evenly, so its height is where
+the points of a moment are evenly spaced by their angles.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.noise.beam_origins import beam_origins
+from processing.points.drive import Drive
+
+Floats = NDArray[np.float64]
+
+_MOMENTS = 24
+_OF_MOMENT = 2000
+_APART = 8
+_LEAST_M = 0.5
+_FEWEST = 200
+_MOST_SPREAD_M = 0.3
+_ROUNDS = 30
+_SEEN_HEIGHTS_M = (0.5, 3.5)
+_STEPS_M = (0.05, 0.01)
+_USUAL_M = 1.7
+_CLEARLY = 0.5
+_NEAR_M = 6.0
+
+
+def standing_place(drive: Drive) -> Floats | None:
+    """Where a drive's scanner stood: (3,) float64, m, project CRS; None where nothing tells.
+
+    Deliveries without times, and scanners that moved, don't tell.
+    """
+    if drive.info.scanner_place is not None:
+        return np.array(drive.info.scanner_place)
+    if drive.trajectory is not None or not drive.columns.has("time"):
+        return None
+    if drive.turns is not None:
+        return _middle_of_turns(drive)
+    moments = _moments(drive)
+    if not moments:
+        return None
+    across = _crossing(moments)
+    if across is None:
+        return None
+    up = _height_over(moments, across)
+    return np.array([*across, up])
+
+
+def _middle_of_turns(drive: Drive) -> Floats | None:
+    """The centre of all turns; None where it moved."""
+    origins = beam_origins(drive)
+    if origins is None:
+        return None
+    middle: Floats = np.median(origins.places, axis=0)
+    away = np.linalg.norm(origins.places - middle, axis=1)
+    return middle if float(np.median(away)) <= _MOST_SPREAD_M else None
+
+
+def _moments(drive: Drive) -> list[Floats]:
+    """Points measured one after the other, in several moments spread over the recording."""
+    times = np.asarray(drive.columns["time"])
+    if times.size < _FEWEST or not np.isfinite(times).all() or times.min() == times.max():
+        return []
+    order = np.argsort(times, kind="stable")
+    starts = np.unique(np.linspace(0, max(times.size - _OF_MOMENT, 0), _MOMENTS).astype(np.int64))
+    found = []
+    for start in starts:
+        points = order[start : start + _OF_MOMENT]
+        steps = np.diff(times[points])
+        # What lies between two pulses without a return is no step of the mirror.
+        pulse_s = float(np.median(steps[steps > 0])) if (steps > 0).any() else 0.0
+        if pulse_s > 0.0:
+            found.append(np.column_stack([drive.xyz(points), times[points] / pulse_s]))
+    return found
+
+
+def _crossing(moments: list[Floats]) -> Floats | None:
+    """Where the lines of the moments meet in plan: (2,); None where they don't."""
+    starts, normals = [], []
+    for moment in moments:
+        first, second = moment[:-_APART], moment[_APART:]
+        ways = second[:, :2] - first[:, :2]
+        long = np.hypot(ways[:, 0], ways[:, 1])
+        is_line = (long > _LEAST_M) & (second[:, 3] - first[:, 3] <= 2 * _APART)
+        ways = ways[is_line] / long[is_line, None]
+        starts.append(first[is_line, :2])
+        normals.append(np.column_stack([-ways[:, 1], ways[:, 0]]))
+    on_lines, across = np.concatenate(starts), np.concatenate(normals)
+    if len(across) < _FEWEST:
+        return None
+    middle = on_lines.mean(axis=0)
+    offsets = np.einsum("ij,ij->i", on_lines - middle, across)
+    weights, place, spread = np.ones(len(across)), np.zeros(2), np.inf
+    for _ in range(_ROUNDS):
+        form = across.T @ (across * weights[:, None])
+        if np.linalg.cond(form) > 1e6:
+            return None
+        place = np.linalg.solve(form, across.T @ (weights * offsets))
+        misses = across @ place - offsets
+        spread = max(1.4826 * float(np.median(np.abs(misses))), 1e-3)
+        weights = 1.0 / np.square(1.0 + np.square(misses / spread))
+    return place + middle if spread <= _MOST_SPREAD_M else None
+
+
+def _height_over(moments: list[Floats], place: Floats) -> float:
+    """Where the points of a moment are evenly spaced by their angles, m; else the usual height."""
+    everything = np.concatenate(moments)
+    away = np.hypot(*(everything[:, :2] - place).T)
+    near = everything[away < _NEAR_M, 2]
+    below = (
+        float(np.percentile(near, 10)) if near.size >= _FEWEST else float(everything[:, 2].min())
+    )
+    low, high = below + _SEEN_HEIGHTS_M[0], below + _SEEN_HEIGHTS_M[1]
+    best, least, usual = below + _USUAL_M, np.inf, np.inf
+    for step in _STEPS_M:
+        heights = np.arange(low, high, step)
+        uneven = [_unevenness(moments, place, float(height)) for height in heights]
+        best, least = float(heights[int(np.argmin(uneven))]), float(np.min(uneven))
+        usual = min(usual, float(np.median(uneven)))
+        low, high = best - step, best + step
+    return best if least < _CLEARLY * usual else below + _USUAL_M
+
+
+def _unevenness(moments: list[Floats], place: Floats, height: float) -> float:
+    spreads = []
+    for moment in moments:
+        away = np.hypot(*(moment[:, :2] - place).T)
+        angles = np.arctan2(moment[:, 2] - height, away)
+        is_next = np.abs(np.diff(moment[:, 3]) - 1.0) < 0.2
+        steps = np.diff(angles)[is_next]
+        if steps.size:
+            spreads.append(float(np.median(np.abs(steps - np.median(steps)))))
+    return float(np.median(spreads)) if spreads else np.inf
