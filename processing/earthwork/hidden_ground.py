@@ -92,7 +92,7 @@ def _behind_crests(
     typical, steep = _site_slopes(np.where(is_known, smooth, np.nan), size_m)
     sums = np.zeros((len(places), 3))
     known = np.where(is_known, smooth, np.nan)
-    middles = (places[:, ::-1] + 0.5) * size_m
+    middles: Floats = (places[:, ::-1].astype(np.float64) + 0.5) * size_m
     for number, stand in enumerate(lines.stands):
         monitor.check()
         limit = lines.highest_at(number, middles)

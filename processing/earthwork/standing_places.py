@@ -17,7 +17,7 @@ from processing.points.drive import Drive
 Floats = NDArray[np.float64]
 
 _MOMENTS = 24
-_OF_MOMENT = 2000
+_OF_MOMENT = 1000
 _APART = 8
 _LEAST_M = 0.5
 _FEWEST = 200
@@ -121,7 +121,8 @@ def _height_over(moments: list[Floats], place: Floats) -> float:
         heights = np.arange(low, high, step)
         uneven = [_unevenness(moments, place, float(height)) for height in heights]
         best, least = float(heights[int(np.argmin(uneven))]), float(np.min(uneven))
-        usual = min(usual, float(np.median(uneven)))
+        # The first search spans all heights: what most of them would give.
+        usual = usual if np.isfinite(usual) else float(np.median(uneven))
         low, high = best - step, best + step
     return best if least < _CLEARLY * usual else below + _USUAL_M
 

@@ -83,8 +83,9 @@ def measured_surface(
     filled = filled_ground(coarse, wanted, lines, times * grid.size_m, monitor)
     shape = cells.heights.shape
     heights = np.where(cells.is_counted, cells.heights, _fine(filled.heights, times, shape))
-    relaxed(heights, cells.is_counted)
     is_measured = cells.is_counted | np.isfinite(_repeated(coarse, times, shape))
+    # Larger holes keep what was found for them: a crest would be smoothed away again.
+    relaxed(heights, cells.is_counted | ~is_measured)
     spread = np.where(is_measured, 0.0, _repeated(filled.spread, times, shape))
     outside = ~is_wanted & ~cells.is_counted
     heights[outside] = np.nan

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from processing.earthwork.change_grid import ChangeGrid
+from processing.earthwork.cross_sections import CrossSection
 from processing.text import Text
 
 
@@ -81,6 +82,8 @@ class VolumeResult:
         None where only one side is an epoch, or nothing is stable enough to tell.
     notes : tuple of Text
         What a reader of the number has to know, a sentence each.
+    sections : tuple of CrossSection
+        Of the methods along a line.
     """
 
     volumes: Volumes
@@ -89,3 +92,4 @@ class VolumeResult:
     change: ChangeGrid
     registration: Registration | None = None
     notes: tuple[Text, ...] = ()
+    sections: tuple[CrossSection, ...] = ()

@@ -1,0 +1,153 @@
+"""Volumes from a map of change by the methods other than cells: triangles, and sections."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from processing.earthwork.change_grid import ChangeGrid
+from processing.earthwork.cross_sections import CrossSection, SectionLine
+from processing.earthwork.end_areas import end_area_volume, prismoidal_volume
+from processing.earthwork.tin_volume import volume_between
+from processing.earthwork.triangle_surface import TriangleSurface
+from processing.earthwork.triangulation import triangulated_ground
+from processing.earthwork.volume_parameters import PRISMOIDAL, TIN, VolumeParameters
+from processing.ground.cells import CellGrid
+from processing.monitor import Monitor
+from processing.text import Text
+
+Floats = NDArray[np.float64]
+
+_NOISE_TWICE = Text(
+    "Exact between the triangles: noise of the points counts in cut and in fill alike.",
+    "三角網の間では厳密ですが、点のノイズは切土量にも盛土量にも加算されます。",
+)
+
+
+class Limits(Protocol):
+    """What a volume is limited to and drawn along."""
+
+    @property
+    def boundary(self) -> shapely.Geometry | None:
+        """The area; None for all ground."""
+
+    @property
+    def line(self) -> Floats | None:
+        """What sections stand on."""
+
+    @property
+    def break_lines(self) -> tuple[Floats, ...]:
+        """Edges of the triangles."""
+
+
+@dataclass(frozen=True)
+class OtherMethod:
+    """Cut and fill by another method.
+
+    Attributes
+    ----------
+    sections : tuple of CrossSection
+        Of the methods along a line.
+    """
+
+    cut_m3: float
+    fill_m3: float
+    sections: tuple[CrossSection, ...] = ()
+    notes: tuple[Text, ...] = ()
+
+
+@dataclass(frozen=True)
+class CellSurface:
+    """Heights on cells as a ground that knows its height everywhere, linear between middles.
+
+    Attributes
+    ----------
+    heights : (rows, columns) float32
+        m above the grid's origin; NaN without a surface.
+    """
+
+    grid: CellGrid
+    heights: NDArray[np.float32]
+
+    def heights_at(self, xy: Floats) -> Floats:
+        """Height at each place, m: (n,) float64; NaN where one of the cells about has none."""
+        at = (xy - self.grid.origin[:2]) / self.grid.size_m - 0.5
+        last = np.array([self.grid.columns - 1, self.grid.rows - 1])
+        is_in = np.all((at >= -0.5) & (at <= last + 0.5), axis=1)
+        at = np.clip(at, 0, last)
+        low = np.minimum(at.astype(np.int64), np.maximum(last - 1, 0))
+        right, up = (at - low).T
+        column, row = low.T
+        next_column, next_row = (np.minimum(low + 1, last)).T
+        z = self.heights
+        bottom = z[row, column] * (1 - right) + z[row, next_column] * right
+        top = z[next_row, column] * (1 - right) + z[next_row, next_column] * right
+        heights = bottom * (1 - up) + top * up + self.grid.origin[2]
+        return np.where(is_in, heights, np.nan)
+
+
+def volume_by(
+    parameters: VolumeParameters, change: ChangeGrid, monitor: Monitor, within: Limits
+) -> OtherMethod:
+    """Cut and fill by triangles or along a line, as the parameters say.
+
+    Raises
+    ------
+    Unsuitable
+        Break lines that contradict each other; a line without length or off the ground.
+    """
+    if parameters.method == TIN:
+        return _by_triangles(change, monitor, within)
+    line = within.line if within.line is not None else _middle_line(change, within.boundary)
+    along = SectionLine(line, parameters.half_width_m, parameters.interval_m)
+    grounds = CellSurface(change.grid, change.before), CellSurface(change.grid, change.after)
+    by = prismoidal_volume if parameters.method == PRISMOIDAL else end_area_volume
+    found = by(along, grounds, monitor, within.boundary)
+    return OtherMethod(found.cut_m3, found.fill_m3, found.sections, found.notes)
+
+
+def _by_triangles(change: ChangeGrid, monitor: Monitor, within: Limits) -> OtherMethod:
+    sides: list[TriangleSurface] = []
+    for heights in (change.before, change.after):
+        monitor.check()
+        sides.append(triangulated_ground(_places(change, heights), within.break_lines))
+    area = within.boundary if within.boundary is not None else _outline(change)
+    found = volume_between(sides[0], sides[1], monitor, area)
+    return OtherMethod(found.cut_m3, found.fill_m3, notes=(_NOISE_TWICE,))
+
+
+def _places(change: ChangeGrid, heights: NDArray[np.float32]) -> Floats:
+    row, column = np.nonzero(np.isfinite(heights))
+    x, y = ((np.stack([column, row]) + 0.5) * change.grid.size_m) + change.grid.origin[:2, None]
+    return np.column_stack([x, y, heights[row, column].astype(np.float64) + change.grid.origin[2]])
+
+
+def _outline(change: ChangeGrid) -> shapely.Geometry:
+    """The cells that count, as an area."""
+    size_m, (west, south, _) = change.grid.size_m, change.grid.origin
+    boxes = []
+    for row in np.flatnonzero((change.inside > 0).any(axis=1)):
+        steps = np.diff(np.pad((change.inside[row] > 0).astype(np.int8), 1))
+        starts, stops = np.flatnonzero(steps == 1), np.flatnonzero(steps == -1)
+        boxes.append(
+            shapely.box(
+                west + starts * size_m,
+                south + row * size_m,
+                west + stops * size_m,
+                south + (row + 1) * size_m,
+            )
+        )
+    return shapely.unary_union(np.concatenate(boxes))
+
+
+def _middle_line(change: ChangeGrid, boundary: shapely.Geometry | None) -> Floats:
+    """The longer middle line of the smallest rectangle round the area: (2, 2) float64."""
+    area = boundary if boundary is not None else _outline(change)
+    corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(area))[:4]
+    middles = (corners + np.roll(corners, -1, axis=0)) / 2
+    lines = middles[[0, 2]], middles[[1, 3]]
+    return max(lines, key=lambda line: float(np.hypot(*(line[1] - line[0]))))
