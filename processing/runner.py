@@ -21,7 +21,7 @@ from processing.points.ordering import read_stretch
 from processing.points.recorded_together import recorded_together, surveyed_together
 from processing.text import Text
 from processing.tools.blocks import POINTS_PER_BLOCK, JoinedResults, blocks_of
-from processing.tools.registry import TOOLS
+from processing.tools.registry import EVERY_TOOL, TOOLS
 from processing.tools.tool import (
     CandidateResult,
     FinishedColumns,
@@ -163,15 +163,26 @@ def columns_of(result: RunResult) -> Mapping[str, NDArray[Any]]:
     return {name: columns[name] for name in result.names}
 
 
-def tool_of(name: str) -> Tool:
-    """The tool of an id.
+def any_tool(name: str) -> Tool:
+    """The tool of an id, also one that compares two grounds.
 
     Raises
     ------
     OutOfRange
         There is none.
     """
-    return named(TOOLS, name, Text("There is no such tool.", "そのようなツールはありません。"))
+    return named(EVERY_TOOL, name, _NO_SUCH_TOOL)
+
+
+def tool_of(name: str) -> Tool:
+    """The tool of an id that runs on drives.
+
+    Raises
+    ------
+    OutOfRange
+        There is none.
+    """
+    return named(TOOLS, name, _NO_SUCH_TOOL)
 
 
 def check_needs(tool: Tool, drive: Drive) -> None:
@@ -188,6 +199,8 @@ def check_needs(tool: Tool, drive: Drive) -> None:
         remedy = drive.info.rows_reason
     raise Unsuitable(what.filled(tool=tool.name), Text.same(drive.info.name), remedy)
 
+
+_NO_SUCH_TOOL = Text("There is no such tool.", "そのようなツールはありません。")
 
 _Need = tuple[Callable[[Drive], bool], Text, Text]
 _NEEDS: Mapping[Needs, _Need] = {

@@ -117,7 +117,9 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
     importing.set_defaults(module="import_drives")
     running = commands.add_parser("run", help="run a processing tool on files")
     running.add_argument("tool", metavar="TOOL")
-    _add_inputs(running)
+    _add_inputs(running, least="*")
+    running.add_argument("--before", type=Path, metavar="A", help="of a volume: points, design")
+    running.add_argument("--after", type=Path, metavar="B", help="(.xml), or a level in metres")
     running.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
     running.add_argument("--output", type=Path, required=True, metavar="OUT")
     running.set_defaults(module="run")
@@ -177,8 +179,8 @@ def _add_simulate(commands: _Commands[_Parser]) -> None:
     foretelling.set_defaults(module="simulate", what="density")
 
 
-def _add_inputs(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("inputs", nargs="+", type=Path, metavar="INPUT")
+def _add_inputs(parser: argparse.ArgumentParser, least: str = "+") -> None:
+    parser.add_argument("inputs", nargs=least, type=Path, metavar="INPUT")
     parser.add_argument("--trajectory", action="append", default=[], type=Path, metavar="T")
     parser.add_argument("--images", action="append", default=[], type=Path, metavar="I")
     parser.add_argument("--crs", default="", metavar="EPSG:n")

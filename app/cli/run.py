@@ -11,7 +11,7 @@ from pathlib import Path
 
 from app.cli.opened import OpenedInput, opened_input, terminal_monitor
 from app.cli.output import print_lines
-from processing.errors import OutOfRange
+from processing.errors import MissingInput, OutOfRange
 from processing.formats.safe_write import refuse_inputs, written_safely
 from processing.ground.stored_surface import StoredSurface
 from processing.monitor import Monitor, PartMonitor
@@ -22,7 +22,15 @@ from processing.project.found_features import found_features
 from processing.project.point_results import check_point_output, write_point_results
 from processing.project.scratch_folder import scratch_folder
 from processing.project.surface_files import surface_file_of, write_surface_content
-from processing.runner import RunRequest, check_needs, drives_of, run, run_together, tool_of
+from processing.runner import (
+    RunRequest,
+    any_tool,
+    check_needs,
+    drives_of,
+    run,
+    run_together,
+    tool_of,
+)
 from processing.text import Text
 from processing.tools.parameters import filled_in
 from processing.tools.tool import CandidateResult, FinishedColumns, Tool
@@ -34,7 +42,13 @@ _NOTE = Text("{tool}: {note}", "{tool}: {note}")
 
 def command(arguments: argparse.Namespace) -> int:
     """Run a tool on every drive of the input and write its result."""
+    if any_tool(arguments.tool).compare is not None:
+        # What papers need is imported for them alone.
+        from app.cli import volume
+
+        return volume.command(arguments)
     tool = tool_of(arguments.tool)
+    _check_inputs(arguments)
     parameters = filled_in(tool.parameters, settings_of_words(arguments.set))
     _check_output(tool, arguments.output)
     monitor = terminal_monitor()
@@ -178,6 +192,18 @@ def settings_of_words(words: list[str]) -> dict[str, str]:
             )
         settings[name] = value
     return settings
+
+
+def _check_inputs(arguments: argparse.Namespace) -> None:
+    if not arguments.inputs or arguments.before or arguments.after:
+        raise MissingInput(
+            Text("The tool runs on one input.", "このツールは1つの入力を処理します。"),
+            Text.same(arguments.tool),
+            Text(
+                "Name a project or point files, without --before and --after.",
+                "--before・--after を使わずに、プロジェクトか点群ファイルを指定してください。",
+            ),
+        )
 
 
 def _check_output(tool: Tool, output: Path) -> None:

@@ -7,15 +7,15 @@ import argparse
 from app.cli.output import print_json, print_lines
 from app.cli.parameter_lines import parameter_lines
 from app.language import system_language
-from processing.runner import tool_of
+from processing.runner import any_tool
 from processing.tools.parameters import Parameter, parameters_of
-from processing.tools.registry import TOOLS
+from processing.tools.registry import EVERY_TOOL
 from processing.tools.tool import Tool
 
 
 def command(arguments: argparse.Namespace) -> int:
     """List all tools, or one."""
-    chosen = [tool_of(arguments.name)] if arguments.name else list(TOOLS.values())
+    chosen = [any_tool(arguments.name)] if arguments.name else list(EVERY_TOOL.values())
     if arguments.json:
         described = [_described(tool) for tool in chosen]
         print_json(described[0] if arguments.name else described)
@@ -42,6 +42,8 @@ def _described(tool: Tool) -> dict[str, object]:
 
 
 def _gives(tool: Tool) -> str:
+    if tool.compare is not None:
+        return "volumes"
     return "candidates" if tool.gives_candidates else "columns"
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import shapely
@@ -25,6 +25,7 @@ from processing.earthwork.surfaces import (
 from processing.earthwork.uncertainty import volume_spread
 from processing.earthwork.volume_parameters import GRID, VolumeParameters
 from processing.earthwork.volume_result import Registration, VolumeResult, Volumes
+from processing.earthwork.within import EVERYWHERE, Within
 from processing.ground.cells import CellGrid
 from processing.monitor import Monitor, parts_of
 from processing.text import Text
@@ -39,31 +40,12 @@ _FILLING = Text("Filling what nobody saw", "見えなかった地面を補って
 _SUMMING = Text("Summing", "土量を計算しています")
 
 
-@dataclass(frozen=True)
-class Within:
-    """What a volume is limited to and drawn along.
-
-    Attributes
-    ----------
-    boundary : shapely.Polygon or shapely.MultiPolygon or None
-        m, project CRS; None counts all ground that both sides have.
-    line : (k, 2) float64 or None
-        What sections stand on; None takes the longer middle line of the area.
-    break_lines : tuple of (k, 3) float64
-        Edges of the triangles of both sides.
-    """
-
-    boundary: shapely.Geometry | None = None
-    line: Floats | None = None
-    break_lines: tuple[Floats, ...] = ()
-
-
 def compare(
     before: Side,
     after: Side,
     parameters: VolumeParameters,
     monitor: Monitor,
-    within: Within | None = None,
+    within: Within = EVERYWHERE,
 ) -> VolumeResult:
     """The volume between two sides.
 
@@ -76,7 +58,6 @@ def compare(
         The boundary lies outside, or the mesh is too fine for so large an area.
     Cancelled
     """
-    within = within or Within()
     checks.check_systems(before, after)
     grid = _grid_of((before, after), parameters.grid_m, within.boundary)
     counting, filling, summing = parts_of(monitor, (0.4, 0.4, 0.2))
@@ -226,5 +207,6 @@ def _told(
         change,
         registration,
         notes,
-        other.sections,
+        other.line,
+        other.between,
     )

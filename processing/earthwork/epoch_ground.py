@@ -12,7 +12,7 @@ from processing.earthwork.standing_places import standing_place
 from processing.errors import MissingInput
 from processing.ground.drive_points import Chunk, DrivePoints, read_ahead
 from processing.ground.ground_columns import GROUND
-from processing.monitor import Monitor
+from processing.monitor import Monitor, SilentMonitor
 from processing.points.clock import day_of
 from processing.points.drive import Drive
 from processing.text import Text
@@ -37,7 +37,7 @@ def ground_of_drives(drives: tuple[Drive, ...], monitor: Monitor, *, name: str =
     """
     points = DrivePoints(drives, _AT_ONCE, monitor)
     name = name or ", ".join(dict.fromkeys(drive.info.name for drive in drives))
-    if not any(np.any(points.codes(chunk) == GROUND) for chunk in points.chunks):
+    if not _has_ground(points):
         raise MissingInput(
             Text("No point is classified as ground.", "地面に分類された点がありません。"),
             Text.same(name),
@@ -73,6 +73,15 @@ def ground_of_drives(drives: tuple[Drive, ...], monitor: Monitor, *, name: str =
         crs=next((drive.info.crs for drive in drives if drive.info.crs), ""),
         measured_on=_day_of(drives),
     )
+
+
+def has_ground(drives: tuple[Drive, ...]) -> bool:
+    """Whether ground was looked for: any point of class 2 by the class that counts."""
+    return _has_ground(DrivePoints(drives, _AT_ONCE, SilentMonitor()))
+
+
+def _has_ground(points: DrivePoints) -> bool:
+    return any(np.any(points.codes(chunk) == GROUND) for chunk in points.chunks)
 
 
 def _day_of(drives: tuple[Drive, ...]) -> date | None:

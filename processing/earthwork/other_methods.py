@@ -3,45 +3,32 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from processing.earthwork.change_grid import ChangeGrid
-from processing.earthwork.cross_sections import CrossSection, SectionLine
+from processing.earthwork.cross_sections import SectionLayout
+from processing.earthwork.drawing_parts import SectionedLine
+from processing.earthwork.drawn_sections import drawn_line, volumes_between
 from processing.earthwork.end_areas import end_area_volume, prismoidal_volume
 from processing.earthwork.tin_volume import volume_between
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.earthwork.triangulation import triangulated_ground
 from processing.earthwork.volume_parameters import PRISMOIDAL, TIN, VolumeParameters
+from processing.earthwork.within import Within
 from processing.ground.cells import CellGrid
 from processing.monitor import Monitor
 from processing.text import Text
 
 Floats = NDArray[np.float64]
 
+_LINE = "L1"
 _NOISE_TWICE = Text(
     "Exact between the triangles: noise of the points counts in cut and in fill alike.",
     "三角網の間では厳密ですが、点のノイズは切土量にも盛土量にも加算されます。",
 )
-
-
-class Limits(Protocol):
-    """What a volume is limited to and drawn along."""
-
-    @property
-    def boundary(self) -> shapely.Geometry | None:
-        """The area; None for all ground."""
-
-    @property
-    def line(self) -> Floats | None:
-        """What sections stand on."""
-
-    @property
-    def break_lines(self) -> tuple[Floats, ...]:
-        """Edges of the triangles."""
 
 
 @dataclass(frozen=True)
@@ -50,14 +37,17 @@ class OtherMethod:
 
     Attributes
     ----------
-    sections : tuple of CrossSection
-        Of the methods along a line.
+    line : SectionedLine or None
+        Sections of the methods along a line.
+    between : tuple of (float, float)
+        Cut and fill told at each of them but the first, m³.
     """
 
     cut_m3: float
     fill_m3: float
-    sections: tuple[CrossSection, ...] = ()
     notes: tuple[Text, ...] = ()
+    line: SectionedLine | None = None
+    between: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -91,7 +81,7 @@ class CellSurface:
 
 
 def volume_by(
-    parameters: VolumeParameters, change: ChangeGrid, monitor: Monitor, within: Limits
+    parameters: VolumeParameters, change: ChangeGrid, monitor: Monitor, within: Within
 ) -> OtherMethod:
     """Cut and fill by triangles or along a line, as the parameters say.
 
@@ -103,18 +93,20 @@ def volume_by(
     if parameters.method == TIN:
         return _by_triangles(change, monitor, within)
     line = within.line if within.line is not None else _middle_line(change, within.boundary)
-    along = SectionLine(line, parameters.half_width_m, parameters.interval_m)
+    along = SectionLayout(line, parameters.half_width_m, parameters.interval_m)
     grounds = CellSurface(change.grid, change.before), CellSurface(change.grid, change.after)
     by = prismoidal_volume if parameters.method == PRISMOIDAL else end_area_volume
     found = by(along, grounds, monitor, within.boundary)
-    return OtherMethod(found.cut_m3, found.fill_m3, found.sections, found.notes)
+    drawn = drawn_line(found, along, _LINE)
+    return OtherMethod(found.cut_m3, found.fill_m3, found.notes, drawn, volumes_between(found))
 
 
-def _by_triangles(change: ChangeGrid, monitor: Monitor, within: Limits) -> OtherMethod:
+def _by_triangles(change: ChangeGrid, monitor: Monitor, within: Within) -> OtherMethod:
     sides: list[TriangleSurface] = []
     for heights in (change.before, change.after):
         monitor.check()
-        sides.append(triangulated_ground(_places(change, heights), within.break_lines))
+        places = _places(change, heights)
+        sides.append(triangulated_ground(places, within.break_lines, monitor))
     area = within.boundary if within.boundary is not None else _outline(change)
     found = volume_between(sides[0], sides[1], monitor, area)
     return OtherMethod(found.cut_m3, found.fill_m3, notes=(_NOISE_TWICE,))

@@ -104,3 +104,10 @@ class VolumeParameters:
             "高低差を書き出すGeoTIFF（.tif）です。空欄では書き出しません。",
         ),
     )
+    report: str = file(
+        name=Text("Report", "土量計算書"),
+        explanation=Text(
+            "The volume report as .pdf, .xlsx or .csv. Empty writes none.",
+            "土量計算書を書き出すファイルです（.pdf・.xlsx・.csv）。空欄では書き出しません。",
+        ),
+    )

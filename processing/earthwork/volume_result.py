@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from processing.earthwork.change_grid import ChangeGrid
-from processing.earthwork.cross_sections import CrossSection
+from processing.earthwork.drawing_parts import SectionedLine
 from processing.text import Text
 
 
@@ -82,8 +82,10 @@ class VolumeResult:
         None where only one side is an epoch, or nothing is stable enough to tell.
     notes : tuple of Text
         What a reader of the number has to know, a sentence each.
-    sections : tuple of CrossSection
-        Of the methods along a line.
+    line : SectionedLine or None
+        Sections of the methods along a line.
+    between : tuple of (float, float)
+        Cut and fill told at each section but the first, m³; NaN at one that is halfway only.
     """
 
     volumes: Volumes
@@ -92,4 +94,5 @@ class VolumeResult:
     change: ChangeGrid
     registration: Registration | None = None
     notes: tuple[Text, ...] = ()
-    sections: tuple[CrossSection, ...] = ()
+    line: SectionedLine | None = None
+    between: tuple[tuple[float, float], ...] = ()

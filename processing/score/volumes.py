@@ -42,7 +42,9 @@ def volume_score(result: Mapping[str, float], truth: Mapping[str, float]) -> Fil
     for what in ("cut", "fill"):
         name, (en, ja) = f"{what}{_SEEN}", MEASURES[f"{what}_m3"]
         if name in truth:
-            gap = result.get(f"{what}_m3", math.nan) - truth[name]
+            # What it says of measured ground alone, where it does; a truth can't ask more of it.
+            told = result.get(f"measured_{what}_m3", result.get(f"{what}_m3", math.nan))
+            gap = told - truth[name]
             words = Text("{en} where points are: error as a share", "{ja}（計測範囲）の相対誤差")
             figures.append(
                 NamedFigure(

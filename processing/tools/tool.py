@@ -17,6 +17,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.earthwork.sides import Side
+from processing.earthwork.volume_result import VolumeResult
+from processing.earthwork.within import Within
 from processing.image.grid import PixelGrid
 from processing.monitor import Monitor
 from processing.points.columns import Columns, column_path
@@ -200,6 +203,11 @@ MarkTogether = Callable[[tuple[Drive, ...], Any, Path, int, Monitor], TogetherRe
 ComputeOf = Callable[[Drive, tuple[Drive, ...], Any, Monitor], Compute]
 
 
+# Two grounds, the earlier first, the tool's parameters, whom to tell, and what the volume is
+# limited to.
+Compare = Callable[[Side, Side, Any, Monitor, Within], VolumeResult]
+
+
 # What a person should know before the tool is run on a drive.
 Remark = Callable[[Drive], Text | None]
 
@@ -260,6 +268,8 @@ class Tool:
     find_together : callable or None
         The same on all drives of one survey at once, for a tool that gives one result for what
         several heads and passes measured.
+    compare : callable or None
+        What lies between two grounds, for a tool that needs two of them and no drive.
     remark : callable
         What must be given so that it can run on a drive; None where nothing must.
     """
@@ -280,6 +290,7 @@ class Tool:
     gives_classes: tuple[int, ...] = ()
     find: Find | None = None
     find_together: FindTogether | None = None
+    compare: Compare | None = None
     remark: Remark = nothing_to_remark
 
     @property

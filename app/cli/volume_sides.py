@@ -1,0 +1,138 @@
+"""The two sides that ``--before`` and ``--after`` name: points, a design, or a level."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from app.cli.opened import OpenedInput, opened_input
+from processing.earthwork.epoch_ground import ground_of_drives, has_ground
+from processing.earthwork.sides import Level, Side
+from processing.earthwork.surface_check import check_surface
+from processing.errors import MissingInput, Unsuitable
+from processing.formats.landxml import read_landxml
+from processing.monitor import Monitor, PartMonitor
+from processing.points.drive import Drive
+from processing.points.recorded_together import recordings_of
+from processing.project.project import is_project
+from processing.runner import RunRequest, run_together
+from processing.text import Text
+from processing.tools.ground import GROUND_TOOL
+from processing.tools.parameters import filled_in
+
+_DESIGN = ".xml"
+_FOUND = 0.7
+
+
+@dataclass(frozen=True)
+class NamedSide:
+    """A side as it was given.
+
+    Attributes
+    ----------
+    side : Side
+    source : str
+        Its file, or its level in words.
+    files : tuple of Path
+        What must not be overwritten.
+    points : int
+        Of an epoch; 0 for others.
+    crs : str
+        ``EPSG:n``, or empty when unknown.
+    """
+
+    side: Side
+    source: str
+    files: tuple[Path, ...]
+    points: int
+    crs: str
+
+
+@contextmanager
+def named_side(
+    words: Path, arguments: argparse.Namespace, scratch: Path, monitor: Monitor
+) -> Iterator[NamedSide]:
+    """The side that some words name: a number is a level, ``.xml`` a design, else points.
+
+    Ground is looked for in points that have none yet.
+
+    Raises
+    ------
+    UserError
+        It can't be read; a design without triangles; a project that holds several epochs.
+    """
+    level = _level_of(str(words))
+    if level is not None:
+        yield NamedSide(Level(level), f"{level:g} m", (), 0, "")
+    elif words.suffix.lower() == _DESIGN:
+        found = read_landxml(words, monitor=monitor)
+        surface = found.only().surface
+        check_surface(surface)
+        yield NamedSide(surface, str(words), (words,), 0, found.crs)
+    else:
+        one = argparse.Namespace(
+            inputs=[words], trajectory=[], images=[], crs=arguments.crs, output=arguments.output
+        )
+        opening, finding = PartMonitor(monitor, 0.0, _FOUND), PartMonitor(monitor, _FOUND, 1.0)
+        with opened_input(one, opening) as opened:
+            drives = _epoch(words, opened)
+            if not has_ground(drives):
+                _find_ground(drives, scratch, finding, is_kept=is_project(words))
+            ground = ground_of_drives(drives, finding, name=words.stem)
+            delivered = tuple(path for drive in drives for path in drive.delivered_files)
+            points = sum(drive.count for drive in drives)
+            yield NamedSide(ground, str(words), delivered, points, ground.crs)
+
+
+def _level_of(words: str) -> float | None:
+    try:
+        level = float(words)
+    except ValueError:
+        return None
+    return level if np.isfinite(level) else None
+
+
+def _epoch(words: Path, opened: OpenedInput) -> tuple[Drive, ...]:
+    """The drives of an input; of a project the only recording."""
+    if not is_project(words):
+        return opened.drives
+    recordings = recordings_of(opened.drives)
+    if len(recordings) != 1:
+        names = "; ".join(", ".join(drive.info.name for drive in one) for one in recordings)
+        raise Unsuitable(
+            Text("The project holds several epochs.", "プロジェクトに複数の時期があります。"),
+            Text.same(f"{words}: {names}" if names else str(words)),
+            Text(
+                "Compare them in the window, or give the point files.",
+                "画面上で比較するか、点群ファイルを指定してください。",
+            ),
+        )
+    return recordings[0]
+
+
+def _find_ground(
+    drives: tuple[Drive, ...], scratch: Path, monitor: Monitor, *, is_kept: bool
+) -> None:
+    """Classes of points imported for the moment; a project is not changed by a command."""
+    if is_kept:
+        raise MissingInput(
+            Text("No point is classified as ground.", "地面に分類された点がありません。"),
+            Text.same(", ".join(drive.info.name for drive in drives)),
+            Text(
+                "Run the tool “Ground” in the project first.",
+                "先にプロジェクトで「地面抽出」を実行してください。",
+            ),
+        )
+    for number, together in enumerate(recordings_of(drives)):
+        request = RunRequest(
+            GROUND_TOOL.id, together[0], filled_in(GROUND_TOOL.parameters, {}), together[1:]
+        )
+        result = run_together(request, monitor, into=scratch / f"{drives[0].id}-{number}")
+        # The first folder holds those of the others: it goes last.
+        for drive, columns in reversed(list(zip(together, result.columns, strict=True))):
+            columns.hand_over(drive.columns)
