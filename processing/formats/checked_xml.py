@@ -125,12 +125,15 @@ class CheckedXml:
                 return encoding
         named = _ENCODING.search(head)
         name = named[1].decode().lower() if named else "utf-8"
+        if name.startswith(("utf-16", "utf16", "unicode")):
+            return "utf-8"  # or its own declaration could not have been read byte by byte
         if name in _SHIFT_JIS:
             return "cp932"  # with the characters of Windows, which its programs write
         try:
-            return codecs.lookup(name).name
-        except LookupError as error:
+            b"    ".decode(name)  # unlike a look-up, it refuses codecs that are none of text
+        except (LookupError, UnicodeError) as error:
             raise self._not_encoded(name) from error
+        return name
 
     def _on_root(self, name: str, attributes: dict[str, str]) -> None:
         local = name.rpartition(":")[2]

@@ -146,7 +146,12 @@ def test_unicode_is_known_by_its_first_bytes(tmp_path: Path, codec: str) -> None
     assert read_landxml(tmp_path / "a.xml").only().surface.name == "計画"
 
 
-@pytest.mark.parametrize("encoding", ["UTF-8", "klingon"])
+def test_a_file_that_names_utf_16_and_is_utf_8_is_read(tmp_path: Path) -> None:
+    words = document(surface(name="計画"), encoding="utf-16")
+    assert read(tmp_path, words).only().surface.name == "計画"
+
+
+@pytest.mark.parametrize("encoding", ["UTF-8", "klingon", "base64", "zip", "undefined"])
 def test_an_encoding_that_is_not_the_named_one_is_told(tmp_path: Path, encoding: str) -> None:
     (tmp_path / "a.xml").write_bytes(
         document(surface(name="計画"), encoding=encoding).encode("cp932")
