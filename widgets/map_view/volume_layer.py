@@ -107,10 +107,11 @@ class VolumeLayer(QObject):
 
     def _paint_legend(self, painter: QPainter, viewport: PlaneViewport) -> None:
         limit_m = self._volume.look.limit_m
-        digits = 3 if limit_m < 0.2 else 2
+        classes = change_classes(limit_m)
+        digits = max(_digits_of(one.low) for one in classes[1:])
         rows = [
             (QColor(*one.rgb), one.label(digits, "m").spoken(self._language))
-            for one in reversed(change_classes(limit_m))
+            for one in reversed(classes)
         ]
         unmeasured = _UNMEASURED.spoken(self._language)
         title = _TITLE.spoken(self._language)
@@ -163,6 +164,11 @@ def _path_of(contours: tuple[LevelLine, ...], *, is_index: bool) -> QPainterPath
             for place in places[1:]:
                 path.lineTo(*place)
     return path
+
+
+def _digits_of(value: float) -> int:
+    """Digits behind the point that tell a limit exactly: two at least, at most four."""
+    return next((count for count in (2, 3) if abs(round(value, count) - value) < 1e-9), 4)
 
 
 def _write(painter: QPainter, at: QRectF, words: str) -> None:

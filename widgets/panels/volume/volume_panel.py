@@ -104,20 +104,30 @@ class VolumePanel(QWidget):
         chosen.setSpacing(4)
         chosen.addWidget(self._list, 1)
         chosen.addWidget(self._remove)
-        result, look = QWidget(self), QWidget(self)
-        below = QVBoxLayout(result)
-        below.addLayout(chosen)
-        for part in (self._nothing, self.table, self._work_types, self._export):
-            below.addWidget(part)
-        heat = QVBoxLayout(look)
+        numbers, look, result = QWidget(self), QWidget(self), QWidget(self)
+        above, heat = QVBoxLayout(numbers), QVBoxLayout(look)
+        above.addLayout(chosen)
+        above.addWidget(self._nothing)
+        above.addWidget(self.table)
         heat.addWidget(self._look)
-        for column in (below, heat):
+        for column in (above, heat):
             column.setContentsMargins(8, 8, 8, 8)
             column.setSpacing(8)
             column.addStretch(1)
+        below = QVBoxLayout()
+        below.setContentsMargins(8, 4, 8, 8)
+        below.setSpacing(4)
+        below.addWidget(self._work_types)
+        below.addWidget(self._export)
+        page = QVBoxLayout(result)
+        page.setContentsMargins(0, 0, 0, 0)
+        page.setSpacing(0)
+        # Below what scrolls: it stays in sight however much is to be said.
+        page.addWidget(scrolled(numbers), 1)
+        page.addLayout(below)
         self._pages.setDocumentMode(True)
         self._pages.addTab(self.form, self.tr("Compare"))
-        self._pages.addTab(scrolled(result), self.tr("Result"))
+        self._pages.addTab(result, self.tr("Result"))
         self._pages.addTab(scrolled(look), self.tr("Heat map"))
         whole = QVBoxLayout(self)
         whole.setContentsMargins(0, 0, 0, 0)
@@ -165,7 +175,7 @@ class VolumePanel(QWidget):
             widget.setVisible(bool(newest))
         for part in (self.table, self._export):
             part.setVisible(shown is not None)
-        self._work_types.setVisible(self._work_types.isVisible() and shown is not None)
+        self._work_types.setVisible(False)  # until it is said what was compared
         self._look.setEnabled(shown is not None)
         if is_other:
             self._pages.setCurrentIndex(_RESULT if shown is not None else _FORM)
