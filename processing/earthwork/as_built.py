@@ -72,7 +72,7 @@ class FaceResult:
     rejected : int
         Values beyond the limit of one value (棄却点数).
     within_50, within_80 : int
-        Values within 50 and 80 % of the limit of one value.
+        Values within 50 and 80 % of the limit of one value; a side without one allows all.
     area_m2 : float
         Of the face seen from above, within the boundary, less the strips along its edges.
     unmeasured_area_m2 : float
@@ -302,7 +302,7 @@ def _face_result(
     limits = face.limits
     is_rejected = limits.single.beyond(found)
     kept = found[~is_rejected]
-    percent = np.abs(limits.single.percent(found))
+    narrow, wide = (limits.single.part(share) for share in (NARROW_PERCENT, WIDE_PERCENT))
     area_m2 = float(shapely.area(face.plan))
     empty = face.shares.reshape(-1)[~has_value].sum(dtype=np.float64)
     mean, largest, smallest = _three(kept)
@@ -316,8 +316,8 @@ def _face_result(
         largest_of_all_m=_three(found)[1],
         smallest_of_all_m=_three(found)[2],
         rejected=rejected,
-        within_50=int((percent <= NARROW_PERCENT).sum()),
-        within_80=int((percent <= WIDE_PERCENT).sum()),
+        within_50=int((~narrow.beyond(found)).sum()),
+        within_80=int((~wide.beyond(found)).sum()),
         area_m2=area_m2,
         unmeasured_area_m2=float(empty) * cell_m**2,
         verdicts={

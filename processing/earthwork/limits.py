@@ -45,6 +45,15 @@ class Allowed:
         is_low: NDArray[np.bool_] = values_m < self.low_m - _TOLERANCE_M
         return is_low | (values_m > self.high_m + _TOLERANCE_M)
 
+    def part(self, percent: float) -> Allowed:
+        """A limit that is so many percent of this one."""
+        return Allowed(self.low_m * percent / 100.0, self.high_m * percent / 100.0)
+
+    @property
+    def is_one_sided(self) -> bool:
+        """Whether one of the two sides has no limit."""
+        return not (math.isfinite(self.low_m) and math.isfinite(self.high_m))
+
     def percent(self, values_m: NDArray[np.float64]) -> NDArray[np.float64]:
         """Deviation ÷ limit of its side, %: (n,) float64.
 

@@ -34,6 +34,10 @@ RESULT = Text("Verdict", "合否判定結果")
 MAP_TITLE = Text("Difference ÷ limit of one value", "分布図（標高較差 ÷ 個々の値の規格値）")
 NO_DATA = Text("no data", "データなし")
 
+_ONE_SIDED = Text(
+    "Where one side has no limit, the map shows that side by the other's; it is no defect there.",
+    "規格値が片側だけの場合、分布図の反対側は同じ大きさの値との比で示す（規格値外ではない）。",
+)
 _MM, _M2, _VALUES = Text.same("mm"), Text.same("m²"), Text("values", "点")
 
 
@@ -195,6 +199,8 @@ def notes(result: AsBuiltResult) -> tuple[Text, ...]:
             "平均値・最大値・最小値は棄却点（個々の値の規格値を超える点）を除く。",
         ),
     ]
+    if any(face.limits.single.is_one_sided for face in result.faces):
+        said.append(_ONE_SIDED)
     for face in result.faces:
         if face.rejected:
             high, low = (

@@ -146,7 +146,9 @@ def test_one_value_is_judged_on_each_side_of_its_limit(value: float, rejected: i
 
 
 def test_a_one_sided_limit_lets_the_ground_be_too_high() -> None:
-    assert judged(0.12, work_type="river_embankment").faces[0].passes
+    top = judged(0.2, work_type="river_embankment").faces[0]
+    assert top.passes
+    assert (top.rejected, top.within_50) == (0, top.count)
     assert not judged(-0.12, work_type="river_embankment").faces[0].passes
 
 

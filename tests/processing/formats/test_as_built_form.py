@@ -160,6 +160,17 @@ def test_a_face_without_data_fails_with_words_in_place_of_numbers(tmp_path: Path
     assert page.count("不合格") == 6
 
 
+def test_a_one_sided_limit_is_worded_and_noted(tmp_path: Path) -> None:
+    design = embankment()
+    limits = (as_built_limits(), "river_embankment")
+    river = judge_as_built(measured_on(design, spotted), design, limits, SilentMonitor())
+    path = tmp_path / "form.pdf"
+    write_as_built_form(path, river, FACTS, "ja")
+    page = words_of(path)[0]
+    assert "−150mm以上" in page
+    assert "規格値が片側だけの場合" in page
+
+
 def test_a_character_that_the_font_lacks_is_marked(tmp_path: Path) -> None:
     path = tmp_path / "form.pdf"
     facts = replace(FACTS, work=replace(FACTS.work, work="𠮷野川\t工事\x07"))
