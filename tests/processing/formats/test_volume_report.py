@@ -173,6 +173,18 @@ def test_volumes_between_sections_may_be_given() -> None:
     assert section_sums(rows) == (20.0, 4.0, 6.0)
 
 
+def test_a_section_halfway_between_two_stations_tells_its_areas_only(tmp_path: Path) -> None:
+    nan = float("nan")
+    told = facts(line=line(3), between=((nan, nan), (3.0, 4.0)))
+    assert section_sums(section_rows(told)) == (20.0, 3.0, 4.0)
+    path = tmp_path / "volume.pdf"
+    write_volume_report(path, volume("prismoidal"), told, "ja")
+    assert "nan" not in "".join(words_of(path))
+    csv_path = tmp_path / "volume.csv"
+    write_volume_csv(csv_path, volume("prismoidal"), told, "ja")
+    assert "No.0+10.00,10.00,5.00,,2.00," in csv_path.read_text(encoding="utf-8-sig")
+
+
 def test_a_section_without_ground_is_an_empty_frame(tmp_path: Path) -> None:
     (section,) = line(1).sections
     nothing = np.full_like(section.before, np.nan)
