@@ -182,7 +182,7 @@ def test_a_section_halfway_between_two_stations_tells_its_areas_only(tmp_path: P
     assert "nan" not in "".join(words_of(path))
     csv_path = tmp_path / "volume.csv"
     write_volume_csv(csv_path, volume("prismoidal"), told, "ja")
-    assert "No.0+10.00,10.00,5.00,,2.00," in csv_path.read_text(encoding="utf-8-sig")
+    assert "No.1,10.00,5.00,,2.00," in csv_path.read_text(encoding="utf-8-sig")
 
 
 def test_a_section_without_ground_is_an_empty_frame(tmp_path: Path) -> None:
