@@ -65,10 +65,10 @@ def measured_on(
     heights = design.heights_at(xy)
     heights[np.isnan(heights)] = LEVEL
     xyz = np.column_stack([xy, heights + deviation(xy)])
-    station = np.zeros(len(xyz), np.uint16)
 
     def blocks() -> list[GroundBlock]:
         half = len(xyz) // 2
-        return [GroundBlock(xyz[:half], station[:half]), GroundBlock(xyz[half:], station[half:])]
+        return [GroundBlock(xyz[:half], 1), GroundBlock(xyz[half:], 2)]
 
-    return EpochGround("after.laz", blocks, "EPSG:6677")
+    stands = np.empty((0, 3))
+    return EpochGround("after.laz", blocks, xyz.min(axis=0), xyz.max(axis=0), stands)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from processing.earthwork.as_built import AsBuiltResult, AsBuiltRules, Item, judge_as_built
 from processing.earthwork.limits import AsBuiltLimits, Face
 from processing.earthwork.limits_file import as_built_limits
-from processing.earthwork.sides import EpochGround, GroundBlock
+from processing.earthwork.sides import GroundBlock
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import Cancelled, OutOfRange, Unsuitable
 from processing.monitor import SilentMonitor
@@ -228,7 +228,7 @@ def test_cells_without_points_lower_the_density_and_are_told() -> None:
             for block in whole.blocks()
         ]
 
-    ground = EpochGround("half", half)
+    ground = replace(whole, blocks=half)
     result = judge_as_built(ground, design, (as_built_limits(), ROAD), SilentMonitor())
     top = result.faces[0]
     assert top.density_per_m2 == pytest.approx(0.5, abs=0.05)
@@ -248,7 +248,7 @@ def test_a_face_without_a_value_fails_without_numbers() -> None:
             for block in whole.blocks()
         ]
 
-    ground = EpochGround("top", top_only)
+    ground = replace(whole, blocks=top_only)
     result = judge_as_built(ground, design, (as_built_limits(), ROAD), SilentMonitor())
     top, slope = result.faces
     assert top.passes
@@ -319,10 +319,11 @@ def test_points_that_are_nowhere_are_passed_over() -> None:
         blocks = [GroundBlock(block.xyz.copy(), block.station) for block in whole.blocks()]
         blocks[0].xyz[::7, 2] = np.nan
         blocks[1].xyz[::5, 0] = np.nan
-        return [*blocks, GroundBlock(np.empty((0, 3)), np.empty(0, np.uint16))]
+        return [*blocks, GroundBlock(np.empty((0, 3)), 1)]
 
     limits = (as_built_limits(), ROAD)
-    result = judge_as_built(EpochGround("", broken), design, limits, SilentMonitor())
+    ground = replace(whole, blocks=broken)
+    result = judge_as_built(ground, design, limits, SilentMonitor())
     assert result.faces[0].mean_m == pytest.approx(0.01, abs=1e-6)
 
 
