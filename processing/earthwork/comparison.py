@@ -17,8 +17,8 @@ from processing.earthwork.other_methods import OtherMethod, volume_by
 from processing.earthwork.registration import registration_of
 from processing.earthwork.sides import EpochGround, Side
 from processing.earthwork.surfaces import (
-    HOLE_M,
     GroundSurface,
+    cells_of_hole,
     designed_surface,
     measured_surface,
 )
@@ -91,7 +91,7 @@ def _grid_of(
     """Cells over what both sides have, and some way round a boundary."""
     low, high, height = checks.common_box(sides, boundary, _MARGIN_M)
     # Coarse cells must not lie across the edge of the work by chance of its corner.
-    step = size_m * max(1, round(HOLE_M / size_m))
+    step = size_m * cells_of_hole(size_m)
     first = np.floor(low / step + 1e-9) * step
     return grid_over((first[0], first[1]), (high[0], high[1]), size_m, height)
 

@@ -20,9 +20,15 @@ Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 HOLE_M = 0.5
-"""A gap narrower than this between points is no hole: cells of this size are counted measured."""
+"""Side of the cells on which holes are filled: what hides ground is larger."""
 
 _BELOW_M = 0.1
+_BRIDGED_M = 0.2
+
+
+def cells_of_hole(size_m: float) -> int:
+    """How many cells of a side holes are filled in at a time."""
+    return max(1, round(HOLE_M / size_m))
 
 
 @dataclass(frozen=True)
@@ -76,20 +82,33 @@ def measured_surface(
         What was taken from the epoch's points when they were counted.
     """
     grid = cells.grid
-    times = max(1, round(HOLE_M / grid.size_m))
+    times = cells_of_hole(grid.size_m)
     coarse, wanted = _coarse(cells.heights, times), _any_of(is_wanted, times)
     origin = grid.origin + np.asarray(shift_m)
     lines = _sight_lines(epoch, origin, (coarse, times * grid.size_m), monitor)
     filled = filled_ground(coarse, wanted, lines, times * grid.size_m, monitor)
     shape = cells.heights.shape
     heights = np.where(cells.is_counted, cells.heights, _fine(filled.heights, times, shape))
-    is_measured = cells.is_counted | np.isfinite(_repeated(coarse, times, shape))
     # Larger holes keep what was found for them: a crest would be smoothed away again.
-    relaxed(heights, cells.is_counted | ~is_measured)
+    relaxed(heights, cells.is_counted | np.isnan(_repeated(coarse, times, shape)))
+    is_measured = _bridged(cells)
     spread = np.where(is_measured, 0.0, _repeated(filled.spread, times, shape))
     outside = ~is_wanted & ~cells.is_counted
     heights[outside] = np.nan
     return GroundSurface(heights, is_measured & np.isfinite(heights), spread)
+
+
+def _bridged(cells: GroundCells) -> Mask:
+    """Cells with points, and those between them: a gap of two or three cells is none."""
+    from scipy.ndimage import binary_closing
+
+    reach = round(_BRIDGED_M / cells.grid.size_m)
+    if reach == 0:
+        return cells.is_counted
+    square = np.ones((3, 3), np.bool_)
+    padded = np.pad(cells.is_counted, reach)
+    closed: Mask = binary_closing(padded, square, iterations=reach)[reach:-reach, reach:-reach]
+    return closed
 
 
 def _sight_lines(
@@ -106,7 +125,8 @@ def _sight_lines(
         monitor.check()
         if block.station not in epoch.stations:
             continue
-        xyz = block.xyz - origin
+        # Noise has no place.
+        xyz = block.xyz[np.isfinite(block.xyz[:, 0])] - origin
         column, row = np.floor(xyz[:, :2] / size_m).astype(np.int64).T
         is_in = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
         is_above = ~is_in
