@@ -6,7 +6,7 @@ import argparse
 import json
 from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -62,7 +62,8 @@ def command(arguments: argparse.Namespace) -> int:
         within = _within(parameters, crs)
         result = compare(before.side, after.side, parameters, comparing, within)
         told = _told(result, before, after, crs)
-        paths = _write(arguments.output, told, result, (before, after), parameters, writing)
+        papers = _Papers(result, (before, after), parameters, crs)
+        paths = papers.write(arguments.output, told, writing)
     print_lines(*(str(path) for path in paths))
     return 0
 
@@ -157,31 +158,33 @@ def _day(one: NamedSide) -> str | None:
     return None if day is None else day.isoformat()
 
 
-def _write(
-    output: Path,
-    told: Mapping[str, object],
-    result: VolumeResult,
-    sides: tuple[NamedSide, NamedSide],
-    parameters: VolumeParameters,
-    monitor: Monitor,
-) -> list[Path]:
-    """The result last: where it is, all of it is."""
-    never = [path for side in sides for path in side.files]
-    refuse_inputs(output, never)
-    written = []
-    if parameters.map:
-        path, crs = Path(parameters.map), str(told["crs"])
-        write_change_geotiff(path, result.change, crs=crs, monitor=monitor, never=never)
-        written.append(path)
-    if parameters.report:
-        path = Path(parameters.report)
-        facts = _facts(result, sides, parameters, str(told["crs"]))
-        _write_report(path, result, facts, never, monitor)
-        written.append(path)
-    with written_safely(output, never=never) as temporary:
-        text = json.dumps(told, ensure_ascii=False, indent=1)
-        temporary.write_text(text + "\n", encoding="utf-8")
-    return [output, *written]
+@dataclass(frozen=True)
+class _Papers:
+    """What is written of a volume."""
+
+    result: VolumeResult
+    sides: tuple[NamedSide, NamedSide]
+    parameters: VolumeParameters
+    crs: str
+
+    def write(self, output: Path, told: Mapping[str, object], monitor: Monitor) -> list[Path]:
+        """The numbers last: where they are, all of it is."""
+        never = [path for side in self.sides for path in side.files]
+        refuse_inputs(output, never)
+        written = []
+        if self.parameters.map:
+            path, change = Path(self.parameters.map), self.result.change
+            write_change_geotiff(path, change, crs=self.crs, monitor=monitor, never=never)
+            written.append(path)
+        if self.parameters.report:
+            path = Path(self.parameters.report)
+            facts = _facts(self.result, self.sides, self.parameters, self.crs)
+            _write_report(path, self.result, facts, never, monitor)
+            written.append(path)
+        with written_safely(output, never=never) as temporary:
+            text = json.dumps(told, ensure_ascii=False, indent=1)
+            temporary.write_text(text + "\n", encoding="utf-8")
+        return [output, *written]
 
 
 def _write_report(
