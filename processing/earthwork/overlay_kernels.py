@@ -1,6 +1,6 @@
 """What two triangles share, seen from above: loops over pairs that lie in the same buckets.
 
-All triangles are counterclockwise, near the origin, and no narrower than a micrometre. Buckets are
+All triangles are counterclockwise, near the origin, and have an area. Buckets are
 those of :class:`processing.earthwork.plan_buckets.PlanBuckets`.
 """
 

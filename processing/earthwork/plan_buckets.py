@@ -13,6 +13,7 @@ Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
 _SMALLEST_M = 1e-6
+_OF_TRIANGLE = 1.2
 _MOST_BUCKETS = 4_000_000
 _MOST_ENTRIES_EACH = 16
 _FEW_ENTRIES = 1_000_000
@@ -60,9 +61,11 @@ def bucketed(triangles: Floats) -> PlanBuckets:
     plan = triangles[:, :, :2].reshape(-1, 2)
     low, high = plan.min(axis=0), plan.max(axis=0)
     size = high - low
-    wide = np.ptp(triangles[:, :, :2], axis=1).max(axis=1)
+    u, v = (triangles[:, corner, :2] - triangles[:, 0, :2] for corner in (1, 2))
+    doubled = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
     least = float(max(np.sqrt(size.prod() / _MOST_BUCKETS), size.max() / _MOST_BUCKETS))
-    side = max(float(np.median(wide)), least, _SMALLEST_M)
+    # By area: thin triangles would make buckets as large as they are long.
+    side = max(_OF_TRIANGLE * float(np.sqrt(np.median(doubled))), least, _SMALLEST_M)
     most = _MOST_ENTRIES_EACH * len(triangles) + _FEW_ENTRIES
     while True:
         columns, rows = (int(count) for count in np.floor(size / side).astype(np.int64) + 1)
