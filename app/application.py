@@ -25,6 +25,7 @@ from app.actions.view import view_actions
 from app.class_judging import ClassJudging
 from app.cli.window_wish import WindowWish
 from app.document import Document
+from app.earthwork import Earthwork
 from app.hand import make_toolbox
 from app.jobs import JobQueue
 from app.main_window import MainWindow
@@ -37,11 +38,14 @@ from app.theme import Theme
 from app.translation import Translation
 from app.view_area import ViewArea
 from app.view_docks import View, ViewDocks
+from app.volume_exports import VOLUME_EXPORTS
 from app.window_change import WindowChange
 from app.window_contents import Contents
 from app.window_parts import LastingParts, WindowParts
 from app.wiring import connect_lasting, connect_parts
+from processing.earthwork.limits_file import as_built_limits
 from processing.text import Language, Text
+from processing.tools.volume import VOLUME
 from widgets.camera_view.panel import CameraPanel
 from widgets.image_view.side_by_side import ImageViews
 from widgets.map_view.view import MapView
@@ -57,6 +61,7 @@ from widgets.panels.processing_panel import ProcessingPanel
 from widgets.panels.project_tree import ProjectTree
 from widgets.panels.review_panel import ReviewPanel
 from widgets.panels.template_panel import TemplatePanel
+from widgets.panels.volume.volume_panel import VolumePanel
 from widgets.parts.drawing_bar import DrawingBar
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
@@ -158,6 +163,7 @@ def _make_lasting(settings: Settings) -> LastingParts:
         review=review,
         source_watch=SourceWatch(document, document),
         judging=ClassJudging(document, jobs, document),
+        earthwork=Earthwork(document, jobs, document),
         toolbox=make_toolbox(document),
         window=MainWindow(),
     )
@@ -173,6 +179,14 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
     section_view.use_settings(lasting.settings.section)
     camera_panel = CameraPanel(document, shared, language=language)
     map_view = MapView(document, shared, tiles, language=language)
+    views = (
+        View("scene", Text.same("3D"), scene_view),
+        View("section", Text("Section", "断面"), section_view),
+        View("camera", Text("Camera", "カメラ"), camera_panel),
+        View("map", Text("Map", "地図"), map_view),
+    )
+    exports = tuple((one.id, one.name) for one in VOLUME_EXPORTS)
+    work_types = tuple((one.id, one.name) for one in as_built_limits().work_types)
     image_bar = ImageBar(document, shared, language)
     hints = {entry.name: entry.hint for entry in TOOL_ENTRIES}
     message_bar = MessageBar(language)
@@ -187,21 +201,14 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         review=lasting.review,
         source_watch=lasting.source_watch,
         judging=lasting.judging,
+        earthwork=lasting.earthwork,
         toolbox=lasting.toolbox,
         image_views=image_views,
         scene_view=scene_view,
         section_view=section_view,
         camera_panel=camera_panel,
         map_view=map_view,
-        view_docks=ViewDocks(
-            (
-                View("scene", Text.same("3D"), scene_view),
-                View("section", Text("Section", "断面"), section_view),
-                View("camera", Text("Camera", "カメラ"), camera_panel),
-                View("map", Text("Map", "地図"), map_view),
-            ),
-            language,
-        ),
+        view_docks=ViewDocks(views, language),
         image_bar=image_bar,
         drawing_bar=DrawingBar(shared, hints, language),
         message_bar=message_bar,
@@ -219,6 +226,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         template_panel=TemplatePanel(
             document, shared, document.templates, document.do_at_hand, language=language
         ),
+        volume_panel=VolumePanel(shared, VOLUME.parameters, exports, work_types, language=language),
         feature_table=FeatureTable(document, shared, language),
         jobs_panel=JobsPanel(language),
         window=lasting.window,

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QFrame, QScrollArea, QTabWidget, QWidget
+from PySide6.QtWidgets import QTabWidget, QWidget
 
 from app.window_contents import Panel
 from app.window_parts import WindowParts
 from processing.text import Text
+from widgets.parts.scrolled import scrolled
 
 _LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
 _RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
@@ -46,7 +47,14 @@ def _right_panels(parts: WindowParts) -> tuple[Panel, ...]:
         _right(
             "templates",
             Text("Templates", "テンプレート"),
-            _scrolled(parts.template_panel),
+            scrolled(parts.template_panel),
+            narrow_behind="layers",
+            is_hidden=True,
+        ),
+        _right(
+            "volume",
+            Text("Volume", "土量"),
+            parts.volume_panel,
             narrow_behind="layers",
             is_hidden=True,
         ),
@@ -75,24 +83,14 @@ def _right(
     )
 
 
-def _scrolled(panel: QWidget) -> QScrollArea:
-    """A panel that is higher than what a low screen has for it."""
-    area = QScrollArea()
-    area.setWidgetResizable(True)
-    area.setFrameShape(QFrame.Shape.NoFrame)
-    area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-    area.setWidget(panel)
-    return area
-
-
 def _evaluation_pages(parts: WindowParts) -> QTabWidget:
     """One place for everything that says how good tools are."""
     pages = QTabWidget()
     pages.setDocumentMode(True)
     for title, page in (
         (Text("Candidates", "候補"), parts.evaluation_panel),
-        (Text("Point classes", "点のクラス"), _scrolled(parts.class_panel)),
-        (Text("Parameter study", "パラメータ検討"), _scrolled(parts.study_panel)),
+        (Text("Point classes", "点のクラス"), scrolled(parts.class_panel)),
+        (Text("Parameter study", "パラメータ検討"), scrolled(parts.study_panel)),
     ):
         pages.addTab(page, title.spoken(parts.language))
     return pages

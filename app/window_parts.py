@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 
 from app.class_judging import ClassJudging
 from app.document import Document
+from app.earthwork import Earthwork
 from app.jobs import JobQueue
 from app.main_window import MainWindow
 from app.review import Review
@@ -32,6 +33,7 @@ from widgets.panels.processing_panel import ProcessingPanel
 from widgets.panels.project_tree import ProjectTree
 from widgets.panels.review_panel import ReviewPanel
 from widgets.panels.template_panel import TemplatePanel
+from widgets.panels.volume.volume_panel import VolumePanel
 from widgets.parts.drawing_bar import DrawingBar
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
@@ -52,6 +54,7 @@ class LastingParts:
     review: Review
     source_watch: SourceWatch
     judging: ClassJudging
+    earthwork: Earthwork
     toolbox: MouseToolbox
     window: MainWindow
 
@@ -71,6 +74,7 @@ class WindowParts:
     review: Review
     source_watch: SourceWatch
     judging: ClassJudging
+    earthwork: Earthwork
     toolbox: MouseToolbox
     image_views: ImageViews
     scene_view: SceneView
@@ -93,6 +97,7 @@ class WindowParts:
     study_panel: StudyPanel
     label_panel: LabelPanel
     template_panel: TemplatePanel
+    volume_panel: VolumePanel
     feature_table: FeatureTable
     jobs_panel: JobsPanel
     window: MainWindow

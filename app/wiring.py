@@ -15,6 +15,7 @@ from app.jobs import JobState, JobStatus
 from app.review_wiring import connect_review
 from app.template_wiring import connect_templates
 from app.view_wiring import connect_views
+from app.volume_wiring import connect_volumes
 from app.window_parts import WindowParts, take_down
 from processing.errors import Unsuitable
 from processing.project.change import Change
@@ -47,6 +48,7 @@ def connect_parts(parts: WindowParts) -> None:
     connect_review(parts)
     connect_templates(parts)
     connect_classes(parts)
+    connect_volumes(parts)
     parts.window.closed.connect(wiring.on_window_closed)
     wiring.on_undo_stack_changed()
     wiring.on_toolbox_tool_chosen(parts.toolbox.name)

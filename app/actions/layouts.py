@@ -17,7 +17,8 @@ _HINTS = {
         "画像・断面・カメラ・3Dを同時に表示して候補を確認します。",
     ),
     ViewLayout.EARTHWORK: Text(
-        "The map and the section fill the window.", "地図と断面を大きく表示します。"
+        "The map and the section fill the window, volumes beside them.",
+        "地図と断面を大きく表示し、土量パネルを開きます。",
     ),
     ViewLayout.TWO_SCREENS: Text(
         "The image fills this window, the other views a second one.",
@@ -26,6 +27,7 @@ _HINTS = {
 }
 
 _REVIEW_PX = 600
+_VOLUME_PX = 800
 
 
 def layout_actions(parts: WindowParts) -> tuple[Action, ...]:
@@ -37,6 +39,9 @@ def layout_actions(parts: WindowParts) -> tuple[Action, ...]:
             if layout is ViewLayout.CHECKING:
                 parts.window.show_panel("review")
                 make_room(parts.window, "review", _REVIEW_PX)
+            if layout is ViewLayout.EARTHWORK:
+                parts.window.show_panel("volume")
+                make_room(parts.window, "volume", _VOLUME_PX)
 
         return Action(
             f"layout-{layout.value}",

@@ -8,6 +8,7 @@ from app.actions.action import Action
 from app.window_parts import WindowParts
 from processing.text import Text
 from processing.tools.registry import TOOLS
+from processing.tools.volume import VOLUME
 
 
 @dataclass(frozen=True)
@@ -88,15 +89,28 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
             needs_project=True,
         )
 
+    def show_volume() -> None:
+        parts.window.show_panel("volume")
+
     def cancel_all() -> None:
         for status in parts.jobs.statuses:
             parts.jobs.cancel(status.id)
 
+    volume = Action(
+        "volume",
+        Text("Volume…", "土量計算…"),
+        show_volume,
+        "process",
+        ("Ctrl+F9",),
+        hint=VOLUME.explanation,
+        needs_project=True,
+    )
     cancel = Action(
         "cancel-jobs", Text("Cancel all jobs", "すべてのジョブを中止"), cancel_all, "process"
     )
     return (
         *(running(one) for one in one_click_tools()),
         *(showing(tool) for tool in TOOLS),
+        volume,
         cancel,
     )

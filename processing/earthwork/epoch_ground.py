@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from datetime import date
 
 import numpy as np
 
@@ -13,12 +12,11 @@ from processing.errors import MissingInput
 from processing.ground.drive_points import Chunk, DrivePoints, read_ahead
 from processing.ground.ground_columns import GROUND
 from processing.monitor import Monitor, SilentMonitor
-from processing.points.clock import day_of
 from processing.points.drive import Drive
+from processing.points.measured_day import measured_day
 from processing.text import Text
 
 _AT_ONCE = 1 << 17
-_HOURS_AHEAD = 9.0  # of Japan
 
 
 def ground_of_drives(drives: tuple[Drive, ...], monitor: Monitor, *, name: str = "") -> EpochGround:
@@ -71,7 +69,7 @@ def ground_of_drives(drives: tuple[Drive, ...], monitor: Monitor, *, name: str =
         stations=stations,
         measured=measured,
         crs=next((drive.info.crs for drive in drives if drive.info.crs), ""),
-        measured_on=_day_of(drives),
+        measured_on=measured_day(drives),
     )
 
 
@@ -82,11 +80,3 @@ def has_ground(drives: tuple[Drive, ...]) -> bool:
 
 def _has_ground(points: DrivePoints) -> bool:
     return any(np.any(points.codes(chunk) == GROUND) for chunk in points.chunks)
-
-
-def _day_of(drives: tuple[Drive, ...]) -> date | None:
-    for drive in drives:
-        times = drive.columns["time"][:1] if drive.columns.has("time") else np.empty(0)
-        if times.size and np.isfinite(times[0]):
-            return day_of(float(times[0]), _HOURS_AHEAD)
-    return None

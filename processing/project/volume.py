@@ -31,7 +31,6 @@ class ChosenSide:
     Attributes
     ----------
     kind : SideKind
-        A level's height is among the parameters.
     name : str
         What people call it; empty for a level.
     drives : tuple of str
@@ -40,6 +39,8 @@ class ChosenSide:
         A design's file, and which surface in it where there are several.
     measured_on : date or None
         An epoch's first day, where its points tell.
+    height_m : float
+        Of a level.
     """
 
     kind: SideKind
@@ -48,6 +49,7 @@ class ChosenSide:
     path: str = ""
     surface: str = ""
     measured_on: date | None = None
+    height_m: float = 0.0
 
 
 @dataclass(frozen=True)

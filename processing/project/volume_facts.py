@@ -105,6 +105,7 @@ def _side_values(side: ChosenSide) -> Facts:
         "path": side.path,
         "surface": side.surface,
         "measured_on": None if day is None else day.isoformat(),
+        "height_m": side.height_m,
     }
 
 
@@ -117,6 +118,7 @@ def _side_of(values: Facts) -> ChosenSide:
         str(values["path"]),
         str(values["surface"]),
         None if day is None else date.fromisoformat(day),
+        float(values["height_m"]),
     )
 
 

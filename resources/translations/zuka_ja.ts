@@ -1752,6 +1752,10 @@ kept</source>
         <translation>標高</translation>
     </message>
     <message>
+        <source>Level {height} m</source>
+        <translation>標高 {height} m</translation>
+    </message>
+    <message>
         <source>{name} ({day})</source>
         <translation>{name}（{day}）</translation>
     </message>
@@ -2213,6 +2217,10 @@ kept</source>
         <translation>三角網のブレークラインとして使います。1本だけのときは断面の中心線にもなります</translation>
     </message>
     <message>
+        <source>Level</source>
+        <translation>標高</translation>
+    </message>
+    <message>
         <source>Find the ground of both</source>
         <translation>両方の地面を抽出</translation>
     </message>
@@ -2333,6 +2341,29 @@ kept</source>
     <message>
         <source>Not measured, filled in</source>
         <translation>未計測（補間）の面積</translation>
+    </message>
+</context>
+<context>
+    <name>VolumeWiring</name>
+    <message>
+        <source>Export the volume</source>
+        <translation>土量の書き出し</translation>
+    </message>
+    <message>
+        <source>The area that is computed within</source>
+        <translation>計算する範囲</translation>
+    </message>
+    <message>
+        <source>Areas (*.geojson *.json *.gpkg *.dxf);;All files (*)</source>
+        <translation>範囲 (*.geojson *.json *.gpkg *.dxf);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Design surface</source>
+        <translation>設計面</translation>
+    </message>
+    <message>
+        <source>LandXML (*.xml *.landxml);;All files (*)</source>
+        <translation>LandXML (*.xml *.landxml);;すべてのファイル (*)</translation>
     </message>
 </context>
 <context>

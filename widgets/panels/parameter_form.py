@@ -22,6 +22,8 @@ class ParameterForm(QWidget):
     parameters : type
         A tool's frozen dataclass of fields from :mod:`processing.tools.parameters`.
     language : Language
+    has_files : bool
+        Whether files can be given; else they keep their defaults.
 
     Signals
     -------
@@ -40,6 +42,8 @@ class ParameterForm(QWidget):
         parameters: type[Any],  # each tool has a dataclass of its own
         language: Language,
         parent: QWidget | None = None,
+        *,
+        has_files: bool = True,
     ) -> None:
         super().__init__(parent)
         self._parameters = parameters
@@ -54,6 +58,8 @@ class ParameterForm(QWidget):
         layout.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
         layout.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
         for parameter in parameters_of(parameters):
+            if parameter.kind == "file" and not has_files:
+                continue
             row = ParameterRow(parameter, language, self)
             row.changed.connect(self.changed)
             name = QLabel(parameter.name.spoken(language), self)

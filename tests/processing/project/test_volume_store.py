@@ -79,7 +79,7 @@ def test_a_volume_is_read_again_as_it_was_kept(tmp_path: Path) -> None:
 
 def test_a_volume_without_registration_and_lines_is_read_again(tmp_path: Path) -> None:
     result = _result(None)
-    wish = VolumeWish(ChosenSide(SideKind.LEVEL), BEFORE, {})
+    wish = VolumeWish(ChosenSide(SideKind.LEVEL, height_m=4.25), BEFORE, {})
     kept = new_volume(wish, result, crs="", version=1, made=MADE)
     write_volume(kept, result.change, tmp_path / "made")
     VolumeStore(tmp_path).add(kept, tmp_path / "made")

@@ -52,6 +52,8 @@ class SideBox(QComboBox):
 
     def choose(self, side: ChosenSide) -> None:
         """Choose a ground as a kept volume names it."""
+        if side.kind is SideKind.LEVEL:
+            side = _LEVEL  # its height is a field of the form
         if side.kind is SideKind.DESIGN and side not in self._designs:
             self._designs.append(side)
         self._side = side
@@ -74,8 +76,9 @@ class SideBox(QComboBox):
     def _fill(self) -> None:
         with QSignalBlocker(self):
             self.clear()
-            for side in (*self._epochs, *self._designs, _LEVEL):
+            for side in (*self._epochs, *self._designs):
                 self.addItem(side_words(side), side)
+            self.addItem(self.tr("Level"), _LEVEL)
             self.addItem(self.tr("Design from LandXML…"), None)
             sides = [self.itemData(number) for number in range(self.count() - 1)]
             self.setCurrentIndex(sides.index(self._side) if self._side in sides else -1)
@@ -93,7 +96,9 @@ class SideBox(QComboBox):
 def side_words(side: ChosenSide) -> str:
     """What a ground is called."""
     if side.kind is SideKind.LEVEL:
-        return QCoreApplication.translate("SideBox", "Level")
+        return QCoreApplication.translate("SideBox", "Level {height} m").format(
+            height=f"{side.height_m:.3f}"
+        )
     if side.measured_on is None:
         return side.name
     return QCoreApplication.translate("SideBox", "{name} ({day})").format(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -20,10 +21,14 @@ from PySide6.QtWidgets import (
 )
 
 from processing.project.epochs import Epoch
+from processing.project.volume import ChosenSide, SideKind
 from processing.text import Language, Text
 from widgets.panels.parameter_form import ParameterForm
 from widgets.panels.volume.side_box import SideBox
+from widgets.parts.number_field import NumberField
 from widgets.parts.scrolled import scrolled
+
+_HIGHEST_M = 9000.0
 
 
 class Within(Enum):
@@ -55,6 +60,7 @@ class VolumeForm(QWidget):
     Attributes
     ----------
     before, after : SideBox
+    parameters : ParameterForm
     """
 
     changed = Signal()
@@ -80,7 +86,9 @@ class VolumeForm(QWidget):
         self._with_lines.setToolTip(
             self.tr("As break lines of triangles; a single one also as the axis of sections")
         )
-        self.parameters = ParameterForm(parameters, language, self)
+        self.parameters = ParameterForm(parameters, language, self, has_files=False)
+        self._level = NumberField(-_HIGHEST_M, _HIGHEST_M, unit="m", parent=self)
+        self._level_name = QLabel(self.tr("Level"), self)
         self._why_not = QLabel(self)
         self._why_not.setWordWrap(True)
         self._ground = QPushButton(self.tr("Find the ground of both"), self)
@@ -103,6 +111,7 @@ class VolumeForm(QWidget):
         rows.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
         rows.addRow(self.tr("Before"), self.before)
         rows.addRow(self.tr("After"), self.after)
+        rows.addRow(self._level_name, self._level)
         rows.addRow(self.tr("Within"), self._within)
         rows.addRow(self._with_lines)
         fields = QWidget(self)
@@ -123,6 +132,12 @@ class VolumeForm(QWidget):
         layout.setSpacing(0)
         layout.addWidget(scrolled(fields), 1)
         layout.addLayout(below)
+
+    @property
+    def sides(self) -> tuple[ChosenSide | None, ChosenSide | None]:
+        """What was before and what came after; a level with its height."""
+        before, after = (self._with_height(box.side) for box in (self.before, self.after))
+        return before, after
 
     @property
     def within(self) -> Within:
@@ -170,6 +185,12 @@ class VolumeForm(QWidget):
 
     def refresh(self) -> None:
         """Ask again whether it can be computed."""
+        has_level = any(
+            box.side is not None and box.side.kind is SideKind.LEVEL
+            for box in (self.before, self.after)
+        )
+        self._level.setVisible(has_level)
+        self._level_name.setVisible(has_level)
         reason = None if self._reason is None else self._reason()
         lacks_ground = reason is None and self._needs_ground is not None and self._needs_ground()
         self._run.setEnabled(reason is None and not lacks_ground)
@@ -179,6 +200,11 @@ class VolumeForm(QWidget):
         self._why_not.setText(said)
         self._why_not.setVisible(bool(said))
         self._ground.setVisible(lacks_ground)
+
+    def _with_height(self, side: ChosenSide | None) -> ChosenSide | None:
+        if side is None or side.kind is not SideKind.LEVEL:
+            return side
+        return replace(side, height_m=self._level.value())
 
     def _fill_within(self, chosen: Within) -> None:
         self._within.clear()

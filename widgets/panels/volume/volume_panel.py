@@ -182,7 +182,7 @@ class VolumePanel(QWidget):
 
     def _name_of(self, kept: KeptVolume) -> str:
         sides = kept.wish.before, kept.wish.after
-        before, after = (side.name or side_words(side) for side in sides)
+        before, after = (side.name or side_words(side) for side in sides)  # a level has none
         return self.tr("{moment}  {before} → {after}").format(
             moment=_moment(kept), before=before, after=after
         )

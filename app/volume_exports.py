@@ -1,0 +1,161 @@
+"""What a volume can be given out as: each kind of file by its id, and how it is written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
+
+from app.volume_papers import (
+    GivenVolume,
+    is_judged,
+    write_form,
+    write_form_csv,
+    write_form_xlsx,
+    write_report,
+    write_report_csv,
+    write_report_xlsx,
+)
+from processing.earthwork.change_grid import ChangeGrid
+from processing.earthwork.heat_map import change_classes
+from processing.earthwork.triangle_surface import TriangleSurface
+from processing.earthwork.triangulation import triangulated_ground
+from processing.formats.change_geotiff import write_change_geotiff
+from processing.formats.earthwork_dxf import EarthworkPlan, PlanLook, write_earthwork_dxf
+from processing.formats.landxml_writing import LandXmlFacts, WrittenSurface, write_landxml
+from processing.monitor import Monitor
+from processing.project.volume import KeptVolume
+from processing.text import Text
+
+_TITLE = Text("Cut {cut} m³, fill {fill} m³", "切土量 {cut} m³、盛土量 {fill} m³")
+_AFTER = Text("Ground after", "変化後の地盤")
+_MOST_CORNERS = 200_000
+_LONGEST_CELLS = 3.0
+
+Write = Callable[[Path, GivenVolume, Monitor], None]
+
+
+def _always(_kept: KeptVolume) -> bool:
+    return True
+
+
+@dataclass(frozen=True)
+class VolumeExport:
+    """One kind of file.
+
+    Attributes
+    ----------
+    ending : str
+        With its dot.
+    is_for : callable
+        Whether it can be made of a volume.
+    """
+
+    id: str
+    name: Text
+    ending: str
+    write: Write
+    is_for: Callable[[KeptVolume], bool] = _always
+
+
+def _write_geotiff(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+    write_change_geotiff(path, given.change, crs=given.kept.crs, monitor=monitor, never=given.never)
+
+
+def _write_plan(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+    volumes = given.kept.volumes
+    amounts = _TITLE.filled(cut=f"{volumes.cut_m3:,.1f}", fill=f"{volumes.fill_m3:,.1f}")
+    plan = EarthworkPlan(
+        title=(Text.same(given.work), amounts),
+        change=given.change,
+        classes=change_classes(given.limit_m),
+        contours=given.contours,
+        boundary=_rings_of(given.kept.wish.boundary),
+        crs=given.kept.crs,
+    )
+    look = PlanLook(language=given.language)
+    write_earthwork_dxf(path, plan, look, monitor=monitor, never=given.never)
+
+
+def _write_surface(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+    surface = _later_ground(given.change, given.kept.wish.boundary, monitor)
+    named = TriangleSurface(surface.xyz, surface.corners, _AFTER.spoken(given.language))
+    facts = LandXmlFacts(given.work, given.kept.crs, "")
+    written = (WrittenSurface(named),)
+    write_landxml(path, written, facts, monitor=monitor, never=given.never)
+
+
+def _later_ground(
+    change: ChangeGrid, boundary: BaseGeometry | None, monitor: Monitor
+) -> TriangleSurface:
+    """Triangles between the middles of cells, as many of them as programs can read."""
+    grid = change.grid
+    step = max(1, int(np.ceil(np.sqrt(grid.rows * grid.columns / _MOST_CORNERS))))
+    rows, columns = (
+        part.reshape(-1)
+        for part in np.meshgrid(
+            np.arange(0, grid.rows, step), np.arange(0, grid.columns, step), indexing="ij"
+        )
+    )
+    is_there = np.isfinite(change.change_m[rows, columns])
+    rows, columns = rows[is_there], columns[is_there]
+    heights = change.after[rows, columns].astype(np.float64)
+    plan = np.column_stack([columns, rows]) + 0.5
+    xyz = grid.origin + np.column_stack([plan * grid.size_m, heights])
+    longest_m = _LONGEST_CELLS * step * grid.size_m
+    return triangulated_ground(xyz, (), monitor, longest_m=longest_m, boundary=boundary)
+
+
+VOLUME_EXPORTS: tuple[VolumeExport, ...] = (
+    VolumeExport("report", Text("Volume report (PDF)", "土量計算書（PDF）"), ".pdf", write_report),
+    VolumeExport(
+        "report-table",
+        Text("Volume report (XLSX)", "土量計算書（XLSX）"),
+        ".xlsx",
+        write_report_xlsx,
+    ),
+    VolumeExport(
+        "report-csv", Text("Volume report (CSV)", "土量計算書（CSV）"), ".csv", write_report_csv
+    ),
+    VolumeExport(
+        "form",
+        Text("As-built form 31-2 (PDF)", "様式-31-2 出来形合否判定総括表（PDF）"),
+        ".pdf",
+        write_form,
+        is_judged,
+    ),
+    VolumeExport(
+        "form-table",
+        Text("As-built form 31-2 (XLSX)", "様式-31-2 出来形合否判定総括表（XLSX）"),
+        ".xlsx",
+        write_form_xlsx,
+        is_judged,
+    ),
+    VolumeExport(
+        "form-csv",
+        Text("As-built form 31-2 (CSV)", "様式-31-2 出来形合否判定総括表（CSV）"),
+        ".csv",
+        write_form_csv,
+        is_judged,
+    ),
+    VolumeExport(
+        "surface", Text("Ground after (LandXML)", "変化後の地盤（LandXML）"), ".xml", _write_surface
+    ),
+    VolumeExport(
+        "geotiff", Text("Height difference (GeoTIFF)", "標高差（GeoTIFF）"), ".tif", _write_geotiff
+    ),
+    VolumeExport("plan", Text("Heat map (DXF)", "ヒートマップ図（DXF）"), ".dxf", _write_plan),
+)
+"""In the order in which they are offered."""
+
+
+def _rings_of(boundary: BaseGeometry | None) -> tuple[NDArray[np.float64], ...]:
+    if boundary is None:
+        return ()
+    rings = shapely.get_rings(shapely.get_parts(boundary))
+    return tuple(shapely.get_coordinates(ring)[:-1] for ring in rings)

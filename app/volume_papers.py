@@ -1,0 +1,162 @@
+"""The papers of a volume: its report, and the form of as-built control."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path, PurePath
+
+from processing.earthwork.as_built import AsBuiltResult, judge_as_built
+from processing.earthwork.change_grid import ChangeGrid
+from processing.earthwork.contours import LevelLine
+from processing.earthwork.limits_file import as_built_limits
+from processing.earthwork.sides import EpochGround, Side
+from processing.earthwork.triangle_surface import TriangleSurface
+from processing.errors import Unsuitable
+from processing.formats.as_built_form import write_as_built_form
+from processing.formats.as_built_rows import AsBuiltFacts
+from processing.formats.as_built_tables import write_as_built_csv, write_as_built_xlsx
+from processing.formats.volume_report import write_volume_report
+from processing.formats.volume_rows import VolumeFacts
+from processing.formats.volume_tables import write_volume_csv, write_volume_xlsx
+from processing.formats.work_facts import SideFacts, WorkFacts
+from processing.monitor import Monitor
+from processing.points.drive import Drive
+from processing.project.volume import ChosenSide, KeptVolume, SideKind
+from processing.text import Language, Text
+
+_LEVEL = Text("Level {height:.3f} m", "標高 {height:.3f} m")
+
+
+@dataclass(frozen=True)
+class GivenVolume:
+    """A volume as it is given out.
+
+    Attributes
+    ----------
+    work : str
+        Name of the project.
+    drives : tuple of Drive
+        Of the project.
+    limit_m : float
+        Range of the colours, as they are shown.
+    contours : tuple of LevelLine
+        As they are shown.
+    language : Language
+        Of words in the file.
+    work_type : str
+        Whose limits count in as-built control.
+    sides : callable
+        Reads both grounds again, before and after.
+    never : tuple of Path
+        Delivered files, which must not be overwritten.
+    """
+
+    work: str
+    kept: KeptVolume
+    change: ChangeGrid
+    drives: tuple[Drive, ...]
+    limit_m: float
+    contours: tuple[LevelLine, ...]
+    language: Language
+    work_type: str
+    sides: Callable[[Monitor], tuple[Side, Side]]
+    never: tuple[Path, ...]
+
+
+def is_judged(kept: KeptVolume) -> bool:
+    """Whether a measured ground was compared with a design."""
+    kinds = {kept.wish.before.kind, kept.wish.after.kind}
+    return kinds == {SideKind.EPOCH, SideKind.DESIGN}
+
+
+def write_report(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+    """Write the volume report as PDF."""
+    result = given.kept.with_map(given.change)
+    write_volume_report(
+        path, result, _volume_facts(given), given.language, monitor=monitor, never=given.never
+    )
+
+
+def write_report_xlsx(path: Path, given: GivenVolume, _monitor: Monitor) -> None:
+    """Write the volume report as a workbook."""
+    result = given.kept.with_map(given.change)
+    write_volume_xlsx(path, result, _volume_facts(given), given.language, never=given.never)
+
+
+def write_report_csv(path: Path, given: GivenVolume, _monitor: Monitor) -> None:
+    """Write the numbers of the volume report as a table."""
+    result = given.kept.with_map(given.change)
+    write_volume_csv(path, result, _volume_facts(given), given.language, never=given.never)
+
+
+def write_form(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+    """Write the form of as-built control as PDF."""
+    result, facts = _judged(given, monitor)
+    write_as_built_form(path, result, facts, given.language, monitor=monitor, never=given.never)
+
+
+def write_form_xlsx(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+    """Write the form of as-built control as a workbook."""
+    result, facts = _judged(given, monitor)
+    write_as_built_xlsx(path, result, facts, given.language, never=given.never)
+
+
+def write_form_csv(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+    """Write the numbers of the form of as-built control as a table."""
+    result, facts = _judged(given, monitor)
+    write_as_built_csv(path, result, facts, given.language, never=given.never)
+
+
+def _judged(given: GivenVolume, monitor: Monitor) -> tuple[AsBuiltResult, AsBuiltFacts]:
+    before, after = given.sides(monitor)
+    wish = given.kept.wish
+    named = {SideKind.EPOCH: wish.after, SideKind.DESIGN: wish.before}
+    ground, design = after, before
+    if wish.before.kind is SideKind.EPOCH:
+        named = {SideKind.EPOCH: wish.before, SideKind.DESIGN: wish.after}
+        ground, design = before, after
+    if not isinstance(ground, EpochGround) or not isinstance(design, TriangleSurface):
+        raise Unsuitable(
+            Text(
+                "As-built control compares a measured ground with a design.",
+                "出来形管理では計測した地盤と設計面を比較します。",
+            ),
+            Text.same(given.work),
+            Text("Compare an epoch with a design.", "計測データと設計データを比較してください。"),
+        )
+    limits = as_built_limits(), given.work_type
+    result = judge_as_built(ground, design, limits, monitor, boundary=wish.boundary)
+    facts = AsBuiltFacts(
+        _work_facts(given),
+        _side_facts(named[SideKind.DESIGN], given),
+        _side_facts(named[SideKind.EPOCH], given),
+    )
+    return result, facts
+
+
+def _volume_facts(given: GivenVolume) -> VolumeFacts:
+    wish = given.kept.wish
+    return VolumeFacts(
+        _work_facts(given), _side_facts(wish.before, given), _side_facts(wish.after, given)
+    )
+
+
+def _work_facts(given: GivenVolume) -> WorkFacts:
+    made_on = given.kept.made.astimezone().date()
+    return WorkFacts(work=given.work, crs=given.kept.crs, version=version("zuka"), made_on=made_on)
+
+
+def _side_facts(side: ChosenSide, given: GivenVolume) -> SideFacts:
+    if side.kind is SideKind.LEVEL:
+        return SideFacts(_LEVEL.filled(height=side.height_m).spoken(given.language))
+    if side.kind is SideKind.DESIGN:
+        return SideFacts(side.name, PurePath(side.path).name)
+    files = dict.fromkeys(
+        PurePath(source.path).name
+        for drive in given.drives
+        if drive.id in side.drives
+        for source in drive.info.sources
+    )
+    return SideFacts(side.name, ", ".join(files), side.measured_on)

@@ -1,0 +1,182 @@
+"""What a volume has done in the background: functions for a job's thread."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
+
+from processing.earthwork.change_grid import ChangeGrid
+from processing.earthwork.comparison import compare
+from processing.earthwork.contours import LevelLine, LineWish, change_lines, contour_lines
+from processing.earthwork.epoch_ground import ground_of_drives
+from processing.earthwork.heat_map import change_limit
+from processing.earthwork.sides import Level, Side
+from processing.earthwork.surface_check import check_surface
+from processing.earthwork.within import Within
+from processing.errors import Unsuitable
+from processing.formats.landxml import read_landxml
+from processing.monitor import Monitor, PartMonitor, parts_of
+from processing.points.drive import Drive
+from processing.project.volume import (
+    ChosenSide,
+    KeptVolume,
+    SideKind,
+    VolumeWish,
+    new_volume,
+)
+from processing.project.volume_store import VolumeStore, write_volume
+from processing.text import Text
+from processing.tools.parameters import filled_in
+from processing.tools.volume import VOLUME
+from widgets.shared.shown_volume import ContourOf, VolumeLook
+
+_READ_SHARE = 0.3
+_SIMPLER_SHARE, _SHORTEST_CELLS = 0.2, 8.0
+_MOST_LOOKED_AT = 2_000_000
+
+
+@dataclass(frozen=True)
+class MadeVolume:
+    """A volume whose folder is written and waits to be taken in."""
+
+    kept: KeptVolume
+    folder: Path
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedMap:
+    """A map of change that can be shown, and the range that suits it."""
+
+    change: ChangeGrid
+    limit_m: float
+
+
+def volume_work(
+    wish: VolumeWish, drives: Sequence[Drive], crs: str, into: Path
+) -> tuple[Text, Callable[[Monitor], MadeVolume]]:
+    """Two grounds are compared; what came of it is written into a new folder.
+
+    Parameters
+    ----------
+    drives : sequence of Drive
+        Of the project.
+    crs : str
+        The project's.
+    into : Path
+        On the project's disk.
+    """
+    read = sides_reader(wish, drives, crs)
+
+    def work(monitor: Monitor) -> MadeVolume:
+        parameters = filled_in(VOLUME.parameters, wish.parameters)
+        before, after = read(PartMonitor(monitor, 0.0, _READ_SHARE))
+        result = compare(
+            before,
+            after,
+            parameters,
+            PartMonitor(monitor, _READ_SHARE, 1.0),
+            _within(wish),
+        )
+        kept = new_volume(wish, result, crs=crs, version=VOLUME.version, made=datetime.now(UTC))
+        monitor.check()
+        write_volume(kept, result.change, into)
+        return MadeVolume(kept, into)
+
+    title = Text("{tool}: {before} → {after}", "{tool}: {before} → {after}").filled(
+        tool=VOLUME.name, before=_name_of(wish.before), after=_name_of(wish.after)
+    )
+    return title, work
+
+
+def sides_reader(
+    wish: VolumeWish, drives: Sequence[Drive], crs: str
+) -> Callable[[Monitor], tuple[Side, Side]]:
+    """What reads both grounds of a wish, before and after, in any thread."""
+    by_id = {drive.id: drive for drive in drives}
+
+    def read(monitor: Monitor) -> tuple[Side, Side]:
+        first, second = parts_of(monitor, (0.5, 0.5))
+        before = _side_of(wish.before, by_id, crs, first)
+        return before, _side_of(wish.after, by_id, crs, second)
+
+    return read
+
+
+def map_work(store: VolumeStore, id_: str) -> Callable[[], LoadedMap]:
+    """A kept map is read, and how far its colours should reach."""
+
+    def work() -> LoadedMap:
+        change = store.read_map(id_)
+        step = max(1, round((change.change_m.size / _MOST_LOOKED_AT) ** 0.5))
+        return LoadedMap(change, change_limit(change.change_m[::step, ::step]))
+
+    return work
+
+
+def contours_of(change: ChangeGrid, look: VolumeLook, monitor: Monitor) -> tuple[LevelLine, ...]:
+    """The contours that are wished over a map; none where none are.
+
+    Raises
+    ------
+    OutOfRange
+        The interval gives too many of them.
+    """
+    wish = LineWish(
+        look.interval_m,
+        simplify_m=_SIMPLER_SHARE * change.grid.size_m,
+        shortest_m=_SHORTEST_CELLS * change.grid.size_m,
+    )
+    match look.contours:
+        case ContourOf.NOTHING:
+            return ()
+        case ContourOf.CHANGE:
+            return change_lines(change, wish, monitor)
+    ground = change.before if look.contours is ContourOf.BEFORE else change.after
+    within = np.where(change.inside > 0, ground, np.float32(np.nan))
+    return contour_lines(change.grid, within, wish, monitor)
+
+
+def _side_of(side: ChosenSide, drives: Mapping[str, Drive], crs: str, monitor: Monitor) -> Side:
+    match side.kind:
+        case SideKind.LEVEL:
+            return Level(side.height_m)
+        case SideKind.EPOCH:
+            epoch = tuple(drives[id_] for id_ in side.drives)
+            return ground_of_drives(epoch, monitor, name=side.name)
+    design = read_landxml(Path(side.path), surface=side.surface, monitor=monitor)
+    if design.crs and crs and design.crs != crs:
+        raise Unsuitable(
+            Text(
+                "The design is in {design}, the project in {project}.",
+                "設計データの座標参照系（{design}）がプロジェクト（{project}）と異なります。",
+            ).filled(design=design.crs, project=crs),
+            Text.same(side.path),
+            Text(
+                "Deliver the design in the project's reference system.",
+                "プロジェクトと同じ座標参照系の設計データを用意してください。",
+            ),
+        )
+    surface = design.only().surface
+    check_surface(surface)
+    return surface
+
+
+def _within(wish: VolumeWish) -> Within:
+    line = None if wish.line is None else shapely.get_coordinates(wish.line)
+    return Within(wish.boundary, line, tuple(map(_in_space, wish.break_lines)))
+
+
+def _name_of(side: ChosenSide) -> Text:
+    return Text("level", "標高") if side.kind is SideKind.LEVEL else Text.same(side.name)
+
+
+def _in_space(line: BaseGeometry) -> NDArray[np.float64]:
+    places: NDArray[np.float64] = shapely.get_coordinates(line, include_z=True)
+    return places
