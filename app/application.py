@@ -70,6 +70,7 @@ from widgets.parts.status_line import StatusLine
 from widgets.scene_view.stage_loader import prepare_graphics
 from widgets.scene_view.view import SceneView
 from widgets.section_view.view import SectionView
+from widgets.shared.shared_state import SharedState
 
 _SIGNALS_SEEN_MS = 250
 
@@ -185,8 +186,6 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         View("camera", Text("Camera", "カメラ"), camera_panel),
         View("map", Text("Map", "地図"), map_view),
     )
-    exports = tuple((one.id, one.name) for one in VOLUME_EXPORTS)
-    work_types = tuple((one.id, one.name) for one in as_built_limits().work_types)
     image_bar = ImageBar(document, shared, language)
     hints = {entry.name: entry.hint for entry in TOOL_ENTRIES}
     message_bar = MessageBar(language)
@@ -226,11 +225,17 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         template_panel=TemplatePanel(
             document, shared, document.templates, document.do_at_hand, language=language
         ),
-        volume_panel=VolumePanel(shared, VOLUME.parameters, exports, work_types, language=language),
+        volume_panel=_make_volume_panel(shared, language),
         feature_table=FeatureTable(document, shared, language),
         jobs_panel=JobsPanel(language),
         window=lasting.window,
     )
+
+
+def _make_volume_panel(shared: SharedState, language: Language) -> VolumePanel:
+    exports = tuple((one.id, one.name) for one in VOLUME_EXPORTS)
+    work_types = tuple((one.id, one.name) for one in as_built_limits().work_types)
+    return VolumePanel(shared, VOLUME.parameters, exports, work_types, language=language)
 
 
 def _furnish(parts: WindowParts, files: FileActions, change: WindowChange) -> None:
