@@ -25,6 +25,7 @@ from processing.text import Text
 Floats = NDArray[np.float64]
 
 _LINE = "L1"
+_ON_EDGE_M = 1e-3
 _NOISE_TWICE = Text(
     "Exact between the triangles: noise of the points counts in cut and in fill alike.",
     "三角網の間では厳密ですが、点のノイズは切土量にも盛土量にも加算されます。",
@@ -96,7 +97,9 @@ def volume_by(
     along = SectionLayout(line, parameters.half_width_m, parameters.interval_m)
     grounds = CellSurface(change.grid, change.before), CellSurface(change.grid, change.after)
     by = prismoidal_volume if parameters.method == PRISMOIDAL else end_area_volume
-    found = by(along, grounds, monitor, within.boundary)
+    # A section right on the edge counts, as one that a line begins or ends with often is.
+    area = None if within.boundary is None else within.boundary.buffer(_ON_EDGE_M)
+    found = by(along, grounds, monitor, area)
     drawn = drawn_line(found, along, _LINE)
     return OtherMethod(found.cut_m3, found.fill_m3, found.notes, drawn, volumes_between(found))
 

@@ -18,7 +18,10 @@ _ROUNDS = 12
 _LEAST_AREA_M2 = 25.0
 _PATCH_M = 5.0
 _SURE = 3.0
-_MATTERS_M = 0.01
+_UP_M = 0.01
+_SIDEWAYS_M = 0.02
+_FEWEST_PATCHES = 4
+_LEAST_SURE_M = 1e-4
 _GENTLE = 0.1
 _FEWEST = 50
 
@@ -48,9 +51,9 @@ def registration_of(before: GroundCells, after: GroundCells) -> Registration | N
         return None
     shift, weights = _robust_fit(terms, values)
     misses = values - terms @ shift
-    patches = _patch_means(misses, weights, stable, max(1, round(_PATCH_M / size_m)))
-    sure = _sureness(terms, weights, patches)
-    is_significant = bool(np.any((np.abs(shift) > _MATTERS_M) & (np.abs(shift) > _SURE * sure)))
+    sure = _sureness(terms, weights * misses, weights, _patches(stable, size_m))
+    matters = np.array([_SIDEWAYS_M, _SIDEWAYS_M, _UP_M])
+    is_significant = bool(np.any((np.abs(shift) > matters) & (np.abs(shift) > _SURE * sure)))
     east, north, up = (float(value) for value in shift)
     return Registration(
         shift_m=(east, north, up),
@@ -93,22 +96,30 @@ def _robust_fit(terms: Floats, values: Floats) -> tuple[Floats, Floats]:
     return shift, weights
 
 
-def _patch_means(misses: Floats, weights: Floats, stable: Mask, cells: int) -> Floats:
-    """Mean misses of patches: errors of a scanner's place don't average out within one."""
+def _patches(stable: Mask, size_m: float) -> NDArray[np.int64]:
+    """Which square of some metres each stable cell lies in."""
+    cells = max(1, round(_PATCH_M / size_m))
     rows, columns = np.nonzero(stable)
     across = -(-stable.shape[1] // cells)
-    patch = rows // cells * across + columns // cells
-    sums = np.bincount(patch, weights * misses)
-    counts = np.bincount(patch, weights)
-    means: Floats = sums[counts > cells] / counts[counts > cells]
-    return means
+    patches: NDArray[np.int64] = np.unique(
+        rows // cells * across + columns // cells, return_inverse=True
+    )[1]
+    return patches
 
 
-def _sureness(terms: Floats, weights: Floats, patches: Floats) -> Floats:
-    """Standard deviations, m, as if each patch were one measurement."""
-    if len(patches) < 2:
+def _sureness(terms: Floats, pulls: Floats, weights: Floats, patches: NDArray[np.int64]) -> Floats:
+    """Standard deviations, m, as if each patch were one measurement.
+
+    What a scanner's place is off, and what work left on a slope, is the same over a patch: it
+    doesn't average out within one (White 1980, for clusters Liang and Zeger 1986).
+    """
+    count = int(patches.max()) + 1
+    if count < _FEWEST_PATCHES:
         return np.full(3, np.inf)
-    form = terms.T @ (terms * weights[:, None]) * (len(patches) / weights.sum())
-    spread = max(float(np.std(patches)), 1e-4)
-    sure: Floats = spread * np.sqrt(np.diag(np.linalg.pinv(form)))
+    scores = np.column_stack(
+        [np.bincount(patches, pulls * term, minlength=count) for term in terms.T]
+    )
+    inverse = np.linalg.pinv(terms.T @ (terms * weights[:, None]))
+    spread = inverse @ (scores.T @ scores) @ inverse * count / (count - 1)
+    sure: Floats = np.sqrt(np.maximum(np.diag(spread), _LEAST_SURE_M**2))
     return sure

@@ -27,6 +27,7 @@ _SEEN_HEIGHTS_M = (0.5, 3.5)
 _STEPS_M = (0.05, 0.01)
 _USUAL_M = 1.7
 _CLEARLY = 0.5
+_SAME_PULSE = 0.5
 _NEAR_M = 6.0
 
 
@@ -132,8 +133,9 @@ def _unevenness(moments: list[Floats], place: Floats, height: float) -> float:
     for moment in moments:
         away = np.hypot(*(moment[:, :2] - place).T)
         angles = np.arctan2(moment[:, 2] - height, away)
-        is_next = np.abs(np.diff(moment[:, 3]) - 1.0) < 0.2
-        steps = np.diff(angles)[is_next]
+        # Over some pulses: from one to the next the noise is as large as the step.
+        is_whole = np.abs(moment[_APART:, 3] - moment[:-_APART, 3] - _APART) < _SAME_PULSE
+        steps = (angles[_APART:] - angles[:-_APART])[is_whole]
         if steps.size:
             spreads.append(float(np.median(np.abs(steps - np.median(steps)))))
     return float(np.median(spreads)) if spreads else np.inf
