@@ -13,12 +13,12 @@ from processing.earthwork.cross_sections import SectionLayout
 from processing.earthwork.drawing_parts import SectionedLine
 from processing.earthwork.drawn_sections import drawn_line, volumes_between
 from processing.earthwork.end_areas import end_area_volume, prismoidal_volume
+from processing.earthwork.height_surfaces import GridSurface
 from processing.earthwork.tin_volume import volume_between
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.earthwork.triangulation import triangulated_ground
 from processing.earthwork.volume_parameters import PRISMOIDAL, TIN, VolumeParameters
 from processing.earthwork.within import Within
-from processing.ground.cells import CellGrid
 from processing.monitor import Monitor
 from processing.text import Text
 
@@ -51,36 +51,6 @@ class OtherMethod:
     between: tuple[tuple[float, float], ...] = ()
 
 
-@dataclass(frozen=True)
-class CellSurface:
-    """Heights on cells as a ground that knows its height everywhere, linear between middles.
-
-    Attributes
-    ----------
-    heights : (rows, columns) float32
-        m above the grid's origin; NaN without a surface.
-    """
-
-    grid: CellGrid
-    heights: NDArray[np.float32]
-
-    def heights_at(self, xy: Floats) -> Floats:
-        """Height at each place, m: (n,) float64; NaN where one of the cells about has none."""
-        at = (xy - self.grid.origin[:2]) / self.grid.size_m - 0.5
-        last = np.array([self.grid.columns - 1, self.grid.rows - 1])
-        is_in = np.all((at >= -0.5) & (at <= last + 0.5), axis=1)
-        at = np.clip(at, 0, last)
-        low = np.minimum(at.astype(np.int64), np.maximum(last - 1, 0))
-        right, up = (at - low).T
-        column, row = low.T
-        next_column, next_row = (np.minimum(low + 1, last)).T
-        z = self.heights
-        bottom = z[row, column] * (1 - right) + z[row, next_column] * right
-        top = z[next_row, column] * (1 - right) + z[next_row, next_column] * right
-        heights = bottom * (1 - up) + top * up + self.grid.origin[2]
-        return np.where(is_in, heights, np.nan)
-
-
 def volume_by(
     parameters: VolumeParameters, change: ChangeGrid, monitor: Monitor, within: Within
 ) -> OtherMethod:
@@ -95,7 +65,7 @@ def volume_by(
         return _by_triangles(change, monitor, within)
     line = within.line if within.line is not None else _middle_line(change, within.boundary)
     along = SectionLayout(line, parameters.half_width_m, parameters.interval_m)
-    grounds = CellSurface(change.grid, change.before), CellSurface(change.grid, change.after)
+    grounds = GridSurface(change.grid, change.before), GridSurface(change.grid, change.after)
     by = prismoidal_volume if parameters.method == PRISMOIDAL else end_area_volume
     # A section right on the edge counts, as one that a line begins or ends with often is.
     area = None if within.boundary is None else within.boundary.buffer(_ON_EDGE_M)
