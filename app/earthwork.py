@@ -24,6 +24,7 @@ from app.volume_work import (
 )
 from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.contours import LevelLine
+from processing.earthwork.volume_result import VolumeResult
 from processing.errors import UserError
 from processing.monitor import Monitor
 from processing.points.drive import Drive
@@ -78,6 +79,7 @@ class Earthwork(QObject):
         self._adoption.refused.connect(document.refused)
         self._volumes: tuple[KeptVolume, ...] = ()
         self._shown = ""
+        self._result: VolumeResult | None = None
         self._epochs: tuple[Epoch, ...] = ()
         self._with_ground: dict[str, bool] = {}
         self._contoured: tuple[ChangeGrid | None, tuple[ContourOf, float] | None] = None, None
@@ -150,20 +152,22 @@ class Earthwork(QObject):
         project = self._document.project
         self._shown = id_
         self.volumes_changed.emit()
-        if project is None or self.shown is None:
-            self._shown = ""
+        kept = self.shown
+        if project is None or kept is None:
+            self._shown, self._result = "", None
             self._document.shared.volume.show(None)
             return
 
         def take(loaded: LoadedMap) -> None:
             if self._shown == id_:
-                self._document.shared.volume.show(loaded.change, loaded.limit_m)
+                self._result = loaded.result
+                self._document.shared.volume.show(loaded.result.change, loaded.limit_m)
 
         def fail() -> None:
             if self._shown == id_:
                 self.show("")
 
-        self._at_hand(project, map_work(VolumeStore(project.folder), id_), take, fail)
+        self._at_hand(project, map_work(VolumeStore(project.folder), kept), take, fail)
 
     def remove(self, id_: str) -> None:
         """Forget a volume for good; the newest of the others is shown."""
@@ -187,14 +191,14 @@ class Earthwork(QObject):
         work_type : str
             Whose limits count in as-built control.
         """
-        project, kept = self._document.project, self.shown
+        project, kept, result = self._document.project, self.shown, self._result
         shown = self._document.shared.volume
-        if project is None or kept is None or shown.change is None:
+        if project is None or kept is None or result is None:
             return ""
         given = GivenVolume(
             work=project.name,
             kept=kept,
-            change=shown.change,
+            result=result,
             drives=project.drives,
             limit_m=shown.look.limit_m,
             contours=shown.contours,

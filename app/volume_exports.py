@@ -25,9 +25,12 @@ from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.heat_map import change_classes
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.earthwork.triangulation import triangulated_ground
+from processing.earthwork.volume_parameters import END_AREA, PRISMOIDAL
+from processing.errors import Unsuitable
 from processing.formats.change_geotiff import write_change_geotiff
 from processing.formats.earthwork_dxf import EarthworkPlan, PlanLook, write_earthwork_dxf
 from processing.formats.landxml_writing import LandXmlFacts, WrittenSurface, write_landxml
+from processing.formats.section_sheet_dxf import SectionLook, write_section_sheet_dxf
 from processing.monitor import Monitor
 from processing.project.volume import KeptVolume
 from processing.text import Text
@@ -38,6 +41,10 @@ _MOST_CORNERS = 200_000
 _LONGEST_CELLS = 3.0
 
 Write = Callable[[Path, GivenVolume, Monitor], None]
+
+
+def _has_sections(kept: KeptVolume) -> bool:
+    return kept.method in (END_AREA, PRISMOIDAL)
 
 
 def _always(_kept: KeptVolume) -> bool:
@@ -64,7 +71,9 @@ class VolumeExport:
 
 
 def _write_geotiff(path: Path, given: GivenVolume, monitor: Monitor) -> None:
-    write_change_geotiff(path, given.change, crs=given.kept.crs, monitor=monitor, never=given.never)
+    write_change_geotiff(
+        path, given.result.change, crs=given.kept.crs, monitor=monitor, never=given.never
+    )
 
 
 def _write_plan(path: Path, given: GivenVolume, monitor: Monitor) -> None:
@@ -72,7 +81,7 @@ def _write_plan(path: Path, given: GivenVolume, monitor: Monitor) -> None:
     amounts = _TITLE.filled(cut=f"{volumes.cut_m3:,.1f}", fill=f"{volumes.fill_m3:,.1f}")
     plan = EarthworkPlan(
         title=(Text.same(given.work), amounts),
-        change=given.change,
+        change=given.result.change,
         classes=change_classes(given.limit_m),
         contours=given.contours,
         boundary=_rings_of(given.kept.wish.boundary),
@@ -82,12 +91,30 @@ def _write_plan(path: Path, given: GivenVolume, monitor: Monitor) -> None:
     write_earthwork_dxf(path, plan, look, monitor=monitor, never=given.never)
 
 
+def _write_sections(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+    line = given.result.line
+    if line is None:
+        raise Unsuitable(
+            Text("The volume has no sections.", "この結果には断面がありません。"),
+            Text.same(given.work),
+            Text(
+                "Compute it by end areas or the prismoidal formula.",
+                "平均断面法またはプリズモイダル公式で計算してください。",
+            ),
+        )
+    look = SectionLook(language=given.language)
+    write_section_sheet_dxf(
+        path, line.sections, Text.same(given.work), look, monitor=monitor, never=given.never
+    )
+
+
 def _write_surface(path: Path, given: GivenVolume, monitor: Monitor) -> None:
-    surface = _later_ground(given.change, given.kept.wish.boundary, monitor)
+    surface = _later_ground(given.result.change, given.kept.wish.boundary, monitor)
     named = TriangleSurface(surface.xyz, surface.corners, _AFTER.spoken(given.language))
     facts = LandXmlFacts(given.work, given.kept.crs, "")
     written = (WrittenSurface(named),)
-    write_landxml(path, written, facts, monitor=monitor, never=given.never)
+    line = given.result.line
+    write_landxml(path, written, facts, line=line, monitor=monitor, never=given.never)
 
 
 def _later_ground(
@@ -149,7 +176,15 @@ VOLUME_EXPORTS: tuple[VolumeExport, ...] = (
     VolumeExport(
         "geotiff", Text("Height difference (GeoTIFF)", "標高差（GeoTIFF）"), ".tif", _write_geotiff
     ),
-    VolumeExport("plan", Text("Heat map (DXF)", "ヒートマップ図（DXF）"), ".dxf", _write_plan),
+    VolumeExport(
+        "plan",
+        Text("Heat map and contours (DXF)", "ヒートマップ・等高線図（DXF）"),
+        ".dxf",
+        _write_plan,
+    ),
+    VolumeExport(
+        "sections", Text("Sections (DXF)", "断面図（DXF）"), ".dxf", _write_sections, _has_sections
+    ),
 )
 """In the order in which they are offered."""
 

@@ -8,11 +8,11 @@ from importlib.metadata import version
 from pathlib import Path, PurePath
 
 from processing.earthwork.as_built import AsBuiltResult, judge_as_built
-from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.contours import LevelLine
 from processing.earthwork.limits_file import as_built_limits
 from processing.earthwork.sides import EpochGround, Side
 from processing.earthwork.triangle_surface import TriangleSurface
+from processing.earthwork.volume_result import VolumeResult
 from processing.errors import Unsuitable
 from processing.formats.as_built_form import write_as_built_form
 from processing.formats.as_built_rows import AsBuiltFacts
@@ -26,6 +26,7 @@ from processing.points.drive import Drive
 from processing.project.volume import ChosenSide, KeptVolume, SideKind
 from processing.text import Language, Text
 
+_BOUNDARY = Text("Area of the project", "プロジェクトで指定した範囲")
 _LEVEL = Text("Level {height:.3f} m", "標高 {height:.3f} m")
 
 
@@ -55,7 +56,7 @@ class GivenVolume:
 
     work: str
     kept: KeptVolume
-    change: ChangeGrid
+    result: VolumeResult
     drives: tuple[Drive, ...]
     limit_m: float
     contours: tuple[LevelLine, ...]
@@ -73,22 +74,19 @@ def is_judged(kept: KeptVolume) -> bool:
 
 def write_report(path: Path, given: GivenVolume, monitor: Monitor) -> None:
     """Write the volume report as PDF."""
-    result = given.kept.with_map(given.change)
     write_volume_report(
-        path, result, _volume_facts(given), given.language, monitor=monitor, never=given.never
+        path, given.result, _volume_facts(given), given.language, monitor=monitor, never=given.never
     )
 
 
 def write_report_xlsx(path: Path, given: GivenVolume, _monitor: Monitor) -> None:
     """Write the volume report as a workbook."""
-    result = given.kept.with_map(given.change)
-    write_volume_xlsx(path, result, _volume_facts(given), given.language, never=given.never)
+    write_volume_xlsx(path, given.result, _volume_facts(given), given.language, never=given.never)
 
 
 def write_report_csv(path: Path, given: GivenVolume, _monitor: Monitor) -> None:
     """Write the numbers of the volume report as a table."""
-    result = given.kept.with_map(given.change)
-    write_volume_csv(path, result, _volume_facts(given), given.language, never=given.never)
+    write_volume_csv(path, given.result, _volume_facts(given), given.language, never=given.never)
 
 
 def write_form(path: Path, given: GivenVolume, monitor: Monitor) -> None:
@@ -138,8 +136,14 @@ def _judged(given: GivenVolume, monitor: Monitor) -> tuple[AsBuiltResult, AsBuil
 
 def _volume_facts(given: GivenVolume) -> VolumeFacts:
     wish = given.kept.wish
+    boundary = "" if wish.boundary is None else _BOUNDARY.spoken(given.language)
     return VolumeFacts(
-        _work_facts(given), _side_facts(wish.before, given), _side_facts(wish.after, given)
+        _work_facts(given),
+        _side_facts(wish.before, given),
+        _side_facts(wish.after, given),
+        boundary,
+        given.result.line,
+        given.result.between,
     )
 
 

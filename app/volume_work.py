@@ -19,6 +19,7 @@ from processing.earthwork.epoch_ground import ground_of_drives
 from processing.earthwork.heat_map import change_limit
 from processing.earthwork.sides import Level, Side
 from processing.earthwork.surface_check import check_surface
+from processing.earthwork.volume_result import VolumeResult
 from processing.earthwork.within import Within
 from processing.errors import Unsuitable
 from processing.formats.landxml import read_landxml
@@ -52,9 +53,9 @@ class MadeVolume:
 
 @dataclass(frozen=True, eq=False)
 class LoadedMap:
-    """A map of change that can be shown, and the range that suits it."""
+    """A volume whose map can be shown, and the range that suits it."""
 
-    change: ChangeGrid
+    result: VolumeResult
     limit_m: float
 
 
@@ -86,7 +87,7 @@ def volume_work(
         )
         kept = new_volume(wish, result, crs=crs, version=VOLUME.version, made=datetime.now(UTC))
         monitor.check()
-        write_volume(kept, result.change, into)
+        write_volume(kept, result, into)
         return MadeVolume(kept, into)
 
     title = Text("{tool}: {before} → {after}", "{tool}: {before} → {after}").filled(
@@ -109,13 +110,14 @@ def sides_reader(
     return read
 
 
-def map_work(store: VolumeStore, id_: str) -> Callable[[], LoadedMap]:
-    """A kept map is read, and how far its colours should reach."""
+def map_work(store: VolumeStore, kept: KeptVolume) -> Callable[[], LoadedMap]:
+    """A kept volume is read, and how far the colours of its map should reach."""
 
     def work() -> LoadedMap:
-        change = store.read_map(id_)
+        result = store.read_result(kept)
+        change = result.change
         step = max(1, round((change.change_m.size / _MOST_LOOKED_AT) ** 0.5))
-        return LoadedMap(change, change_limit(change.change_m[::step, ::step]))
+        return LoadedMap(result, change_limit(change.change_m[::step, ::step]))
 
     return work
 

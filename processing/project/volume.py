@@ -10,7 +10,6 @@ from uuid import uuid4
 
 from shapely.geometry.base import BaseGeometry
 
-from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.volume_result import Registration, VolumeResult, Volumes
 from processing.text import Text
 from processing.tools.parameters import Value
@@ -103,12 +102,6 @@ class KeptVolume:
     grid_m: float
     registration: Registration | None
     notes: tuple[Text, ...]
-
-    def with_map(self, change: ChangeGrid) -> VolumeResult:
-        """The result as it was computed."""
-        return VolumeResult(
-            self.volumes, self.method, self.grid_m, change, self.registration, self.notes
-        )
 
 
 def new_volume(

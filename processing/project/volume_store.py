@@ -16,13 +16,15 @@ from typing import Any
 import numpy as np
 
 from processing.earthwork.change_grid import ChangeGrid
+from processing.earthwork.volume_result import VolumeResult
 from processing.errors import BadFile, MissingInput, told_as_user_error
 from processing.ground.cells import CellGrid
 from processing.project.volume import KeptVolume
 from processing.project.volume_facts import Facts, damaged, grid_of, kept_of, values_of
+from processing.project.volume_sections import read_sections, write_sections
 
 _RESULTS, _VOLUMES = "results", "volumes"
-_FACTS = "volume.json"
+_FACTS, _SECTIONS = "volume.json", "sections.npz"
 _ARRAYS = {
     "before": np.dtype(np.float32),
     "after": np.dtype(np.float32),
@@ -31,8 +33,8 @@ _ARRAYS = {
 }
 
 
-def write_volume(kept: KeptVolume, change: ChangeGrid, folder: Path) -> None:
-    """Write a volume with its map into a new folder, which :meth:`VolumeStore.add` takes in.
+def write_volume(kept: KeptVolume, result: VolumeResult, folder: Path) -> None:
+    """Write a volume into a new folder, which :meth:`VolumeStore.add` takes in.
 
     Raises
     ------
@@ -43,12 +45,14 @@ def write_volume(kept: KeptVolume, change: ChangeGrid, folder: Path) -> None:
         folder.mkdir(parents=True)
         try:
             for name, dtype in _ARRAYS.items():
-                values = np.ascontiguousarray(getattr(change, name), dtype)
+                values = np.ascontiguousarray(getattr(result.change, name), dtype)
                 with (folder / f"{name}.npy").open("wb") as file:
                     np.save(file, values)
                     _flush(file.fileno())
+            if result.line is not None:
+                write_sections(folder / _SECTIONS, result.line, result.between)
             with (folder / _FACTS).open("w", encoding="utf-8") as text:
-                json.dump(values_of(kept, change.grid), text, ensure_ascii=False)
+                json.dump(values_of(kept, result.change.grid), text, ensure_ascii=False)
                 text.flush()
                 _flush(text.fileno())
         except BaseException:
@@ -105,6 +109,27 @@ class VolumeStore:
             raise damaged(folder / _FACTS) from error
         arrays = {name: _mapped(folder / f"{name}.npy", grid) for name in _ARRAYS}
         return ChangeGrid(grid, **arrays)
+
+    def read_result(self, kept: KeptVolume) -> VolumeResult:
+        """A volume as it was computed, with its map and its sections.
+
+        Raises
+        ------
+        MissingInput, BadFile
+            It is gone or damaged.
+        """
+        path = self._home / kept.id / _SECTIONS
+        line, between = read_sections(path) if path.exists() else (None, ())
+        return VolumeResult(
+            kept.volumes,
+            kept.method,
+            kept.grid_m,
+            self.read_map(kept.id),
+            kept.registration,
+            kept.notes,
+            line,
+            between,
+        )
 
     def remove(self, id_: str) -> None:
         """Forget a volume for good; there is none of that id afterwards.

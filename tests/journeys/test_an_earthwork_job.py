@@ -16,8 +16,10 @@ from PySide6.QtWidgets import QAbstractButton, QComboBox, QFileDialog, QLabel
 from app.jobs import JobState
 from app.volume_exports import VOLUME_EXPORTS
 from processing.earthwork.heat_map import change_classes
+from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import UserError
 from processing.formats.landxml import read_landxml
+from processing.formats.landxml_writing import LandXmlFacts, WrittenSurface, write_landxml
 from processing.project.catalogue import Geometry
 from processing.project.change import Change
 from processing.project.feature import Feature, Vertex, new_feature_id
@@ -121,6 +123,25 @@ class Builder:
             check_params_cb=lambda: self.volume.change is not None,
         ):
             self.click("Compute the volume")
+
+    def offers(self, id_: str) -> bool:
+        """Whether the menu of exports has this one."""
+        return any(
+            one.isVisible() for one in self.panel.export_menu.actions() if one.objectName() == id_
+        )
+
+    def give_out(self, id_: str, path: Path, monkeypatch) -> Path:
+        """Choose an export and wait until it is said that it was written."""
+        monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(path), ""))
+        action = next(one for one in self.panel.export_menu.actions() if one.objectName() == id_)
+        assert action.isVisible()
+        with self.bot.waitSignal(
+            self.surveyor.document.told,
+            timeout=WAIT_MS,
+            check_params_cb=lambda text: path.name in text.en,
+        ):
+            action.trigger()
+        return path
 
     def refused(self, words: str) -> UserError:
         """What is said when a button is pressed."""
@@ -240,17 +261,13 @@ def _change_range_and_contours(builder: Builder) -> None:
 
 def _give_out(builder: Builder, folder: Path, monkeypatch) -> None:
     """Every file that is offered is written; those that other tests don't read are read."""
-    endings = {one.id: one.ending for one in VOLUME_EXPORTS}
-    made = {}
-    for action in builder.panel.export_menu.actions():
-        id_ = action.objectName()
-        if not action.isVisible():
-            assert id_.startswith("form"), "only the as-built form needs a design"
-            continue
-        path = made[id_] = folder / f"{id_}{endings[id_]}"
-        monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_, path=path: (str(path), ""))
-        with builder.bot.waitSignal(builder.parts.jobs.finished, timeout=WAIT_MS):
-            action.trigger()
+    made = {
+        one.id: builder.give_out(one.id, folder / f"{one.id}{one.ending}", monkeypatch)
+        for one in VOLUME_EXPORTS
+        if builder.offers(one.id)
+    }
+    left_out = {one.id for one in VOLUME_EXPORTS} - set(made)
+    assert all(id_.startswith(("form", "sections")) for id_ in left_out), "a design, or a line"
     assert all(path.stat().st_size > 0 for path in made.values())
     with rasterio.open(made["geotiff"]) as raster:
         assert CRS(raster.crs).to_epsg() == 6677
@@ -325,6 +342,51 @@ def test_an_epoch_against_a_level(
     # The slope above its own foot, less the pit, with the heap.
     whole = 0.5 * GRADE * 20.0 * 600.0 - CUT_M3 + FILL_M3
     assert kept.volumes.net_m3 == pytest.approx(whole, rel=0.03)
+
+
+def test_end_areas_along_the_middle_of_the_site_have_sections_to_give_out(
+    builder: Builder, deliveries: tuple[Path, Path], tmp_path: Path, monkeypatch
+) -> None:
+    folder = tmp_path / "p.zuka"
+    builder.open(folder, deliveries)
+    builder.find_ground()
+    builder.panel.form.parameters.set_values({"method": "end-area", "interval_m": 1.0})
+    builder.compute()
+    assert builder.number("cut") == pytest.approx(CUT_M3, rel=0.1)
+    document = builder.surveyor.document
+    document.close()
+    with builder.bot.waitSignal(
+        builder.volume.changed,
+        timeout=WAIT_MS,
+        check_params_cb=lambda: builder.volume.change is not None,
+    ):
+        assert document.open(folder)
+    path = builder.give_out("sections", tmp_path / "断面.dxf", monkeypatch)
+    assert not ezdxf.readfile(path).audit().errors
+
+
+def test_a_design_is_judged_by_the_form(
+    builder: Builder, deliveries: tuple[Path, Path], tmp_path: Path, monkeypatch
+) -> None:
+    builder.open(tmp_path / "p.zuka", deliveries)
+    builder.find_ground()
+    corners = np.array([[0.0, 0.0], [30.0, 0.0], [30.0, 20.0], [0.0, 20.0]])
+    heights = GRADE * corners[:, 1]
+    design = TriangleSurface(
+        CORNER + np.column_stack([corners, heights]), np.array([[0, 1, 2], [0, 2, 3]]), "設計"
+    )
+    path = tmp_path / "設計.xml"
+    write_landxml(path, (WrittenSurface(design),), LandXmlFacts("test", "EPSG:6677", ""))
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
+    box = builder.panel.form.after
+    with builder.bot.waitSignal(box.chosen, timeout=WAIT_MS):
+        builder.pick(box, "Design from LandXML…")
+    assert box.currentText() == "設計.xml"
+    builder.compute()
+    # Nothing was moved before the work: the ground is the design's slope.
+    assert builder.number("cut") + builder.number("fill") < 5.0
+    form = builder.give_out("form-csv", tmp_path / "様式.csv", monkeypatch)
+    assert "設計.xml" in form.read_text(encoding="utf-8-sig")
 
 
 def test_what_can_not_be_compared_is_said_and_nothing_runs(

@@ -19,6 +19,8 @@ from processing.text import Language
 from processing.tools.parameters import Parameter, Value
 from widgets.parts.number_field import NumberField, decimals_for
 
+_LEAST_LETTERS, _LIST_MARGIN_PX = 8, 24
+
 
 class ParameterRow(QWidget):
     """One parameter.
@@ -103,6 +105,11 @@ class ParameterRow(QWidget):
         field = QComboBox(self)
         for option in self._parameter.choices:
             field.addItem(option.name.spoken(language), option.value)
+        # A long word must not make a form wider than its panel; the list shows it whole.
+        field.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        field.setMinimumContentsLength(_LEAST_LETTERS)
+        widest = max(field.fontMetrics().horizontalAdvance(one) for one in _words_of(field))
+        field.view().setMinimumWidth(widest + _LIST_MARGIN_PX)
         field.currentIndexChanged.connect(self._on_field_changed)
 
         def get() -> Value:
@@ -157,3 +164,7 @@ class ParameterRow(QWidget):
     def _on_restore_clicked(self) -> None:
         self.restore()
         self.changed.emit()
+
+
+def _words_of(field: QComboBox) -> list[str]:
+    return [field.itemText(number) for number in range(field.count())]

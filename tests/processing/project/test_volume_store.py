@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 from shapely import LineString, Polygon
 
 from processing.earthwork.change_grid import ChangeGrid
+from processing.earthwork.drawing_parts import DrawnSection, SectionedLine
 from processing.earthwork.volume_result import Registration, VolumeResult, Volumes
 from processing.errors import BadFile, MissingInput
 from processing.ground.cells import CellGrid
@@ -61,7 +63,7 @@ def _kept(project: Path, made: datetime = MADE) -> KeptVolume:
     result = _result()
     kept = new_volume(_wish(), result, crs="EPSG:6677", version=2, made=made)
     folder = project / "tmp" / kept.id
-    write_volume(kept, result.change, folder)
+    write_volume(kept, result, folder)
     VolumeStore(project).add(kept, folder)
     return kept
 
@@ -74,16 +76,52 @@ def test_a_volume_is_read_again_as_it_was_kept(tmp_path: Path) -> None:
         np.testing.assert_array_equal(getattr(change, name), getattr(expected, name))
     np.testing.assert_array_equal(change.grid.origin, expected.grid.origin)
     assert (change.grid.size_m, change.grid.rows, change.grid.columns) == (0.5, 3, 4)
-    assert kept.with_map(change).volumes == _result().volumes
+    result = VolumeStore(tmp_path).read_result(kept)
+    assert (result.volumes, result.registration) == (_result().volumes, SHIFT)
+    assert (result.line, result.between) == (None, ())
 
 
 def test_a_volume_without_registration_and_lines_is_read_again(tmp_path: Path) -> None:
     result = _result(None)
     wish = VolumeWish(ChosenSide(SideKind.LEVEL, height_m=4.25), BEFORE, {})
     kept = new_volume(wish, result, crs="", version=1, made=MADE)
-    write_volume(kept, result.change, tmp_path / "made")
+    write_volume(kept, result, tmp_path / "made")
     VolumeStore(tmp_path).add(kept, tmp_path / "made")
     assert VolumeStore(tmp_path).all() == (kept,)
+
+
+def _section(station_m: float, count: int, inside: NDArray[np.bool_] | None) -> DrawnSection:
+    offsets = np.linspace(-2.0, 2.0, count)
+    after = offsets * 0.1
+    after[0] = np.nan
+    name = f"No.0+{station_m:.2f}"
+    return DrawnSection(station_m, name, offsets, offsets * 0.2, after, 1.5, 0.25, inside)
+
+
+def test_sections_are_read_again_with_the_earth_between_them(tmp_path: Path) -> None:
+    xy = np.array([[0.0, 0.0], [20.0, 1 / 3]])
+    sections = _section(0.0, 5, np.arange(4) > 0), _section(10.0, 9, None)
+    line = SectionedLine("中心線", xy, 2.5, sections)
+    result = replace(_result(), method="end-area", line=line, between=((1.5, np.nan),))
+    kept = new_volume(_wish(), result, crs="", version=1, made=MADE)
+    write_volume(kept, result, tmp_path / "made")
+    store = VolumeStore(tmp_path)
+    store.add(kept, tmp_path / "made")
+    found = store.read_result(kept)
+    assert found.line is not None
+    np.testing.assert_array_equal(found.line.xy, xy)
+    assert (found.line.name, found.line.start_m) == ("中心線", 2.5)
+    np.testing.assert_array_equal(found.between, result.between)
+    for section, expected in zip(found.line.sections, line.sections, strict=True):
+        assert (section.name, section.cut_m2) == (expected.name, expected.cut_m2)
+        for name in ("station_m", "offsets", "before", "after", "fill_m2"):
+            np.testing.assert_array_equal(getattr(section, name), getattr(expected, name))
+    np.testing.assert_array_equal(found.line.sections[0].is_inside, sections[0].is_inside)
+    assert found.line.sections[1].is_inside is None
+    path = tmp_path / "results" / "volumes" / kept.id / "sections.npz"
+    path.write_bytes(path.read_bytes()[:-30])
+    with pytest.raises(BadFile):
+        store.read_result(kept)
 
 
 def test_the_first_one_is_listed_first(tmp_path: Path) -> None:
@@ -94,7 +132,7 @@ def test_the_first_one_is_listed_first(tmp_path: Path) -> None:
 
 def test_what_was_not_taken_in_is_not_there(tmp_path: Path) -> None:
     kept = new_volume(_wish(), _result(), crs="", version=1, made=MADE)
-    write_volume(kept, _change(), tmp_path / "tmp" / kept.id)
+    write_volume(kept, _result(), tmp_path / "tmp" / kept.id)
     assert VolumeStore(tmp_path).all() == ()
     with pytest.raises(MissingInput):
         VolumeStore(tmp_path).read_map(kept.id)
@@ -104,7 +142,7 @@ def test_writing_that_fails_leaves_no_folder(tmp_path: Path) -> None:
     kept = new_volume(_wish(), _result(), crs="", version=1, made=MADE)
     unknown = replace(kept, crs=object())  # type: ignore[arg-type]
     with pytest.raises(TypeError):
-        write_volume(unknown, _change(), tmp_path / "made")
+        write_volume(unknown, _result(), tmp_path / "made")
     assert not (tmp_path / "made").exists()
 
 
