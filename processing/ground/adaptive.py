@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from processing.ground.band import Band, Tolerances, classify, ground_band, heights_at
 from processing.ground.below import ghosts, sunk_points
 from processing.ground.cells import CellGrid, Levels, choose_cells, levels_above
+from processing.ground.layers import begin_of_ground
 from processing.ground.morphology import filled, steepness_of
 from processing.ground.neighbours import off_neighbours
 from processing.ground.places import Blocks
@@ -20,6 +21,7 @@ from processing.text import Text
 
 _ROUNDS = 2
 _PERSON_M = 1.5
+_NEAR_PER_ABOVE = 20
 _FEW_SHARE = 1e-3
 _GAP_CELLS = 4
 _COARSE_CELL_M = 0.5
@@ -98,7 +100,7 @@ class GroundSurface:
 def find_ground(
     blocks: Blocks, habits: GroundHabits, monitor: Monitor, grid: CellGrid | None = None
 ) -> GroundSurface:
-    """The ground of a whole cloud, in a dozen passes over its blocks.
+    """The ground of a whole cloud, in some twenty passes over its blocks.
 
     Parameters
     ----------
@@ -117,7 +119,8 @@ def find_ground(
     -----
     Of a sparse cloud, with about one point in a cell, three cell sizes are asked.
 
-    Memory: some 80 bytes a cell, whatever the number of points; cells are larger where a cloud's
+    Memory: some 80 bytes a cell, and for a while 100 more for each with fifty points or with
+    something standing in it, whatever the number of points; cells are larger where a cloud's
     extent would need more than ``cells.MOST_CELLS``.
     """
     passes = _Passes(blocks, monitor)
@@ -145,7 +148,7 @@ def _ground_cells(
     ground = np.isfinite(levels.lowest) & ~standing
     if not ground.any():
         ground = np.isfinite(levels.lowest)
-    crowded = levels.second < levels.lowest + _PERSON_M
+    crowded = _crowded(levels)
     ground &= ~off_neighbours(levels.lowest, ground, crowded, grid.size_m)
     return levels, ground
 
@@ -214,6 +217,9 @@ def _lowest_ground(
     gap_m = max(0.10, 0.6 * size_m)
     floor = np.full((grid.rows, grid.columns), -np.inf, np.float32)
     levels = levels_above(blocks, grid, floor, gap_m)
+    floor = begin_of_ground(blocks, grid, levels)
+    if np.isfinite(floor).any():
+        levels = levels_above(blocks, grid, floor, gap_m)
     for _ in range(_ROUNDS):
         hidden = sunk_points(levels, size_m)
         if not hidden.any():
@@ -222,7 +228,7 @@ def _lowest_ground(
         levels = levels_above(blocks, grid, floor, gap_m)
     for _ in range(_ROUNDS):
         known = np.isfinite(levels.lowest)
-        crowded = levels.second < levels.lowest + _PERSON_M
+        crowded = _crowded(levels)
         surface = filled(levels.lowest, known)
         standing = standing_cells(levels.lowest, surface, crowded, size_m, shape)
         hidden = ghosts(levels.lowest, levels.second, known & ~standing, size_m)
@@ -234,6 +240,14 @@ def _lowest_ground(
             standing &= ~hidden
             break
     return levels, standing | ~np.isfinite(levels.lowest)
+
+
+def _crowded(levels: Levels) -> NDArray[np.bool_]:
+    """Cells with something above, no higher than a person reaches; a stray among many is none."""
+    is_low = levels.second < levels.lowest + _PERSON_M
+    held = levels.above.astype(np.int64) * _NEAR_PER_ABOVE >= levels.near
+    crowded: NDArray[np.bool_] = is_low & held
+    return crowded
 
 
 def _raise_floor(

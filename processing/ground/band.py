@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.ground.cells import CellGrid
+from processing.ground.feet import held_feet
 from processing.ground.morphology import steepness_of
 from processing.ground.places import Blocks
 from processing.ground.walls import column_tops, faces
@@ -147,7 +149,24 @@ def _what_stands(
         )
     if grid.size_m > _FINE_CELL_M:
         feet[:] = 0
+    elif feet.any():
+        feet = _held_feet(blocks, grid, surface, thick, feet)
     return bins, feet
+
+
+def _held_feet(
+    blocks: Blocks,
+    grid: CellGrid,
+    surface: NDArray[np.float32],
+    thick: NDArray[np.float32],
+    feet: NDArray[np.uint16],
+) -> NDArray[np.uint16]:
+    def offsets() -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        for xyz in blocks():
+            yield xyz, xyz[:, 2] - grid.origin[2] - heights_at(xyz[:, :2], level, surface)
+
+    level = replace(grid, origin=np.append(grid.origin[:2], 0.0))
+    return held_feet(offsets(), grid, thick, thick + np.float32(_FOOT_REACH_M), feet)
 
 
 def classify(xyz: NDArray[np.float64], grid: CellGrid, band: Band) -> NDArray[np.bool_]:

@@ -223,6 +223,7 @@ GROUND_TOOL = Tool(
     needs=Needs.POINTS,
     parameters=GroundParameters,
     mark_together=mark_ground,
+    version=2,
     gives_classes=(GROUND, OTHER),
     outputs=(
         OutputColumn(CLASS, "uint8", 1, Text("Class", "クラス")),
