@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from dataclasses import replace
 from datetime import UTC, date, datetime
 from pathlib import Path
@@ -188,3 +190,51 @@ def test_a_damaged_map_is_said_in_a_sentence(tmp_path: Path, name: str) -> None:
     path.unlink()
     with pytest.raises(MissingInput):
         VolumeStore(tmp_path).read_map(kept.id)
+
+
+_WRITES_ON = """
+import sys
+from datetime import UTC, datetime
+from pathlib import Path
+from processing.project.volume import new_volume
+from processing.project.volume_store import VolumeStore, write_volume
+from tests.processing.project.test_volume_store import large_result, wish_of_a_site
+
+project = Path(sys.argv[1])
+result = large_result()
+while True:
+    kept = new_volume(wish_of_a_site(), result, crs="", version=1, made=datetime.now(UTC))
+    write_volume(kept, result, project / "tmp" / kept.id)
+    VolumeStore(project).add(kept, project / "tmp" / kept.id)
+    print(kept.id, flush=True)
+"""
+
+
+def wish_of_a_site() -> VolumeWish:
+    """Give what was compared."""
+    return _wish()
+
+
+def large_result() -> VolumeResult:
+    """Give a map that takes some time to write."""
+    shape = (1500, 1500)
+    ground = np.zeros(shape, np.float32)
+    grid = CellGrid(np.zeros(3), 0.1, *shape)
+    ones = np.ones(shape, np.float32)
+    change = ChangeGrid(grid, ground, ones, ones > 0, ones)
+    return replace(_result(), change=change)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_a_kill_while_volumes_are_written_leaves_only_whole_ones(
+    tmp_path: Path, count: int
+) -> None:
+    command = [sys.executable, "-c", _WRITES_ON, str(tmp_path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        written = [process.stdout.readline().strip() for _ in range(count)]
+        process.kill()
+    found = VolumeStore(tmp_path).all()
+    assert set(written) <= {kept.id for kept in found}
+    for kept in found:
+        assert VolumeStore(tmp_path).read_result(kept).change.change_m.shape == (1500, 1500)
