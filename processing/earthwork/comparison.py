@@ -19,6 +19,7 @@ from processing.earthwork.sides import EpochGround, Side
 from processing.earthwork.surfaces import (
     GroundSurface,
     cells_of_hole,
+    coarse_means,
     designed_surface,
     measured_surface,
 )
@@ -109,7 +110,9 @@ def _registration(cells: list[GroundCells | None]) -> Registration | None:
     if before is None or after is None:
         return None
     checks.check_heights(before, after)
-    return registration_of(before, after)
+    times = cells_of_hole(before.grid.size_m)
+    one, other = (coarse_means(cells.heights, times) for cells in (before, after))
+    return registration_of(one, other, times * before.grid.size_m)
 
 
 def _designed(side: Side, grid: CellGrid) -> GroundSurface | None:

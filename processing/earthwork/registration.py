@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.earthwork.ground_cells import GroundCells
 from processing.earthwork.volume_result import Registration
 
 Floats = NDArray[np.float64]
@@ -19,6 +18,7 @@ _LEAST_AREA_M2 = 25.0
 _PATCH_M = 5.0
 _SURE = 3.0
 _UP_M = 0.01
+_ON_SLOPES_M = 0.002
 _SIDEWAYS_M = 0.02
 _FEWEST_PATCHES = 4
 _LEAST_SURE_M = 1e-4
@@ -26,25 +26,36 @@ _GENTLE = 0.1
 _FEWEST = 50
 
 
-def registration_of(before: GroundCells, after: GroundCells) -> Registration | None:
+def registration_of(before: Floats, after: Floats, size_m: float) -> Registration | None:
     """By how much the later epoch lies off, from stable ground; None where too little is stable.
 
+    Parameters
+    ----------
+    before, after : (rows, columns) float64
+        Mean heights of cells of about half a metre, where slopes show and noise doesn't; NaN
+        where nothing was measured.
+    size_m : float
+        Side of a cell.
+
     The most frequent change of height within 0.3 m is that of ground nobody touched. On it a shift
-    to the side shows as change on slopes: ``change = up − slope · sideways``, fitted robustly.
+    to the side shows as change on slopes, fitted robustly:
+    ``change = up − slope · sideways + c · steepness``.
 
     References
     ----------
     Nuth and Kääb 2011, co-registration by slope and aspect.
     """
-    size_m = before.grid.size_m
-    change = after.heights - before.heights
-    slope_x, slope_y = _slopes(before.heights, size_m)
+    change = after - before
+    slope_x, slope_y = _slopes(before, size_m)
     known = np.isfinite(change) & np.isfinite(slope_x) & np.isfinite(slope_y)
     if known.sum() < _FEWEST:
         return None
     peak = _most_frequent(change[known])
     stable = known & (np.abs(change - peak) <= _NEAR_M)
-    terms = np.column_stack([-slope_x[stable], -slope_y[stable], np.ones(int(stable.sum()))])
+    east_slope, north_slope = slope_x[stable], slope_y[stable]
+    # What rain or a bucket did to slopes alone is no shift: that shows on slopes facing each other.
+    steepness = np.hypot(east_slope, north_slope)
+    terms = np.column_stack([-east_slope, -north_slope, np.ones_like(steepness), steepness])
     values = change[stable]
     area_m2 = stable.sum() * size_m**2
     if area_m2 < _LEAST_AREA_M2:
@@ -53,8 +64,10 @@ def registration_of(before: GroundCells, after: GroundCells) -> Registration | N
     misses = values - terms @ shift
     sure = _sureness(terms, weights * misses, weights, _patches(stable, size_m))
     matters = np.array([_SIDEWAYS_M, _SIDEWAYS_M, _UP_M])
-    is_significant = bool(np.any((np.abs(shift) > matters) & (np.abs(shift) > _SURE * sure)))
-    east, north, up = (float(value) for value in shift)
+    is_significant = bool(
+        np.any((np.abs(shift[:3]) > matters) & (np.abs(shift[:3]) > _SURE * sure))
+    )
+    east, north, up = (float(value) for value in shift[:3])
     return Registration(
         shift_m=(east, north, up),
         sure_m=(float(sure[0]), float(sure[1]), float(sure[2])),
@@ -85,8 +98,8 @@ def _robust_fit(terms: Floats, values: Floats) -> tuple[Floats, Floats]:
     """The shift and the weight of each cell (Geman and McClure)."""
     weights = np.ones(len(values))
     # On level ground nothing tells of a shift to the side: it is then taken for none.
-    rest = np.diag([_GENTLE**2, _GENTLE**2, 0.0])
-    shift: Floats = np.zeros(3)
+    rest = np.diag([_GENTLE**2, _GENTLE**2, 0.0, _GENTLE**2])
+    shift: Floats = np.zeros(4)
     for _ in range(_ROUNDS):
         form = terms.T @ (terms * weights[:, None]) + rest
         shift = np.asarray(np.linalg.solve(form, terms.T @ (weights * values)), np.float64)
@@ -121,5 +134,5 @@ def _sureness(terms: Floats, pulls: Floats, weights: Floats, patches: NDArray[np
     )
     inverse = np.linalg.pinv(terms.T @ (terms * weights[:, None]))
     spread = inverse @ (scores.T @ scores) @ inverse * count / (count - 1)
-    sure: Floats = np.sqrt(np.maximum(np.diag(spread), _LEAST_SURE_M**2))
+    sure: Floats = np.sqrt(np.maximum(np.diag(spread)[:3], _LEAST_SURE_M**2))
     return sure

@@ -24,6 +24,7 @@ HOLE_M = 0.5
 
 _BELOW_M = 0.1
 _BRIDGED_M = 0.2
+_FEW_IN_CELL = 3.0
 
 
 def cells_of_hole(size_m: float) -> int:
@@ -83,7 +84,7 @@ def measured_surface(
     """
     grid = cells.grid
     times = cells_of_hole(grid.size_m)
-    coarse, wanted = _coarse(cells.heights, times), _any_of(is_wanted, times)
+    coarse, wanted = coarse_means(cells.heights, times), _any_of(is_wanted, times)
     origin = grid.origin + np.asarray(shift_m)
     lines = _sight_lines(epoch, origin, (coarse, times * grid.size_m), monitor)
     filled = filled_ground(coarse, wanted, lines, times * grid.size_m, monitor)
@@ -91,7 +92,7 @@ def measured_surface(
     heights = np.where(cells.is_counted, cells.heights, _fine(filled.heights, times, shape))
     # Larger holes keep what was found for them: a crest would be smoothed away again.
     relaxed(heights, cells.is_counted | np.isnan(_repeated(coarse, times, shape)))
-    is_measured = _bridged(cells)
+    is_measured = _bridged(cells) | _thinly_measured(cells, times)
     spread = np.where(is_measured, 0.0, _repeated(filled.spread, times, shape))
     outside = ~is_wanted & ~cells.is_counted
     heights[outside] = np.nan
@@ -109,6 +110,19 @@ def _bridged(cells: GroundCells) -> Mask:
     padded = np.pad(cells.is_counted, reach)
     closed: Mask = binary_closing(padded, square, iterations=reach)[reach:-reach, reach:-reach]
     return closed
+
+
+def _thinly_measured(cells: GroundCells, times: int) -> Mask:
+    """Cells without a point where points are few anyway: there the next one is a gap away.
+
+    Where points are many about it, an empty cell was hidden from the scanner.
+    """
+    from scipy.ndimage import maximum_filter
+
+    counts = np.nansum(_blocks(cells.counts.astype(np.float64), times), axis=(1, 3))
+    densest = maximum_filter(counts, 3) / times**2
+    is_thin = (counts > 0) & (densest < _FEW_IN_CELL)
+    return _repeated(is_thin.astype(np.float64), times, cells.counts.shape) > 0
 
 
 def _sight_lines(
@@ -142,8 +156,8 @@ def _blocks(values: Floats, times: int) -> Floats:
     return whole.reshape(whole.shape[0] // times, times, whole.shape[1] // times, times)
 
 
-def _coarse(heights: Floats, times: int) -> Floats:
-    """Means of blocks of cells; NaN where all are."""
+def coarse_means(heights: Floats, times: int) -> Floats:
+    """Means of blocks of ``times`` cells a side; NaN where all are."""
     blocks = _blocks(heights, times)
     known = np.isfinite(blocks)
     counts = known.sum(axis=(1, 3))
