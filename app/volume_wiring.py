@@ -28,6 +28,7 @@ from processing.text import Text
 from processing.tools.volume import VOLUME
 from widgets.panels.volume.side_box import SideBox
 from widgets.panels.volume.volume_form import Within
+from widgets.shared.shown_volume import VolumeLook
 
 
 def connect_volumes(parts: WindowParts) -> None:
@@ -49,6 +50,7 @@ def connect_volumes(parts: WindowParts) -> None:
     earthwork.volumes_changed.connect(wiring.show_volumes)
     earthwork.epochs_changed.connect(wiring.show_epochs)
     parts.document.closed.connect(form.start_anew)
+    parts.document.shared.volume.look_changed.connect(wiring.on_volume_look_changed)
     wiring.show_epochs()
     wiring.show_volumes()
 
@@ -59,6 +61,9 @@ class _VolumeWiring(QObject):
     def __init__(self, parts: WindowParts) -> None:
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
+
+    def on_volume_look_changed(self, look: VolumeLook) -> None:
+        self._parts.window.actions_by_id["heat-map"].setChecked(look.is_shown)
 
     def show_epochs(self) -> None:
         self._parts.volume_panel.form.show_epochs(self._parts.earthwork.epochs)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from app.actions.action import Action
 from app.window_parts import WindowParts
@@ -89,12 +89,30 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
             needs_project=True,
         )
 
-    def show_volume() -> None:
-        parts.window.show_panel("volume")
-
     def cancel_all() -> None:
         for status in parts.jobs.statuses:
             parts.jobs.cancel(status.id)
+
+    cancel = Action(
+        "cancel-jobs", Text("Cancel all jobs", "すべてのジョブを中止"), cancel_all, "process"
+    )
+    return (
+        *(running(one) for one in one_click_tools()),
+        *(showing(tool) for tool in TOOLS),
+        *_volume_actions(parts),
+        cancel,
+    )
+
+
+def _volume_actions(parts: WindowParts) -> tuple[Action, ...]:
+    """Earth between two grounds: the panel that computes it, and its map."""
+
+    def show_volume() -> None:
+        parts.window.show_panel("volume")
+
+    def toggle_heat_map() -> None:
+        volume = parts.document.shared.volume
+        volume.use_look(replace(volume.look, is_shown=not volume.look.is_shown))
 
     volume = Action(
         "volume",
@@ -105,12 +123,18 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
         hint=VOLUME.explanation,
         needs_project=True,
     )
-    cancel = Action(
-        "cancel-jobs", Text("Cancel all jobs", "すべてのジョブを中止"), cancel_all, "process"
+    heat_map = Action(
+        "heat-map",
+        Text("Heat map of the volume", "土量のヒートマップ"),
+        toggle_heat_map,
+        "process",
+        ("Ctrl+Shift+F9",),
+        hint=Text(
+            "Shows the difference of heights in the map, in 3D and in the section, or hides it.",
+            "標高差を地図・3D・断面に表示、または非表示にします。",
+        ),
+        is_checkable=True,
+        is_checked=parts.document.shared.volume.look.is_shown,
+        needs_project=True,
     )
-    return (
-        *(running(one) for one in one_click_tools()),
-        *(showing(tool) for tool in TOOLS),
-        volume,
-        cancel,
-    )
+    return volume, heat_map

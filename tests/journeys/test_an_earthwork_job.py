@@ -92,9 +92,11 @@ def _look_at_the_section(builder: Builder) -> None:
     cut = section.cut
     assert cut is not None
     plain = section.panes[0].grab().toImage()
-    builder.volume.use_look(replace(builder.volume.look, is_shown=False))
+    builder.act("heat-map")
+    assert builder.volume.drawn is None
     assert section.panes[0].grab().toImage() != plain
-    builder.volume.use_look(replace(builder.volume.look, is_shown=True))
+    builder.act("heat-map")
+    assert builder.volume.drawn is not None
 
 
 def _change_range_and_contours(builder: Builder) -> None:
