@@ -19,6 +19,7 @@ _PATCH_M = 5.0
 _SURE = 3.0
 _UP_M = 0.01
 _ON_SLOPES_M = 0.002
+_LEAST_SLOPE = 1e-3
 _SIDEWAYS_M = 0.02
 _FEWEST_PATCHES = 4
 _LEAST_SURE_M = 1e-4
@@ -63,11 +64,13 @@ def registration_of(before: Floats, after: Floats, size_m: float) -> Registratio
     shift, weights = _robust_fit(terms, values)
     misses = values - terms @ shift
     sure = _sureness(terms, weights * misses, weights, _patches(stable, size_m))
-    matters = np.array([_SIDEWAYS_M, _SIDEWAYS_M, _UP_M])
-    is_significant = bool(
-        np.any((np.abs(shift[:3]) > matters) & (np.abs(shift[:3]) > _SURE * sure))
-    )
-    east, north, up = (float(value) for value in shift[:3])
+    # A scanner's own errors differ with the slope that its beams come in on: where slopes are
+    # gentle they look like a large shift to the side.
+    spread = np.std(terms[:, :2], axis=0)
+    sure[:2] = np.hypot(sure[:2], _ON_SLOPES_M / np.maximum(spread, _LEAST_SLOPE))
+    moved, matters = shift[:3], np.array([_SIDEWAYS_M, _SIDEWAYS_M, _UP_M])
+    is_significant = bool(np.any((np.abs(moved) > matters) & (np.abs(moved) > _SURE * sure)))
+    east, north, up = (float(value) for value in moved)
     return Registration(
         shift_m=(east, north, up),
         sure_m=(float(sure[0]), float(sure[1]), float(sure[2])),
