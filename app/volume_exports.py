@@ -23,16 +23,18 @@ from app.volume_papers import (
 )
 from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.heat_map import change_classes
+from processing.earthwork.sides import EpochGround
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.earthwork.triangulation import triangulated_ground
 from processing.earthwork.volume_parameters import END_AREA, PRISMOIDAL
 from processing.errors import Unsuitable
 from processing.formats.change_geotiff import write_change_geotiff
 from processing.formats.earthwork_dxf import EarthworkPlan, PlanLook, write_earthwork_dxf
+from processing.formats.ground_las import write_ground_las
 from processing.formats.landxml_writing import LandXmlFacts, WrittenSurface, write_landxml
 from processing.formats.section_sheet_dxf import SectionLook, write_section_sheet_dxf
 from processing.monitor import Monitor
-from processing.project.volume import KeptVolume
+from processing.project.volume import KeptVolume, SideKind
 from processing.text import Text
 
 _TITLE = Text("Cut {cut} m³, fill {fill} m³", "切土量 {cut} m³、盛土量 {fill} m³")
@@ -41,6 +43,10 @@ _MOST_CORNERS = 200_000
 _LONGEST_CELLS = 3.0
 
 Write = Callable[[Path, GivenVolume, Monitor], None]
+
+
+def _has_epoch(kept: KeptVolume) -> bool:
+    return SideKind.EPOCH in (kept.wish.before.kind, kept.wish.after.kind)
 
 
 def _has_sections(kept: KeptVolume) -> bool:
@@ -117,6 +123,12 @@ def _write_surface(path: Path, given: GivenVolume, monitor: Monitor) -> None:
     write_landxml(path, written, facts, line=line, monitor=monitor, never=given.never)
 
 
+def _write_ground(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+    """The points of the later epoch, or of the only one."""
+    epochs = [side for side in given.sides(monitor) if isinstance(side, EpochGround)]
+    write_ground_las(path, epochs[-1], monitor, never=given.never)
+
+
 def _later_ground(
     change: ChangeGrid, boundary: BaseGeometry | None, monitor: Monitor
 ) -> TriangleSurface:
@@ -172,6 +184,13 @@ VOLUME_EXPORTS: tuple[VolumeExport, ...] = (
     ),
     VolumeExport(
         "surface", Text("Ground after (LandXML)", "変化後の地盤（LandXML）"), ".xml", _write_surface
+    ),
+    VolumeExport(
+        "ground",
+        Text("Ground points (LAZ)", "地面の点群（LAZ）"),
+        ".laz",
+        _write_ground,
+        _has_epoch,
     ),
     VolumeExport(
         "geotiff", Text("Height difference (GeoTIFF)", "標高差（GeoTIFF）"), ".tif", _write_geotiff

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import ezdxf
+import laspy
 import numpy as np
 import pytest
 import rasterio
@@ -134,6 +135,9 @@ def _give_out(builder: Builder, folder: Path, monkeypatch) -> None:
     near = np.hypot(*(surface.xyz[:, :2] - np.add(CORNER[:2], (8.0, 9.0))).T) < 0.3
     expected = CORNER[2] + GRADE * 9.0 - DEPTH_M
     assert np.median(surface.xyz[near, 2]) == pytest.approx(expected, abs=0.03)
+    points = laspy.read(made["ground"])
+    assert len(points.x) > 15_000
+    assert set(np.unique(points.classification)) == {2}
     assert made["report"].read_bytes().startswith(b"%PDF")
     table = made["report-csv"].read_text(encoding="utf-8-sig")
     assert "EPSG:6677" in table
