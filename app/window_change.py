@@ -16,6 +16,7 @@ from PySide6.QtWidgets import QApplication
 from app.translation import Translation
 from app.window_parts import WindowParts
 from processing.errors import UserError
+from processing.project.volume import ChosenSide
 from processing.text import Language
 from widgets.image_view.panes import ShownImage
 from widgets.image_view.viewport import Viewport
@@ -40,6 +41,8 @@ class _Seen:
     map_part: PlaneViewport | None
     tool: str
     parameters: object
+    compared: tuple[ChosenSide | None, ChosenSide | None]
+    volume_parameters: object
     error: UserError | None
     has_focus: bool
 
@@ -47,6 +50,7 @@ class _Seen:
     def of(parts: WindowParts) -> _Seen:
         image, panel = parts.image_view, parts.processing_panel
         form, cloud = panel.form, parts.scene_view.cloud
+        volume = parts.volume_panel.form
         focused = QApplication.focusWidget()
         return _Seen(
             viewport=None if image.picture is None else image.viewport,
@@ -58,6 +62,8 @@ class _Seen:
             map_part=None if parts.map_view.lay() is None else parts.map_view.viewport,
             tool=panel.tool,
             parameters=None if form is None else form.value(),
+            compared=volume.sides,
+            volume_parameters=volume.parameters.value(),
             error=parts.message_bar.error,
             has_focus=focused in (*parts.image_views.views, parts.scene_view.picture),
         )
@@ -78,6 +84,9 @@ class _Seen:
             panel.show_tool(self.tool)
         if panel.form is not None and self.parameters is not None:
             panel.form.set_values(vars(self.parameters))
+        volume = parts.volume_panel.form
+        volume.choose_sides(*self.compared)
+        volume.parameters.set_values(vars(self.volume_parameters))
         if self.error is not None:
             parts.message_bar.show_error(self.error)
         if self.has_focus:

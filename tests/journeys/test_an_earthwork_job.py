@@ -151,8 +151,16 @@ def test_a_volume_is_there_again_when_the_project_is_opened_and_can_be_removed(
     builder.open(folder, deliveries)
     builder.find_ground()
     builder.compute()
+    sides = builder.panel.form.sides
     cut = builder.panel.table.value("cut")
     document = builder.surveyor.document
+    builder.parts.window.actions_by_id["language-ja"].trigger()
+    builder.bot.waitUntil(lambda: builder.parts.language == "ja", timeout=WAIT_MS)
+    assert builder.parts.volume_panel.table.value("cut") == cut
+    assert builder.parts.volume_panel.form.sides == sides
+    builder.parts.window.actions_by_id["language-en"].trigger()
+    builder.bot.waitUntil(lambda: builder.parts.language == "en", timeout=WAIT_MS)
+    builder.panel = builder.parts.volume_panel
     document.close()
     assert builder.volume.change is None
     assert builder.earthwork.volumes == ()

@@ -83,7 +83,7 @@ class ParameterForm(QWidget):
         return filled_in(self._parameters, {id_: row.value for id_, row in self._rows.items()})
 
     def set_values(self, values: Mapping[str, Value]) -> None:
-        """Set some fields; what is outside its limits is refused as a whole.
+        """Set some of the fields that are shown; what is outside its limits is refused as a whole.
 
         Raises
         ------
@@ -92,7 +92,8 @@ class ParameterForm(QWidget):
         """
         checked = filled_in(self._parameters, values)
         for id_ in values:
-            self._rows[id_].set_value(getattr(checked, id_))
+            if id_ in self._rows:
+                self._rows[id_].set_value(getattr(checked, id_))
 
     def restore_defaults(self) -> None:
         """Set every field to its default."""

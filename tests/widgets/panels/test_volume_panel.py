@@ -105,6 +105,17 @@ def test_a_design_is_asked_for_and_then_chosen(qtbot: QtBot, panel: VolumePanel)
     assert box.side.surface == "法面"
 
 
+def test_a_level_has_its_height_in_a_field_that_is_there_for_it_alone(panel: VolumePanel) -> None:
+    panel.form.show_epochs((APRIL, MAY))
+    field = panel.form.findChildren(NumberField)[0]
+    assert not field.isVisible()
+    panel.form.choose_sides(None, ChosenSide(SideKind.LEVEL, height_m=4.25))
+    assert field.isVisible()
+    assert field.value() == 4.25
+    field.setValue(6.5)
+    assert panel.form.sides == (APRIL.side, ChosenSide(SideKind.LEVEL, height_m=6.5))
+
+
 def test_a_reason_against_is_said_and_nothing_can_be_run(panel: VolumePanel) -> None:
     reasons = [Text("Both are the same.", "同じです。")]
     panel.form.ask_reason_from(lambda: reasons[0] if reasons else None)

@@ -170,6 +170,14 @@ class VolumeForm(QWidget):
         self.after.show_epochs(epochs, 1)
         self.refresh()
 
+    def choose_sides(self, before: ChosenSide | None, after: ChosenSide | None) -> None:
+        """Choose both grounds, a level with its height; None leaves one as it is."""
+        for box, side in ((self.before, before), (self.after, after)):
+            if side is not None:
+                box.choose(side)
+            if side is not None and side.kind is SideKind.LEVEL:
+                self._level.setValue(side.height_m)
+
     def take_boundary(self, path: Path) -> None:
         """Count only what is within the area of a file."""
         self._boundary = path
