@@ -21,6 +21,7 @@ from processing.bench.road_case import measure_road
 from processing.bench.simulate_case import measure_simulate
 from processing.bench.start_case import measure_start
 from processing.bench.table import Circumstances, described, load_now, number, write_table
+from processing.bench.volume_cases import measure_volume, measure_volume_tin, measure_volume_view
 from processing.errors import OutOfRange, use_one_of
 from processing.text import Text
 
@@ -37,6 +38,9 @@ CASES: Mapping[str, Case] = {
     "ground": measure_ground,
     "simulate": measure_simulate,
     "road": measure_road,
+    "volume": measure_volume,
+    "volume-tin": measure_volume_tin,
+    "volume-view": measure_volume_view,
     "memory": measure_import_memory,
     "growth": measure_growth,
     "large": measure_large,

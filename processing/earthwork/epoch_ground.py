@@ -15,6 +15,7 @@ from processing.monitor import Monitor, SilentMonitor
 from processing.points.drive import Drive
 from processing.points.measured_day import measured_day
 from processing.text import Text
+from processing.worked_ahead import in_order
 
 _AT_ONCE = 1 << 17
 
@@ -58,7 +59,7 @@ def ground_of_drives(drives: tuple[Drive, ...], monitor: Monitor, *, name: str =
     def measured() -> Iterator[GroundBlock]:
         return read_ahead(everything_of, points.chunks)
 
-    places = [standing_place(drive) for drive in drives]
+    places = list(in_order(standing_place, drives))
     stations = tuple(number for number, place in enumerate(places) if place is not None)
     return EpochGround(
         name,

@@ -22,6 +22,21 @@ _NEAREST_M = 0.5
 
 
 @dataclass(frozen=True)
+class Floor:
+    """Heights on cells that nothing which was measured lies below.
+
+    Attributes
+    ----------
+    heights : (rows, columns) float64
+        m, in the frame of the places; -inf where anything may be.
+    size_m : float
+    """
+
+    heights: Floats
+    size_m: float
+
+
+@dataclass(frozen=True)
 class SightLines:
     """The lowest beams of each place where a scanner stood.
 
@@ -43,9 +58,22 @@ class SightLines:
         rises = np.full((len(stands), _SECTORS, _RINGS), np.inf, np.float32)
         return SightLines(stands, rises)
 
-    def add(self, stand: int, xyz: Floats) -> None:
-        """Take in points that were measured from a place: (n, 3) float64, m; NaN is passed over."""
-        _rise_kernel(np.ascontiguousarray(xyz), self.stands[stand], self.rises[stand])
+    def add(self, stand: int, xyz: Floats, origin: Floats, floor: Floor | None = None) -> None:
+        """Take in points that were measured from a place.
+
+        Parameters
+        ----------
+        xyz : (n, 3) float64
+            m; NaN is passed over.
+        origin : (3,) float64
+            Of the frame in which the places are, m.
+        floor : Floor or None
+            No beam went to what lies below it.
+        """
+        floor = floor or Floor(np.empty((0, 0)), 1.0)
+        frame = (float(origin[0]), float(origin[1]), float(origin[2]))
+        held = (floor.heights, floor.size_m)
+        _rise_kernel(np.ascontiguousarray(xyz), frame, held, self.stands[stand], self.rises[stand])
 
     def finished(self) -> SightLines:
         """The same once all points are in: beams that went farther passed over what is nearer."""
@@ -71,21 +99,34 @@ class SightLines:
 
 
 @kernel
-def _rise_kernel(xyz: Floats, stand: Floats, rises: NDArray[np.float32]) -> None:
+def _rise_kernel(
+    xyz: Floats,
+    origin: tuple[float, float, float],
+    ground: tuple[Floats, float],
+    stand: Floats,
+    rises: NDArray[np.float32],
+) -> None:
+    floor, size_m = ground
     sectors, rings = rises.shape
     for point in range(xyz.shape[0]):
-        x, y = xyz[point, 0] - stand[0], xyz[point, 1] - stand[1]
+        east, north = xyz[point, 0] - origin[0], xyz[point, 1] - origin[1]
+        up = xyz[point, 2] - origin[2]
+        x, y = east - stand[0], north - stand[1]
         away = np.hypot(x, y)
         # NaN fails the test.
         if not (away > _NEAREST_M and away < rings * _RING_M):
             continue
+        row, column = int(np.floor(north / size_m)), int(np.floor(east / size_m))
+        is_in = row >= 0 and column >= 0 and row < floor.shape[0] and column < floor.shape[1]
+        if is_in and not up >= floor[row, column]:
+            continue
         turn = np.arctan2(y, x) / (2 * np.pi)
         sector = int((turn - np.floor(turn)) * sectors) % sectors
         ring = int(away / _RING_M)
-        rise = (xyz[point, 2] - stand[2]) / away
-        rises[sector, ring] = min(rises[sector, ring], rise)
+        rises[sector, ring] = min(rises[sector, ring], (up - stand[2]) / away)
 
 
 def warm_up() -> None:
     """Compile the kernel of this file."""
-    _rise_kernel(np.ones((1, 3)), np.zeros(3), np.zeros((1, 1, 1), np.float32)[0])
+    lines = SightLines(np.zeros((1, 3)), np.zeros((1, 1, 1), np.float32))
+    lines.add(0, np.ones((1, 3)), np.zeros(3))

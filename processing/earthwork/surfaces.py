@@ -11,7 +11,7 @@ from processing.earthwork.filling import relaxed
 from processing.earthwork.ground_cells import GroundCells
 from processing.earthwork.hidden_ground import filled_ground
 from processing.earthwork.sides import EpochGround, Level
-from processing.earthwork.sight_lines import SightLines
+from processing.earthwork.sight_lines import Floor, SightLines
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.ground.cells import CellGrid
 from processing.monitor import Monitor
@@ -133,19 +133,11 @@ def _sight_lines(
     if not len(epoch.stands) or epoch.measured is None:
         return lines
     heights, size_m = ground
-    rows, columns = heights.shape
-    floor = np.nan_to_num(heights, nan=-np.inf) - _BELOW_M
+    floor = Floor(np.nan_to_num(heights, nan=-np.inf) - _BELOW_M, size_m)
     for block in epoch.measured():
         monitor.check()
-        if block.station not in epoch.stations:
-            continue
-        # Noise has no place.
-        xyz = block.xyz[np.isfinite(block.xyz[:, 0])] - origin
-        column, row = np.floor(xyz[:, :2] / size_m).astype(np.int64).T
-        is_in = (column >= 0) & (column < columns) & (row >= 0) & (row < rows)
-        is_above = ~is_in
-        is_above[is_in] = xyz[is_in, 2] >= floor[row[is_in], column[is_in]]
-        lines.add(epoch.stations.index(block.station), xyz[is_above])
+        if block.station in epoch.stations:
+            lines.add(epoch.stations.index(block.station), block.xyz, origin, floor)
     return lines.finished()
 
 

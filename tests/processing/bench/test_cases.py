@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import pytest
 
@@ -17,6 +18,8 @@ from processing.bench.peer_cases import measure_normals, measure_searchable
 from processing.bench.road_case import measure_road
 from processing.bench.road_run import StageWatch
 from processing.bench.simulate_case import measure_simulate
+from processing.bench.volume_cases import measure_volume, measure_volume_tin, measure_volume_view
+from processing.bench.volume_site import true_volumes
 from processing.text import Text
 
 LITTLE = BenchWish(most_points=20_000, share=0.2)
@@ -31,6 +34,8 @@ LITTLE = BenchWish(most_points=20_000, share=0.2)
         measure_switch,
         measure_labels,
         measure_simulate,
+        measure_volume_tin,
+        measure_volume_view,
     ],
 )
 def test_a_benchmark_gives_one_positive_figure(measure: object) -> None:
@@ -80,6 +85,17 @@ def test_curbs_and_gutters_have_times_by_stage_and_length() -> None:
         assert row.target is not None
     assert "curbs" in rows[0].detail
     assert "gutters" in rows[0].detail
+
+
+def test_a_volume_has_times_by_stage_and_comes_near_what_was_moved() -> None:
+    (row,) = measure_volume(BenchWish(most_points=200_000, share=0.2))
+    assert row.value is not None
+    assert row.target == 3.0
+    assert row.figures["Summing"] > 0
+    cut, fill = (float(word) for word in re.findall(r"(?:cut|fill) ([\d.]+) of", row.detail))
+    true_cut, true_fill = true_volumes()
+    assert cut == pytest.approx(true_cut, rel=0.1)
+    assert fill == pytest.approx(true_fill, rel=0.1)
 
 
 def test_stages_are_timed_from_one_told_to_the_next() -> None:

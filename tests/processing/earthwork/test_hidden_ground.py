@@ -32,7 +32,7 @@ def seen_from(stand: Floats, heights: Floats) -> tuple[Floats, SightLines]:
     known = np.argwhere(np.isfinite(seen))
     for share in np.ndindex(5, 5):
         places = (known[:, ::-1] + 0.1 + np.array(share) / 5) * CELL_M
-        lines.add(0, np.column_stack([places, seen[tuple(known.T)]]))
+        lines.add(0, np.column_stack([places, seen[tuple(known.T)]]), np.zeros(3))
     return seen, lines.finished()
 
 
