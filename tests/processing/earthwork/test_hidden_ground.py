@@ -91,7 +91,7 @@ def test_nothing_measured_gives_nothing() -> None:
 
 def test_a_beam_limits_ground_before_what_it_hit() -> None:
     lines = SightLines.without_beams(np.array([[0.0, 0.0, 2.0]]))
-    lines.add(0, np.array([[20.0, 0.1, 0.0], [np.nan, np.nan, np.nan]]))
+    lines.add(0, np.array([[20.0, 0.1, 0.0], [np.nan, np.nan, np.nan]]), np.zeros(3))
     lines = lines.finished()
 
     before, behind = lines.highest_at(0, np.array([[10.0, 0.05], [30.0, 0.15]]))
