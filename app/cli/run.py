@@ -195,7 +195,8 @@ def settings_of_words(words: list[str]) -> dict[str, str]:
 
 
 def _check_inputs(arguments: argparse.Namespace) -> None:
-    if not arguments.inputs or arguments.before or arguments.after:
+    given = vars(arguments)
+    if not arguments.inputs or given.get("before") or given.get("after"):
         raise MissingInput(
             Text("The tool runs on one input.", "このツールは1つの入力を処理します。"),
             Text.same(arguments.tool),

@@ -36,7 +36,8 @@ from processing.score.filters import with_section
 from processing.score.known_body import BODY_ABOUT, BODY_HEADING, body_rows
 from processing.simulate.site import DATES, simulate_site
 from processing.simulate.wishes import SiteWish
-from processing.tools.ground import GROUND_TOOL, GroundParameters
+from processing.tools.ground import GROUND_TOOL
+from processing.tools.noise import NOISE
 
 Floats = NDArray[np.float64]
 
@@ -46,8 +47,8 @@ _STYLES = ("levee", "cutting", "pad")
 _SENSORS = ("p40", "vz400i", "zf5016", "p40")
 _ABOUT = (
     "`python -m processing.score.site_volumes --markdown docs/accuracy.md` simulates sites of "
-    "60 m of seeds that nobody looked at, finds the ground of both dates with the tool `ground` "
-    "as it comes, and compares them within the site's boundary in cells of {mesh:g} m. Measured: "
+    "60 m of seeds that nobody looked at, runs the tools `noise` and `ground` on both dates as "
+    "they come, and compares them within the site's boundary in cells of {mesh:g} m. Measured: "
     "cut and fill where both dates have points within half a metre, against the true surfaces "
     "over the same cells; beside it the plain sums of what is positive and negative. Whole: all "
     "of the site with holes filled, against the exact truth; net as a share of what was moved "
@@ -135,13 +136,19 @@ def scored_site(name: str, folder: Path, parameters: VolumeParameters) -> Scored
 
 
 def _with_ground(cloud: Path, scratch: Path) -> tuple[Drive, ...]:
-    """A cloud's drives, their ground found as the tool finds it."""
+    """A cloud's drives, noise and ground found by the tools as they come."""
     folders = import_drives(ImportRequest(inputs=(cloud,)), scratch / cloud.stem, SilentMonitor())
     drives = tuple(Drive(folder) for folder in folders)
-    request = RunRequest(GROUND_TOOL.id, drives[0], GroundParameters(), drives[1:])
-    result = run_together(request, SilentMonitor(), into=scratch / f"{cloud.stem}-ground")
-    for drive, columns in reversed(list(zip(drives, result.columns, strict=True))):
-        columns.hand_over(drive.columns)
+    for tool in (NOISE, GROUND_TOOL):
+        left = list(drives)
+        while left:
+            into = scratch / f"{cloud.stem}-{tool.id}-{len(left)}"
+            request = RunRequest(tool.id, left[0], tool.parameters(), tuple(left[1:]))
+            result = run_together(request, SilentMonitor(), into=into)
+            # The first folder may hold those of the others: it goes last.
+            for drive, columns in reversed(list(zip(left, result.columns, strict=False))):
+                columns.hand_over(drive.columns)
+            left = left[len(result.columns) :]
     return drives
 
 
