@@ -119,7 +119,9 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
     running.add_argument("tool", metavar="TOOL")
     _add_inputs(running, least="*")
     running.add_argument("--before", type=Path, metavar="A", help="of a volume: points, design")
-    running.add_argument("--after", type=Path, metavar="B", help="(.xml), or a level in metres")
+    running.add_argument(
+        "--after", type=Path, metavar="B", help="(.xml, .xml#SURFACE), or a level in m"
+    )
     running.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
     running.add_argument("--output", type=Path, required=True, metavar="OUT")
     running.set_defaults(module="run")

@@ -6,7 +6,7 @@ import argparse
 import json
 from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -61,6 +61,7 @@ def command(arguments: argparse.Namespace) -> int:
         crs = _one_system(before, after)
         within = _within(parameters, crs)
         result = compare(before.side, after.side, parameters, comparing, within)
+        result = replace(result, notes=(*before.notes, *after.notes, *result.notes))
         told = _told(result, before, after, crs)
         papers = _Papers(result, (before, after), parameters, crs)
         paths = papers.write(arguments.output, told, writing)
@@ -170,7 +171,12 @@ class _Papers:
     def write(self, output: Path, told: Mapping[str, object], monitor: Monitor) -> list[Path]:
         """The numbers last: where they are, all of it is."""
         never = [path for side in self.sides for path in side.files]
-        refuse_inputs(output, never)
+        named = (self.parameters.boundary, self.parameters.line, self.parameters.break_lines)
+        never += [Path(name) for name in named if name]
+        # All of them before the first is written: nothing half done is left.
+        for name in (output, self.parameters.map, self.parameters.report):
+            if name:
+                refuse_inputs(Path(name), never)
         written = []
         if self.parameters.map:
             path, change = Path(self.parameters.map), self.result.change

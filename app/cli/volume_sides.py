@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +25,7 @@ from processing.text import Text
 from processing.tools.ground import GROUND_TOOL
 from processing.tools.parameters import filled_in
 
-_DESIGN = ".xml"
+_DESIGN, _NAME_MARK = ".xml", "#"
 _FOUND = 0.7
 
 
@@ -44,6 +44,8 @@ class NamedSide:
         Of an epoch; 0 for others.
     crs : str
         ``EPSG:n``, or empty when unknown.
+    notes : tuple of Text
+        What a reader must know of how it was read.
     """
 
     side: Side
@@ -51,6 +53,7 @@ class NamedSide:
     files: tuple[Path, ...]
     points: int
     crs: str
+    notes: tuple[Text, ...] = ()
 
 
 @contextmanager
@@ -59,7 +62,8 @@ def named_side(
 ) -> Iterator[NamedSide]:
     """The side that some words name: a number is a level, ``.xml`` a design, else points.
 
-    Ground is looked for in points that have none yet.
+    Of a design with several surfaces the one is taken whose name stands behind ``#``. Ground
+    is looked for in points that have none yet.
 
     Raises
     ------
@@ -69,11 +73,8 @@ def named_side(
     level = _level_of(str(words))
     if level is not None:
         yield NamedSide(Level(level), f"{level:g} m", (), 0, "")
-    elif words.suffix.lower() == _DESIGN:
-        found = read_landxml(words, monitor=monitor)
-        surface = found.only().surface
-        check_surface(surface)
-        yield NamedSide(surface, str(words), (words,), 0, found.crs)
+    elif (design := _design_of(words)) is not None:
+        yield _read_design(*design, monitor)
     else:
         one = argparse.Namespace(
             inputs=[words], trajectory=[], images=[], crs=arguments.crs, output=arguments.output
@@ -95,6 +96,39 @@ def _level_of(words: str) -> float | None:
     except ValueError:
         return None
     return level if np.isfinite(level) else None
+
+
+def _design_of(words: Path) -> tuple[Path, str] | None:
+    """A design's file and the name of its surface, empty for the only one."""
+    if words.suffix.lower() == _DESIGN:
+        return words, ""
+    file, mark, name = str(words).rpartition(f"{_DESIGN}{_NAME_MARK}")
+    return (Path(file + _DESIGN), name) if mark else None
+
+
+def _read_design(path: Path, name: str, monitor: Monitor) -> NamedSide:
+    found = read_landxml(path, surface=name, monitor=monitor)
+    if len(found.surfaces) > 1:
+        raise Unsuitable(
+            Text(
+                "The file has several surfaces: {names}.", "複数のサーフェスがあります（{names}）。"
+            ).filled(names=", ".join(one.surface.name or "-" for one in found.surfaces)),
+            Text.same(str(path)),
+            Text(
+                "Write the name of the one that is meant behind the file: {example}.",
+                "使用するサーフェスの名前をファイル名の後に書いてください（例：{example}）。",
+            ).filled(example=f"{path.name}{_NAME_MARK}{found.surfaces[0].surface.name}"),
+        )
+    surface, up_m = found.surfaces[0].surface, found.zero_above_tp_m
+    check_surface(surface)
+    if not up_m:
+        return NamedSide(surface, str(path), (path,), 0, found.crs)
+    surface = replace(surface, xyz=surface.xyz + np.array([0.0, 0.0, up_m]))
+    note = Text(
+        "The design's heights count from {datum}; {up} m were added for heights above T.P.",
+        "設計面の高さの基準は{datum}です。T.P.基準とするため{up} mを加えました。",
+    ).filled(datum=found.height_datum or "–", up=f"{up_m:+.4f}")
+    return NamedSide(surface, str(path), (path,), 0, found.crs, (note,))
 
 
 def _epoch(words: Path, opened: OpenedInput) -> tuple[Drive, ...]:
