@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shutil
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from processing.errors import Unsuitable, named, told_as_user_error
 from processing.image.point_image import PointCloudImage
-from processing.monitor import Monitor
+from processing.monitor import Monitor, parts_of
 from processing.points.columns import Columns
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
@@ -153,6 +153,34 @@ def run_together(
         result = run(request, monitor, into=into, points_per_block=points_per_block)
         return TogetherResult((result,) if isinstance(result, FinishedColumns) else ())
     return _marked_together(request, monitor, into, points_per_block)
+
+
+def mark_all(tool: str, drives: Sequence[Drive], monitor: Monitor, *, into: Path) -> None:
+    """Let a tool say of all points of some drives what it says, with its own parameters.
+
+    For drives that were imported for the moment: what is said becomes their columns at once.
+
+    Parameters
+    ----------
+    into : Path
+        A folder on their disk, which needn't exist.
+
+    Raises
+    ------
+    Unsuitable, OutOfRange, NoSpace, Cancelled
+        As :func:`run`.
+    """
+    left = list(drives)
+    for part in parts_of(monitor, [drive.count for drive in drives]):
+        if not left:
+            break
+        request = RunRequest(tool, left[0], tool_of(tool).parameters(), tuple(left[1:]))
+        result = run_together(request, part, into=into / f"{tool}-{len(left)}")
+        together = drives_of(request)
+        # The first folder may hold those of the others: it goes last.
+        for drive, columns in reversed(list(zip(together, result.columns, strict=True))):
+            columns.hand_over(drive.columns)
+        left = [drive for drive in left if drive not in together]
 
 
 def columns_of(result: RunResult) -> Mapping[str, NDArray[Any]]:

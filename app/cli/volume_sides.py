@@ -20,10 +20,9 @@ from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
 from processing.points.recorded_together import recordings_of
 from processing.project.project import is_project
-from processing.runner import RunRequest, run_together
+from processing.runner import mark_all
 from processing.text import Text
 from processing.tools.ground import GROUND_TOOL
-from processing.tools.parameters import filled_in
 
 _DESIGN, _NAME_MARK = ".xml", "#"
 _FOUND = 0.7
@@ -162,11 +161,4 @@ def _find_ground(
                 "先にプロジェクトで「地面抽出」を実行してください。",
             ),
         )
-    for number, together in enumerate(recordings_of(drives)):
-        request = RunRequest(
-            GROUND_TOOL.id, together[0], filled_in(GROUND_TOOL.parameters, {}), together[1:]
-        )
-        result = run_together(request, monitor, into=scratch / f"{drives[0].id}-{number}")
-        # The first folder holds those of the others: it goes last.
-        for drive, columns in reversed(list(zip(together, result.columns, strict=True))):
-            columns.hand_over(drive.columns)
+    mark_all(GROUND_TOOL.id, drives, monitor, into=scratch / drives[0].id)

@@ -30,14 +30,13 @@ from processing.formats.safe_write import written_safely
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
-from processing.runner import RunRequest, run_together
+from processing.runner import mark_all
 from processing.score.filter_tables import markdown_table
 from processing.score.filters import with_section
 from processing.score.known_body import BODY_ABOUT, BODY_HEADING, body_rows
 from processing.simulate.site import DATES, simulate_site
 from processing.simulate.wishes import SiteWish
 from processing.tools.ground import GROUND_TOOL
-from processing.tools.noise import NOISE
 
 Floats = NDArray[np.float64]
 
@@ -47,8 +46,8 @@ _STYLES = ("levee", "cutting", "pad")
 _SENSORS = ("p40", "vz400i", "zf5016", "p40")
 _ABOUT = (
     "`python -m processing.score.site_volumes --markdown docs/accuracy.md` simulates sites of "
-    "60 m of seeds that nobody looked at, runs the tools `noise` and `ground` on both dates as "
-    "they come, and compares them within the site's boundary in cells of {mesh:g} m. Measured: "
+    "60 m of seeds that nobody looked at, finds the ground of both dates with the tool "
+    "`ground` as it comes, and compares them within the site's boundary in cells of {mesh:g} m. Measured: "
     "cut and fill where both dates have points within half a metre, against the true surfaces "
     "over the same cells; beside it the plain sums of what is positive and negative. Whole: all "
     "of the site with holes filled, against the exact truth; net as a share of what was moved "
@@ -136,19 +135,10 @@ def scored_site(name: str, folder: Path, parameters: VolumeParameters) -> Scored
 
 
 def _with_ground(cloud: Path, scratch: Path) -> tuple[Drive, ...]:
-    """A cloud's drives, noise and ground found by the tools as they come."""
+    """A cloud's drives, ground found by the tool as it comes."""
     folders = import_drives(ImportRequest(inputs=(cloud,)), scratch / cloud.stem, SilentMonitor())
     drives = tuple(Drive(folder) for folder in folders)
-    for tool in (NOISE, GROUND_TOOL):
-        left = list(drives)
-        while left:
-            into = scratch / f"{cloud.stem}-{tool.id}-{len(left)}"
-            request = RunRequest(tool.id, left[0], tool.parameters(), tuple(left[1:]))
-            result = run_together(request, SilentMonitor(), into=into)
-            # The first folder may hold those of the others: it goes last.
-            for drive, columns in reversed(list(zip(left, result.columns, strict=False))):
-                columns.hand_over(drive.columns)
-            left = left[len(result.columns) :]
+    mark_all(GROUND_TOOL.id, drives, SilentMonitor(), into=scratch / f"{cloud.stem}-said")
     return drives
 
 
