@@ -160,7 +160,7 @@ def measure_volume_tin(wish: BenchWish) -> tuple[Measurement, ...]:
 
 def _network(triangles: int, *, seed: int, is_later: bool) -> TriangleSurface:
     """So many triangles, two to a square, whose corners are moved by chance."""
-    side = max(2, round(math.sqrt(triangles / 2)))
+    side = max(2, math.ceil(math.sqrt(triangles / 2)))
     random = np.random.default_rng(seed)
     at = np.linspace(0.0, volume_site.SIDE_M, side + 1)
     xy = np.stack(np.meshgrid(at, at), axis=-1)

@@ -20,6 +20,7 @@ CORNER = np.array([-12_400.0, -36_700.0, 20.0])
 _SCANNERS_M = ((30.0, 30.0), (70.0, 30.0), (30.0, 70.0), (70.0, 70.0))
 _NEAREST_M, _FARTHEST_M = 1.0, 75.0
 _IN_TURN = 1000
+_OF_WHICH_ONE_IS_HERE = 1.9  # the others fall outside of the hectare
 _NOISE_M = 0.003
 _PULSES_PER_S = 100_000.0
 _MACHINES_M = np.array([[20.0, 50.0], [48.0, 22.0], [81.0, 55.0], [52.0, 78.0]])
@@ -83,13 +84,12 @@ def _write_scan(
     path: Path, place: Floats, points: int, random: np.random.Generator, *, is_later: bool
 ) -> None:
     """What a head that turns slowly measures while its mirror turns fast; even in plan."""
-    # A part falls outside of the hectare.
-    pulses = np.arange(round(points * 1.6))
+    pulses = np.arange(round(points * _OF_WHICH_ONE_IS_HERE))
     steps = (pulses % _IN_TURN + random.uniform(size=pulses.size)) / _IN_TURN
     away = np.sqrt(_NEAREST_M**2 + steps * (_FARTHEST_M**2 - _NEAREST_M**2))
     turn = 2 * np.pi * pulses / pulses.size
     xy = place + np.column_stack([np.cos(turn), np.sin(turn)]) * away[:, None]
-    is_here = np.flatnonzero(((xy > 0) & (xy < SIDE_M)).all(axis=1))[:points]
+    is_here = np.flatnonzero(((xy > 0) & (xy < SIDE_M)).all(axis=1))
     xy = xy[is_here]
     codes = np.full(len(xy), _GROUND, np.uint8)
     heights = ground_height(xy, is_later=is_later) + random.normal(0, _NOISE_M, len(xy))
