@@ -17,6 +17,10 @@ from processing.text import Text
 Floats = NDArray[np.float64]
 
 _X, _Y, _Z = range(3)
+_AMONG_M = 3.0
+_FEW_OF_MANY = 0.05
+_NEAR_M = 0.6
+_SCATTER_M = 0.3
 
 
 @dataclass(frozen=True)
@@ -101,8 +105,30 @@ def ground_cells(
     for block in epoch.blocks():
         monitor.check()
         _sum_kernel(np.ascontiguousarray(block.xyz), origin, grid.size_m, counts, sums)
+    _drop_strays(counts, sums, grid.size_m)
     heights = _carried_to_middles(counts, sums, grid.size_m)
     return GroundCells(grid, counts, heights)
+
+
+def _drop_strays(counts: NDArray[np.int32], sums: Floats, size_m: float) -> None:
+    """Forget cells that hold only strays, in place.
+
+    Where the ground was hidden, a few points that came by way of a mirror or a puddle are all
+    there is: few among many about them, and at any height.
+    """
+    from scipy.ndimage import maximum_filter
+
+    reach = max(1, round(_AMONG_M / size_m))
+    most = maximum_filter(counts, 2 * reach + 1)
+    thin = (counts > 0) & (counts < _FEW_OF_MANY * most)
+    if not thin.any():
+        return
+    heights = np.where(thin, sums[..., _Z] / np.maximum(counts, 1), np.nan)
+    near = max(1, round(_NEAR_M / size_m))
+    strays = np.zeros(counts.shape, np.bool_)
+    _stray_kernel(heights, near, _SCATTER_M, strays)
+    counts[strays] = 0
+    sums[strays] = 0.0
 
 
 def _carried_to_middles(counts: NDArray[np.int32], sums: Floats, size_m: float) -> Floats:
@@ -142,7 +168,30 @@ def _sum_kernel(
         sums[row, column, 2] += xyz[point, 2] - origin[2]
 
 
+@kernel
+def _stray_kernel(heights: Floats, near: int, scatter_m: float, strays: NDArray[np.bool_]) -> None:
+    """Cells among others (NaN: passed over) whose heights differ by more than ground does."""
+    rows, columns = heights.shape
+    for row in range(rows):
+        for column in range(columns):
+            if np.isnan(heights[row, column]):
+                continue
+            count, total = 0, 0.0
+            for other in range(max(0, row - near), min(rows, row + near + 1)):
+                for beside in range(max(0, column - near), min(columns, column + near + 1)):
+                    if not np.isnan(heights[other, beside]):
+                        count += 1
+                        total += heights[other, beside]
+            mean, apart = total / count, 0.0
+            for other in range(max(0, row - near), min(rows, row + near + 1)):
+                for beside in range(max(0, column - near), min(columns, column + near + 1)):
+                    if not np.isnan(heights[other, beside]):
+                        apart += abs(heights[other, beside] - mean)
+            strays[row, column] = apart > scatter_m * count
+
+
 def warm_up() -> None:
-    """Compile the kernel of this file."""
+    """Compile the kernels of this file."""
     counts, sums = np.zeros((1, 1), np.int32), np.zeros((1, 1, 3))
     _sum_kernel(np.zeros((1, 3)), np.zeros(3), 1.0, counts, sums)
+    _stray_kernel(np.zeros((2, 2)), 1, 1.0, np.zeros((2, 2), np.bool_))

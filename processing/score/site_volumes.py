@@ -47,9 +47,9 @@ _SENSORS = ("p40", "vz400i", "zf5016", "p40")
 _ABOUT = (
     "`python -m processing.score.site_volumes --markdown docs/accuracy.md` simulates sites of "
     "60 m of seeds that nobody looked at, finds the ground of both dates with the tool "
-    "`ground` as it comes, and compares them within the site's boundary in cells of {mesh:g} m. Measured: "
-    "cut and fill where both dates have points within half a metre, against the true surfaces "
-    "over the same cells; beside it the plain sums of what is positive and negative. Whole: all "
+    "`ground` as it comes, and compares them within the site's boundary in cells of {mesh:g} m. "
+    "Measured: cut and fill where both dates have points, against the true surfaces over the same "
+    "cells; beside it the plain sums of what is positive and negative. Whole: all "
     "of the site with holes filled, against the exact truth; net as a share of what was moved "
     "(cut and fill together). Inside: whether cut, fill and net lie within the stated uncertainty."
 )
