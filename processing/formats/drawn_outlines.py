@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,8 @@ _CLOSED_M = 1e-3
 
 _ARC_M = 1e-3
 """Arcs of polylines become chords that leave them by no more."""
+
+_SILENT = logging.NullHandler()
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,8 @@ def outlines_of_dxf(path: Path) -> DrawnOutlines:
     with told_as_user_error(path), path.open("rb"):
         pass  # the library takes a missing file for a damaged one
     found: dict[str, list[NDArray[np.float64]]] = {}
+    # What the library mends by itself is no line on a terminal.
+    logging.getLogger("ezdxf").addHandler(_SILENT)
     try:
         drawing = readfile(path)
         for entity in drawing.modelspace().query("LWPOLYLINE POLYLINE"):
