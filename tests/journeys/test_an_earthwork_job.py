@@ -8,6 +8,7 @@ from pathlib import Path
 import ezdxf
 import laspy
 import numpy as np
+import pypdfium2
 import pytest
 import rasterio
 from pyproj import CRS
@@ -138,10 +139,29 @@ def _give_out(builder: Builder, folder: Path, monkeypatch) -> None:
     points = laspy.read(made["ground"])
     assert len(points.x) > 15_000
     assert set(np.unique(points.classification)) == {2}
-    assert made["report"].read_bytes().startswith(b"%PDF")
+    _read_the_report(builder, made["report"])
     table = made["report-csv"].read_text(encoding="utf-8-sig")
     assert "EPSG:6677" in table
     assert "2026-03-31" in table
+
+
+def _read_the_report(builder: Builder, path: Path) -> None:
+    """Its pages tell the numbers of the panel and show the earth that was moved."""
+    report = pypdfium2.PdfDocument(path)
+    pages = list(report)
+    words = "".join(page.get_textpage().get_text_range() for page in pages)
+    for amount in ("cut", "fill", "uncertainty"):
+        assert builder.panel.table.value(amount).lstrip("± ") in words, amount
+    colours = {
+        tuple(colour)
+        for page in pages
+        for colour in np.unique(page.render(scale=2).to_numpy()[..., ::-1].reshape(-1, 3), axis=0)
+    }
+    classes = change_classes(builder.volume.look.limit_m)
+    for change_m in (-DEPTH_M, HEIGHT_M):
+        rgb = next(one.rgb for one in classes if one.low <= change_m < one.high)
+        assert rgb in colours, change_m
+    report.close()
 
 
 def test_a_volume_is_there_again_when_the_project_is_opened_and_can_be_removed(
