@@ -53,7 +53,7 @@ def test_cut_is_blue_and_fill_orange_where_they_are_until_it_is_hidden(
     hand: Hand, middle: NDArray[np.float64]
 ) -> None:
     volume = hand.map.shared.volume
-    west, east = (middle + [side, 0.2, 0.1] for side in (-0.7, 0.7))
+    west, east = (middle + np.array([side, 0.2, 0.1]) for side in (-0.7, 0.7))
     plain = image_of(hand)
     volume.show(_change(middle), 1.0)
     shown = image_of(hand)
@@ -66,7 +66,7 @@ def test_cut_is_blue_and_fill_orange_where_they_are_until_it_is_hidden(
 
 def test_another_range_gives_other_colours(hand: Hand, middle: NDArray[np.float64]) -> None:
     volume = hand.map.shared.volume
-    east = middle + [0.7, 0.2, 0.1]
+    east = middle + np.array([0.7, 0.2, 0.1])
     volume.show(_change(middle), 1.0)
     near = _redness(hand, image_of(hand), east)
     volume.use_look(replace(volume.look, limit_m=20.0))
