@@ -205,7 +205,7 @@ class Earthwork(QObject):
             language=language,
             work_type=work_type,
             sides=sides_reader(kept.wish, project.drives, project.crs),
-            never=tuple(file for drive in project.drives for file in drive.delivered_files),
+            never=(*_given_files(kept), *_delivered_files(project)),
         )
 
         def work(monitor: Monitor) -> Path:
@@ -287,6 +287,15 @@ class Earthwork(QObject):
         if not self._with_ground.get(drive_id, True):
             self._with_ground[drive_id] = _has_ground(self._document.drive(drive_id))
             self.epochs_changed.emit()
+
+
+def _given_files(kept: KeptVolume) -> tuple[Path, ...]:
+    """The designs that a volume was had from; no export overwrites what was delivered."""
+    return tuple(Path(side.path) for side in (kept.wish.before, kept.wish.after) if side.path)
+
+
+def _delivered_files(project: Project) -> tuple[Path, ...]:
+    return tuple(file for drive in project.drives for file in drive.delivered_files)
 
 
 def _site_of(drives: Sequence[Drive]) -> _Site:

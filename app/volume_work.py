@@ -18,11 +18,10 @@ from processing.earthwork.contours import LevelLine, LineWish, change_lines, con
 from processing.earthwork.epoch_ground import ground_of_drives
 from processing.earthwork.heat_map import change_limit
 from processing.earthwork.sides import Level, Side
-from processing.earthwork.surface_check import check_surface
 from processing.earthwork.volume_result import VolumeResult
 from processing.earthwork.within import Within
 from processing.errors import Unsuitable
-from processing.formats.landxml import read_landxml
+from processing.formats.design import read_design
 from processing.monitor import Monitor, PartMonitor, parts_of
 from processing.points.drive import Drive
 from processing.project.volume import (
@@ -152,7 +151,7 @@ def _side_of(side: ChosenSide, drives: Mapping[str, Drive], crs: str, monitor: M
         case SideKind.EPOCH:
             epoch = tuple(drives[id_] for id_ in side.drives)
             return ground_of_drives(epoch, monitor, name=side.name)
-    design = read_landxml(Path(side.path), surface=side.surface, monitor=monitor)
+    design = read_design(Path(side.path), side.surface, monitor)
     if design.crs and crs and design.crs != crs:
         raise Unsuitable(
             Text(
@@ -165,9 +164,7 @@ def _side_of(side: ChosenSide, drives: Mapping[str, Drive], crs: str, monitor: M
                 "プロジェクトと同じ座標参照系の設計データを用意してください。",
             ),
         )
-    surface = design.only().surface
-    check_surface(surface)
-    return surface
+    return design.surface
 
 
 def _within(wish: VolumeWish) -> Within:

@@ -6,7 +6,7 @@ import argparse
 import json
 from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass
 from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
@@ -61,7 +61,6 @@ def command(arguments: argparse.Namespace) -> int:
         crs = _one_system(before, after)
         within = _within(parameters, crs)
         result = compare(before.side, after.side, parameters, comparing, within)
-        result = replace(result, notes=(*before.notes, *after.notes, *result.notes))
         told = _told(result, before, after, crs)
         papers = _Papers(result, (before, after), parameters, crs)
         paths = papers.write(arguments.output, told, writing)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +13,8 @@ import numpy as np
 from app.cli.opened import OpenedInput, opened_input
 from processing.earthwork.epoch_ground import ground_of_drives, has_ground
 from processing.earthwork.sides import Level, Side
-from processing.earthwork.surface_check import check_surface
 from processing.errors import MissingInput, Unsuitable
-from processing.formats.landxml import read_landxml
+from processing.formats.design import read_design
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
 from processing.points.recorded_together import recordings_of
@@ -43,8 +42,6 @@ class NamedSide:
         Of an epoch; 0 for others.
     crs : str
         ``EPSG:n``, or empty when unknown.
-    notes : tuple of Text
-        What a reader must know of how it was read.
     """
 
     side: Side
@@ -52,7 +49,6 @@ class NamedSide:
     files: tuple[Path, ...]
     points: int
     crs: str
-    notes: tuple[Text, ...] = ()
 
 
 @contextmanager
@@ -106,28 +102,8 @@ def _design_of(words: Path) -> tuple[Path, str] | None:
 
 
 def _read_design(path: Path, name: str, monitor: Monitor) -> NamedSide:
-    found = read_landxml(path, surface=name, monitor=monitor)
-    if len(found.surfaces) > 1:
-        raise Unsuitable(
-            Text(
-                "The file has several surfaces: {names}.", "複数のサーフェスがあります（{names}）。"
-            ).filled(names=", ".join(one.surface.name or "-" for one in found.surfaces)),
-            Text.same(str(path)),
-            Text(
-                "Write the name of the one that is meant behind the file: {example}.",
-                "使用するサーフェスの名前をファイル名の後に書いてください（例：{example}）。",
-            ).filled(example=f"{path.name}{_NAME_MARK}{found.surfaces[0].surface.name}"),
-        )
-    surface, up_m = found.surfaces[0].surface, found.zero_above_tp_m
-    check_surface(surface)
-    if not up_m:
-        return NamedSide(surface, str(path), (path,), 0, found.crs)
-    surface = replace(surface, xyz=surface.xyz + np.array([0.0, 0.0, up_m]))
-    note = Text(
-        "The design's heights count from {datum}; {up} m were added for heights above T.P.",
-        "設計面の高さの基準は{datum}です。T.P.基準とするため{up} mを加えました。",
-    ).filled(datum=found.height_datum or "–", up=f"{up_m:+.4f}")
-    return NamedSide(surface, str(path), (path,), 0, found.crs, (note,))
+    design = read_design(path, name, monitor)
+    return NamedSide(design.surface, str(path), (path,), 0, design.crs)
 
 
 def _epoch(words: Path, opened: OpenedInput) -> tuple[Drive, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -83,7 +83,17 @@ def compare(
     checks.check_common(change, before, after)
     summing.report(0.0, _SUMMING)
     epochs = sum(one is not None for one in cells)
-    return _told(change, surfaces, (registration, epochs), (parameters, within), summing)
+    tie = _Tie((before, after), registration, epochs)
+    return _told(change, surfaces, tie, (parameters, within), summing)
+
+
+@dataclass(frozen=True)
+class _Tie:
+    """Two sides, how they lie to each other, and how many of them were measured."""
+
+    sides: tuple[Side, Side]
+    registration: Registration | None
+    epochs: int
 
 
 def _grid_of(
@@ -170,12 +180,12 @@ def _change(
 def _told(
     change: ChangeGrid,
     surfaces: list[GroundSurface],
-    tie: tuple[Registration | None, int],
+    tie: _Tie,
     asked: tuple[VolumeParameters, Within],
     monitor: Monitor,
 ) -> VolumeResult:
-    (before, after), (registration, epochs), (parameters, within) = surfaces, tie, asked
-    spread = volume_spread(change, (before, after), registration, epochs)
+    (before, after), (parameters, within) = surfaces, asked
+    spread = volume_spread(change, (before, after), tie.registration, tie.epochs)
     filled = is_filled(change)
     measured = change_sums(change, filled, change.is_measured)
     cell_m2 = change.grid.size_m**2
@@ -187,7 +197,7 @@ def _told(
         whole = change_sums(change, filled, has_ground)
         cut, fill = whole.cut_m3, whole.fill_m3
     else:
-        other = volume_by(parameters, change, monitor, within)
+        other = volume_by(parameters, change, tie.sides, monitor, within)
         cut, fill = other.cut_m3, other.fill_m3
     volumes = Volumes(
         cut_m3=max(cut, 0.0),
@@ -199,7 +209,8 @@ def _told(
         measured_fill_m3=max(measured.fill_m3, 0.0),
     )
     notes = (
-        *checks.notes_on(registration),
+        *(note for side in tie.sides for note in checks.notes_of(side)),
+        *checks.notes_on(tie.registration),
         *checks.notes_on_gaps(change),
         *other.notes,
     )
@@ -208,7 +219,7 @@ def _told(
         parameters.method,
         change.grid.size_m,
         change,
-        registration,
+        tie.registration,
         notes,
         other.line,
         other.between,

@@ -29,6 +29,11 @@ def name_of(side: Side) -> str:
     return side.name
 
 
+def notes_of(side: Side) -> tuple[Text, ...]:
+    """What a reader must know of a side."""
+    return side.notes if isinstance(side, TriangleSurface) else ()
+
+
 def check_systems(before: Side, after: Side) -> None:
     """Refuse epochs of different reference systems.
 
@@ -93,9 +98,24 @@ def common_box(
                 ).filled(where=_words(low, high)),
             )
         # The whole boundary counts, also where a side doesn't reach: that is told as unmeasured.
-        low = np.minimum(np.maximum(low, edges[0] - margin_m), edges[0])
-        high = np.maximum(np.minimum(high, edges[1] + margin_m), edges[1])
+        low, high = edges
+    low, high = _with_margin(low, high, sides, margin_m)
     return low, high, float(np.floor(min(box[0][2] for box in boxes)))
+
+
+def _with_margin(
+    low: Floats, high: Floats, sides: tuple[Side, Side], margin_m: float
+) -> tuple[Floats, Floats]:
+    """A box and what was measured beside it: that tells how ground goes on at its edge."""
+    epochs = [side for side in sides if isinstance(side, EpochGround)]
+    if not epochs:
+        return low, high
+    first = np.max([side.low[:2] for side in epochs], axis=0)
+    last = np.min([side.high[:2] for side in epochs], axis=0)
+    return (
+        np.minimum(np.maximum(first, low - margin_m), low),
+        np.maximum(np.minimum(last, high + margin_m), high),
+    )
 
 
 def _box_of(side: Side) -> tuple[Floats, Floats] | None:
@@ -193,9 +213,9 @@ def notes_on_gaps(change: ChangeGrid) -> tuple[Text, ...]:
         return ()
     return (
         Text(
-            "{area} m² are farther from any measured ground than can be filled; they count "
-            "nothing.",
-            "計測した地面から離れすぎて補えない{area}㎡は、土量に含まれていません。",
+            "On {area} m² one side has no ground: a hole in a design, or too far from any that was "
+            "measured; they count nothing.",
+            "設計面の穴、または計測した地面から離れすぎて補えない{area}㎡は、土量に含まれていません。",
         ).filled(area=f"{area_m2:,.0f}"),
     )
 

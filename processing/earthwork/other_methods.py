@@ -14,6 +14,7 @@ from processing.earthwork.drawing_parts import SectionedLine
 from processing.earthwork.drawn_sections import drawn_line, volumes_between
 from processing.earthwork.end_areas import end_area_volume, prismoidal_volume
 from processing.earthwork.height_surfaces import GridSurface
+from processing.earthwork.sides import Side
 from processing.earthwork.tin_volume import volume_between
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.earthwork.triangulation import triangulated_ground
@@ -52,9 +53,18 @@ class OtherMethod:
 
 
 def volume_by(
-    parameters: VolumeParameters, change: ChangeGrid, monitor: Monitor, within: Within
+    parameters: VolumeParameters,
+    change: ChangeGrid,
+    sides: tuple[Side, Side],
+    monitor: Monitor,
+    within: Within,
 ) -> OtherMethod:
     """Cut and fill by triangles or along a line, as the parameters say.
+
+    Parameters
+    ----------
+    sides : (Side, Side)
+        Of a design its own triangles count.
 
     Raises
     ------
@@ -62,7 +72,7 @@ def volume_by(
         Break lines that contradict each other; a line without length or off the ground.
     """
     if parameters.method == TIN:
-        return _by_triangles(change, monitor, within)
+        return _by_triangles(change, sides, monitor, within)
     line = within.line if within.line is not None else _middle_line(change, within.boundary)
     along = SectionLayout(line, parameters.half_width_m, parameters.interval_m)
     grounds = GridSurface(change.grid, change.before), GridSurface(change.grid, change.after)
@@ -74,14 +84,19 @@ def volume_by(
     return OtherMethod(found.cut_m3, found.fill_m3, found.notes, drawn, volumes_between(found))
 
 
-def _by_triangles(change: ChangeGrid, monitor: Monitor, within: Within) -> OtherMethod:
-    sides: list[TriangleSurface] = []
-    for heights in (change.before, change.after):
+def _by_triangles(
+    change: ChangeGrid, sides: tuple[Side, Side], monitor: Monitor, within: Within
+) -> OtherMethod:
+    surfaces: list[TriangleSurface] = []
+    for side, heights in zip(sides, (change.before, change.after), strict=True):
         monitor.check()
-        places = _places(change, heights)
-        sides.append(triangulated_ground(places, within.break_lines, monitor))
+        if isinstance(side, TriangleSurface):
+            surfaces.append(side)
+        else:
+            places = _places(change, heights)
+            surfaces.append(triangulated_ground(places, within.break_lines, monitor))
     area = within.boundary if within.boundary is not None else _outline(change)
-    found = volume_between(sides[0], sides[1], monitor, area)
+    found = volume_between(surfaces[0], surfaces[1], monitor, area)
     return OtherMethod(found.cut_m3, found.fill_m3, notes=(_NOISE_TWICE,))
 
 

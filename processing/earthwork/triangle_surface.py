@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from processing.earthwork.plan_buckets import PlanBuckets, bucketed
 from processing.kernels import kernel
+from processing.text import Text
 from processing.worked_ahead import in_order
 
 Floats = NDArray[np.float64]
@@ -34,11 +35,14 @@ class TriangleSurface:
         Rows of ``xyz``, in either sense.
     name : str
         As its file names it; empty for one made here.
+    notes : tuple of Text
+        What a reader of numbers against it has to know, a sentence each.
     """
 
     xyz: Floats
     corners: NDArray[np.int64]
     name: str = ""
+    notes: tuple[Text, ...] = ()
 
     def heights_at(self, xy: Floats) -> Floats:
         """Height on the triangle above or below each place: (n,) float64, m; NaN outside.

@@ -16,6 +16,7 @@ from processing.earthwork.volume_parameters import VolumeParameters
 from processing.earthwork.within import Within
 from processing.errors import OutOfRange, Unsuitable, UserError
 from processing.monitor import SilentMonitor
+from processing.text import Text
 from tests.processing.earthwork.grounds import ORIGIN, flat, rolling, scan_of
 
 Floats = NDArray[np.float64]
@@ -94,7 +95,21 @@ def test_a_design_is_a_side_and_its_holes_count_nothing() -> None:
     assert whole.volumes.fill_m3 == pytest.approx(256.0, rel=0.005)
     assert part.volumes.fill_m3 == pytest.approx(128.0, rel=0.02)
     assert part.volumes.unmeasured_area_m2 == pytest.approx(128.0, rel=0.02)
-    assert any("farther" in note.en for note in part.notes)
+    assert any("no ground" in note.en for note in part.notes)
+
+
+def test_triangles_of_a_design_count_as_they_are() -> None:
+    # A ridge between the middles of cells: on cells its edge would be cut off.
+    ridge = np.array(
+        [[2, 2, 0], [18, 2, 0], [10.03, 2, 4], [2, 18, 0], [18, 18, 0], [10.03, 18, 4]]
+    )
+    corners = np.array([[0, 2, 3], [2, 5, 3], [2, 1, 5], [1, 4, 5]])
+    design = TriangleSurface(ridge + ORIGIN, corners, "ridge", (Text("told", "注記"),))
+    parameters = replace(GRID, method="tin", grid_m=0.5)
+    result = volume(scan_of(flat), design, parameters, boundary=box(2, 2, 18, 18))
+
+    assert result.volumes.fill_m3 == pytest.approx(4 * 16 * 16 / 2, rel=1e-4)
+    assert Text("told", "注記") in result.notes
 
 
 def test_a_hole_under_a_machine_is_filled_and_told() -> None:
