@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 import shapely
@@ -14,7 +14,7 @@ from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.change_sums import change_sums, is_filled
 from processing.earthwork.ground_cells import GroundCells, grid_over, ground_cells
 from processing.earthwork.other_methods import OtherMethod, volume_by
-from processing.earthwork.registration import registration_of
+from processing.earthwork.registration import corrected, registration_of
 from processing.earthwork.sides import EpochGround, Side
 from processing.earthwork.surfaces import (
     GroundSurface,
@@ -67,8 +67,10 @@ def compare(
     registration = _registration(cells)
     shift = (0.0, 0.0, 0.0)
     if registration is not None and parameters.correct_shift and isinstance(after, EpochGround):
-        shift, registration = registration.shift_m, replace(registration, is_corrected=True)
-        cells[1] = ground_cells(after, grid, counting, shift)
+        registration = corrected(registration)
+        if registration.is_corrected:
+            shift = registration.shift_m
+            cells[1] = ground_cells(after, grid, counting, shift)
     filling.report(0.0, _FILLING)
     designs = [_designed(side, grid) for side in (before, after)]
     inside = _inside(cells, designs, grid, within.boundary)

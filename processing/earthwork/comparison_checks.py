@@ -186,7 +186,7 @@ def check_common(change: ChangeGrid, before: Side, after: Side) -> None:
 
 def notes_on(registration: Registration | None) -> tuple[Text, ...]:
     """What a reader must know of how the epochs fit."""
-    if registration is None or not registration.is_significant:
+    if registration is None or not (registration.is_significant or registration.is_corrected):
         return ()
     east, north, up = (round(_MM * value) for value in registration.shift_m)
     words = (

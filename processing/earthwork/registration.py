@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -78,6 +80,19 @@ def registration_of(before: Floats, after: Floats, size_m: float) -> Registratio
         is_significant=is_significant,
         is_corrected=False,
     )
+
+
+def corrected(registration: Registration) -> Registration:
+    """The shift that can be taken back: what is more than chance, each direction by itself.
+
+    Taking back what chance made of a gentle slope would make volumes worse.
+    """
+    told = zip(registration.shift_m, registration.sure_m, strict=True)
+    east, north, up = (value if abs(value) > _SURE * sure else 0.0 for value, sure in told)
+    is_corrected = (east, north, up) != (0.0, 0.0, 0.0)
+    if not is_corrected:
+        return registration
+    return replace(registration, shift_m=(east, north, up), is_corrected=True)
 
 
 def _slopes(heights: Floats, size_m: float) -> tuple[Floats, Floats]:
