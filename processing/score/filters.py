@@ -79,6 +79,18 @@ def with_section(page: str, heading: str, section: str) -> str:
     return f"{before}{section.rstrip()}\n{following}"
 
 
+def write_sections(page: Path | None, sections: Mapping[str, str]) -> None:
+    """Put sections into a page, by their headings, or on standard output without one."""
+    for heading, content in sections.items():
+        section = f"{heading}\n{content}"
+        if page is None:
+            sys.stdout.write(f"{section}\n")
+            continue
+        whole = with_section(page.read_text("utf-8"), heading, section)
+        with written_safely(page) as path:
+            path.write_text(whole, "utf-8")
+
+
 def _of_noise(chosen: argparse.Namespace) -> Iterator[str]:
     found = list(_found(noise_scenes(chosen.data), NOISE_SCORER, noise_methods(), chosen))
     yield f"{_ABOUT}{_ABOUT_NOISE}"

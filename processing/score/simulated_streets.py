@@ -19,14 +19,13 @@ import laspy
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.formats.safe_write import written_safely
 from processing.formats.trajectory_csv import read_trajectory_csv
 from processing.monitor import SilentMonitor
 from processing.points.point_source import PointColumns
 from processing.points.pulse_clock import estimate_clock
 from processing.score.disturbed_truths import disturbed_rows
 from processing.score.filter_tables import markdown_table
-from processing.score.filters import with_section
+from processing.score.filters import write_sections
 from processing.simulate.scanning.density import road_density, survey_of
 from processing.simulate.scanning.sensors import sensor_of
 from processing.simulate.streets import simulate_street
@@ -280,14 +279,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         HEADING: (_ABOUT, tables.streets),
         DISTURBED_HEADING: (_ABOUT_TRUTHS, tables.disturbed),
     }
-    for heading, (about, rows) in sections.items():
-        section = f"{heading}\n{about}\n\n{markdown_table(rows)}"
-        if wish.markdown is None:
-            sys.stdout.write(f"{section}\n")
-            continue
-        page = with_section(wish.markdown.read_text("utf-8"), heading, section)
-        with written_safely(wish.markdown) as path:
-            path.write_text(page, "utf-8")
+    written = {
+        heading: f"{about}\n\n{markdown_table(rows)}" for heading, (about, rows) in sections.items()
+    }
+    write_sections(wish.markdown, written)
     return 0
 
 

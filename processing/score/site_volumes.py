@@ -26,13 +26,12 @@ from processing.earthwork.epoch_ground import ground_of_drives
 from processing.earthwork.volume_parameters import VolumeParameters
 from processing.earthwork.volume_result import VolumeResult
 from processing.earthwork.within import Within
-from processing.formats.safe_write import written_safely
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from processing.runner import mark_all
 from processing.score.filter_tables import markdown_table
-from processing.score.filters import with_section
+from processing.score.filters import write_sections
 from processing.score.known_body import BODY_ABOUT, BODY_HEADING, body_rows
 from processing.simulate.site import DATES, simulate_site
 from processing.simulate.wishes import SiteWish
@@ -262,14 +261,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         HEADING: (_ABOUT.format(mesh=wish.mesh), rows_of(sites)),
         BODY_HEADING: (BODY_ABOUT, body_rows()),
     }
-    for heading, (about, rows) in sections.items():
-        section = f"{heading}\n{about}\n\n{markdown_table(rows)}"
-        if wish.markdown is None:
-            sys.stdout.write(f"{section}\n")
-            continue
-        page = with_section(wish.markdown.read_text("utf-8"), heading, section)
-        with written_safely(wish.markdown) as path:
-            path.write_text(page, "utf-8")
+    tables = {
+        head: f"{about}\n\n{markdown_table(rows)}" for head, (about, rows) in sections.items()
+    }
+    write_sections(wish.markdown, tables)
     return 0
 
 
