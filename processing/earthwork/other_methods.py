@@ -27,6 +27,11 @@ Floats = NDArray[np.float64]
 
 _LINE = "L1"
 _ON_EDGE_M = 1e-3
+_ON_GROUND_M, _STEP_M = 0.3, 0.5
+_OFF_GROUND = Text(
+    "Break line {number} lies on neither ground and was not used.",
+    "ブレークライン{number}はどちらの地盤面にも載っていないため、使用していません。",
+)
 _NOISE_TWICE = Text(
     "Exact between the triangles: noise of the points counts in cut and in fill alike.",
     "三角網の間では厳密ですが、点のノイズは切土量にも盛土量にも加算されます。",
@@ -88,16 +93,43 @@ def _by_triangles(
     change: ChangeGrid, sides: tuple[Side, Side], monitor: Monitor, within: Within
 ) -> OtherMethod:
     surfaces: list[TriangleSurface] = []
+    used: set[int] = set()
     for side, heights in zip(sides, (change.before, change.after), strict=True):
         monitor.check()
         if isinstance(side, TriangleSurface):
             surfaces.append(side)
-        else:
-            places = _places(change, heights)
-            surfaces.append(triangulated_ground(places, within.break_lines, monitor))
+            continue
+        lines = _lines_on(GridSurface(change.grid, heights), within.break_lines)
+        used |= set(lines)
+        places = _places(change, heights)
+        surfaces.append(triangulated_ground(places, tuple(lines.values()), monitor))
     area = within.boundary if within.boundary is not None else _outline(change)
     found = volume_between(surfaces[0], surfaces[1], monitor, area)
-    return OtherMethod(found.cut_m3, found.fill_m3, notes=(_NOISE_TWICE,))
+    left = [number for number in range(len(within.break_lines)) if number not in used]
+    notes = (_NOISE_TWICE, *(_OFF_GROUND.filled(number=str(one + 1)) for one in left))
+    return OtherMethod(found.cut_m3, found.fill_m3, notes=notes)
+
+
+def _lines_on(ground: GridSurface, lines: tuple[Floats, ...]) -> dict[int, Floats]:
+    """Break lines that lie on a ground, by their numbers: a crest of one date is none of another.
+
+    A line drawn in plan only takes its heights from the ground.
+    """
+    found = {}
+    for number, drawn in enumerate(lines):
+        line = drawn
+        if np.isnan(drawn[:, 2]).any():
+            # Between places in plan the ground isn't straight.
+            dense = shapely.segmentize(shapely.LineString(drawn[:, :2]), _STEP_M)
+            xy = shapely.get_coordinates(dense)
+            line = np.column_stack([xy, np.full(len(xy), np.nan)])
+        heights = ground.heights_at(line[:, :2])
+        known = np.isfinite(heights)
+        own = np.where(np.isfinite(line[:, 2]), line[:, 2], heights)
+        is_on = known.any() and np.median(np.abs(own - heights)[known]) <= _ON_GROUND_M
+        if is_on and np.isfinite(own).all():
+            found[number] = np.column_stack([line[:, :2], own])
+    return found
 
 
 def _places(change: ChangeGrid, heights: NDArray[np.float32]) -> Floats:

@@ -112,6 +112,31 @@ def test_triangles_of_a_design_count_as_they_are() -> None:
     assert Text("told", "注記") in result.notes
 
 
+def test_break_lines_belong_to_the_ground_that_they_lie_on() -> None:
+    def ridge(x: Floats, _: Floats) -> Floats:
+        return np.maximum(2.0 - np.abs(x - 10.1) / 2.0, 0.0)
+
+    crest = np.array([[10.1, 1, 2.0], [10.1, 19, 2.0]]) + ORIGIN
+    in_plan = np.array([[10.1, 1, np.nan], [10.1, 19, np.nan]]) + ORIGIN
+    above = crest + np.array([0.0, 0.0, 5.0])
+    parameters = replace(GRID, method="tin", grid_m=0.5)
+    off = []
+    for number, lines in enumerate(((), (crest,), (in_plan,), (above,))):
+        result = volume(
+            scan_of(flat, per_m2=60),
+            scan_of(ridge, per_m2=60, seed=2),
+            parameters,
+            boundary=box(4, 4, 16, 16),
+            break_lines=lines,
+        )
+        off.append(abs(result.volumes.fill_m3 - 8.0 * 12))
+        assert any("neither ground" in note.en for note in result.notes) == (number == 3)
+        assert result.volumes.cut_m3 < 0.2
+
+    # Forced into the level ground before, the crest would take 2 m for a step of nothing.
+    assert max(off) < 0.006 * 8.0 * 12
+
+
 def test_a_hole_under_a_machine_is_filled_and_told() -> None:
     def away(x: Floats, y: Floats) -> NDArray[np.bool_]:
         return np.hypot(x - 10, y - 10) > 2.5
