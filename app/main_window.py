@@ -30,7 +30,7 @@ _ICON_PX = 20
 _BESIDE = "side-by-side"
 _NARROW_PX = 1800
 """Narrower windows have panels at one side only, so that the street keeps its room."""
-_COLUMN_PX = 244
+_COLUMN_PX = 280
 _LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
 _BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
 _HOLDS_NOTHING = "the window holds nothing yet"
