@@ -21,7 +21,7 @@ from processing.points.ordering import read_stretch
 from processing.points.recorded_together import recorded_together, surveyed_together
 from processing.text import Text
 from processing.tools.blocks import POINTS_PER_BLOCK, JoinedResults, blocks_of
-from processing.tools.registry import EVERY_TOOL, TOOLS
+from processing.tools.registry import COMPARISONS, TOOLS
 from processing.tools.tool import (
     CandidateResult,
     FinishedColumns,
@@ -199,7 +199,7 @@ def any_tool(name: str) -> Tool:
     OutOfRange
         There is none.
     """
-    return named(EVERY_TOOL, name, _NO_SUCH_TOOL)
+    return named({**TOOLS, **COMPARISONS}, name, _NO_SUCH_TOOL)
 
 
 def tool_of(name: str) -> Tool:

@@ -24,7 +24,6 @@ from processing.project.scratch_folder import scratch_folder
 from processing.project.surface_files import surface_file_of, write_surface_content
 from processing.runner import (
     RunRequest,
-    any_tool,
     check_needs,
     drives_of,
     run,
@@ -33,6 +32,7 @@ from processing.runner import (
 )
 from processing.text import Text
 from processing.tools.parameters import filled_in
+from processing.tools.registry import COMPARISONS
 from processing.tools.tool import CandidateResult, FinishedColumns, Tool
 
 _RUNNING = 0.8
@@ -42,7 +42,7 @@ _NOTE = Text("{tool}: {note}", "{tool}: {note}")
 
 def command(arguments: argparse.Namespace) -> int:
     """Run a tool on every drive of the input and write its result."""
-    if any_tool(arguments.tool).compare is not None:
+    if arguments.tool in COMPARISONS:
         # What papers need is imported for them alone.
         from app.cli import volume
 

@@ -53,9 +53,12 @@ def _pixels(hand: Hand) -> NDArray[np.uint8]:
 
 
 def _rows_of(pixels: NDArray[np.uint8], colour: QColor, column: int) -> NDArray[np.int64]:
-    """Rows below the legend in which a column has a line's colour."""
+    """Rows below the legend in which a column has a line's colour.
+
+    A line of a pixel and a half may share two rows with what is behind it, a quarter of each.
+    """
     wanted = np.array(colour.getRgb()[:3])
-    is_line = np.abs(pixels[130:, column].astype(int) - wanted).max(axis=1) < 24
+    is_line = np.abs(pixels[130:, column].astype(int) - wanted).max(axis=1) < 64
     return np.flatnonzero(is_line) + 130
 
 
