@@ -15,6 +15,9 @@ _HEADS = 0.3
 _LONG_M = 15.0
 _HEADS_OF_LONG = 0.12
 _REACH_M = 8.0
+_SIDES = 5
+_OPPOSITE = 0.25
+_FEW_HEADS = 0.25
 _CREST_CELLS = 7
 _CREST_M = 3.0
 _JOIN_CELLS = 3
@@ -53,7 +56,8 @@ def faces(
     Notes
     -----
     A face has measured ground near its foot on one side and near its top on the other; a fence or
-    a machine has ground near its foot on both, also where it touches a face. A face goes up to
+    a machine has ground near its foot on both, also where it touches a face: that is asked of all
+    columns within three metres. A face goes up to
     its crest near by, behind which the ground may lie in shadow, and no higher than the ground
     measured at its top near by: what goes on above that stands on the crest.
     """
@@ -72,16 +76,31 @@ def faces(
     upper = np.where(column, surface + tops, -np.inf).astype(np.float32)
     crest = np.full(column.shape, -np.inf, np.float32)
     rim, feet, heads = np.zeros(count), np.zeros(count), np.zeros(count)
-    _sides_kernel(labels, surface, free, tops, reach, (rim, feet, heads), upper, crest)
+    sides = np.zeros((_SIDES, *column.shape), np.uint8)
+    _sides_kernel(labels, surface, free, tops, reach, (rim, feet, heads), (upper, crest, sides))
     length = size_m * np.hypot(boxes[:, cv2.CC_STAT_WIDTH], boxes[:, cv2.CC_STAT_HEIGHT])
     needed = np.where(length >= _LONG_M, _HEADS_OF_LONG, _HEADS)
     face = (length >= _SHORTEST_M) & (feet >= _FEET * rim) & (heads >= needed * rim) & (rim > 0)
     face[0] = False
-    upper[~face[labels]] = -np.inf
+    upper[~face[labels] | _stands_free(sides, size_m)] = -np.inf
     upper = _below_crest(upper, crest, labels, size_m)
     near = cv2.dilate(upper, np.ones((3, 3), np.uint8)).astype(np.float32)
     highest = cv2.dilate(upper, np.ones((_CREST_CELLS, _CREST_CELLS), np.uint8)).astype(np.float32)
     return np.where(np.isfinite(near), highest, near)
+
+
+def _stands_free(sides: NDArray[np.uint8], size_m: float) -> NDArray[np.bool_]:
+    """Columns along which ground at the foot lies on both sides: a fence that meets a face."""
+    import cv2
+
+    side = 2 * max(1, round(_CREST_M / size_m)) + 1
+    down, up, right, left, heads = (
+        cv2.boxFilter(one, cv2.CV_32F, (side, side), normalize=False) for one in sides
+    )
+    feet = down + up + right + left
+    opposite = np.minimum(down, up) + np.minimum(right, left)
+    free: NDArray[np.bool_] = (opposite > _OPPOSITE * feet) & (heads < _FEW_HEADS * feet)
+    return free
 
 
 def _below_crest(
@@ -150,10 +169,10 @@ def _sides_kernel(
     tops: NDArray[np.float32],
     reach: int,
     counts: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
-    upper: NDArray[np.float32],
-    crest: NDArray[np.float32],
+    found: tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.uint8]],
 ) -> None:
     rim, feet, heads = counts
+    upper, crest, sides = found
     rows, columns = labels.shape
     for row in range(rows):
         for column in range(columns):
@@ -171,8 +190,10 @@ def _sides_kernel(
                 if beyond < 0.25 * tops[row, column]:
                     feet[label] += 1.0
                     low_sides |= 1 << side
+                    sides[side, row, column] = 1
                 elif beyond > 0.65 * tops[row, column]:
                     heads[label] += 1.0
+                    sides[4, row, column] += 1
                     upper[row, column] = max(upper[row, column], height)
                     crest[row, column] = max(crest[row, column], height)
             if low_sides & 3 == 3 or low_sides & 12 == 12:

@@ -198,6 +198,25 @@ def test_a_fence_that_ends_at_a_wall_is_no_part_of_the_wall() -> None:
     assert is_ground[len(ground) + len(face) :].mean() < 0.15
 
 
+def test_a_fence_askew_that_touches_a_long_wall_is_no_part_of_the_wall() -> None:
+    ground = _plane(40.0, 0.08)
+    ground[:, 2] += np.where(ground[:, 0] > 30.0, 3.0, 0.0)
+    rng = np.random.default_rng(12)
+    face = np.column_stack(
+        [np.full(16000, 30.0), rng.uniform(0.0, 39.9, 16000), rng.uniform(0.0, 3.0, 16000)]
+    )
+    along = rng.uniform(0.0, 1.0, 30000)
+    fence = np.column_stack(
+        [5.0 + 25.0 * along, 10.0 + 15.0 * along, rng.uniform(0.05, 2.9, 30000)]
+    )
+    fence[:, 1] += rng.normal(0.0, 0.03, 30000)
+    whole = np.vstack([ground, face, fence])
+    is_ground = _found(whole).is_ground(whole)
+    assert is_ground[: len(ground)].mean() > 0.98
+    assert is_ground[len(ground) : len(ground) + len(face)].mean() > 0.9
+    assert is_ground[len(ground) + len(face) :].mean() < 0.15
+
+
 def test_a_bush_on_the_crest_of_a_step_is_no_part_of_its_face() -> None:
     ground = _plane(30.0, 0.08)
     ground[:, 2] += 2.0 * np.clip((ground[:, 0] - 15.0) / 0.4, 0.0, 1.0)
