@@ -7,11 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from processing.earthwork.sides import EpochGround, GroundBlock
-from processing.earthwork.standing_places import standing_place
 from processing.errors import MissingInput
 from processing.ground.drive_points import Chunk, DrivePoints, read_ahead
 from processing.ground.ground_columns import GROUND
 from processing.monitor import Monitor, SilentMonitor
+from processing.noise.standing_places import standing_place
 from processing.points.drive import Drive
 from processing.points.measured_day import measured_day
 from processing.text import Text

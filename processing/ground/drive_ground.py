@@ -144,7 +144,8 @@ class _TileSearch:
             own = self._owned(xyz, tile)
             if own.any():
                 above = xyz[:, 2] - heights_at(xyz[:, :2], grid, heights)
-                self._columns.put(chunk, own, found.is_ground(xyz), above)
+                is_ground = found.is_ground(xyz) & ~self._points.is_echo(chunk)
+                self._columns.put(chunk, own, is_ground, above)
         return _own_part(tile, heights, ~found.measured)
 
     def _owned(self, xyz: NDArray[np.float64], tile: PlanTile) -> NDArray[np.bool_]:

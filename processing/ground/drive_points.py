@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TypeVar
@@ -60,6 +60,8 @@ class DrivePoints:
         What is held in memory at a time, as far as that is between a thousand and some 100,000.
     monitor : Monitor
         All points are gone through once; it is asked between chunks later on too.
+    echoes : sequence of ((n,) bool or None), optional
+        Points of each drive that are noise whatever their class says.
 
     Attributes
     ----------
@@ -68,8 +70,15 @@ class DrivePoints:
     count : int
     """
 
-    def __init__(self, drives: tuple[Drive, ...], at_once: int, monitor: Monitor) -> None:
+    def __init__(
+        self,
+        drives: tuple[Drive, ...],
+        at_once: int,
+        monitor: Monitor,
+        echoes: Sequence[NDArray[np.bool_] | None] = (),
+    ) -> None:
         self.drives = drives
+        self._echoes = tuple(echoes) or (None,) * len(drives)
         self._monitor = monitor
         size = int(np.clip(at_once, _LEAST, _CHUNK))
         self.count = sum(drive.count for drive in drives)
@@ -104,7 +113,15 @@ class DrivePoints:
         xyz = self.measured_xyz(chunk)
         if chunk.has_noise:
             xyz[np.isin(self.codes(chunk), NOISE_CODES)] = np.nan
+        xyz[self.is_echo(chunk)] = np.nan
         return xyz
+
+    def is_echo(self, chunk: Chunk) -> NDArray[np.bool_]:
+        """Which of a chunk's points were told to be noise whatever their class: (n,) bool."""
+        echoes = self._echoes[chunk.drive]
+        if echoes is None:
+            return np.zeros(chunk.stop - chunk.start, np.bool_)
+        return echoes[chunk.start : chunk.stop]
 
     def measured_xyz(self, chunk: Chunk) -> NDArray[np.float64]:
         """Coordinates of a chunk's points, (n, 3) float64, m; noise too."""

@@ -5,6 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from processing.errors import OutOfRange, told_as_user_error
 from processing.ground.adaptive import GroundHabits
 from processing.ground.drive_ground import adaptive_ground
@@ -14,15 +17,18 @@ from processing.ground.ground_columns import CLASS, GROUND, HEIGHT, OTHER
 from processing.ground.published import PublishedSteps
 from processing.ground.stored_surface import FILE_NAME
 from processing.monitor import Monitor
+from processing.noise.behind_surfaces import echoes_of
 from processing.points.drive import Drive
 from processing.text import Text
 from processing.tools.parameters import Choice, angle, choice, file, length, switch
 from processing.tools.tool import FinishedColumns, Needs, OutputColumn, TogetherResult, Tool
+from processing.worked_ahead import in_order
 
 ADAPTIVE, PUBLISHED, LOWEST = "adaptive", "published", "lowest"
 _PAPER_GRID_M = 3.0
 _SMALLEST_GRID_M = 0.1
 _UNTIL_NONE = 1000
+_ECHOES = Text("Looking for echoes", "多重反射の点を探しています")
 _CELLS = Text("cells of {size:.2f} m", "格子{size:.2f}m")
 
 
@@ -155,7 +161,8 @@ def mark_ground(
     with told_as_user_error(into):
         for folder in folders[1:]:
             folder.mkdir()
-    points = DrivePoints(drives, points_at_once, monitor)
+    echoes = _echoes(drives, monitor) if parameters.method == ADAPTIVE else ()
+    points = DrivePoints(drives, points_at_once, monitor, echoes)
     grid_m = parameters.grid_m or _PAPER_GRID_M
     kept: tuple[Path, ...] = ()
     if parameters.method == ADAPTIVE:
@@ -179,6 +186,12 @@ def mark_ground(
         for folder, drive in zip(folders, drives, strict=True)
     )
     return TogetherResult(columns, kept, _CELLS.filled(size=grid_m))
+
+
+def _echoes(drives: tuple[Drive, ...], monitor: Monitor) -> list[NDArray[np.bool_] | None]:
+    """What a scanner on a tripod can't have seen where it says it lies."""
+    monitor.report(0.0, _ECHOES)
+    return list(in_order(lambda drive: echoes_of(drive, monitor), drives))
 
 
 def _check(parameters: GroundParameters) -> None:
@@ -223,7 +236,7 @@ GROUND_TOOL = Tool(
     needs=Needs.POINTS,
     parameters=GroundParameters,
     mark_together=mark_ground,
-    version=2,
+    version=3,
     gives_classes=(GROUND, OTHER),
     outputs=(
         OutputColumn(CLASS, "uint8", 1, Text("Class", "クラス")),

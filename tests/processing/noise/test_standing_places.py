@@ -8,9 +8,9 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.earthwork.epoch_ground import ground_of_drives
-from processing.earthwork.standing_places import standing_place
 from processing.errors import MissingInput
 from processing.monitor import SilentMonitor
+from processing.noise.standing_places import standing_place
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 
