@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.earthwork.low_growth import lift_of_growth
 from processing.earthwork.sides import EpochGround
 from processing.errors import OutOfRange
 from processing.ground.cells import MOST_CELLS, CellGrid
@@ -20,7 +21,10 @@ _X, _Y, _Z = range(3)
 _AMONG_M = 3.0
 _FEW_OF_MANY = 0.05
 _NEAR_M = 0.6
-_SCATTER_M = 0.3
+_SCATTER_M = 0.08
+_FEWEST = 6
+_HELD_SHARE = 0.3
+_LINE = 0.1
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,7 @@ class GroundCells:
         Points in a cell.
     heights : (rows, columns) float64
         Mean height, m above the grid's origin, carried to the middle of the cell along the
-        ground's slope; NaN without a point.
+        ground's slope and freed of what low growth lifts it by; NaN without a point.
     """
 
     grid: CellGrid
@@ -106,7 +110,9 @@ def ground_cells(
         monitor.check()
         _sum_kernel(np.ascontiguousarray(block.xyz), origin, grid.size_m, counts, sums)
     _drop_strays(counts, sums, grid.size_m)
-    heights = _carried_to_middles(counts, sums, grid.size_m)
+    planes = _planes(counts, sums, grid.size_m)
+    shifted = replace(grid, origin=origin)
+    heights: Floats = planes[0] - lift_of_growth(epoch, shifted, planes, monitor)
     return GroundCells(grid, counts, heights)
 
 
@@ -114,9 +120,10 @@ def _drop_strays(counts: NDArray[np.int32], sums: Floats, size_m: float) -> None
     """Forget cells that hold only strays, in place.
 
     Where the ground was hidden, a few points that came by way of a mirror or a puddle are all
-    there is: few among many about them, and at any height.
+    there is: few among many about them, at any height, or at the height that was filled in there,
+    and then in one cell of several only.
     """
-    from scipy.ndimage import maximum_filter
+    from scipy.ndimage import maximum_filter, uniform_filter
 
     reach = max(1, round(_AMONG_M / size_m))
     most = maximum_filter(counts, 2 * reach + 1)
@@ -126,19 +133,27 @@ def _drop_strays(counts: NDArray[np.int32], sums: Floats, size_m: float) -> None
     heights = np.where(thin, sums[..., _Z] / np.maximum(counts, 1), np.nan)
     near = max(1, round(_NEAR_M / size_m))
     strays = np.zeros(counts.shape, np.bool_)
-    _stray_kernel(heights, near, _SCATTER_M, strays)
+    _stray_kernel(heights, near, (_FEWEST, _SCATTER_M), strays)
+    empty = uniform_filter((counts == 0).astype(np.float32), 2 * near + 1)
+    held = uniform_filter(thin.astype(np.float32), 2 * near + 1)
+    strays |= thin & (held < _HELD_SHARE * (held + empty))
     counts[strays] = 0
     sums[strays] = 0.0
 
 
-def _carried_to_middles(counts: NDArray[np.int32], sums: Floats, size_m: float) -> Floats:
-    """Where points lie to one side of a cell, their mean says the height of that side."""
+def _planes(
+    counts: NDArray[np.int32], sums: Floats, size_m: float
+) -> tuple[Floats, Floats, Floats]:
+    """Heights at the middles of cells and slopes to the east and north.
+
+    Where points lie to one side of a cell, their mean says the height of that side.
+    """
     with np.errstate(invalid="ignore"):
         means = sums / counts[..., None]
     heights = means[..., _Z]
     slope_x, slope_y = (_slope(heights, size_m, axis) for axis in (1, 0))
     carried: Floats = heights - slope_x * means[..., _X] - slope_y * means[..., _Y]
-    return carried
+    return carried, slope_x, slope_y
 
 
 def _slope(heights: Floats, size_m: float, axis: int) -> Floats:
@@ -169,29 +184,65 @@ def _sum_kernel(
 
 
 @kernel
-def _stray_kernel(heights: Floats, near: int, scatter_m: float, strays: NDArray[np.bool_]) -> None:
-    """Cells among others (NaN: passed over) whose heights differ by more than ground does."""
+def _stray_kernel(
+    heights: Floats, near: int, limits: tuple[int, float], strays: NDArray[np.bool_]
+) -> None:
+    """Cells (NaN: passed over) with few others about them, or on no plane with those."""
+    fewest, scatter_m = limits
     rows, columns = heights.shape
     for row in range(rows):
         for column in range(columns):
-            if np.isnan(heights[row, column]):
-                continue
-            count, total = 0, 0.0
-            for other in range(max(0, row - near), min(rows, row + near + 1)):
-                for beside in range(max(0, column - near), min(columns, column + near + 1)):
-                    if not np.isnan(heights[other, beside]):
-                        count += 1
-                        total += heights[other, beside]
-            mean, apart = total / count, 0.0
-            for other in range(max(0, row - near), min(rows, row + near + 1)):
-                for beside in range(max(0, column - near), min(columns, column + near + 1)):
-                    if not np.isnan(heights[other, beside]):
-                        apart += abs(heights[other, beside] - mean)
-            strays[row, column] = apart > scatter_m * count
+            if not np.isnan(heights[row, column]):
+                window = (
+                    max(0, row - near),
+                    min(rows, row + near + 1),
+                    max(0, column - near),
+                    min(columns, column + near + 1),
+                )
+                count, apart = _apart_kernel(heights, window, heights[row, column])
+                strays[row, column] = count < fewest or apart > scatter_m
+
+
+@kernel
+def _apart_kernel(
+    heights: Floats, window: tuple[int, int, int, int], base: float
+) -> tuple[int, float]:
+    """How many cells of a window are known, and how far they lie from their plane on average."""
+    sums = np.zeros(9)
+    for row in range(window[0], window[1]):
+        for column in range(window[2], window[3]):
+            z = heights[row, column] - base
+            if not np.isnan(z):
+                x, y = float(column - window[2]), float(row - window[0])
+                sums[0] += 1.0
+                sums[1] += x
+                sums[2] += y
+                sums[3] += z
+                sums[4] += x * x
+                sums[5] += x * y
+                sums[6] += y * y
+                sums[7] += x * z
+                sums[8] += y * z
+    count = sums[0]
+    x, y, z = sums[1] / count, sums[2] / count, sums[3] / count
+    xx, xy, yy = sums[4] / count - x * x, sums[5] / count - x * y, sums[6] / count - y * y
+    xz, yz = sums[7] / count - x * z, sums[8] / count - y * z
+    # What lies in one line of cells says nothing of the slope across it.
+    xx, yy = xx + _LINE, yy + _LINE
+    spread = xx * yy - xy * xy
+    slope_x, slope_y = (yy * xz - xy * yz) / spread, (xx * yz - xy * xz) / spread
+    apart = 0.0
+    for row in range(window[0], window[1]):
+        for column in range(window[2], window[3]):
+            miss = heights[row, column] - base - z
+            miss -= slope_x * (column - window[2] - x) + slope_y * (row - window[0] - y)
+            if not np.isnan(miss):
+                apart += abs(miss)
+    return int(count), apart / count
 
 
 def warm_up() -> None:
     """Compile the kernels of this file."""
     counts, sums = np.zeros((1, 1), np.int32), np.zeros((1, 1, 3))
     _sum_kernel(np.zeros((1, 3)), np.zeros(3), 1.0, counts, sums)
-    _stray_kernel(np.zeros((2, 2)), 1, 1.0, np.zeros((2, 2), np.bool_))
+    _stray_kernel(np.zeros((2, 2)), 1, (1, 1.0), np.zeros((2, 2), np.bool_))
