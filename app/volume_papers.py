@@ -9,7 +9,6 @@ from pathlib import Path, PurePath
 
 from processing.earthwork.as_built import AsBuiltResult, judge_as_built
 from processing.earthwork.contours import LevelLine
-from processing.earthwork.limits_file import as_built_limits
 from processing.earthwork.sides import EpochGround, Side
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.earthwork.volume_result import VolumeResult
@@ -24,6 +23,8 @@ from processing.formats.work_facts import SideFacts, WorkFacts
 from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.project.volume import ChosenSide, KeptVolume, SideKind
+from processing.project.work_details import WorkDetails
+from processing.project.work_store import ChosenLimits
 from processing.text import Language, Text
 
 _BOUNDARY = Text("Area of the project", "プロジェクトで指定した範囲")
@@ -36,8 +37,8 @@ class GivenVolume:
 
     Attributes
     ----------
-    work : str
-        Name of the project.
+    details : WorkDetails
+        What the papers say of the work; its name is the project's where no other was entered.
     drives : tuple of Drive
         Of the project.
     limit_m : float
@@ -46,22 +47,22 @@ class GivenVolume:
         As they are shown.
     language : Language
         Of words in the file.
-    work_type : str
-        Whose limits count in as-built control.
+    limits : ChosenLimits
+        That count in as-built control.
     sides : callable
         Reads both grounds again, before and after.
     never : tuple of Path
         Delivered files, which must not be overwritten.
     """
 
-    work: str
+    details: WorkDetails
     kept: KeptVolume
     result: VolumeResult
     drives: tuple[Drive, ...]
     limit_m: float
     contours: tuple[LevelLine, ...]
     language: Language
-    work_type: str
+    limits: ChosenLimits
     sides: Callable[[Monitor], tuple[Side, Side]]
     never: tuple[Path, ...]
 
@@ -121,10 +122,10 @@ def _judged(given: GivenVolume, monitor: Monitor) -> tuple[AsBuiltResult, AsBuil
                 "As-built control compares a measured ground with a design.",
                 "出来形管理では計測した地盤と設計面を比較します。",
             ),
-            Text.same(given.work),
+            Text.same(given.details.work),
             Text("Compare an epoch with a design.", "計測データと設計データを比較してください。"),
         )
-    limits = as_built_limits(), given.work_type
+    limits = given.limits.table, given.limits.shown_work_type
     result = judge_as_built(ground, design, limits, monitor, boundary=wish.boundary)
     facts = AsBuiltFacts(
         _work_facts(given),
@@ -149,7 +150,7 @@ def _volume_facts(given: GivenVolume) -> VolumeFacts:
 
 def _work_facts(given: GivenVolume) -> WorkFacts:
     made_on = given.kept.made.astimezone().date()
-    return WorkFacts(work=given.work, crs=given.kept.crs, version=version("zuka"), made_on=made_on)
+    return given.details.facts(given.kept.crs, version("zuka"), made_on)
 
 
 def _side_facts(side: ChosenSide, given: GivenVolume) -> SideFacts:

@@ -10,6 +10,7 @@ from PySide6.QtCore import QCoreApplication, QObject
 from PySide6.QtWidgets import QFileDialog
 from shapely.geometry.base import BaseGeometry
 
+from app.limits_wiring import connect_limits
 from app.volume_exports import VOLUME_EXPORTS
 from app.volume_papers import is_judged
 from app.volume_wishes import (
@@ -51,6 +52,7 @@ def connect_volumes(parts: WindowParts) -> None:
     earthwork.epochs_changed.connect(wiring.show_epochs)
     parts.document.closed.connect(form.start_anew)
     parts.document.shared.volume.look_changed.connect(wiring.on_volume_look_changed)
+    connect_limits(parts)
     wiring.show_epochs()
     wiring.show_volumes()
 
@@ -75,7 +77,7 @@ class _VolumeWiring(QObject):
         panel.show_volumes(earthwork.volumes, "" if shown is None else shown.id)
         if shown is not None:
             panel.offer_exports({one.id for one in VOLUME_EXPORTS if one.is_for(shown)})
-            panel.offer_work_types(is_wanted=is_judged(shown))
+            panel.limits.setVisible(is_judged(shown))
 
     def reason_against(self) -> Text | None:
         """Why nothing can be compared as the form stands; None: it can."""
@@ -121,8 +123,7 @@ class _VolumeWiring(QObject):
             f"*{kind.ending}",
         )
         if chosen:
-            work_type = parts.volume_panel.work_type
-            parts.earthwork.export(kind, Path(chosen), parts.language, work_type)
+            parts.earthwork.export(kind, Path(chosen), parts.language)
 
     def on_form_boundary_wanted(self) -> None:
         path = self._asked_file(

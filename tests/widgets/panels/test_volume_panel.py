@@ -53,8 +53,7 @@ def street() -> OpenMap:
 @pytest.fixture
 def panel(qtbot: QtBot, street: OpenMap) -> VolumePanel:
     exports = (("report", Text("Report", "報告書")), ("xml", Text("Surface", "面")))
-    work_types = (("fill", Text("Embankment", "盛土")), ("cut", Text("Cutting", "掘削")))
-    shown = VolumePanel(street.shared, Mesh, exports, work_types, language="en")
+    shown = VolumePanel(street.shared, Mesh, exports, language="en")
     qtbot.addWidget(shown)
     shown.resize(280, 700)
     shown.show()
@@ -201,17 +200,13 @@ def test_exports_are_offered_by_name(qtbot: QtBot, panel: VolumePanel) -> None:
     assert told.args == ["xml"]
 
 
-def test_a_work_type_is_chosen_where_a_design_is_compared(panel: VolumePanel) -> None:
+def test_only_what_suits_a_volume_is_offered(panel: VolumePanel) -> None:
     panel.show_volumes((_kept("a"),), "a")
     panel.offer_exports({"xml"})
     assert [one.text() for one in panel.export_menu.actions() if one.isVisible()] == ["Surface"]
-    (box,) = [one for one in panel.findChildren(QComboBox) if one.findText("Embankment") >= 0]
-    panel.offer_work_types(is_wanted=False)
-    assert not box.isVisible()
-    panel.offer_work_types(is_wanted=True)
-    assert box.isVisible()
-    _pick(box, "Cutting")
-    assert panel.work_type == "cut"
+    panel.limits.setVisible(True)
+    panel.show_volumes((_kept("b"),), "b")
+    assert not panel.limits.isVisible(), "until it is said what was compared"
 
 
 def test_range_and_contours_are_what_all_views_show(panel: VolumePanel, street: OpenMap) -> None:

@@ -86,7 +86,7 @@ class VolumeForm(QWidget):
         self._with_lines.setToolTip(
             self.tr("As break lines of triangles; a single one also as the axis of sections")
         )
-        self.parameters = ParameterForm(parameters, language, self, has_files=False)
+        self.parameters = ParameterForm(parameters, language, self, has_typed=False)
         self._level = NumberField(-_HIGHEST_M, _HIGHEST_M, unit="m", parent=self)
         self._level_name = QLabel(self.tr("Level"), self)
         self._why_not = QLabel(self)
