@@ -8,11 +8,10 @@ from importlib.metadata import version
 from pathlib import Path, PurePath
 
 from processing.earthwork.as_built import AsBuiltResult, judge_as_built
+from processing.earthwork.comparison_checks import ground_and_design
 from processing.earthwork.contours import LevelLine
-from processing.earthwork.sides import EpochGround, Side
-from processing.earthwork.triangle_surface import TriangleSurface
+from processing.earthwork.sides import Side
 from processing.earthwork.volume_result import VolumeResult
-from processing.errors import Unsuitable
 from processing.formats.as_built_form import write_as_built_form
 from processing.formats.as_built_rows import AsBuiltFacts
 from processing.formats.as_built_tables import write_as_built_csv, write_as_built_xlsx
@@ -109,22 +108,9 @@ def write_form_csv(path: Path, given: GivenVolume, monitor: Monitor) -> None:
 
 
 def _judged(given: GivenVolume, monitor: Monitor) -> tuple[AsBuiltResult, AsBuiltFacts]:
-    before, after = given.sides(monitor)
+    ground, design = ground_and_design(*given.sides(monitor))
     wish = given.kept.wish
-    named = {SideKind.EPOCH: wish.after, SideKind.DESIGN: wish.before}
-    ground, design = after, before
-    if wish.before.kind is SideKind.EPOCH:
-        named = {SideKind.EPOCH: wish.before, SideKind.DESIGN: wish.after}
-        ground, design = before, after
-    if not isinstance(ground, EpochGround) or not isinstance(design, TriangleSurface):
-        raise Unsuitable(
-            Text(
-                "As-built control compares a measured ground with a design.",
-                "出来形管理では計測した地盤と設計面を比較します。",
-            ),
-            Text.same(given.details.work),
-            Text("Compare an epoch with a design.", "計測データと設計データを比較してください。"),
-        )
+    named = {side.kind: side for side in (wish.before, wish.after)}
     limits = given.limits.table, given.limits.shown_work_type
     result = judge_as_built(ground, design, limits, monitor, boundary=wish.boundary)
     facts = AsBuiltFacts(

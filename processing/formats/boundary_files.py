@@ -30,6 +30,7 @@ Floats = NDArray[np.float64]
 
 _LEAST_AREA_M2 = 1e-4
 _PLACE = re.compile(r"\[(\S+) (\S+)\]")
+_WITH_LAYER = re.compile(r"(.+\.(?:gpkg|dxf))#(.+)", re.IGNORECASE | re.DOTALL)
 _AGAIN = Text(
     "Draw the boundary as a closed polygon and save it as GeoJSON, GeoPackage or DXF.",
     "境界を閉じたポリゴンで作図し、GeoJSON・GeoPackage・DXFで保存してください。",
@@ -55,6 +56,30 @@ class Boundary:
     rings: tuple[Floats, ...]
     crs: str
     polygons: int
+
+
+def file_and_layer(words: str) -> tuple[Path, str]:
+    """A boundary's file and its layer: ``FILE``, or ``FILE#LAYER`` of a drawing or GeoPackage."""
+    named = _WITH_LAYER.fullmatch(words)
+    if named is None or Path(words).exists():
+        return Path(words), ""
+    return Path(named[1]), named[2]
+
+
+def boundary_layers(path: Path) -> tuple[str, ...]:
+    """The layers of a drawing or GeoPackage that have polygons; none of a file without layers.
+
+    Raises
+    ------
+    BadFile, MissingInput, NoSpace
+        As :func:`read_boundary`.
+    """
+    match path.suffix.lower():
+        case ".gpkg":
+            return tuple(_layers_of_geopackage(path)[0])
+        case ".dxf":
+            return tuple(outlines_of_dxf(path).by_layer)
+    return ()
 
 
 def read_boundary(path: Path, *, crs: str = "", layer: str = "") -> Boundary:
@@ -139,6 +164,13 @@ def _of_geojson(path: Path) -> tuple[list[Any], str]:
 
 
 def _of_geopackage(path: Path, layer: str) -> tuple[list[Any], str]:
+    found, systems = _layers_of_geopackage(path)
+    chosen = _chosen_layer(path, found, layer)
+    return found.get(chosen, []), systems.get(chosen, "")
+
+
+def _layers_of_geopackage(path: Path) -> tuple[dict[str, list[Any]], dict[str, str]]:
+    """Polygons, and the reference system, of each layer that has polygons."""
     import pyogrio
     import pyogrio.raw
     import shapely
@@ -166,8 +198,7 @@ def _of_geopackage(path: Path, layer: str) -> tuple[list[Any], str]:
             Text.same(str(path)),
             _AGAIN,
         ) from error
-    chosen = _chosen_layer(path, found, layer)
-    return found.get(chosen, []), systems.get(chosen, "")
+    return found, systems
 
 
 def _flattened(parts: Iterable[Any]) -> Iterable[Any]:
@@ -232,9 +263,9 @@ def _chosen_layer(path: Path, found: Mapping[str, list[Any]], layer: str) -> str
             ).filled(names=", ".join(found)),
             Text.same(str(path)),
             Text(
-                "Name the layer of the boundary, or save the boundary alone.",
-                "境界のレイヤを指定するか、境界だけを保存してください。",
-            ),
+                "Write the name of the boundary's layer behind the file: {example}.",
+                "境界のレイヤ名をファイル名の後に書いてください（例：{example}）。",
+            ).filled(example=f"{path.name}#{next(iter(found))}"),
         )
     return layer or next(iter(found), "")
 
