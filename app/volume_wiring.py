@@ -21,6 +21,7 @@ from app.volume_wishes import (
 )
 from app.window_parts import WindowParts
 from processing.errors import UserError
+from processing.formats.boundary_files import boundary_layers
 from processing.formats.landxml import read_landxml
 from processing.project.feature import Feature
 from processing.project.found_features import parameter_values
@@ -30,6 +31,11 @@ from processing.tools.volume import VOLUME
 from widgets.panels.volume.side_box import SideBox
 from widgets.panels.volume.volume_form import Within
 from widgets.shared.shown_volume import VolumeLook
+
+_SEVERAL = Text(
+    "{name} has areas on several layers: choose the one that is meant as “Within”.",
+    "{name} の複数のレイヤに面があります。「範囲」で使用するレイヤを選んでください。",
+)
 
 
 def connect_volumes(parts: WindowParts) -> None:
@@ -132,8 +138,16 @@ class _VolumeWiring(QObject):
                 "VolumeWiring", "Areas (*.geojson *.json *.gpkg *.dxf);;All files (*)"
             ),
         )
-        if path is not None:
-            self._parts.volume_panel.form.take_boundary(path)
+        if path is None:
+            return
+
+        def take(found: object | None) -> None:
+            if isinstance(found, tuple):
+                self._parts.volume_panel.form.take_boundaries(path, found)
+                if len(found) > 1:
+                    self._parts.document.told.emit(_SEVERAL.filled(name=path.name))
+
+        self._parts.document.do_at_hand(lambda: boundary_layers(path), take)
 
     def on_box_design_wanted(self, box: SideBox) -> None:
         """The file is read beside the window: a large design takes seconds."""
@@ -162,8 +176,8 @@ class _VolumeWiring(QObject):
         lines: tuple[BaseGeometry, ...] = ()
         if form.within is Within.SELECTED:
             boundary = boundary_of_features(self._selected())
-        elif form.boundary is not None:
-            boundary = boundary_of_file(form.boundary, self._parts.document.crs())
+        elif (area := form.boundary) is not None:
+            boundary = boundary_of_file(area.path, area.layer, self._parts.document.crs())
         if form.uses_lines:
             lines = lines_of_features(self._selected())
         values = parameter_values(VOLUME, form.parameters.value())

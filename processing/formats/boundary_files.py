@@ -67,11 +67,11 @@ def file_and_layer(words: str) -> tuple[Path, str]:
 
 
 def boundary_layers(path: Path) -> tuple[str, ...]:
-    """The layers of a drawing or GeoPackage that have polygons; none of a file without layers.
+    """The layers of a drawing or GeoPackage that have polygons; none of GeoJSON, which has none.
 
     Raises
     ------
-    BadFile, MissingInput, NoSpace
+    BadFile, OutOfRange, MissingInput, NoSpace
         As :func:`read_boundary`.
     """
     match path.suffix.lower():
@@ -79,7 +79,9 @@ def boundary_layers(path: Path) -> tuple[str, ...]:
             return tuple(_layers_of_geopackage(path)[0])
         case ".dxf":
             return tuple(outlines_of_dxf(path).by_layer)
-    return ()
+        case ".geojson" | ".json":
+            return ()
+    raise _other_format(path)
 
 
 def read_boundary(path: Path, *, crs: str = "", layer: str = "") -> Boundary:
@@ -116,14 +118,7 @@ def read_boundary(path: Path, *, crs: str = "", layer: str = "") -> Boundary:
         case ".dxf":
             polygons, own = _of_dxf(path, layer)
         case _:
-            raise OutOfRange(
-                Text(
-                    "A boundary is read from GeoJSON, GeoPackage or DXF.",
-                    "境界はGeoJSON・GeoPackage・DXFから読み込みます。",
-                ),
-                Text.same(str(path)),
-                _AGAIN,
-            )
+            raise _other_format(path)
     if not polygons:
         raise Unsuitable(
             Text("The file has no closed polygon.", "閉じたポリゴンがありません。"),
@@ -135,6 +130,17 @@ def read_boundary(path: Path, *, crs: str = "", layer: str = "") -> Boundary:
     for number, polygon in enumerate(polygons, 1):
         _require_simple(polygon, path, number)
     return Boundary(_rings_of(polygons), own, len(polygons))
+
+
+def _other_format(path: Path) -> OutOfRange:
+    return OutOfRange(
+        Text(
+            "A boundary is read from GeoJSON, GeoPackage or DXF.",
+            "境界はGeoJSON・GeoPackage・DXFから読み込みます。",
+        ),
+        Text.same(str(path)),
+        _AGAIN,
+    )
 
 
 def _of_geojson(path: Path) -> tuple[list[Any], str]:

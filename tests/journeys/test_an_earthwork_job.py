@@ -199,8 +199,8 @@ def test_a_volume_is_there_again_when_the_project_is_opened_and_can_be_removed(
     assert not any((folder / "results" / "volumes").iterdir())
 
 
-def test_only_what_a_selected_area_holds_counts(
-    builder: Builder, deliveries: tuple[Path, Path], tmp_path: Path
+def test_only_what_a_selected_area_or_the_area_of_a_layer_holds_counts(
+    builder: Builder, deliveries: tuple[Path, Path], tmp_path: Path, monkeypatch
 ) -> None:
     builder.open(tmp_path / "p.zuka", deliveries)
     builder.find_ground()
@@ -216,6 +216,43 @@ def test_only_what_a_selected_area_holds_counts(
     assert kept is not None
     assert kept.wish.boundary is not None
     assert kept.wish.boundary.area == pytest.approx(120.0)
+    _compute_within_a_layer(builder, tmp_path, monkeypatch)
+
+
+def _compute_within_a_layer(builder: Builder, folder: Path, monkeypatch) -> None:
+    """A drawing with areas on two layers: both are listed, and the second one is taken."""
+    drawing = ezdxf.filemanagement.new("R2018")
+    ring = CORNER[:2] + np.array([[1.0, 1.0], [15.0, 1.0], [15.0, 11.0], [1.0, 11.0]])
+    for layer, east_m in (("工区1", 0.0), ("工区2", 14.0)):
+        places = [(east + east_m, north) for east, north in ring.tolist()]
+        drawing.modelspace().add_lwpolyline(places, close=True, dxfattribs={"layer": layer})
+    path = folder / "工区.dxf"
+    drawing.saveas(path)
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
+    box = builder.box_with("Selected areas")
+    with builder.bot.waitSignal(
+        builder.surveyor.document.told,
+        timeout=WAIT_MS,
+        check_params_cb=lambda text: "several layers" in text.en,
+    ):
+        builder.pick(box, "Area from a file…")
+    assert box.currentText() == "工区.dxf: 工区1"
+    builder.pick(box, "工区.dxf: 工区2")
+    before = builder.earthwork.shown
+    with builder.bot.waitSignal(
+        builder.volume.changed,
+        timeout=WAIT_MS,
+        check_params_cb=lambda: builder.earthwork.shown is not before,
+    ):
+        builder.click("Compute the volume")
+    assert builder.number("area") == pytest.approx(140.0, rel=0.01)
+    assert builder.number("fill") == pytest.approx(FILL_M3, rel=0.06)
+    assert builder.number("cut") < 1.0
+    path.write_bytes(b"nothing")
+    with builder.bot.waitSignal(builder.surveyor.document.refused, timeout=WAIT_MS) as told:
+        builder.pick(box, "Area from a file…")
+    assert "工区.dxf" in told.args[0].where.en
+    assert box.currentText() == "工区.dxf: 工区2"
 
 
 def test_an_epoch_against_a_level(
