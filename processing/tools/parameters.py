@@ -23,8 +23,8 @@ ParameterKind = Literal["number", "count", "choice", "switch", "file", "text"]
 Value = float | int | str | bool
 ParametersT = TypeVar("ParametersT")
 
-MOST_LETTERS = 200
-"""Of a text: no paper has room for more."""
+MOST_LETTERS = 100
+"""Of a text: papers have room for as much, and not for much more."""
 
 _KEY = "zuka"
 _BREAKING = ("Cc", "Cs", "Zl", "Zp")

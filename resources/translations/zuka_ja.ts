@@ -2408,7 +2408,7 @@ kept</source>
     </message>
     <message>
         <source>What reports and forms say of the work. What is empty is left blank.</source>
-        <translation>計算書や様式に記載する工事の情報です。空欄の項目は空白のまま出力します。</translation>
+        <translation>帳票に記載する工事の情報です。空欄の項目は空白で出力します。</translation>
     </message>
 </context>
 <context>

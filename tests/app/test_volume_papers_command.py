@@ -102,6 +102,7 @@ def test_the_form_tells_the_verdict_on_every_kind_of_paper(
         form = tmp_path / f"様式{ending}"
         found = told(tmp_path / "out.json", *site, f"form={form}", "work_type=cutting")
         assert found["as_built"] == {"work_type": "cutting", "passes": True}
+        assert str(found["cut_m3"]) == "0.0", "nothing was cut"
         assert form.stat().st_size > 0
     assert "31-2" in words_of(tmp_path / "様式.pdf")
     assert openpyxl.load_workbook(tmp_path / "様式.xlsx").sheetnames

@@ -133,7 +133,7 @@ def test_the_table_that_counts_can_be_written_and_read_again(
 
 
 @pytest.mark.parametrize(
-    "stored", [3, {"work": 3}, {"client": "x" * 201}, {"unknown": ""}, {"work": "a\nb"}]
+    "stored", [3, {"work": 3}, {"client": "x" * 101}, {"unknown": ""}, {"work": "a\nb"}]
 )
 def test_damaged_details_are_told_and_can_be_entered_anew(project: Project, stored) -> None:
     store = WorkStore(project.settings)

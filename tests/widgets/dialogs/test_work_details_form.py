@@ -82,7 +82,7 @@ def test_letters_that_no_paper_takes_are_refused_and_the_form_stays(qtbot: QtBot
     line(form, "place").setText("a\x07b")
     with qtbot.assertNotEmitted(form.details_given):
         press(qtbot, form, QDialogButtonBox.StandardButton.Ok)
-    assert any("one line of up to 200 letters" in one.text() for one in form.findChildren(QLabel))
+    assert any("one line of up to 100 letters" in one.text() for one in form.findChildren(QLabel))
     line(form, "place").setText("ab")
     with qtbot.waitSignal(form.details_given):
         press(qtbot, form, QDialogButtonBox.StandardButton.Ok)
