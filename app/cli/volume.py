@@ -51,12 +51,12 @@ def command(arguments: argparse.Namespace) -> int:
         crs = _one_system(before, after)
         within = _within(parameters, crs)
         papers = papers_of(parameters, (before, after), crs)
+        # All of them before the first is written: nothing half done is left.
+        papers.refuse_inputs(arguments.output)
         result = compare(before.side, after.side, parameters, comparing, within)
         judging, writing = parts_of(writing, (0.5, 0.5))
         judged = papers.judged(judging, within)
         told = _told(result, before, after, crs) | _told_of_form(judged)
-        # All of them before the first is written: nothing half done is left.
-        papers.refuse_inputs(arguments.output)
         written = [*papers.write(result, judged, writing)]
         # The numbers last: where they are, all of it is.
         with written_safely(arguments.output, never=papers.never) as temporary:

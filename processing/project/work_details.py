@@ -85,23 +85,29 @@ def read_work_details(path: Path) -> WorkDetails:
         line is named.
     """
     lines, values = toml_of(toml_content(path), path, _CORRECT)
-    known = [one.id for one in parameters_of(WorkDetails)]
     for key, value in values.items():
-        what = Text(
+        fault = _fault_of(key, value)
+        if fault is not None:
+            raise refused_line(fault, path, _line_of(key, lines), _CORRECT)
+    return details_of(values)
+
+
+def _fault_of(key: str, value: object) -> Text | None:
+    """What is wrong with an entry; None where nothing is."""
+    known = [one.id for one in parameters_of(WorkDetails)]
+    if key not in known:
+        return Text(
             "There is no entry “{key}”; known are: {known}.",
             "「{key}」という項目はありません。使える項目: {known}",
         ).filled(key=short(key), known=", ".join(known))
-        if key in known:
-            try:
-                details_of({key: _words(value)})
-                continue
-            except (OutOfRange, TypeError):
-                what = Text(
-                    "The entry “{key}” must be one line of up to {count} letters in quotes.",
-                    "項目「{key}」は引用符で囲んだ{count}文字以内の1行にしてください。",
-                ).filled(key=key, count=MOST_LETTERS)
-        raise refused_line(what, path, _line_of(key, lines), _CORRECT)
-    return details_of(values)
+    try:
+        details_of({key: _words(value)})
+    except (OutOfRange, TypeError):
+        return Text(
+            "The entry “{key}” must be one line of up to {count} letters in quotes.",
+            "項目「{key}」は引用符で囲んだ{count}文字以内の1行にしてください。",
+        ).filled(key=key, count=MOST_LETTERS)
+    return None
 
 
 def _words(value: object) -> str:
