@@ -43,7 +43,6 @@ from app.window_change import WindowChange
 from app.window_contents import Contents
 from app.window_parts import LastingParts, WindowParts
 from app.wiring import connect_lasting, connect_parts
-from processing.earthwork.limits_file import as_built_limits
 from processing.text import Language, Text
 from processing.tools.volume import VOLUME
 from widgets.camera_view.panel import CameraPanel
@@ -234,8 +233,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
 
 def _make_volume_panel(shared: SharedState, language: Language) -> VolumePanel:
     exports = tuple((one.id, one.name) for one in VOLUME_EXPORTS)
-    work_types = tuple((one.id, one.name) for one in as_built_limits().work_types)
-    return VolumePanel(shared, VOLUME.parameters, exports, work_types, language=language)
+    return VolumePanel(shared, VOLUME.parameters, exports, language=language)
 
 
 def _furnish(parts: WindowParts, files: FileActions, change: WindowChange) -> None:

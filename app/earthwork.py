@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,7 @@ from processing.project.epochs import Epoch, epochs_of, has_ground
 from processing.project.project import Project
 from processing.project.volume import ChosenSide, KeptVolume, SideKind, VolumeWish
 from processing.project.volume_store import VolumeStore
+from processing.project.work_store import WorkStore
 from processing.text import Language, Text
 from processing.tools.ground import GROUND_TOOL
 from widgets.shared.shown_volume import ContourOf
@@ -183,27 +184,27 @@ class Earthwork(QObject):
         self._read(project)
         self.show(self._volumes[-1].id if self._volumes else "")
 
-    def export(self, kind: VolumeExport, path: Path, language: Language, work_type: str) -> str:
-        """Write the volume that is shown to a file in the background; the job's id.
-
-        Parameters
-        ----------
-        work_type : str
-            Whose limits count in as-built control.
-        """
+    def export(self, kind: VolumeExport, path: Path, language: Language) -> str:
+        """Write the volume that is shown to a file in the background; the job's id."""
         project, kept, result = self._document.project, self.shown, self._result
         shown = self._document.shared.volume
         if project is None or kept is None or result is None:
             return ""
+        try:
+            store = WorkStore(project.settings)
+            details, limits = store.details(), store.limits()
+        except UserError as error:
+            self._document.refused.emit(error)
+            return ""
         given = GivenVolume(
-            work=project.name,
+            details=replace(details, work=details.work or project.name),
             kept=kept,
             result=result,
             drives=project.drives,
             limit_m=shown.look.limit_m,
             contours=shown.contours,
             language=language,
-            work_type=work_type,
+            limits=limits,
             sides=sides_reader(kept.wish, project.drives, project.crs),
             never=(*_given_files(kept), *_delivered_files(project)),
         )

@@ -86,7 +86,7 @@ def _write_plan(path: Path, given: GivenVolume, monitor: Monitor) -> None:
     volumes = given.kept.volumes
     amounts = _TITLE.filled(cut=f"{volumes.cut_m3:,.1f}", fill=f"{volumes.fill_m3:,.1f}")
     plan = EarthworkPlan(
-        title=(Text.same(given.work), amounts),
+        title=(Text.same(given.details.work), amounts),
         change=given.result.change,
         classes=change_classes(given.limit_m),
         contours=given.contours,
@@ -102,7 +102,7 @@ def _write_sections(path: Path, given: GivenVolume, monitor: Monitor) -> None:
     if line is None:
         raise Unsuitable(
             Text("The volume has no sections.", "この結果には断面がありません。"),
-            Text.same(given.work),
+            Text.same(given.details.work),
             Text(
                 "Compute it by end areas or the prismoidal formula.",
                 "平均断面法またはプリズモイダル公式で計算してください。",
@@ -110,14 +110,14 @@ def _write_sections(path: Path, given: GivenVolume, monitor: Monitor) -> None:
         )
     look = SectionLook(language=given.language)
     write_section_sheet_dxf(
-        path, line.sections, Text.same(given.work), look, monitor=monitor, never=given.never
+        path, line.sections, Text.same(given.details.work), look, monitor=monitor, never=given.never
     )
 
 
 def _write_surface(path: Path, given: GivenVolume, monitor: Monitor) -> None:
     surface = _later_ground(given.result.change, given.kept.wish.boundary, monitor)
     named = TriangleSurface(surface.xyz, surface.corners, _AFTER.spoken(given.language))
-    facts = LandXmlFacts(given.work, given.kept.crs, "")
+    facts = LandXmlFacts(given.details.work, given.kept.crs, given.details.height_datum)
     written = (WrittenSurface(named),)
     line = given.result.line
     write_landxml(path, written, facts, line=line, monitor=monitor, never=given.never)

@@ -8,12 +8,10 @@ from importlib.metadata import version
 from pathlib import Path, PurePath
 
 from processing.earthwork.as_built import AsBuiltResult, judge_as_built
+from processing.earthwork.comparison_checks import ground_and_design
 from processing.earthwork.contours import LevelLine
-from processing.earthwork.limits_file import as_built_limits
-from processing.earthwork.sides import EpochGround, Side
-from processing.earthwork.triangle_surface import TriangleSurface
+from processing.earthwork.sides import Side
 from processing.earthwork.volume_result import VolumeResult
-from processing.errors import Unsuitable
 from processing.formats.as_built_form import write_as_built_form
 from processing.formats.as_built_rows import AsBuiltFacts
 from processing.formats.as_built_tables import write_as_built_csv, write_as_built_xlsx
@@ -24,6 +22,8 @@ from processing.formats.work_facts import SideFacts, WorkFacts
 from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.project.volume import ChosenSide, KeptVolume, SideKind
+from processing.project.work_details import WorkDetails
+from processing.project.work_store import ChosenLimits
 from processing.text import Language, Text
 
 _BOUNDARY = Text("Area of the project", "プロジェクトで指定した範囲")
@@ -36,8 +36,8 @@ class GivenVolume:
 
     Attributes
     ----------
-    work : str
-        Name of the project.
+    details : WorkDetails
+        What the papers say of the work; its name is the project's where no other was entered.
     drives : tuple of Drive
         Of the project.
     limit_m : float
@@ -46,22 +46,22 @@ class GivenVolume:
         As they are shown.
     language : Language
         Of words in the file.
-    work_type : str
-        Whose limits count in as-built control.
+    limits : ChosenLimits
+        That count in as-built control.
     sides : callable
         Reads both grounds again, before and after.
     never : tuple of Path
         Delivered files, which must not be overwritten.
     """
 
-    work: str
+    details: WorkDetails
     kept: KeptVolume
     result: VolumeResult
     drives: tuple[Drive, ...]
     limit_m: float
     contours: tuple[LevelLine, ...]
     language: Language
-    work_type: str
+    limits: ChosenLimits
     sides: Callable[[Monitor], tuple[Side, Side]]
     never: tuple[Path, ...]
 
@@ -108,23 +108,10 @@ def write_form_csv(path: Path, given: GivenVolume, monitor: Monitor) -> None:
 
 
 def _judged(given: GivenVolume, monitor: Monitor) -> tuple[AsBuiltResult, AsBuiltFacts]:
-    before, after = given.sides(monitor)
+    ground, design = ground_and_design(*given.sides(monitor))
     wish = given.kept.wish
-    named = {SideKind.EPOCH: wish.after, SideKind.DESIGN: wish.before}
-    ground, design = after, before
-    if wish.before.kind is SideKind.EPOCH:
-        named = {SideKind.EPOCH: wish.before, SideKind.DESIGN: wish.after}
-        ground, design = before, after
-    if not isinstance(ground, EpochGround) or not isinstance(design, TriangleSurface):
-        raise Unsuitable(
-            Text(
-                "As-built control compares a measured ground with a design.",
-                "出来形管理では計測した地盤と設計面を比較します。",
-            ),
-            Text.same(given.work),
-            Text("Compare an epoch with a design.", "計測データと設計データを比較してください。"),
-        )
-    limits = as_built_limits(), given.work_type
+    named = {side.kind: side for side in (wish.before, wish.after)}
+    limits = given.limits.table, given.limits.shown_work_type
     result = judge_as_built(ground, design, limits, monitor, boundary=wish.boundary)
     facts = AsBuiltFacts(
         _work_facts(given),
@@ -149,7 +136,7 @@ def _volume_facts(given: GivenVolume) -> VolumeFacts:
 
 def _work_facts(given: GivenVolume) -> WorkFacts:
     made_on = given.kept.made.astimezone().date()
-    return WorkFacts(work=given.work, crs=given.kept.crs, version=version("zuka"), made_on=made_on)
+    return given.details.facts(given.kept.crs, version("zuka"), made_on)
 
 
 def _side_facts(side: ChosenSide, given: GivenVolume) -> SideFacts:

@@ -10,6 +10,7 @@ from PySide6.QtCore import QCoreApplication, QObject
 from PySide6.QtWidgets import QFileDialog
 from shapely.geometry.base import BaseGeometry
 
+from app.limits_wiring import connect_limits
 from app.volume_exports import VOLUME_EXPORTS
 from app.volume_papers import is_judged
 from app.volume_wishes import (
@@ -20,6 +21,7 @@ from app.volume_wishes import (
 )
 from app.window_parts import WindowParts
 from processing.errors import UserError
+from processing.formats.boundary_files import boundary_layers
 from processing.formats.landxml import read_landxml
 from processing.project.feature import Feature
 from processing.project.found_features import parameter_values
@@ -29,6 +31,11 @@ from processing.tools.volume import VOLUME
 from widgets.panels.volume.side_box import SideBox
 from widgets.panels.volume.volume_form import Within
 from widgets.shared.shown_volume import VolumeLook
+
+_SEVERAL = Text(
+    "{name} has areas on several layers: choose the one that is meant as “Within”.",
+    "{name} の複数のレイヤに面があります。「範囲」で使用するレイヤを選んでください。",
+)
 
 
 def connect_volumes(parts: WindowParts) -> None:
@@ -51,6 +58,7 @@ def connect_volumes(parts: WindowParts) -> None:
     earthwork.epochs_changed.connect(wiring.show_epochs)
     parts.document.closed.connect(form.start_anew)
     parts.document.shared.volume.look_changed.connect(wiring.on_volume_look_changed)
+    connect_limits(parts)
     wiring.show_epochs()
     wiring.show_volumes()
 
@@ -75,7 +83,7 @@ class _VolumeWiring(QObject):
         panel.show_volumes(earthwork.volumes, "" if shown is None else shown.id)
         if shown is not None:
             panel.offer_exports({one.id for one in VOLUME_EXPORTS if one.is_for(shown)})
-            panel.offer_work_types(is_wanted=is_judged(shown))
+            panel.limits.setVisible(is_judged(shown))
 
     def reason_against(self) -> Text | None:
         """Why nothing can be compared as the form stands; None: it can."""
@@ -121,8 +129,7 @@ class _VolumeWiring(QObject):
             f"*{kind.ending}",
         )
         if chosen:
-            work_type = parts.volume_panel.work_type
-            parts.earthwork.export(kind, Path(chosen), parts.language, work_type)
+            parts.earthwork.export(kind, Path(chosen), parts.language)
 
     def on_form_boundary_wanted(self) -> None:
         path = self._asked_file(
@@ -131,8 +138,16 @@ class _VolumeWiring(QObject):
                 "VolumeWiring", "Areas (*.geojson *.json *.gpkg *.dxf);;All files (*)"
             ),
         )
-        if path is not None:
-            self._parts.volume_panel.form.take_boundary(path)
+        if path is None:
+            return
+
+        def take(found: object | None) -> None:
+            if isinstance(found, tuple):
+                self._parts.volume_panel.form.take_boundaries(path, found)
+                if len(found) > 1:
+                    self._parts.document.told.emit(_SEVERAL.filled(name=path.name))
+
+        self._parts.document.do_at_hand(lambda: boundary_layers(path), take)
 
     def on_box_design_wanted(self, box: SideBox) -> None:
         """The file is read beside the window: a large design takes seconds."""
@@ -161,8 +176,8 @@ class _VolumeWiring(QObject):
         lines: tuple[BaseGeometry, ...] = ()
         if form.within is Within.SELECTED:
             boundary = boundary_of_features(self._selected())
-        elif form.boundary is not None:
-            boundary = boundary_of_file(form.boundary, self._parts.document.crs())
+        elif (area := form.boundary) is not None:
+            boundary = boundary_of_file(area.path, area.layer, self._parts.document.crs())
         if form.uses_lines:
             lines = lines_of_features(self._selected())
         values = parameter_values(VOLUME, form.parameters.value())

@@ -76,15 +76,15 @@ def boundary_of_features(features: Iterable[Feature]) -> BaseGeometry:
     return shapely.union_all(parts)
 
 
-def boundary_of_file(path: Path, crs: str) -> BaseGeometry:
-    """The area of a delivered file.
+def boundary_of_file(path: Path, layer: str, crs: str) -> BaseGeometry:
+    """The area of a delivered file, of one of its layers where a name is given.
 
     Raises
     ------
     BadFile, OutOfRange, Unsuitable, MissingInput, NoSpace
         As :func:`processing.formats.boundary_files.read_boundary`.
     """
-    return boundary_polygon(read_boundary(path, crs=crs).rings)
+    return boundary_polygon(read_boundary(path, crs=crs, layer=layer).rings)
 
 
 def lines_of_features(features: Iterable[Feature]) -> tuple[BaseGeometry, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QCoreApplication
+from PySide6.QtCore import QCoreApplication, Qt
 from PySide6.QtWidgets import QFileDialog
 
 from app.actions.action import Action
@@ -16,11 +16,14 @@ from processing.errors import UserError
 from processing.project.dropped_files import request_of_files
 from processing.project.export import FORMATS, ExportRequest
 from processing.project.project import is_project
+from processing.project.work_details import WorkDetails
+from processing.project.work_store import WorkStore
 from processing.text import Text
 from resources import path_of
 from widgets.dialogs.export_map import ExportForm, ExportWish
 from widgets.dialogs.import_drive import ImportForm, ImportWish
 from widgets.dialogs.reference_systems import ReferenceSystemForm
+from widgets.dialogs.work_details import WorkDetailsForm
 
 
 class FileActions:
@@ -103,6 +106,17 @@ class FileActions:
                 hint=Text(
                     "Says what the coordinates refer to; no coordinate is changed.",
                     "座標が何に基づくかを指定します。座標値は変わりません。",
+                ),
+                needs_project=True,
+            ),
+            Action(
+                "work-details",
+                Text("Work details…", "工事情報…"),
+                self.choose_work_details,
+                "file",
+                hint=Text(
+                    "Says for whom and by whom the work is done, for reports and forms.",
+                    "帳票に記載する工事名・発注者・受注者などを入力します。",
                 ),
                 needs_project=True,
             ),
@@ -202,6 +216,32 @@ class FileActions:
             return
         form = ReferenceSystemForm(self._parts.document.crs(), self._parts.window)
         form.system_chosen.connect(self._parts.document.set_reference_system)
+        form.show()
+
+    def choose_work_details(self) -> None:
+        """Ask what the papers of the project say of the work."""
+        document = self._parts.document
+        project = document.project
+        if project is None:
+            return
+        store, details = WorkStore(project.settings), WorkDetails()
+        try:
+            details = store.details()
+        except UserError as error:  # entered once more, they are right again
+            document.refused.emit(error)
+
+        def keep(given: WorkDetails) -> None:
+            try:
+                store.keep_details(given)
+            except UserError as error:
+                document.refused.emit(error)
+                return
+            form.close()
+
+        form = WorkDetailsForm(details, project.name, self._parts.language, self._parts.window)
+        form.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        form.details_given.connect(keep)
+        document.about_to_close.connect(form.close)
         form.show()
 
     def choose_delivery(self) -> None:

@@ -16,6 +16,7 @@ from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.project import Project, is_project
 from processing.project.scratch_folder import scratch_folder
+from processing.project.work_store import WorkStore
 from processing.text import Text
 from resources import path_of
 
@@ -35,11 +36,14 @@ class OpenedInput:
         ``EPSG:n``, or empty when unknown.
     catalogue : Catalogue
         The project's own, or the one that comes with the program.
+    work : WorkStore or None
+        What a project has for its papers; None without one.
     """
 
     drives: tuple[Drive, ...]
     crs: str
     catalogue: Catalogue
+    work: WorkStore | None = None
 
 
 @contextmanager
@@ -69,7 +73,8 @@ def opened_input(arguments: argparse.Namespace, monitor: Monitor) -> Iterator[Op
         project = Project.open(inputs[0], writing=False)
         try:
             project.find_sources()
-            yield OpenedInput(project.drives, project.crs, project.catalogue)
+            work = WorkStore(project.settings)
+            yield OpenedInput(project.drives, project.crs, project.catalogue, work)
         finally:
             project.close()
         return

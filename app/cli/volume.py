@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Mapping
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass
-from datetime import datetime
+from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
 
@@ -16,33 +14,25 @@ import shapely
 from app.cli.opened import terminal_monitor
 from app.cli.output import print_lines
 from app.cli.run import settings_of_words
+from app.cli.volume_papers import check_ending, check_papers, papers_of
 from app.cli.volume_sides import NamedSide, named_side
-from app.language import system_language
+from processing.earthwork.as_built import AsBuiltResult
 from processing.earthwork.boundary import boundary_polygon
 from processing.earthwork.comparison import compare
-from processing.earthwork.comparison_checks import name_of
 from processing.earthwork.sides import EpochGround
-from processing.earthwork.triangle_surface import TriangleSurface
 from processing.earthwork.volume_parameters import VolumeParameters
 from processing.earthwork.volume_result import VolumeResult
 from processing.earthwork.within import Within
-from processing.errors import MissingInput, OutOfRange, Unsuitable
-from processing.formats.boundary_files import read_boundary
-from processing.formats.change_geotiff import write_change_geotiff
+from processing.errors import MissingInput, Unsuitable
+from processing.formats.boundary_files import file_and_layer, read_boundary
 from processing.formats.line_files import read_lines
-from processing.formats.safe_write import refuse_inputs, written_safely
-from processing.formats.volume_report import write_volume_report
-from processing.formats.volume_rows import VolumeFacts
-from processing.formats.volume_tables import write_volume_csv, write_volume_xlsx
-from processing.formats.work_facts import SideFacts, WorkFacts
-from processing.monitor import Monitor, parts_of
+from processing.formats.safe_write import written_safely
+from processing.monitor import parts_of
 from processing.project.scratch_folder import scratch_folder
 from processing.text import Text
 from processing.tools.parameters import filled_in
 
 _JSON = ".json"
-_MAPS = (".tif", ".tiff")
-_REPORTS = (".pdf", ".xlsx", ".csv")
 
 
 def command(arguments: argparse.Namespace) -> int:
@@ -60,11 +50,19 @@ def command(arguments: argparse.Namespace) -> int:
         )
         crs = _one_system(before, after)
         within = _within(parameters, crs)
+        papers = papers_of(parameters, (before, after), crs)
+        # All of them before the first is written: nothing half done is left.
+        papers.refuse_inputs(arguments.output)
         result = compare(before.side, after.side, parameters, comparing, within)
-        told = _told(result, before, after, crs)
-        papers = _Papers(result, (before, after), parameters, crs)
-        paths = papers.write(arguments.output, told, writing)
-    print_lines(*(str(path) for path in paths))
+        judging, writing = parts_of(writing, (0.5, 0.5))
+        judged = papers.judged(judging, within)
+        told = _told(result, before, after, crs) | _told_of_form(judged)
+        written = [*papers.write(result, judged, writing)]
+        # The numbers last: where they are, all of it is.
+        with written_safely(arguments.output, never=papers.never) as temporary:
+            text = json.dumps(told, ensure_ascii=False, indent=1)
+            temporary.write_text(text + "\n", encoding="utf-8")
+    print_lines(*(str(path) for path in (arguments.output, *written)))
     return 0
 
 
@@ -79,22 +77,8 @@ def _check(arguments: argparse.Namespace, parameters: VolumeParameters) -> None:
                 "--before A と --after B に、点群・設計面（LandXML）・標高を指定してください。",
             ),
         )
-    _check_ending(arguments.output, (_JSON,))
-    if parameters.map:
-        _check_ending(Path(parameters.map), _MAPS)
-    if parameters.report:
-        _check_ending(Path(parameters.report), _REPORTS)
-
-
-def _check_ending(path: Path, endings: tuple[str, ...]) -> None:
-    if path.suffix.lower() not in endings:
-        raise OutOfRange(
-            Text("The name has another ending.", "ファイル名の拡張子が違います。"),
-            Text.same(str(path)),
-            Text("Give a name ending in {endings}.", "{endings} の名前にしてください。").filled(
-                endings=" / ".join(endings)
-            ),
-        )
+    check_ending(arguments.output, (_JSON,))
+    check_papers(parameters, (arguments.before, arguments.after))
 
 
 def _one_system(before: NamedSide, after: NamedSide) -> str:
@@ -115,7 +99,8 @@ def _one_system(before: NamedSide, after: NamedSide) -> str:
 def _within(parameters: VolumeParameters, crs: str) -> Within:
     boundary = line = None
     if parameters.boundary:
-        boundary = boundary_polygon(read_boundary(Path(parameters.boundary), crs=crs).rings)
+        path, layer = file_and_layer(parameters.boundary)
+        boundary = boundary_polygon(read_boundary(path, crs=crs, layer=layer).rings)
     if parameters.line:
         line = max(read_lines(Path(parameters.line), crs=crs), key=_length)[:, :2]
     break_lines = (
@@ -128,9 +113,7 @@ def _length(line: object) -> float:
     return float(shapely.LineString(line).length)
 
 
-def _told(
-    result: VolumeResult, before: NamedSide, after: NamedSide, crs: str
-) -> Mapping[str, object]:
+def _told(result: VolumeResult, before: NamedSide, after: NamedSide, crs: str) -> dict[str, object]:
     """What the file says: the contract's names first."""
     volumes, registration = result.volumes, result.registration
     return {
@@ -153,76 +136,12 @@ def _told(
     }
 
 
+def _told_of_form(judged: AsBuiltResult | None) -> dict[str, object]:
+    if judged is None:
+        return {}
+    return {"as_built": {"work_type": judged.work_type.id, "passes": judged.passes}}
+
+
 def _day(one: NamedSide) -> str | None:
     day = one.side.measured_on if isinstance(one.side, EpochGround) else None
     return None if day is None else day.isoformat()
-
-
-@dataclass(frozen=True)
-class _Papers:
-    """What is written of a volume."""
-
-    result: VolumeResult
-    sides: tuple[NamedSide, NamedSide]
-    parameters: VolumeParameters
-    crs: str
-
-    def write(self, output: Path, told: Mapping[str, object], monitor: Monitor) -> list[Path]:
-        """The numbers last: where they are, all of it is."""
-        never = [path for side in self.sides for path in side.files]
-        named = (self.parameters.boundary, self.parameters.line, self.parameters.break_lines)
-        never += [Path(name) for name in named if name]
-        # All of them before the first is written: nothing half done is left.
-        for name in (output, self.parameters.map, self.parameters.report):
-            if name:
-                refuse_inputs(Path(name), never)
-        written = []
-        if self.parameters.map:
-            path, change = Path(self.parameters.map), self.result.change
-            write_change_geotiff(path, change, crs=self.crs, monitor=monitor, never=never)
-            written.append(path)
-        if self.parameters.report:
-            path = Path(self.parameters.report)
-            facts = _facts(self.result, self.sides, self.parameters, self.crs)
-            _write_report(path, self.result, facts, never, monitor)
-            written.append(path)
-        with written_safely(output, never=never) as temporary:
-            text = json.dumps(told, ensure_ascii=False, indent=1)
-            temporary.write_text(text + "\n", encoding="utf-8")
-        return [output, *written]
-
-
-def _write_report(
-    path: Path, result: VolumeResult, facts: VolumeFacts, never: list[Path], monitor: Monitor
-) -> None:
-    language = system_language()
-    if path.suffix.lower() == ".csv":
-        write_volume_csv(path, result, facts, language, never=never)
-    elif path.suffix.lower() == ".xlsx":
-        write_volume_xlsx(path, result, facts, language, never=never)
-    else:
-        write_volume_report(path, result, facts, language, monitor=monitor, never=never)
-
-
-def _facts(
-    result: VolumeResult,
-    sides: tuple[NamedSide, NamedSide],
-    parameters: VolumeParameters,
-    crs: str,
-) -> VolumeFacts:
-    work = WorkFacts(crs=crs, version=version("zuka"), made_on=datetime.now().astimezone().date())
-    before, after = (_side_facts(side) for side in sides)
-    boundary = Path(parameters.boundary).name if parameters.boundary else ""
-    return VolumeFacts(work, before, after, boundary, result.line, result.between)
-
-
-def _side_facts(one: NamedSide) -> SideFacts:
-    if isinstance(one.side, TriangleSurface):
-        count = len(one.side.corners)
-        return SideFacts(
-            name_of(one.side), Path(one.source).name, None, count, counts_triangles=True
-        )
-    if isinstance(one.side, EpochGround):
-        day = one.side.measured_on
-        return SideFacts(one.side.name, Path(one.source).name, day, one.points)
-    return SideFacts(one.source)

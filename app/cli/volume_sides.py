@@ -19,6 +19,7 @@ from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
 from processing.points.recorded_together import recordings_of
 from processing.project.project import is_project
+from processing.project.work_store import WorkStore
 from processing.runner import mark_all
 from processing.text import Text
 from processing.tools.ground import GROUND_TOOL
@@ -42,6 +43,8 @@ class NamedSide:
         Of an epoch; 0 for others.
     crs : str
         ``EPSG:n``, or empty when unknown.
+    work : WorkStore or None
+        What a project has for its papers; None of other sides.
     """
 
     side: Side
@@ -49,6 +52,17 @@ class NamedSide:
     files: tuple[Path, ...]
     points: int
     crs: str
+    work: WorkStore | None = None
+
+
+def is_level(words: Path) -> bool:
+    """Whether a side is a level."""
+    return _level_of(str(words)) is not None
+
+
+def is_design(words: Path) -> bool:
+    """Whether a side is a design."""
+    return _design_of(words) is not None
 
 
 @contextmanager
@@ -82,7 +96,7 @@ def named_side(
             ground = ground_of_drives(drives, finding, name=words.stem)
             delivered = tuple(path for drive in drives for path in drive.delivered_files)
             points = sum(drive.count for drive in drives)
-            yield NamedSide(ground, str(words), delivered, points, ground.crs)
+            yield NamedSide(ground, str(words), delivered, points, ground.crs, opened.work)
 
 
 def _level_of(words: str) -> float | None:

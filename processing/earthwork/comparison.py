@@ -201,14 +201,15 @@ def _told(
     else:
         other = volume_by(parameters, change, tie.sides, monitor, within)
         cut, fill = other.cut_m3, other.fill_m3
+    # In this order: the negative of no earth at all is −0.0, which would be printed so.
     volumes = Volumes(
-        cut_m3=max(cut, 0.0),
-        fill_m3=max(fill, 0.0),
+        cut_m3=max(0.0, cut),
+        fill_m3=max(0.0, fill),
         area_m2=area_m2,
         unmeasured_area_m2=max(area_m2 - seen_m2, 0.0),
         uncertainty_m3=spread.stated_m3,
-        measured_cut_m3=max(measured.cut_m3, 0.0),
-        measured_fill_m3=max(measured.fill_m3, 0.0),
+        measured_cut_m3=max(0.0, measured.cut_m3),
+        measured_fill_m3=max(0.0, measured.fill_m3),
     )
     notes = (
         *(note for side in tie.sides for note in checks.notes_of(side)),

@@ -29,6 +29,27 @@ def name_of(side: Side) -> str:
     return side.name
 
 
+def ground_and_design(before: Side, after: Side) -> tuple[EpochGround, TriangleSurface]:
+    """Which of two sides was measured, and which is the design that it is judged by.
+
+    Raises
+    ------
+    Unsuitable
+        They are no measured ground and a design.
+    """
+    for ground, design in ((before, after), (after, before)):
+        if isinstance(ground, EpochGround) and isinstance(design, TriangleSurface):
+            return ground, design
+    raise Unsuitable(
+        Text(
+            "As-built control compares a measured ground with a design.",
+            "出来形管理では計測した地盤と設計面を比較します。",
+        ),
+        Text.same(" / ".join(name_of(side) for side in (before, after))),
+        Text("Compare an epoch with a design.", "計測データと設計データを比較してください。"),
+    )
+
+
 def notes_of(side: Side) -> tuple[Text, ...]:
     """What a reader must know of a side."""
     return side.notes if isinstance(side, TriangleSurface) else ()

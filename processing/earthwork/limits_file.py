@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,15 +11,15 @@ from pathlib import Path
 from typing import Any, TypeGuard
 
 from processing.earthwork.limits import Allowed, AsBuiltLimits, Face, FaceLimits, WorkType
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile
 from processing.text import Text
+from processing.toml_lines import refused_line, short, toml_content, toml_of
 from resources import path_of
 
-_LARGEST_BYTES = 1 << 20
+BUNDLED = "catalogue/as_built_limits.toml"
 _LARGEST_MM = 100_000.0
 _LARGEST_MARGIN_MM = 10_000.0
 _LARGEST_DENSITY = 1_000_000.0
-_LONGEST_WORDS = 60
 _ID = re.compile(r"[a-z][a-z0-9_]*")
 _CORRECT = Text(
     "Correct this line of the table and open it again; nothing was written.",
@@ -31,7 +30,7 @@ _CORRECT = Text(
 @lru_cache(maxsize=1)
 def as_built_limits() -> AsBuiltLimits:
     """The table that comes with the program."""
-    return read_limits(path_of("catalogue/as_built_limits.toml"))
+    return read_limits(path_of(BUNDLED))
 
 
 def read_limits(path: Path) -> AsBuiltLimits:
@@ -43,17 +42,18 @@ def read_limits(path: Path) -> AsBuiltLimits:
         It can't be read; it is not TOML in UTF-8; an entry is missing, unknown or out of range:
         the line is named.
     """
-    with told_as_user_error(path):
-        content = path.read_bytes()
-    text = content[:_LARGEST_BYTES].decode("utf-8-sig", errors="replace")
-    lines = text.replace("\r\n", "\n").split("\n")
-    whole = _Entry(path, lines, {}, 0)
-    if len(content) > _LARGEST_BYTES:
-        raise whole.refused("", Text("The file is too long.", "ファイルが大きすぎます。"))
-    try:
-        values = tomllib.loads(content.decode("utf-8-sig").replace("\r\n", "\n"))
-    except (ValueError, RecursionError) as error:
-        raise _not_toml(whole, error) from error
+    return limits_of(toml_content(path), path)
+
+
+def limits_of(content: bytes, path: Path) -> AsBuiltLimits:
+    """The table of limits that a file holds, or held when it was read.
+
+    Raises
+    ------
+    BadFile
+        As :func:`read_limits`.
+    """
+    lines, values = toml_of(content, path, _CORRECT)
     return _limits(_Entry(path, lines, values, 0))
 
 
@@ -66,10 +66,8 @@ class _Entry:
     values: Mapping[str, Any]  # what TOML can hold
     header: int
 
-    def refused(self, key: str, what: Text, line: int = 0) -> BadFile:
-        number = line or self._line_of(key)
-        where = Text(f"{self.path}, line {number:,}", f"{self.path}、{number:,}行目")
-        return BadFile(what, where, _CORRECT)
+    def refused(self, key: str, what: Text) -> BadFile:
+        return refused_line(what, self.path, self._line_of(key), _CORRECT)
 
     def not_allowed(self, key: str, meant: Text) -> BadFile:
         """The error for a key that is missing or has a value that it can't have."""
@@ -82,7 +80,7 @@ class _Entry:
             "“{value}” is not allowed for “{key}”; allowed: {meant}.",
             "「{key}」に「{value}」は使えません。使える値: {meant}",
         )
-        return self.refused(key, what.filled(value=_short(self.values[key]), key=key, meant=meant))
+        return self.refused(key, what.filled(value=short(self.values[key]), key=key, meant=meant))
 
     def check_keys(self, *known: str) -> None:
         for key in self.values:
@@ -91,7 +89,7 @@ class _Entry:
                     "There is no entry “{key}”; known are: {known}.",
                     "「{key}」という項目はありません。使える項目: {known}",
                 )
-                raise self.refused(key, what.filled(key=_short(key), known=", ".join(known)))
+                raise self.refused(key, what.filled(key=short(key), known=", ".join(known)))
 
     def name(self, key: str) -> Text:
         value = self.values.get(key)
@@ -206,21 +204,5 @@ def _faces(work_type: _Entry) -> tuple[FaceLimits, ...]:
 _TWICE = Text("“{value}” stands twice.", "「{value}」が重複しています。")
 
 
-def _not_toml(whole: _Entry, error: ValueError | RecursionError) -> BadFile:
-    place = re.search(r"\(at line (\d+), column \d+\)", str(error))
-    at_end = len(whole.lines) if "end of document" in str(error) else 1
-    reason = _short(re.sub(r"\s*\(at .*\)$", "", str(error)))
-    what = Text("The table is not TOML: {reason}.", "TOMLとして読めません（{reason}）。")
-    if isinstance(error, UnicodeDecodeError):
-        at_end = error.object.count(b"\n", 0, error.start) + 1
-        what = Text("The table is not text in UTF-8.", "UTF-8のテキストではありません。")
-    return whole.refused("", what.filled(reason=reason), line=int(place[1]) if place else at_end)
-
-
 def _is_number(value: object) -> TypeGuard[float]:
     return isinstance(value, (int, float)) and not isinstance(value, bool) and not math.isnan(value)
-
-
-def _short(value: object) -> str:
-    words = " ".join(str(value).split())
-    return words if len(words) <= _LONGEST_WORDS else words[: _LONGEST_WORDS - 1] + "…"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from processing.text import Text
-from processing.tools.parameters import Choice, choice, file, length, switch
+from processing.tools.parameters import Choice, choice, file, length, switch, text
 
 GRID, TIN, END_AREA, PRISMOIDAL = "grid", "tin", "end-area", "prismoidal"
 
@@ -75,9 +75,11 @@ class VolumeParameters:
     boundary: str = file(
         name=Text("Boundary", "境界"),
         explanation=Text(
-            "A file with the polygon that is counted: GeoJSON, GeoPackage or DXF. Empty counts "
-            "all ground that both sides have.",
-            "計算範囲の多角形のファイルです（GeoJSON・GeoPackage・DXF）。"
+            "A file with the polygon that is counted: GeoJSON, GeoPackage or DXF; FILE#LAYER "
+            "where it has polygons on several layers. Empty counts all ground that both sides "
+            "have.",
+            "計算範囲の多角形のファイルです（GeoJSON・GeoPackage・DXF）。複数のレイヤに多角形が"
+            "ある場合は「ファイル#レイヤ名」とします。"
             "空欄では両方に地面がある範囲全体を計算します。",
         ),
     )
@@ -109,5 +111,40 @@ class VolumeParameters:
         explanation=Text(
             "The volume report as .pdf, .xlsx or .csv. Empty writes none.",
             "土量計算書を書き出すファイルです（.pdf・.xlsx・.csv）。空欄では書き出しません。",
+        ),
+    )
+    form: str = file(
+        name=Text("As-built form", "出来形管理様式"),
+        explanation=Text(
+            "Form 31-2 as .pdf, .xlsx or .csv, where points are compared with a design. Empty "
+            "writes none.",
+            "様式-31-2を書き出すファイルです（.pdf・.xlsx・.csv）。点群と設計面を比較する場合に"
+            "使えます。空欄では書き出しません。",
+        ),
+    )
+    work_type: str = text(
+        name=Text("Work type", "工種"),
+        explanation=Text(
+            "Id of the work type whose limits the form judges by, as the table of limits has it. "
+            "Empty takes the one that the project has, or the only one of the table.",
+            "様式の判定に用いる工種のidです（規格値表の記載による）。空欄ではプロジェクトの工種、"
+            "または表にある唯一の工種とします。",
+        ),
+    )
+    limits: str = file(
+        name=Text("Table of limits", "規格値表"),
+        explanation=Text(
+            "An office's own table of limits (.toml). Empty takes the one that the project has, "
+            "or that comes with the program.",
+            "事務所独自の規格値表（.toml）です。空欄ではプロジェクトの表、または標準の表とします。",
+        ),
+    )
+    work: str = file(
+        name=Text("Work details", "工事情報"),
+        explanation=Text(
+            "A file (.toml) with what papers say of the work: work, place, client, contractor, "
+            "surveyor, height_datum. Empty takes what the project has.",
+            "帳票に記載する工事の情報のファイル（.toml）です。項目はwork・place・client・"
+            "contractor・surveyor・height_datumです。空欄ではプロジェクトの情報とします。",
         ),
     )

@@ -30,6 +30,7 @@ Floats = NDArray[np.float64]
 
 _LEAST_AREA_M2 = 1e-4
 _PLACE = re.compile(r"\[(\S+) (\S+)\]")
+_WITH_LAYER = re.compile(r"(.+\.(?:gpkg|dxf))#(.+)", re.IGNORECASE | re.DOTALL)
 _AGAIN = Text(
     "Draw the boundary as a closed polygon and save it as GeoJSON, GeoPackage or DXF.",
     "境界を閉じたポリゴンで作図し、GeoJSON・GeoPackage・DXFで保存してください。",
@@ -55,6 +56,32 @@ class Boundary:
     rings: tuple[Floats, ...]
     crs: str
     polygons: int
+
+
+def file_and_layer(words: str) -> tuple[Path, str]:
+    """A boundary's file and its layer: ``FILE``, or ``FILE#LAYER`` of a drawing or GeoPackage."""
+    named = _WITH_LAYER.fullmatch(words)
+    if named is None or Path(words).exists():
+        return Path(words), ""
+    return Path(named[1]), named[2]
+
+
+def boundary_layers(path: Path) -> tuple[str, ...]:
+    """The layers of a drawing or GeoPackage that have polygons; none of GeoJSON, which has none.
+
+    Raises
+    ------
+    BadFile, OutOfRange, MissingInput, NoSpace
+        As :func:`read_boundary`.
+    """
+    match path.suffix.lower():
+        case ".gpkg":
+            return tuple(_layers_of_geopackage(path)[0])
+        case ".dxf":
+            return tuple(outlines_of_dxf(path).by_layer)
+        case ".geojson" | ".json":
+            return ()
+    raise _other_format(path)
 
 
 def read_boundary(path: Path, *, crs: str = "", layer: str = "") -> Boundary:
@@ -91,14 +118,7 @@ def read_boundary(path: Path, *, crs: str = "", layer: str = "") -> Boundary:
         case ".dxf":
             polygons, own = _of_dxf(path, layer)
         case _:
-            raise OutOfRange(
-                Text(
-                    "A boundary is read from GeoJSON, GeoPackage or DXF.",
-                    "境界はGeoJSON・GeoPackage・DXFから読み込みます。",
-                ),
-                Text.same(str(path)),
-                _AGAIN,
-            )
+            raise _other_format(path)
     if not polygons:
         raise Unsuitable(
             Text("The file has no closed polygon.", "閉じたポリゴンがありません。"),
@@ -110,6 +130,17 @@ def read_boundary(path: Path, *, crs: str = "", layer: str = "") -> Boundary:
     for number, polygon in enumerate(polygons, 1):
         _require_simple(polygon, path, number)
     return Boundary(_rings_of(polygons), own, len(polygons))
+
+
+def _other_format(path: Path) -> OutOfRange:
+    return OutOfRange(
+        Text(
+            "A boundary is read from GeoJSON, GeoPackage or DXF.",
+            "境界はGeoJSON・GeoPackage・DXFから読み込みます。",
+        ),
+        Text.same(str(path)),
+        _AGAIN,
+    )
 
 
 def _of_geojson(path: Path) -> tuple[list[Any], str]:
@@ -139,6 +170,13 @@ def _of_geojson(path: Path) -> tuple[list[Any], str]:
 
 
 def _of_geopackage(path: Path, layer: str) -> tuple[list[Any], str]:
+    found, systems = _layers_of_geopackage(path)
+    chosen = _chosen_layer(path, found, layer)
+    return found.get(chosen, []), systems.get(chosen, "")
+
+
+def _layers_of_geopackage(path: Path) -> tuple[dict[str, list[Any]], dict[str, str]]:
+    """Polygons, and the reference system, of each layer that has polygons."""
     import pyogrio
     import pyogrio.raw
     import shapely
@@ -166,8 +204,7 @@ def _of_geopackage(path: Path, layer: str) -> tuple[list[Any], str]:
             Text.same(str(path)),
             _AGAIN,
         ) from error
-    chosen = _chosen_layer(path, found, layer)
-    return found.get(chosen, []), systems.get(chosen, "")
+    return found, systems
 
 
 def _flattened(parts: Iterable[Any]) -> Iterable[Any]:
@@ -232,9 +269,9 @@ def _chosen_layer(path: Path, found: Mapping[str, list[Any]], layer: str) -> str
             ).filled(names=", ".join(found)),
             Text.same(str(path)),
             Text(
-                "Name the layer of the boundary, or save the boundary alone.",
-                "境界のレイヤを指定するか、境界だけを保存してください。",
-            ),
+                "Write the name of the boundary's layer behind the file: {example}.",
+                "境界のレイヤ名をファイル名の後に書いてください（例：{example}）。",
+            ).filled(example=f"{path.name}#{next(iter(found))}"),
         )
     return layer or next(iter(found), "")
 

@@ -230,7 +230,7 @@ def usual_range(parameter: Parameter) -> tuple[float, float]:
 
 def can_vary(tool: str) -> tuple[Parameter, ...]:
     """The parameters of a tool that a study can go through."""
-    return tuple(one for one in parameters_of(tool_of(tool).parameters) if one.kind != "file")
+    return tuple(one for one in parameters_of(tool_of(tool).parameters) if not one.is_typed)
 
 
 def varied_of(tool: str, words: Sequence[str]) -> tuple[Varied, ...]:

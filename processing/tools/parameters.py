@@ -11,6 +11,7 @@ A field may name a picture that shows what is meant: ``picture="curb_heights"`` 
 from __future__ import annotations
 
 import dataclasses
+import unicodedata
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, TypeVar, cast
@@ -18,11 +19,15 @@ from typing import Any, Literal, TypeVar, cast
 from processing.errors import OutOfRange, use_one_of
 from processing.text import Text
 
-ParameterKind = Literal["number", "count", "choice", "switch", "file"]
+ParameterKind = Literal["number", "count", "choice", "switch", "file", "text"]
 Value = float | int | str | bool
 ParametersT = TypeVar("ParametersT")
 
+MOST_LETTERS = 100
+"""Of a text: papers have room for as much, and not for much more."""
+
 _KEY = "zuka"
+_BREAKING = ("Cc", "Cs", "Zl", "Zp")
 _NONE = Text("", "")
 
 
@@ -42,7 +47,7 @@ class Parameter:
     ----------
     id : str
         The field's name, as the command line writes it (``--set id=value``).
-    kind : {"number", "count", "choice", "switch", "file"}
+    kind : {"number", "count", "choice", "switch", "file", "text"}
         ``number`` is a float, ``count`` an int, ``switch`` a bool, the others are str.
     low, high : float
         Limits, both allowed; only numbers and counts have them.
@@ -60,6 +65,11 @@ class Parameter:
     high: float = 0.0
     choices: tuple[Choice, ...] = ()
     picture: str = ""
+
+    @property
+    def is_typed(self) -> bool:
+        """Whether any words will do: a file, or a text."""
+        return self.kind in ("file", "text")
 
 
 # The return type is Any so that a field can be annotated with its value's type, as
@@ -152,6 +162,11 @@ def file(*, name: Text, explanation: Text = _NONE) -> Any:
     return _declared(Parameter("", "file", "", name, explanation))
 
 
+def text(*, name: Text, explanation: Text = _NONE) -> Any:
+    """A line of words, of at most `MOST_LETTERS` letters; empty means none."""
+    return _declared(Parameter("", "text", "", name, explanation))
+
+
 def parameters_of(parameters: type[object]) -> tuple[Parameter, ...]:
     """The declared fields of a parameter class, in their order."""
     fields = dataclasses.fields(cast("Any", parameters))  # a dataclass type, by construction
@@ -201,6 +216,8 @@ def _checked(parameter: Parameter, value: Value) -> Value:
     inside = parameter.low <= float(read) <= parameter.high if is_number else True
     if parameter.kind == "choice":
         inside = any(option.value == read for option in parameter.choices)
+    if parameter.kind == "text":
+        inside = _is_a_line(str(read))
     if not inside:
         raise OutOfRange(
             Text("The value is outside its limits.", "値が許容範囲の外です。"),
@@ -223,7 +240,17 @@ def _read(parameter: Parameter, value: Value) -> Value | None:
     return str(value)
 
 
+def _is_a_line(words: str) -> bool:
+    # Tables and papers take no control characters, and a line has no breaks.
+    is_plain = all(unicodedata.category(letter) not in _BREAKING for letter in words)
+    return is_plain and len(words) <= MOST_LETTERS
+
+
 def _allowed(parameter: Parameter) -> Text:
+    if parameter.kind == "text":
+        return Text(
+            "Use one line of up to {count} letters.", "{count}文字以内の1行で指定してください。"
+        ).filled(count=MOST_LETTERS)
     if parameter.kind == "choice":
         return use_one_of(option.value for option in parameter.choices)
     if parameter.kind == "switch":

@@ -988,6 +988,44 @@ kept</source>
     </message>
 </context>
 <context>
+    <name>LimitsBox</name>
+    <message>
+        <source>Table of the program</source>
+        <translation>標準の規格値表</translation>
+    </message>
+    <message>
+        <source>Other table…</source>
+        <translation>別の規格値表…</translation>
+    </message>
+    <message>
+        <source>Write this table as a file…</source>
+        <translation>この規格値表をファイルに書き出す…</translation>
+    </message>
+    <message>
+        <source>The work type whose limits the as-built form has</source>
+        <translation>出来形管理の規格値に用いる工種です</translation>
+    </message>
+    <message>
+        <source>Limits from {name}</source>
+        <translation>規格値表: {name}</translation>
+    </message>
+</context>
+<context>
+    <name>LimitsWiring</name>
+    <message>
+        <source>Table of limits</source>
+        <translation>規格値表</translation>
+    </message>
+    <message>
+        <source>Tables of limits (*.toml);;All files (*)</source>
+        <translation>規格値表 (*.toml);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>Write the table of limits</source>
+        <translation>規格値表の書き出し</translation>
+    </message>
+</context>
+<context>
     <name>LookForm</name>
     <message>
         <source>Show the heat map</source>
@@ -2272,10 +2310,6 @@ kept</source>
         <translation>書き出し</translation>
     </message>
     <message>
-        <source>The work type whose limits the as-built form has</source>
-        <translation>出来形管理の規格値に用いる工種です</translation>
-    </message>
-    <message>
         <source>No volume has been computed yet.</source>
         <translation>計算結果はまだありません。</translation>
     </message>
@@ -2364,6 +2398,17 @@ kept</source>
     <message>
         <source>LandXML (*.xml *.landxml);;All files (*)</source>
         <translation>LandXML (*.xml *.landxml);;すべてのファイル (*)</translation>
+    </message>
+</context>
+<context>
+    <name>WorkDetailsForm</name>
+    <message>
+        <source>Work details</source>
+        <translation>工事情報</translation>
+    </message>
+    <message>
+        <source>What reports and forms say of the work. What is empty is left blank.</source>
+        <translation>帳票に記載する工事の情報です。空欄の項目は空白で出力します。</translation>
     </message>
 </context>
 <context>

@@ -12,7 +12,7 @@ import pypdfium2
 import pytest
 import rasterio
 from pyproj import CRS
-from PySide6.QtWidgets import QFileDialog, QLabel
+from PySide6.QtWidgets import QDialogButtonBox, QFileDialog, QLabel, QLineEdit
 
 from app.jobs import JobState
 from app.volume_exports import VOLUME_EXPORTS
@@ -21,10 +21,12 @@ from processing.earthwork.triangle_surface import TriangleSurface
 from processing.formats.landxml import read_landxml
 from processing.formats.landxml_writing import LandXmlFacts, WrittenSurface, write_landxml
 from processing.project.volume import SideKind
+from resources import path_of
 from tests.earthwork_site import CORNER, GRADE
 from tests.journeys.conftest import WAIT_MS
 from tests.journeys.earthwork_hand import CUT_M3, DEPTH_M, FILL_M3, HEIGHT_M, Builder, two_epochs
 from tests.mouse_events import move_mouse
+from widgets.dialogs.work_details import WorkDetailsForm
 from widgets.panels.volume.look_form import LookForm
 from widgets.shared.cursor import Place
 from widgets.shared.shown_volume import ContourOf
@@ -197,8 +199,8 @@ def test_a_volume_is_there_again_when_the_project_is_opened_and_can_be_removed(
     assert not any((folder / "results" / "volumes").iterdir())
 
 
-def test_only_what_a_selected_area_holds_counts(
-    builder: Builder, deliveries: tuple[Path, Path], tmp_path: Path
+def test_only_what_a_selected_area_or_the_area_of_a_layer_holds_counts(
+    builder: Builder, deliveries: tuple[Path, Path], tmp_path: Path, monkeypatch
 ) -> None:
     builder.open(tmp_path / "p.zuka", deliveries)
     builder.find_ground()
@@ -214,6 +216,43 @@ def test_only_what_a_selected_area_holds_counts(
     assert kept is not None
     assert kept.wish.boundary is not None
     assert kept.wish.boundary.area == pytest.approx(120.0)
+    _compute_within_a_layer(builder, tmp_path, monkeypatch)
+
+
+def _compute_within_a_layer(builder: Builder, folder: Path, monkeypatch) -> None:
+    """A drawing with areas on two layers: both are listed, and the second one is taken."""
+    drawing = ezdxf.filemanagement.new("R2018")
+    ring = CORNER[:2] + np.array([[1.0, 1.0], [15.0, 1.0], [15.0, 11.0], [1.0, 11.0]])
+    for layer, east_m in (("工区1", 0.0), ("工区2", 14.0)):
+        places = [(east + east_m, north) for east, north in ring.tolist()]
+        drawing.modelspace().add_lwpolyline(places, close=True, dxfattribs={"layer": layer})
+    path = folder / "工区.dxf"
+    drawing.saveas(path)
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
+    box = builder.box_with("Selected areas")
+    with builder.bot.waitSignal(
+        builder.surveyor.document.told,
+        timeout=WAIT_MS,
+        check_params_cb=lambda text: "several layers" in text.en,
+    ):
+        builder.pick(box, "Area from a file…")
+    assert box.currentText() == "工区.dxf: 工区1"
+    builder.pick(box, "工区.dxf: 工区2")
+    before = builder.earthwork.shown
+    with builder.bot.waitSignal(
+        builder.volume.changed,
+        timeout=WAIT_MS,
+        check_params_cb=lambda: builder.earthwork.shown is not before,
+    ):
+        builder.click("Compute the volume")
+    assert builder.number("area") == pytest.approx(140.0, rel=0.01)
+    assert builder.number("fill") == pytest.approx(FILL_M3, rel=0.06)
+    assert builder.number("cut") < 1.0
+    path.write_bytes(b"nothing")
+    with builder.bot.waitSignal(builder.surveyor.document.refused, timeout=WAIT_MS) as told:
+        builder.pick(box, "Area from a file…")
+    assert "工区.dxf" in told.args[0].where.en
+    assert box.currentText() == "工区.dxf: 工区2"
 
 
 def test_an_epoch_against_a_level(
@@ -273,8 +312,38 @@ def test_a_design_is_judged_by_the_form(
     builder.compute()
     # Nothing was moved before the work: the ground is the design's slope.
     assert builder.number("cut") + builder.number("fill") < 5.0
+    _enter_what_the_office_knows(builder, tmp_path, monkeypatch)
     form = builder.give_out("form-csv", tmp_path / "様式.csv", monkeypatch)
-    assert "設計.xml" in form.read_text(encoding="utf-8-sig")
+    words = form.read_text(encoding="utf-8-sig")
+    for said in ("設計.xml", "A県", "B建設", "事務所の基準", "JGD2024", "Excavation", "±47 mm"):
+        assert said in words, said
+    report = pypdfium2.PdfDocument(builder.give_out("report", tmp_path / "書.pdf", monkeypatch))
+    said_there = "".join(page.get_textpage().get_text_range() for page in report)
+    for said in ("A県", "B建設", "JGD2024"):
+        assert said in said_there, said
+    report.close()
+    surface = builder.give_out("surface", tmp_path / "地盤.xml", monkeypatch)
+    assert 'desc="JGD2024"' in surface.read_text(encoding="utf-8")
+
+
+def _enter_what_the_office_knows(builder: Builder, folder: Path, monkeypatch) -> None:
+    """Work details in their form, and a table of limits of the office's own, whose file goes."""
+    builder.act("work-details")
+    form = builder.parts.window.findChild(WorkDetailsForm)
+    for id_, words in (("client", "A県"), ("contractor", "B建設"), ("height_datum", "JGD2024")):
+        form.findChild(QLineEdit, id_).setText(words)
+    form.findChild(QDialogButtonBox).button(QDialogButtonBox.StandardButton.Ok).click()
+    text = path_of("catalogue/as_built_limits.toml").read_text(encoding="utf-8")
+    table = folder / "事務所.toml"
+    text = text.replace("As-built control by 3D", "事務所の基準").replace("Cutting", "Excavation")
+    text = text.replace("mean_mm = 50", "mean_mm = 47").replace("mean_mm = 70", "mean_mm = 47")
+    table.write_text(text, encoding="utf-8")
+    monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(table), ""))
+    box = builder.panel.limits
+    assert box.isVisible()
+    builder.pick(box, "Other table…")
+    builder.pick(box, "Excavation  [事務所.toml]")
+    table.unlink()
 
 
 def test_what_can_not_be_compared_is_said_and_nothing_runs(

@@ -22,8 +22,8 @@ class ParameterForm(QWidget):
     parameters : type
         A tool's frozen dataclass of fields from :mod:`processing.tools.parameters`.
     language : Language
-    has_files : bool
-        Whether files can be given; else they keep their defaults.
+    has_typed : bool
+        Whether what is typed, files and texts, can be given; else it keeps its defaults.
 
     Signals
     -------
@@ -43,7 +43,7 @@ class ParameterForm(QWidget):
         language: Language,
         parent: QWidget | None = None,
         *,
-        has_files: bool = True,
+        has_typed: bool = True,
     ) -> None:
         super().__init__(parent)
         self._parameters = parameters
@@ -58,7 +58,7 @@ class ParameterForm(QWidget):
         layout.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
         layout.setRowWrapPolicy(QFormLayout.RowWrapPolicy.WrapLongRows)
         for parameter in parameters_of(parameters):
-            if parameter.kind == "file" and not has_files:
+            if parameter.is_typed and not has_typed:
                 continue
             row = ParameterRow(parameter, language, self)
             row.changed.connect(self.changed)

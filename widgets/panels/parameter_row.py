@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from processing.text import Language
-from processing.tools.parameters import Parameter, Value
+from processing.tools.parameters import MOST_LETTERS, Parameter, Value
 from widgets.parts.number_field import NumberField, decimals_for
 
 _LEAST_LETTERS, _LIST_MARGIN_PX = 8, 24
@@ -33,7 +33,8 @@ class ParameterRow(QWidget):
     Attributes
     ----------
     field : QWidget
-        Number field, combo box, check box or line, by the parameter's kind.
+        Number field, combo box, check box or line, by the parameter's kind. A line of text is
+        emptied in itself, the others have a button that restores the default.
 
     Signals
     -------
@@ -58,6 +59,7 @@ class ParameterRow(QWidget):
             "choice": self._make_choice,
             "switch": self._make_switch,
             "file": self._make_file,
+            "text": self._make_text,
         }
         make[parameter.kind](language)
         self._restore = QToolButton(self)
@@ -65,6 +67,7 @@ class ParameterRow(QWidget):
         self._restore.setAutoRaise(True)
         self._restore.setToolTip(self.tr("Back to the default"))
         self._restore.clicked.connect(self._on_restore_clicked)
+        self._restore.setVisible(parameter.kind != "text")
         self._layout.addWidget(self._restore)
         self.restore()
 
@@ -129,25 +132,35 @@ class ParameterRow(QWidget):
 
         self._take(field, field.isChecked, put)
 
+    def _make_text(self, language: Language) -> None:  # noqa: ARG002 - as the others are called
+        field = QLineEdit(self)
+        field.setMaxLength(MOST_LETTERS)
+        field.setClearButtonEnabled(True)
+        self._take_line(field)
+
     def _make_file(self, language: Language) -> None:
         field = QLineEdit(self)
         field.setPlaceholderText(self.tr("None"))
-        field.textChanged.connect(self._on_field_changed)
-
-        def put(value: Value) -> None:
-            field.setText(str(value))
 
         def choose() -> None:
             path, _ = QFileDialog.getOpenFileName(self, self._parameter.name.spoken(language))
             if path:
                 field.setText(path)
 
-        self._take(field, field.text, put)
+        self._take_line(field)
         browse = QToolButton(self)
         browse.setText("…")
         browse.setToolTip(self.tr("Choose a file"))
         browse.clicked.connect(choose)
         self._layout.addWidget(browse)
+
+    def _take_line(self, field: QLineEdit) -> None:
+        field.textChanged.connect(self._on_field_changed)
+
+        def put(value: Value) -> None:
+            field.setText(str(value))
+
+        self._take(field, field.text, put)
 
     def _take(self, field: QWidget, get: Callable[[], Value], put: Callable[[Value], None]) -> None:
         self.field, self._get, self._set = field, get, put

@@ -163,3 +163,12 @@ def test_limits_are_worded_as_a_form_has_them() -> None:
 
 def test_the_table_is_bundled() -> None:
     assert path_of("catalogue/as_built_limits.toml").is_file()
+
+
+@pytest.mark.parametrize("language", ["en", "ja"])
+def test_the_table_that_the_manual_shows_can_be_read(tmp_path: Path, language: str) -> None:
+    page = path_of(f"manual/{language}/earthwork.html").read_text(encoding="utf-8")
+    shown = next(part for part in page.split("<pre><code>")[1:] if part.startswith("[standard]"))
+    table = read_limits(written(tmp_path, shown.partition("</code>")[0]))
+    (face,) = table["levelling"].faces
+    assert face.single == Allowed(-0.15, math.inf)

@@ -14,7 +14,12 @@ import pytest
 import shapely
 
 from processing.errors import BadFile, MissingInput, OutOfRange, Unsuitable
-from processing.formats.boundary_files import Boundary, read_boundary
+from processing.formats.boundary_files import (
+    Boundary,
+    boundary_layers,
+    file_and_layer,
+    read_boundary,
+)
 from processing.formats.dxf import write_dxf
 from processing.formats.dxf_document import DxfVersion
 from processing.project.catalogue import Geometry, read_catalogue
@@ -217,10 +222,9 @@ def test_an_island_in_a_hole_belongs_to_the_area(tmp_path: Path) -> None:
     assert area_of(read) == pytest.approx(400.0 - 100.0 + 4.0)
 
 
-@pytest.mark.parametrize("name", ["a.gpkg", "a.dxf"])
-def test_of_several_layers_one_must_be_named(tmp_path: Path, name: str) -> None:
-    path = tmp_path / name
-    if name == "a.gpkg":
+def with_layers(path: Path) -> Path:
+    """Polygons of 100 m² on 境界 and of 400 m² on other."""
+    if path.suffix == ".gpkg":
         as_geopackage(path, [box(0, 10)])
         as_geopackage(path, [box(0, 20)], layer="other")
     else:
@@ -228,11 +232,51 @@ def test_of_several_layers_one_must_be_named(tmp_path: Path, name: str) -> None:
         for layer, ring in {"境界": box(0, 10), "other": box(0, 20)}.items():
             doc.modelspace().add_lwpolyline(ring, close=True, dxfattribs={"layer": layer})
         doc.saveas(path)
-    with pytest.raises(Unsuitable, match="several layers: 境界, other"):
+    return path
+
+
+@pytest.mark.parametrize("name", ["a.gpkg", "a.dxf"])
+def test_of_several_layers_one_must_be_named(tmp_path: Path, name: str) -> None:
+    path = with_layers(tmp_path / name)
+    with pytest.raises(Unsuitable, match=f"several layers: 境界, other.*{name}#境界"):
         read_boundary(path)
     assert area_of(read_boundary(path, layer="other")) == pytest.approx(400.0)
     with pytest.raises(OutOfRange, match=r"No layer of this name.*境界, other"):
         read_boundary(path, layer="third")
+
+
+@pytest.mark.parametrize("name", ["a.gpkg", "A.DXF"])
+def test_a_layer_is_named_behind_its_file(tmp_path: Path, name: str) -> None:
+    path = with_layers(tmp_path / name)
+    for layer, area in (("境界", 100.0), ("other", 400.0)):
+        file, found = file_and_layer(f"{path}#{layer}")
+        assert (file, found) == (path, layer)
+        assert area_of(read_boundary(file, layer=found)) == pytest.approx(area)
+    assert file_and_layer(str(path)) == (path, "")
+
+
+def test_a_file_whose_own_name_has_the_mark_is_that_file(tmp_path: Path) -> None:
+    path = as_dxf(tmp_path / "a.dxf#1.dxf", [box(0, 10)])
+    assert file_and_layer(str(path)) == (path, "")
+    assert file_and_layer("a#b.geojson") == (Path("a#b.geojson"), "")
+    assert file_and_layer("a.dxf#b.dxf#c") == (Path("a.dxf#b.dxf"), "c")
+
+
+@pytest.mark.parametrize("name", ["a.gpkg", "a.dxf"])
+def test_the_layers_that_have_polygons_are_told(tmp_path: Path, name: str) -> None:
+    assert boundary_layers(with_layers(tmp_path / name)) == ("境界", "other")
+
+
+def test_a_file_without_layers_has_none_and_a_bad_one_is_told(tmp_path: Path) -> None:
+    assert boundary_layers(as_geojson(tmp_path / "a.geojson", [box(0, 10)])) == ()
+    with pytest.raises(OutOfRange, match="GeoJSON, GeoPackage or DXF"):
+        boundary_layers(tmp_path / "a.shp")
+    for name in ("bad.dxf", "bad.gpkg"):
+        (tmp_path / name).write_bytes(b"nothing")
+        with pytest.raises(BadFile):
+            boundary_layers(tmp_path / name)
+        with pytest.raises(MissingInput):
+            boundary_layers(tmp_path / f"no{name}")
 
 
 @pytest.mark.parametrize("version", ["R2000", "R2018"])

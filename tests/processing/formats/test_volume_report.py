@@ -22,7 +22,9 @@ from processing.formats.volume_tables import write_volume_csv, write_volume_xlsx
 from processing.formats.work_facts import SideFacts, WorkFacts
 from processing.ground.cells import CellGrid
 from processing.monitor import SilentMonitor
+from processing.project.work_details import WorkDetails, details_of
 from processing.text import Text
+from processing.tools.parameters import MOST_LETTERS, parameters_of
 from tests.pages import picture_of, plain, words_of
 
 LONG = (
@@ -210,6 +212,20 @@ def test_long_names_and_many_notes_stay_within_the_sheet(tmp_path: Path) -> None
         assert (picture[:, :30] == 255).all()
         assert (picture[:, -30:] == 255).all()
         assert (picture[-25:] == 255).all()
+
+
+def test_work_details_as_long_as_can_be_stay_within_the_sheet(tmp_path: Path) -> None:
+    longest = "漢" * MOST_LETTERS
+    details = details_of({one.id: longest for one in parameters_of(WorkDetails)})
+    work = details.facts("EPSG:6677", "9.8.7", date(2026, 11, 22))
+    path = tmp_path / "volume.pdf"
+    write_volume_report(path, volume(), facts(work=work), "ja")
+    pages = words_of(path)
+    assert pages[0].count(longest) == 6
+    for page in range(len(pages)):
+        assert (picture_of(path, page)[-25:] == 255).all()
+    foot = picture_of(path)[-75:-25, 200:-200]
+    assert (foot == 255).all(), "no table over the foot"
 
 
 def test_a_million_cells_make_a_small_file(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from processing.tools.parameters import length
 from tests.widgets.builders import OpenMap
 from widgets.panels.volume.look_form import LookForm
 from widgets.panels.volume.side_box import SideBox
-from widgets.panels.volume.volume_form import Within
+from widgets.panels.volume.volume_form import FileArea, Within
 from widgets.panels.volume.volume_panel import VolumePanel
 from widgets.parts.number_field import NumberField
 from widgets.shared.shown_volume import ContourOf
@@ -53,8 +53,7 @@ def street() -> OpenMap:
 @pytest.fixture
 def panel(qtbot: QtBot, street: OpenMap) -> VolumePanel:
     exports = (("report", Text("Report", "報告書")), ("xml", Text("Surface", "面")))
-    work_types = (("fill", Text("Embankment", "盛土")), ("cut", Text("Cutting", "掘削")))
-    shown = VolumePanel(street.shared, Mesh, exports, work_types, language="en")
+    shown = VolumePanel(street.shared, Mesh, exports, language="en")
     qtbot.addWidget(shown)
     shown.resize(280, 700)
     shown.show()
@@ -142,12 +141,34 @@ def test_the_area_of_a_file_counts_once_there_is_one(qtbot: QtBot, panel: Volume
     with qtbot.waitSignal(panel.form.boundary_wanted):
         _pick(box, "Area from a file…")
     assert panel.form.within is Within.EVERYTHING
-    panel.form.take_boundary(Path("/x/site.geojson"))
+    panel.form.take_boundaries(Path("/x/site.geojson"), ())
     assert panel.form.within is Within.FILE
-    assert panel.form.boundary == Path("/x/site.geojson")
+    assert panel.form.boundary == FileArea(Path("/x/site.geojson"))
+    assert box.currentText() == "site.geojson"
     _pick(box, "Selected areas")
     assert panel.form.within is Within.SELECTED
     assert panel.form.boundary is None
+    _pick(box, "site.geojson")
+    assert panel.form.boundary == FileArea(Path("/x/site.geojson"))
+
+
+def test_of_a_file_with_several_layers_one_is_chosen(qtbot: QtBot, panel: VolumePanel) -> None:
+    box = next(one for one in panel.findChildren(QComboBox) if one.findText("Everything") >= 0)
+    plan = Path("/x/計画.dxf")
+    panel.form.take_boundaries(plan, ("工区1", "工区2"))
+    assert box.currentText() == "計画.dxf: 工区1"
+    with qtbot.waitSignal(panel.form.changed):
+        _pick(box, "計画.dxf: 工区2")
+    assert panel.form.boundary == FileArea(plan, "工区2")
+    with qtbot.waitSignal(panel.form.boundary_wanted):
+        _pick(box, "Area from a file…")
+    assert panel.form.boundary == FileArea(plan, "工区2"), "until there is another"
+    panel.form.take_boundaries(Path("/x/b.gpkg"), ("工区3",))
+    assert panel.form.boundary == FileArea(Path("/x/b.gpkg"))
+    assert box.findText("計画.dxf: 工区1") < 0
+    panel.form.start_anew()
+    assert panel.form.within is Within.EVERYTHING
+    assert box.findText("b.gpkg") < 0
 
 
 def test_numbers_have_units_signs_and_their_digits(panel: VolumePanel) -> None:
@@ -201,17 +222,13 @@ def test_exports_are_offered_by_name(qtbot: QtBot, panel: VolumePanel) -> None:
     assert told.args == ["xml"]
 
 
-def test_a_work_type_is_chosen_where_a_design_is_compared(panel: VolumePanel) -> None:
+def test_only_what_suits_a_volume_is_offered(panel: VolumePanel) -> None:
     panel.show_volumes((_kept("a"),), "a")
     panel.offer_exports({"xml"})
     assert [one.text() for one in panel.export_menu.actions() if one.isVisible()] == ["Surface"]
-    (box,) = [one for one in panel.findChildren(QComboBox) if one.findText("Embankment") >= 0]
-    panel.offer_work_types(is_wanted=False)
-    assert not box.isVisible()
-    panel.offer_work_types(is_wanted=True)
-    assert box.isVisible()
-    _pick(box, "Cutting")
-    assert panel.work_type == "cut"
+    panel.limits.setVisible(True)
+    panel.show_volumes((_kept("b"),), "b")
+    assert not panel.limits.isVisible(), "until it is said what was compared"
 
 
 def test_range_and_contours_are_what_all_views_show(panel: VolumePanel, street: OpenMap) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -39,6 +39,19 @@ class Within(Enum):
     FILE = "file"
 
 
+@dataclass(frozen=True)
+class FileArea:
+    """An area of a file: of one of its layers, where it has areas on several."""
+
+    path: Path
+    layer: str = ""
+
+    @property
+    def title(self) -> str:
+        """What people call it."""
+        return f"{self.path.name}: {self.layer}" if self.layer else self.path.name
+
+
 class VolumeForm(QWidget):
     """Two grounds, a boundary, lines, and the parameters of the tool.
 
@@ -55,7 +68,7 @@ class VolumeForm(QWidget):
     run_requested(), ground_requested()
         The buttons.
     boundary_wanted()
-        A file is to be chosen; :meth:`take_boundary` gives it.
+        A file is to be chosen; :meth:`take_boundaries` gives its areas.
 
     Attributes
     ----------
@@ -76,7 +89,8 @@ class VolumeForm(QWidget):
     ) -> None:
         super().__init__(parent)
         self._language: Language = language
-        self._boundary: Path | None = None
+        self._areas: tuple[FileArea, ...] = ()
+        self._chosen: Within | FileArea = Within.EVERYTHING
         self._reason: Callable[[], Text | None] | None = None
         self._needs_ground: Callable[[], bool] | None = None
         self.before, self.after = SideBox(self), SideBox(self)
@@ -86,7 +100,7 @@ class VolumeForm(QWidget):
         self._with_lines.setToolTip(
             self.tr("As break lines of triangles; a single one also as the axis of sections")
         )
-        self.parameters = ParameterForm(parameters, language, self, has_files=False)
+        self.parameters = ParameterForm(parameters, language, self, has_typed=False)
         self._level = NumberField(-_HIGHEST_M, _HIGHEST_M, unit="m", parent=self)
         self._level_name = QLabel(self.tr("Level"), self)
         self._why_not = QLabel(self)
@@ -94,7 +108,7 @@ class VolumeForm(QWidget):
         self._ground = QPushButton(self.tr("Find the ground of both"), self)
         self._run = QPushButton(self.tr("Compute the volume"), self)
         self._lay_out()
-        self._fill_within(Within.EVERYTHING)
+        self._fill_within()
         for box in (self.before, self.after):
             box.chosen.connect(self.refresh)
         self._within.activated.connect(self._on_within_activated)
@@ -142,12 +156,12 @@ class VolumeForm(QWidget):
     @property
     def within(self) -> Within:
         """Where earth counts."""
-        return Within(self._within.currentData())
+        return Within.FILE if isinstance(self._chosen, FileArea) else self._chosen
 
     @property
-    def boundary(self) -> Path | None:
-        """The file of the boundary, where it comes from one."""
-        return self._boundary if self.within is Within.FILE else None
+    def boundary(self) -> FileArea | None:
+        """The area of a file, where the boundary comes from one."""
+        return self._chosen if isinstance(self._chosen, FileArea) else None
 
     @property
     def uses_lines(self) -> bool:
@@ -178,18 +192,18 @@ class VolumeForm(QWidget):
             if side is not None and side.kind is SideKind.LEVEL:
                 self._level.setValue(side.height_m)
 
-    def take_boundary(self, path: Path) -> None:
-        """Count only what is within the area of a file."""
-        self._boundary = path
-        self._fill_within(Within.FILE)
-        self.changed.emit()
+    def take_boundaries(self, path: Path, layers: Sequence[str]) -> None:
+        """List the areas of a file, one for each of several layers, and choose the first one."""
+        several = layers if len(layers) > 1 else ("",)
+        self._areas = tuple(FileArea(path, layer) for layer in several)
+        self._choose(self._areas[0])
 
     def start_anew(self) -> None:
         """Another project is open, or none."""
         for box in (self.before, self.after):
             box.forget_designs()
-        self._boundary = None
-        self._fill_within(Within.EVERYTHING)
+        self._areas, self._chosen = (), Within.EVERYTHING
+        self._fill_within()
 
     def refresh(self) -> None:
         """Ask again whether it can be computed."""
@@ -214,17 +228,25 @@ class VolumeForm(QWidget):
             return side
         return replace(side, height_m=self._level.value())
 
-    def _fill_within(self, chosen: Within) -> None:
+    def _fill_within(self) -> None:
         self._within.clear()
-        self._within.addItem(self.tr("Everything"), Within.EVERYTHING.value)
-        self._within.addItem(self.tr("Selected areas"), Within.SELECTED.value)
-        name = self.tr("Area from a file…") if self._boundary is None else self._boundary.name
-        self._within.addItem(name, Within.FILE.value)
-        self._within.setCurrentIndex(list(Within).index(chosen))
+        self._within.addItem(self.tr("Everything"), Within.EVERYTHING)
+        self._within.addItem(self.tr("Selected areas"), Within.SELECTED)
+        for area in self._areas:
+            self._within.addItem(area.title, area)
+        self._within.addItem(self.tr("Area from a file…"), Within.FILE)
+        offered = [self._within.itemData(number) for number in range(self._within.count())]
+        self._within.setCurrentIndex(offered.index(self._chosen))
 
-    def _on_within_activated(self) -> None:
-        if self.within is Within.FILE:
-            if self._boundary is None:
-                self._fill_within(Within.EVERYTHING)  # until there is one
-            self.boundary_wanted.emit()
+    def _choose(self, chosen: Within | FileArea) -> None:
+        self._chosen = chosen
+        self._fill_within()
         self.changed.emit()
+
+    def _on_within_activated(self, number: int) -> None:
+        chosen = self._within.itemData(number)
+        if chosen is Within.FILE:
+            self._fill_within()  # nothing else is chosen before there is an area
+            self.boundary_wanted.emit()
+        else:
+            self._choose(chosen)

@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from processing.project.volume import KeptVolume
 from processing.text import Language, Text
+from widgets.panels.volume.limits_box import LimitsBox
 from widgets.panels.volume.look_form import LookForm
 from widgets.panels.volume.side_box import side_words
 from widgets.panels.volume.volume_form import VolumeForm
@@ -39,8 +40,8 @@ class VolumePanel(QWidget):
     shared : SharedState
     parameters : type
         Of the tool ``volume``.
-    exports, work_types : sequence of (str, Text)
-        Ids and names of what can be given out, and of what as-built limits are told for.
+    exports : sequence of (str, Text)
+        Ids and names of what can be given out.
     language : Language
 
     Signals
@@ -52,6 +53,8 @@ class VolumePanel(QWidget):
     ----------
     form : VolumeForm
     table : VolumeTable
+    limits : LimitsBox
+        Shown where a ground was compared with a design.
     """
 
     volume_chosen = Signal(str)
@@ -63,7 +66,6 @@ class VolumePanel(QWidget):
         shared: SharedState,
         parameters: type[Any],  # each tool has a dataclass of its own
         exports: Sequence[tuple[str, Text]],
-        work_types: Sequence[tuple[str, Text]],
         *,
         language: Language,
         parent: QWidget | None = None,
@@ -85,11 +87,7 @@ class VolumePanel(QWidget):
             action.setObjectName(id_)
             action.triggered.connect(self._exporting(id_))
         self._export.setMenu(menu)
-        self._work_types = QComboBox(self)
-        self._work_types.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Fixed)
-        self._work_types.setToolTip(self.tr("The work type whose limits the as-built form has"))
-        for id_, name in work_types:
-            self._work_types.addItem(name.spoken(language), id_)
+        self.limits = LimitsBox(language, self)
         self._look = LookForm(shared.volume, self)
         self._nothing = QLabel(self.tr("No volume has been computed yet."), self)
         self._nothing.setWordWrap(True)
@@ -117,7 +115,7 @@ class VolumePanel(QWidget):
         below = QVBoxLayout()
         below.setContentsMargins(8, 4, 8, 8)
         below.setSpacing(4)
-        below.addWidget(self._work_types)
+        below.addWidget(self.limits)
         below.addWidget(self._export)
         page = QVBoxLayout(result)
         page.setContentsMargins(0, 0, 0, 0)
@@ -143,19 +141,10 @@ class VolumePanel(QWidget):
         """What the button of exports offers."""
         return self._export.menu()
 
-    @property
-    def work_type(self) -> str:
-        """Id of the work type whose limits count; empty where there is none."""
-        return str(self._work_types.currentData() or "")
-
     def offer_exports(self, ids: Collection[str]) -> None:
         """Offer only these of the exports."""
         for action in self.export_menu.actions():
             action.setVisible(action.objectName() in ids)
-
-    def offer_work_types(self, *, is_wanted: bool) -> None:
-        """Let a work type be chosen, where a ground is compared with a design."""
-        self._work_types.setVisible(is_wanted)
 
     def show_volumes(self, volumes: Sequence[KeptVolume], chosen: str) -> None:
         """List results, the newest first, and show the numbers of one."""
@@ -175,7 +164,7 @@ class VolumePanel(QWidget):
             widget.setVisible(bool(newest))
         for part in (self.table, self._export):
             part.setVisible(shown is not None)
-        self._work_types.setVisible(False)  # until it is said what was compared
+        self.limits.setVisible(False)  # until it is said what was compared
         self._look.setEnabled(shown is not None)
         if is_other:
             self._pages.setCurrentIndex(_RESULT if shown is not None else _FORM)
