@@ -9,11 +9,13 @@ from __future__ import annotations
 
 import argparse
 import json
+import shutil
 import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -169,7 +171,10 @@ def _true_sums(folder: Path, change: ChangeGrid, boundary: shapely.Geometry) -> 
 
 
 def simulated_sites(seeds: Sequence[int], kept: Path | None) -> Iterator[tuple[str, Path]]:
-    """Deliveries of seeds, made one after the other; a folder that has one is not made again."""
+    """Deliveries of seeds, each made when it is asked for; a folder that has one stays.
+
+    Without a folder to keep them in each is gone when the next is asked for.
+    """
     with _folder(kept) as root:
         for number, seed in enumerate(seeds):
             style = _STYLES[number % len(_STYLES)]
@@ -179,6 +184,8 @@ def simulated_sites(seeds: Sequence[int], kept: Path | None) -> Iterator[tuple[s
                 wish = SiteWish(seed=seed, style=style, sensor=sensor)
                 simulate_site(wish, folder, SilentMonitor())
             yield f"{style}, {sensor}, {seed}", folder
+            if kept is None:
+                shutil.rmtree(folder)
 
 
 @contextmanager
@@ -254,7 +261,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parameters = VolumeParameters(grid_m=wish.mesh)
     scenes = [(folder.name, folder) for folder in wish.samples]
     sites = []
-    for name, folder in (*scenes, *simulated_sites(wish.seeds, wish.kept)):
+    for name, folder in chain(scenes, simulated_sites(wish.seeds, wish.kept)):
         sites.append(scored_site(name, folder, parameters))
         sys.stderr.write(f"{' | '.join(_row(sites[-1]))}\n")
     sections = {
