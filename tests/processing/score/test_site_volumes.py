@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from processing.earthwork.volume_parameters import VolumeParameters
-from processing.monitor import SilentMonitor
+from processing.monitor import Monitor, SilentMonitor
+from processing.score import site_volumes
 from processing.score.known_body import body_points, body_rows, body_volume_m3
 from processing.score.site_volumes import rows_of, scored_site
 from processing.simulate.site import simulate_site
@@ -42,3 +43,23 @@ def test_a_simulated_site_is_held_against_its_truth(tmp_path: Path) -> None:
     assert site.result.volumes.area_m2 == pytest.approx(site.truth["area_m2"], rel=0.01)
     assert len({len(row) for row in rows}) == 1
     assert rows[1][0] == "small"
+
+
+def test_sites_are_made_when_they_are_asked_for_and_gone_afterwards(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    made: list[Path] = []
+
+    def simulated(_wish: SiteWish, folder: Path, _monitor: Monitor) -> None:
+        folder.mkdir()
+        made.append(folder)
+
+    monkeypatch.setattr(site_volumes, "simulate_site", simulated)
+    sites = site_volumes.simulated_sites([1, 2, 3], None)
+    next(sites)
+    assert len(made) == 1
+    next(sites)
+    assert [folder.exists() for folder in made] == [False, True]
+
+    assert len(list(site_volumes.simulated_sites([1, 2, 3], tmp_path))) == 3
+    assert all(folder.exists() for folder in made[2:])
