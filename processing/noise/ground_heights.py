@@ -28,6 +28,8 @@ def heights_above_ground(
     2. The median of each cell and those around it, which drops cells without ground and cells
        with a patch below it.
     3. Cells without sure points take the mean of those around, a few cells far.
+    4. The same once more of what is left over the slope that each cell shares with those beside
+       it: a bank is ground over all its height, too.
 
     Parameters
     ----------
@@ -54,11 +56,35 @@ def heights_above_ground(
     side = np.maximum((highest - lowest) / (shape - 1), 1e-9)
     squares = np.clip(((xyz[:, :2] - lowest) / side).astype(np.int64), 0, shape - 1)
     numbers = squares[:, 0] * shape[1] + squares[:, 1]
-    grid = np.full(int(shape.prod()), np.nan)
-    cells, low = low_heights(xyz[used, 2], numbers[used])
-    grid[cells] = low
-    heights: NDArray[np.float64] = xyz[:, 2] - ground_of(grid.reshape(shape)).ravel()[numbers]
+    aside = (xyz[:, :2] - lowest) / side - squares - 0.5  # in cells, from the cell's middle
+    ground = _known_ground(xyz[used, 2], numbers[used], shape)
+    slopes = [_gentle_slopes(ground, axis).ravel()[numbers] for axis in (0, 1)]
+    inclined = xyz[:, 2] - np.einsum("ai,ia->i", slopes, aside)
+    ground = _known_ground(inclined[used], numbers[used], shape)
+    heights: NDArray[np.float64] = inclined - ground.ravel()[numbers]
     return heights
+
+
+def _known_ground(
+    heights: NDArray[np.float64], numbers: NDArray[np.int64], shape: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """(h, w) heights of the ground from points in the cells ``numbers``; NaN where none is near."""
+    grid = np.full(int(shape.prod()), np.nan)
+    cells, low = low_heights(heights, numbers)
+    grid[cells] = low
+    return ground_of(grid.reshape(shape))
+
+
+def _gentle_slopes(ground: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
+    """(h, w) rise per cell along an axis: the gentler of those to either side, else 0.
+
+    So a slope that goes on is followed, and nothing leans at a wall or the edge of a roof.
+    """
+    steps = np.nan_to_num(np.diff(ground, axis=axis))
+    ends = [(1, 0) if one == axis else (0, 0) for one in range(2)]
+    before, after = np.pad(steps, ends), np.pad(steps, [pair[::-1] for pair in ends])
+    gentle = np.where(np.abs(before) < np.abs(after), before, after)
+    return np.where(before * after > 0, gentle, 0.0)
 
 
 def low_heights(
