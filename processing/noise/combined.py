@@ -34,6 +34,9 @@ MODELS = "models/noise"
 FIRST_LOOK = "first_look.onnx"
 WITH_BEAMS = "with_beams.onnx", "with_beams_again.onnx"
 IN_SPACE = "in_space.onnx", "in_space_again.onnx"
+# Log-odds: where no beams are known, the second look may confirm what the first held possible, and
+# not find noise where it saw none: it learned from more, and grass and clods lie side by side, too.
+_OPEN_IN_SPACE = -1.0
 _FEWEST = 20
 _FEWEST_IN_SPACE = 1_000  # fewer don't tell what is usual around them
 
@@ -102,16 +105,21 @@ def noise_codes_in_space(
     if finite.size < _FEWEST_IN_SPACE or not np.ptp(xyz[finite], axis=0).any():
         return codes
     candidates = candidates_in_space(xyz[finite], monitor)
-    codes[finite] = _codes(candidates, IN_SPACE, strictness, monitor)
+    codes[finite] = _codes(candidates, IN_SPACE, strictness, monitor, open_odds=_OPEN_IN_SPACE)
     return codes
 
 
 def _codes(
-    candidates: Candidates, models: tuple[str, str], strictness: float, monitor: Monitor
+    candidates: Candidates,
+    models: tuple[str, str],
+    strictness: float,
+    monitor: Monitor,
+    *,
+    open_odds: float = OPEN_ODDS,
 ) -> NDArray[np.uint8]:
     """(n,) codes of all points that the candidates were taken from."""
     odds = log_odds(_trees(models[0]), candidates.features, monitor)
-    is_open = np.flatnonzero(odds > OPEN_ODDS)
+    is_open = np.flatnonzero(odds > open_odds)
     again = candidates.seen_again(odds, is_open, monitor)
     share = min(max(strictness, 1e-6), 1 - 1e-6)
     is_noise = log_odds(_trees(models[1]), again, monitor) > np.log((1 - share) / share)

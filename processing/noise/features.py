@@ -193,6 +193,7 @@ def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
         around.column_features(points),
         *(around.part_features(points, level) for level in levels),
         np.full((points.size, 1), is_sure.mean(), np.float32),
+        around.ground.features(points),
     ]
     return Candidates(points, np.concatenate(blocks, axis=1), around, levels)
 

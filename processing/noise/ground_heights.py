@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import SilentMonitor
 from processing.noise.key_order import ordered_by_key
 
+GROUND_FEATURES = 4
 _LOW_SHARE = 0.1
 _FEWEST = 3
 _SAMPLE = 400_000
@@ -17,17 +20,79 @@ _STEP_M, _STEPS = 0.001, 1 << 22
 _ASIDE = 2
 _ROWS_AT_ONCE = 128
 _MOST_CELLS = 4_000  # along one side
+_NEAR_M, _SMOOTHEST_M, _MOST_RATIO = 0.5, 0.005, 50.0
 
 
-def heights_above_ground(
-    xyz: NDArray[np.float64], is_sure: NDArray[np.bool_], cell_m: float
-) -> NDArray[np.float64]:
-    """Height of every point above the low surfaces around it.
+@dataclass(frozen=True)
+class Ground:
+    """The ground below a cloud, in square cells.
+
+    Attributes
+    ----------
+    heights : (n,) float64
+        m, of every point above it; NaN where none is near.
+    cells : (n,) int32
+        Which cell each point lies over.
+    slopes : (h, w) float64
+        Rise per metre.
+    """
+
+    heights: NDArray[np.float64]
+    cells: NDArray[np.int32]
+    slopes: NDArray[np.float64]
+
+    def features(self, points: NDArray[np.int64]) -> NDArray[np.float32]:
+        """(k, GROUND_FEATURES): what is usual there, so that clods are no noise on rough ground.
+
+        Rise per metre, log2 of the roughness (m), height over the mean in roughnesses, and how
+        many of the points lie near the ground; roughness and mean are of a cell and those around.
+        """
+        heights = np.nan_to_num(self.heights)
+        is_near = np.abs(heights) < _NEAR_M
+        near, lie = self.cells[is_near], heights[is_near]
+        count = self._summed_around(points, near)
+        mean = self._summed_around(points, near, lie) / np.maximum(count, 1)
+        square = self._summed_around(points, near, lie**2) / np.maximum(count, 1)
+        rough = np.sqrt(np.maximum(square - mean**2, 0)) + _SMOOTHEST_M
+        relative = (heights[points] - mean) / rough
+        found = np.empty((points.size, GROUND_FEATURES), np.float32)
+        found[:, 0] = self.slopes.ravel()[self.cells[points]]
+        found[:, 1] = np.log2(rough)
+        found[:, 2] = np.clip(relative, -_MOST_RATIO, _MOST_RATIO)
+        found[:, 3] = count / np.maximum(self._summed_around(points, self.cells), 1)
+        return found
+
+    def _summed_around(
+        self,
+        points: NDArray[np.int64],
+        cells: NDArray[np.int32],
+        values: NDArray[np.float64] | None = None,
+    ) -> NDArray[np.float64]:
+        """(k,): the count of ``cells``, or the sum of their values, in the nine around points."""
+        height, width = self.slopes.shape
+        sums = np.bincount(cells, values, height * width).reshape(height, width)
+        padded, total = np.pad(sums, 1), np.zeros((height, width))
+        for side in range(9):
+            i, j = divmod(side, 3)
+            total += padded[i : i + height, j : j + width]
+        around: NDArray[np.float64] = total.ravel()[self.cells[points]]
+        return around
+
+    @classmethod
+    def none(cls) -> Ground:
+        """Of no points."""
+        return cls(np.zeros(0), np.zeros(0, np.int32), np.zeros((0, 0)))
+
+
+def ground_below(xyz: NDArray[np.float64], is_sure: NDArray[np.bool_], cell_m: float) -> Ground:
+    """The low surfaces around every point, and its height above them.
 
     1. In every square cell, the height below which a tenth of its sure points lie.
     2. The median of each cell and those around it, which drops cells without ground and cells
        with a patch below it.
     3. Cells without sure points take the mean of those around, a few cells far.
+    4. The same once more of what is left over the slope that each cell shares with those beside
+       it: a bank is ground over all its height, too.
 
     Parameters
     ----------
@@ -35,14 +100,9 @@ def heights_above_ground(
         m.
     is_sure : (n,) bool
         Points on surfaces that go on; where there are too few, all points are taken.
-
-    Returns
-    -------
-    (n,) float64
-        m; NaN where no ground is near.
     """
     if not xyz.shape[0]:
-        return np.zeros(0)
+        return Ground.none()
     used = np.flatnonzero(is_sure)
     if used.size < _FEWEST:
         used = np.arange(xyz.shape[0])
@@ -53,12 +113,36 @@ def heights_above_ground(
     shape = np.minimum(np.ceil((highest - lowest) / cell_m).astype(np.int64) + 1, _MOST_CELLS)
     side = np.maximum((highest - lowest) / (shape - 1), 1e-9)
     squares = np.clip(((xyz[:, :2] - lowest) / side).astype(np.int64), 0, shape - 1)
-    numbers = squares[:, 0] * shape[1] + squares[:, 1]
+    cells = (squares[:, 0] * shape[1] + squares[:, 1]).astype(np.int32)
+    aside = (xyz[:, :2] - lowest) / side - squares - 0.5  # in cells, from the cell's middle
+    level = _known_ground(xyz[used, 2], cells[used], shape)
+    steps = [_gentle_steps(level, axis) for axis in (0, 1)]
+    inclined = xyz[:, 2] - sum(one.ravel()[cells] * aside[:, i] for i, one in enumerate(steps))
+    ground = _known_ground(inclined[used], cells[used], shape)
+    slopes = np.hypot(steps[0] / side[0], steps[1] / side[1])
+    return Ground(inclined - ground.ravel()[cells], cells, slopes)
+
+
+def _known_ground(
+    heights: NDArray[np.float64], cells: NDArray[np.int32], shape: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """(h, w) heights of the ground from points in cells; NaN where none is near."""
     grid = np.full(int(shape.prod()), np.nan)
-    cells, low = low_heights(xyz[used, 2], numbers[used])
-    grid[cells] = low
-    heights: NDArray[np.float64] = xyz[:, 2] - ground_of(grid.reshape(shape)).ravel()[numbers]
-    return heights
+    known, low = low_heights(heights, cells.astype(np.int64))
+    grid[known] = low
+    return ground_of(grid.reshape(shape))
+
+
+def _gentle_steps(ground: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
+    """(h, w) rise per cell along an axis: the gentler of those to either side, else 0.
+
+    So a slope that goes on is followed, and nothing leans at a wall or the edge of a roof.
+    """
+    steps = np.nan_to_num(np.diff(ground, axis=axis))
+    ends = [(1, 0) if one == axis else (0, 0) for one in range(2)]
+    before, after = np.pad(steps, ends), np.pad(steps, [pair[::-1] for pair in ends])
+    gentle = np.where(np.abs(before) < np.abs(after), before, after)
+    return np.where(before * after > 0, gentle, 0.0)
 
 
 def low_heights(

@@ -23,7 +23,7 @@ from processing.noise.cell_kernels import (
 )
 from processing.noise.cell_levels import cell_levels
 from processing.noise.connected import Parts, parts_of, sure_counts
-from processing.noise.ground_heights import heights_above_ground
+from processing.noise.ground_heights import Ground, ground_below
 from processing.noise.morton import NestedCells, nested_cells
 from processing.noise.sharing import shared_out
 
@@ -62,8 +62,8 @@ class Surroundings:
         Which cell holds what, as :func:`processing.noise.cell_levels.cell_levels`.
     is_main : (n,) bool
         Hangs together with a good part of the cloud's sure points; empty if not looked for.
-    heights : (n,) float64
-        m above the local ground, NaN where none is known; empty if not looked for.
+    ground : Ground
+        Empty if not looked for.
     connected : tuple of (c,) float64
         Sure points in the part of each cell of the levels ``link`` and ``link`` + 2.
     link : int
@@ -78,7 +78,7 @@ class Surroundings:
     levels: list[CellLevel]
     numbers: list[NDArray[np.int32]]
     is_main: NDArray[np.bool_]
-    heights: _Floats
+    ground: Ground
     connected: tuple[_Floats, ...] = ()
     link: int = 0
     parts: dict[int, Parts] = field(default_factory=dict)
@@ -91,8 +91,8 @@ class Surroundings:
         place = np.empty(cells.order.size, np.int64)
         place[cells.order] = np.arange(cells.order.size)
         levels, numbers = cell_levels(cells, is_sure[cells.order], _LEVELS)
-        none = np.zeros(0)
-        return cls(cells, place, spacings, levels, numbers, none.astype(np.bool_), none)
+        none = np.zeros(0, np.bool_)
+        return cls(cells, place, spacings, levels, numbers, none, Ground.none())
 
     @classmethod
     def of(cls, xyz: _Floats, spacings: _Floats, is_sure: NDArray[np.bool_]) -> Surroundings:
@@ -105,8 +105,13 @@ class Surroundings:
         is_main_cell = connected[0] >= _MAIN_SHARE * max(1, int(is_sure.sum()))
         is_main = np.empty(xyz.shape[0], np.bool_)
         is_main[bare.cells.order] = is_main_cell[bare.held_by(link, slice(None))]
-        heights = heights_above_ground(xyz, is_sure, max(1.0, 4 * middle))
-        return replace(bare, is_main=is_main, heights=heights, connected=connected, link=link)
+        ground = ground_below(xyz, is_sure, max(1.0, 4 * middle))
+        return replace(bare, is_main=is_main, ground=ground, connected=connected, link=link)
+
+    @property
+    def heights(self) -> _Floats:
+        """(n,) m above the local ground, NaN where none is known; empty if not looked for."""
+        return self.ground.heights
 
     def level_of(self, size_m: float) -> int:
         """The level whose cells have about this size."""

@@ -153,6 +153,7 @@ NOISE = Tool(
     needs=Needs.POINTS,
     parameters=NoiseParameters,
     mark=mark_noise,
+    version=2,
     gives_classes=(LOW_NOISE, HIGH_NOISE),
     outputs=(OutputColumn(_CLASS, "uint8", 1, Text("Class", "クラス")),),
 )

@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -30,6 +31,8 @@ from processing.noise.training.examples import (
     kept_with_beams,
 )
 from processing.noise.training.fitting import Shape, fitted, shifted_to_keep
+from processing.noise.training.meadows import grown_over, with_little_noise
+from processing.noise.training.relief import on_relief
 from processing.noise.training.scanners import AIRBORNE, MOBILE, STANDING
 from processing.noise.training.scenes import Scene, scene_of, thinned
 from processing.noise.training.scores import score_line
@@ -39,6 +42,7 @@ from processing.points.drive import Drive
 from resources import path_of
 
 _BUDGETS = (150_000, 250_000, 450_000)
+_DENSE_BUDGET = 1_500_000
 _FEWEST = 100
 _FIRST_SHAPE = Shape(trees=30, leaves=12, rate=0.25)
 _BEAMS_SHAPE = Shape(trees=80, leaves=24, rate=0.18)
@@ -66,7 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if not wish.score_only:
             _make(what, wish)
         for seed in _seeds(wish.held_out):
-            for scene, turn, name in _scenes(what, (seed,)):
+            for scene, turn, name in [*_scenes(what, (seed,)), *_on_relief(what, (seed,))]:
                 _say(score_line(f"{what} {name}", _said(what, scene, turn), scene))
     return 0
 
@@ -75,6 +79,15 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m processing.noise.training")
     parser.add_argument("--what", nargs="+", choices=("beams", "space"), default=["beams", "space"])
     parser.add_argument("--seeds", default="1-120", help="of the scenes that are learned from")
+    parser.add_argument(
+        "--relief-seeds", default="121-240", help="of those on relief, where only places are known"
+    )
+    parser.add_argument(
+        "--quiet-seeds",
+        default="241-300",
+        help="of those on relief with much grass and little noise, which are only asked again",
+    )
+    parser.add_argument("--dense-seeds", default="301-320", help="likewise, from standing scanners")
     parser.add_argument("--held-out", default="501-512", help="of the scenes that are scored")
     parser.add_argument(
         "--kept-with-beams", nargs="*", type=Path, default=[], help="folders of true recordings"
@@ -101,7 +114,10 @@ def _make(what: str, wish: argparse.Namespace) -> None:
     others = [fitted(_but(alone, fold), shape) for fold in range(_FOLDS)]
     own = fitted(Examples.joined(alone), shape)
     _write(names[0], own, alone[0].rows.shape[1])
-    again = Examples.joined(case.again(first, others[fold]) for fold, _, case in _cases(what, wish))
+    asked = [case.again(first, others[fold]) for fold, _, case in _cases(what, wish)]
+    if what == "space":  # these were not learned from: all the others may judge
+        asked += [case.again(None, own) for case in _quiet_cases(wish)]
+    again = Examples.joined(asked)
     _say(f"asked again about {again.is_noise.size} points")
     if first is not None:
         columns = looks[0][0].rows.shape[1]
@@ -135,6 +151,9 @@ def _cases(what: str, wish: argparse.Namespace) -> Iterator[tuple[int, str, Case
             is_space = what == "space"
             case = case_in_space(scene, seed) if is_space else case_with_beams(scene, turn, seed)
             yield seed // 12 % _FOLDS, name, case
+    for seed in _seeds(wish.relief_seeds):
+        for scene, _, name in _on_relief(what, (seed,)):
+            yield seed // 12 % _FOLDS, name, case_in_space(scene, seed)
     folders = wish.kept_in_space if what == "space" else wish.kept_with_beams
     for number, folder in enumerate(folders):
         kept = kept_in_space if what == "space" else kept_with_beams
@@ -144,14 +163,40 @@ def _cases(what: str, wish: argparse.Namespace) -> Iterator[tuple[int, str, Case
 
 def _scenes(what: str, seeds: Sequence[int]) -> Iterator[tuple[Scene, float, str]]:
     for seed in seeds:
-        how = _SCANNERS[what][seed % len(_SCANNERS[what])]
-        scene, turn = scene_of(seed, how, _BUDGETS[seed % len(_BUDGETS)])
+        scene, turn, how = _scene(what, seed)
         if what == "space":
             scene = thinned(scene, seed)
         elif how == STANDING:
             scene = scene.chosen(scene.scans == 0)
         if scene.noise.size >= _FEWEST:
             yield scene, turn, f"{how} {seed}"
+
+
+def _on_relief(what: str, seeds: Sequence[int]) -> Iterator[tuple[Scene, float, str]]:
+    """Scenes as for clouds of which only places are known, lifted by hills and banks."""
+    for seed in seeds if what == "space" else ():
+        scene, turn, how = _scene(what, seed)
+        scene = thinned(on_relief(scene, seed), seed)
+        if scene.noise.size >= _FEWEST:
+            yield scene, turn, f"{how} {seed} on relief"
+
+
+def _quiet_cases(wish: argparse.Namespace) -> Iterator[Case]:
+    """On relief with much grass and little noise, the last as dense as a tripod's own scans."""
+    few = ((seed, _scene("space", seed)[0]) for seed in _seeds(wish.quiet_seeds))
+    dense = (
+        (seed, scene_of(seed, STANDING, _DENSE_BUDGET)[0]) for seed in _seeds(wish.dense_seeds)
+    )
+    for seed, scene in chain(few, dense):
+        meadow = on_relief(grown_over(scene, seed), seed)
+        meadow = thinned(with_little_noise(meadow, seed), seed)
+        if meadow.noise.size >= _FEWEST:
+            yield case_in_space(meadow, seed)
+
+
+def _scene(what: str, seed: int) -> tuple[Scene, float, str]:
+    how = _SCANNERS[what][seed % len(_SCANNERS[what])]
+    return *scene_of(seed, how, _BUDGETS[seed % len(_BUDGETS)]), how
 
 
 def _said(what: str, scene: Scene, turn: float) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:

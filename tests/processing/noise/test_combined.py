@@ -188,3 +188,15 @@ def test_spikes_in_a_recording_are_left_out_of_its_rows(drive: Drive) -> None:
     codes = noise_codes_with_beams(beams, np.full(len(xyz), 500, np.uint16))
     assert codes[100] == 18
     assert (codes > 0).mean() < 0.05
+
+
+def test_of_a_steep_bank_before_a_tripod_one_point_in_sixty_is_lost_at_most() -> None:
+    random = np.random.default_rng(8)
+    around, below = random.uniform(0, 2 * np.pi, 60_000), np.radians(random.uniform(8, 80, 60_000))
+    ways = np.column_stack(
+        [np.cos(below) * np.cos(around), np.cos(below) * np.sin(around), -np.sin(below)]
+    )
+    ranges = 1.7 / (0.7 * ways[:, 0] - ways[:, 2])
+    xyz = ways[(ranges > 0) & (ranges < 25)] * ranges[(ranges > 0) & (ranges < 25), None]
+    xyz += random.normal(0, 0.004, xyz.shape)
+    assert (noise_codes_in_space(xyz) > 0).mean() < 0.016
