@@ -34,6 +34,7 @@ _REACH_M = 60.0
 _FEW = 20
 _EVEN = 1e-9
 _BEAM_SHARE = 0.16
+_ROUGH_M = 2.0
 _LAGS_M = (0.5, 1.0, 2.0, 4.0, 8.0)
 
 
@@ -136,7 +137,7 @@ def _roughness_at(heights: Floats, away_m: Floats, size_m: float) -> Floats:
     """By how much ground differs from the middle between its neighbours so far away.
 
     That is what a smooth surface over a hole of such a size misses, told by the ground that was
-    measured on the same site.
+    measured on the same site. What hides is rough: no less than over two metres either way.
     """
     lags, misses = [0.0], [0.0]
     for lag_m in _LAGS_M:
@@ -150,6 +151,7 @@ def _roughness_at(heights: Floats, away_m: Floats, size_m: float) -> Floats:
         if everything.size >= _FEW:
             lags.append(step * size_m)
             misses.append(float(np.sqrt(np.mean(np.square(everything)))))
+    away_m = np.maximum(away_m, _ROUGH_M)
     told: Floats = np.interp(away_m, lags, np.maximum.accumulate(misses))
     return told
 

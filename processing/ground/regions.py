@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,9 @@ _SMALL = 2
 _LEVEL_FACTOR = 1.0
 _CLEAR = 0.3
 _GAP = 2.0
+_FINE_CELL_M = 0.25
+_WIDE_M = 5.0
+_ALL_ROUND = 0.75
 _HALL_M = 10.0
 _STOREY_M = 3.0
 _BORDER = 1.0
@@ -78,9 +81,11 @@ def standing_cells(
     -----
     From small to large windows: what an opening takes away is a thing where its rim is steep, and
     leaves the surface before the next window; crests, heaps and terraces, which somewhere go down
-    gently, stay. Wide windows look a second time as if the cloud went on with its mirror image,
-    for a hall that its border cuts: it is a storey high, and its steep rim is longer than the cut,
-    as a terrace's isn't.
+    gently, stay. Where cells are fine enough to show every side, a thing wider than five metres has
+    to be steep along three quarters of its rim: fills of earth are steep along two sides or three,
+    and go down gently along another. Wide windows look a second time as if the cloud went on with
+    its mirror image, for a hall that its border cuts: it is a storey high, and its steep rim is
+    longer than the cut, as a terrace's isn't.
     """
     standing = np.zeros(heights.shape, np.bool_)
     measured = np.isfinite(heights)
@@ -96,7 +101,9 @@ def standing_cells(
         steep = share_of * np.float32(shape.steep if radius > _SMALL else shape.small_steep)
         lower = opened(surface, radius)
         free = (measured & ~standing, nearest)
-        found = _things(surface - lower > rise, heights, free, size_m, (steep, shape))
+        is_wide = size_m <= _FINE_CELL_M and 2 * radius * size_m >= _WIDE_M
+        needed = replace(shape, rim_share=_ALL_ROUND) if is_wide else shape
+        found = _things(surface - lower > rise, heights, free, size_m, (steep, needed))
         standing |= found
         surface[found] = lower[found]
         if 2 * radius * size_m >= _HALL_M:

@@ -42,7 +42,7 @@ from processing.tools.ground import GROUND_TOOL
 Floats = NDArray[np.float64]
 
 HEADING = "## Earthwork volumes"
-SEEDS = range(1101, 1125)
+SEEDS = range(1114, 1138)
 _STYLES = ("levee", "cutting", "pad")
 _SENSORS = ("p40", "vz400i", "zf5016", "p40")
 _ABOUT = (
