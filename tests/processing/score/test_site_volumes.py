@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -43,6 +44,11 @@ def test_a_simulated_site_is_held_against_its_truth(tmp_path: Path) -> None:
     assert site.result.volumes.area_m2 == pytest.approx(site.truth["area_m2"], rel=0.01)
     assert len({len(row) for row in rows}) == 1
     assert rows[1][0] == "small"
+
+    tiny = replace(site, truth={**site.truth, "cut_m3": 0.02 * site.truth["fill_m3"]})
+    medians = dict(zip(rows_of([tiny])[0], rows_of([tiny])[2], strict=True))
+    assert medians["whole cut"] == "–"
+    assert medians["whole fill"] != "–"
 
 
 def test_sites_are_made_when_they_are_asked_for_and_gone_afterwards(
