@@ -113,7 +113,8 @@ class DrivePoints:
         xyz = self.measured_xyz(chunk)
         if chunk.has_noise:
             xyz[np.isin(self.codes(chunk), NOISE_CODES)] = np.nan
-        xyz[self.is_echo(chunk)] = np.nan
+        if self._echoes[chunk.drive] is not None:
+            xyz[self.is_echo(chunk)] = np.nan
         return xyz
 
     def is_echo(self, chunk: Chunk) -> NDArray[np.bool_]:

@@ -68,11 +68,12 @@ def behind_surfaces(xyz: Floats, stand: Floats) -> NDArray[np.bool_]:
     times as much as they differ among themselves: ground seen through grass or a hedge is not
     behind a surface. What was found no longer counts in a second round.
     """
-    beams = _beams(np.ascontiguousarray(xyz), stand, _FINEST_RAD)
+    xyz = np.ascontiguousarray(xyz)
+    beams = _beams(xyz, stand, _FINEST_RAD)
     size = _FINEST_RAD
     while size < _COARSEST_RAD and _middle_count(beams) < _POINTS_IN_BIN:
         size *= np.sqrt(2.0)
-        beams = _beams(np.ascontiguousarray(xyz), stand, size)
+        beams = _beams(xyz, stand, size)
     limits = (_MARGIN_M, _FARTHER_SHARE, _DEVIATIONS, _FEWEST)
     grid = (beams.columns, beams.starts, beams.bins)
     found = np.zeros(beams.bins.size, np.bool_)
