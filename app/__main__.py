@@ -6,10 +6,12 @@ import sys
 
 from app.cli.terminal import ended, run_in_terminal
 from app.error_log import start_log
+from processing.output_streams import write_every_character
 
 
 def main() -> int:
     """Run the program with the process's arguments; gives its exit status."""
+    write_every_character()
     start_log()
     arguments = sys.argv[1:]
     wish = run_in_terminal(arguments)

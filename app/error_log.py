@@ -28,7 +28,10 @@ def start_log() -> None:
     _LOG.propagate = False
     try:
         log_path().parent.mkdir(parents=True, exist_ok=True)
-        handler: logging.Handler = logging.FileHandler(log_path(), encoding="utf-8", delay=True)
+        # Names of files may be no text.
+        handler: logging.Handler = logging.FileHandler(
+            log_path(), encoding="utf-8", errors="backslashreplace", delay=True
+        )
     except OSError:
         handler = logging.NullHandler()
     handler.setFormatter(logging.Formatter("%(asctime)s %(levelname)s %(message)s"))

@@ -18,6 +18,7 @@ from app.application import build_window, make_application
 from app.large_steps import drawing, image, project, scene
 from app.large_steps.bench_window import BenchWindow, Found
 from app.settings import Settings
+from processing.output_streams import write_every_character
 
 _SIZE = (1600, 1000)
 
@@ -86,4 +87,5 @@ def _tell(name: str, step: Callable[[BenchWindow], Found], window: BenchWindow) 
 
 
 if __name__ == "__main__":
+    write_every_character()
     main(Path(sys.argv[1]), Path(sys.argv[2]), float(sys.argv[3]))

@@ -21,6 +21,7 @@ from app.application import build_window, make_application
 from app.settings import Settings
 from app.window_parts import WindowParts
 from processing.bench.street_candidates import street_candidates
+from processing.output_streams import write_every_character
 from processing.project.dropped_files import request_of_files
 from processing.project.found_features import found_features
 from processing.project.review_state import ReviewOrder
@@ -128,4 +129,5 @@ def _wait(is_done: Callable[[], bool]) -> None:
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.stdout.write(json.dumps(measure(int(sys.argv[1]))) + "\n")

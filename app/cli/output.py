@@ -13,5 +13,10 @@ def print_lines(*lines: str) -> None:
 
 
 def print_json(value: Mapping[str, object] | Sequence[Mapping[str, object]]) -> None:
-    """Write one JSON document to standard output."""
-    sys.stdout.write(json.dumps(value, ensure_ascii=False, indent=1) + "\n")
+    """Write one JSON document to standard output; in ASCII where its encoding lacks a character."""
+    text = json.dumps(value, ensure_ascii=False, indent=1)
+    try:
+        text.encode(sys.stdout.encoding or "utf-8")
+    except UnicodeEncodeError:
+        text = json.dumps(value, indent=1)
+    sys.stdout.write(text + "\n")

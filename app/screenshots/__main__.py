@@ -24,6 +24,7 @@ from app.screenshots.studio import Studio
 from app.screenshots.views import VIEWS
 from app.settings import Settings
 from app.theme import ThemeChoice
+from processing.output_streams import write_every_character
 from processing.text import Language
 
 ON_STREET: Mapping[str, Callable[[Studio], None]] = {
@@ -104,4 +105,5 @@ def _size(words: str) -> tuple[int, int]:
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.exit(main(sys.argv[1:]))

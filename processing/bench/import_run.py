@@ -16,6 +16,7 @@ from pathlib import Path
 import laspy
 
 from processing.monitor import SilentMonitor
+from processing.output_streams import write_every_character
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.project import Project
 
@@ -57,4 +58,5 @@ def main(what: str, names: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
+    write_every_character()
     main(sys.argv[1], sys.argv[2:])

@@ -27,6 +27,7 @@ def measure_review(wish: BenchWish) -> tuple[Measurement, ...]:  # noqa: ARG001 
         check=False,
         capture_output=True,
         text=True,
+        errors="replace",
     )
     if done.returncode != 0:
         raise no_window(done.stderr)

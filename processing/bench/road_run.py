@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from processing.monitor import SilentMonitor
+from processing.output_streams import write_every_character
 from processing.points.drive import Drive
 from processing.runner import RunRequest, run
 from processing.text import Text
@@ -85,4 +86,5 @@ def main(arguments: Sequence[str]) -> None:
 
 
 if __name__ == "__main__":
+    write_every_character()
     main(sys.argv[1:])

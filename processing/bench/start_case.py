@@ -44,7 +44,11 @@ def measure_start(wish: BenchWish) -> tuple[Measurement, ...]:  # noqa: ARG001 -
     for _ in range(_REPEATS + 1):
         start = time.time()
         done = subprocess.run(  # noqa: S603 - our own program
-            [sys.executable, "-c", _PROGRAM], check=False, capture_output=True, text=True
+            [sys.executable, "-c", _PROGRAM],
+            check=False,
+            capture_output=True,
+            text=True,
+            errors="replace",
         )
         if done.returncode != 0:
             raise no_window(done.stderr)

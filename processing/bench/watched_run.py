@@ -51,7 +51,7 @@ class WatchedRun:
 
 def run_watched(module: str, arguments: Sequence[str]) -> WatchedRun:
     """Run a module until it ends, with its memory watched from outside."""
-    with tempfile.TemporaryFile("w+", encoding="utf-8") as complaints:
+    with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as complaints:
         process = subprocess.Popen(  # noqa: S603 - our own modules
             [sys.executable, "-m", module, *arguments],
             stdout=subprocess.PIPE,

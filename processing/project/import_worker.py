@@ -14,6 +14,7 @@ from queue import SimpleQueue
 from typing import Any
 
 from processing.errors import UserError
+from processing.output_streams import write_every_character
 from processing.project.file_record import FileRecord, job_from, record_from
 from processing.project.file_recorder import NotAsPlanned, record_file
 
@@ -66,4 +67,5 @@ def _listen(asked: SimpleQueue[str]) -> None:
 
 
 if __name__ == "__main__":
+    write_every_character()
     main()

@@ -26,6 +26,7 @@ from processing.cameras.image_pixels import read_pixels
 from processing.cameras.stereo import stereo_place
 from processing.errors import Unsuitable
 from processing.monitor import SilentMonitor
+from processing.output_streams import write_every_character
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from processing.score.plates_seen import (
@@ -262,4 +263,5 @@ def _best_pair_off(marked: list[tuple[Camera, Floats]], plate: Plate) -> Iterato
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.exit(main(sys.argv[1:]))

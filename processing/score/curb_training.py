@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 
 from processing.formats.mapped_shapes import read_mapped
 from processing.monitor import SilentMonitor
+from processing.output_streams import write_every_character
 from processing.road.curbs.curb_confidence import CurbFacts, terms_of
 from processing.road.curbs.curb_doubts import step_runs
 from processing.score.curb_lines import FOUND_SHARE, TOLERANCE_M
@@ -80,4 +81,5 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.exit(main())

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from processing.formats.safe_write import written_safely
+from processing.output_streams import write_every_character
 from processing.score.coded_points import CodedPoints, Pair
 from processing.score.filter_methods import Method, airborne_methods, noise_methods, site_methods
 from processing.score.filter_pictures import paint_errors
@@ -185,4 +186,5 @@ _PARTS: Mapping[str, Callable[[argparse.Namespace], Iterator[str]]] = {
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.exit(main(sys.argv[1:]))

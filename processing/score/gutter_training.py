@@ -16,6 +16,7 @@ from pathlib import Path
 
 from processing.formats.mapped_shapes import read_mapped
 from processing.monitor import SilentMonitor
+from processing.output_streams import write_every_character
 from processing.road.gutters.grating_confidence import GratingTerms, terms_of
 from processing.road.gutters.gutter_confidence import CoverFacts
 from processing.score.gutters import judged_gutters
@@ -98,4 +99,5 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.exit(main())

@@ -24,6 +24,7 @@ from scipy.spatial import cKDTree
 from processing.image.edges import edge_beside
 from processing.image.trace import trace
 from processing.monitor import SilentMonitor
+from processing.output_streams import write_every_character
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 
@@ -241,4 +242,5 @@ def off_polyline(places: _Floats, corners: _Floats) -> _Floats:
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.exit(main(sys.argv[1:]))

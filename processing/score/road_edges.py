@@ -19,6 +19,7 @@ import numpy as np
 
 from processing.formats.mapped_shapes import read_mapped
 from processing.formats.safe_write import written_safely
+from processing.output_streams import write_every_character
 from processing.score.curb_lines import curb_score, judged_edges
 from processing.score.filters import with_section
 from processing.score.gutters import gutter_score, judged_gutters
@@ -250,4 +251,5 @@ lies along true edges, a lid if it shares half of what both cover with a true on
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.exit(main())

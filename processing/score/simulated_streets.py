@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from processing.formats.trajectory_csv import read_trajectory_csv
 from processing.monitor import SilentMonitor
+from processing.output_streams import write_every_character
 from processing.points.point_source import PointColumns
 from processing.points.pulse_clock import estimate_clock
 from processing.score.disturbed_truths import disturbed_rows
@@ -361,4 +362,5 @@ def _circle_diameter(ring: _Floats) -> float:
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.exit(main())

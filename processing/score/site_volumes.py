@@ -29,6 +29,7 @@ from processing.earthwork.volume_parameters import VolumeParameters
 from processing.earthwork.volume_result import VolumeResult
 from processing.earthwork.within import Within
 from processing.monitor import SilentMonitor
+from processing.output_streams import write_every_character
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from processing.runner import mark_all
@@ -292,4 +293,5 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.exit(main())

@@ -25,6 +25,7 @@ from scipy.spatial import cKDTree
 from processing.errors import Unsuitable
 from processing.formats.trajectory_csv import read_trajectory_csv
 from processing.monitor import SilentMonitor
+from processing.output_streams import write_every_character
 from processing.points.drive import Drive
 from processing.points.trajectory import Trajectory
 from processing.project.importing import ImportRequest, import_drives
@@ -303,4 +304,5 @@ def _measured(street: CurbStreet, starts: list[Start]) -> str:
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.exit(main(sys.argv[1:]))

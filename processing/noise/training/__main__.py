@@ -38,6 +38,7 @@ from processing.noise.training.scenes import Scene, scene_of, thinned
 from processing.noise.training.scores import score_line
 from processing.noise.tree_files import write_trees
 from processing.noise.trees import Trees, log_odds
+from processing.output_streams import write_every_character
 from processing.points.drive import Drive
 from resources import path_of
 
@@ -220,4 +221,5 @@ def _say(text: str) -> None:
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.exit(main())
