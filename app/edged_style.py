@@ -1,11 +1,11 @@
-"""EdgedStyle: Fusion whose boxes and fields can be seen on dark ground as well."""
+"""EdgedStyle: Fusion whose edges are seen on dark ground, and whose labels show text as it is."""
 
 from __future__ import annotations
 
 import qtawesome
-from PySide6.QtCore import QRectF
+from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QIcon, QPainter, QPalette, QPen
-from PySide6.QtWidgets import QProxyStyle, QStyle, QStyleOption, QWidget
+from PySide6.QtWidgets import QApplication, QLabel, QProxyStyle, QStyle, QStyleOption, QWidget
 from typing_extensions import override
 
 _GREY = "#808790"
@@ -20,10 +20,21 @@ _RADIUS_PX = 2.0
 
 
 class EdgedStyle(QProxyStyle):
-    """Draws an edge where Fusion makes one darker than the ground, which shows on light only."""
+    """Draws an edge where Fusion makes one darker than the ground, which shows on light only.
+
+    No label takes its text for HTML, neither in tooltips nor in message boxes: names and values
+    come from files that anybody may have made, and HTML can fetch a file from another computer.
+    """
 
     def __init__(self) -> None:
         super().__init__("Fusion")
+
+    @override
+    def polish(self, polished: QWidget | QApplication | QPalette) -> None:
+        # Every label comes by here before it is first measured, those that Qt makes as well.
+        if isinstance(polished, QLabel):
+            polished.setTextFormat(Qt.TextFormat.PlainText)
+        super().polish(polished)
 
     @override
     def drawPrimitive(

@@ -105,12 +105,32 @@ def told_as_user_error(path: Path) -> Iterator[None]:
     Raises
     ------
     MissingInput, NoSpace, BadFile
-        In place of the ``OSError`` of the body.
+        In place of the ``OSError`` of the body, and of the ``UnicodeEncodeError`` where the
+        file's name is no text and the body needs one.
     """
     try:
         yield
     except OSError as error:
         raise _from_os_error(error, Path(error.filename or path)) from error
+    except UnicodeEncodeError as error:
+        if _is_text(str(path.absolute())):
+            raise
+        raise BadFile(
+            Text(
+                "The name of the file or of a folder above it is not text in UTF-8.",
+                "ファイル名、またはその上のフォルダ名がUTF-8の文字になっていません。",
+            ),
+            Text.same(str(path)),
+            Text("Rename it, then try again.", "名前を変更してから、もう一度実行してください。"),
+        ) from error
+
+
+def _is_text(name: str) -> bool:
+    try:
+        name.encode()
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _from_os_error(error: OSError, path: Path) -> UserError:

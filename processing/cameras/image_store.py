@@ -18,7 +18,9 @@ def write_images(folder: Path, images: ImageList) -> None:
     noted = [{**dataclasses.asdict(image), "path": str(image.path.absolute())} for image in images]
     path = folder / _FILE_NAME
     with told_as_user_error(path):
-        path.write_text(json.dumps(noted, ensure_ascii=False), encoding="utf-8")
+        text = json.dumps(noted, ensure_ascii=False)
+        # Names of files may be no text; JSON reads them back.
+        path.write_text(text, encoding="utf-8", errors="backslashreplace")
 
 
 def read_images(folder: Path) -> ImageList | None:

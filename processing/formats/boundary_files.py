@@ -183,7 +183,8 @@ def _layers_of_geopackage(path: Path) -> tuple[dict[str, list[Any]], dict[str, s
     from pyogrio.errors import DataLayerError, DataSourceError
 
     with told_as_user_error(path), path.open("rb"):
-        pass  # the library's own words for a missing file help nobody
+        # The library's own words for a missing file, or a name that is no text, help nobody.
+        str(path).encode()
     found: dict[str, list[Any]] = {}
     systems: dict[str, str] = {}
     try:

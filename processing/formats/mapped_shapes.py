@@ -97,7 +97,8 @@ def _of_geopackage(path: Path) -> MappedFile:
     from pyogrio.errors import DataLayerError, DataSourceError
 
     with told_as_user_error(path), path.open("rb"):
-        pass  # the library's own words for a missing file help nobody
+        # The library's own words for a missing file, or a name that is no text, help nobody.
+        str(path).encode()
     features: list[MappedFeature] = []
     systems: set[str] = set()
     try:

@@ -89,7 +89,9 @@ def write_drive_info(folder: Path, info: DriveInfo) -> None:
     temporary = path.with_suffix(".part")
     with told_as_user_error(path):
         temporary.write_text(
-            json.dumps(dataclasses.asdict(info), ensure_ascii=False, indent=1), encoding="utf-8"
+            json.dumps(dataclasses.asdict(info), ensure_ascii=False, indent=1),
+            encoding="utf-8",
+            errors="backslashreplace",  # names of files may be no text; JSON reads them back
         )
         temporary.replace(path)
 

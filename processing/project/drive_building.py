@@ -216,6 +216,7 @@ def _name_of(recording: Recording, plan: BuildPlan) -> str:
     """The file's name; with the scanner's number where the files tell several scanners apart."""
     sources = recording.sources
     stem = Path(plan.sources[sources[0]].path).stem
+    stem = stem.encode("utf-8", "replace").decode()  # a file's name may be no text
     is_shared = any(source in plan.shared_sources for source in sources)
     return f"{stem} ({recording.scanner})" if is_shared else stem
 

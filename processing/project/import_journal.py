@@ -63,7 +63,9 @@ class ImportJournal:
         with told_as_user_error(path):
             (self.folder / _ROOM).write_bytes(bytes(_ROOM_BYTES))
             temporary = path.with_suffix(".part")
-            temporary.write_text(json.dumps(plan, ensure_ascii=False), encoding="utf-8")
+            text = json.dumps(plan, ensure_ascii=False)
+            # Names of files may be no text; JSON reads them back.
+            temporary.write_text(text, encoding="utf-8", errors="backslashreplace")
             temporary.replace(path)
 
     def known(self, name: str) -> Facts | None:
@@ -171,7 +173,7 @@ class ImportJournal:
                 for name, facts in waiting.items():
                     line = json.dumps({name: facts}, ensure_ascii=False)
                     # A line begins anew even where the one before was cut off.
-                    file.write(b"\n" + line.encode("utf-8", "surrogateescape"))
+                    file.write(b"\n" + line.encode("utf-8", "backslashreplace"))
                 file.flush()
                 os.fsync(file.fileno())
             if is_new:

@@ -47,9 +47,10 @@ def uri_of(path: PurePath, mode: str) -> str:
 
 def connect(path: Path, mode: str) -> sqlite3.Connection:
     """A connection on which every transaction is begun and ended by its user."""
-    return sqlite3.connect(
-        uri_of(path.absolute(), mode), uri=True, isolation_level=None, timeout=BUSY_S
-    )
+    with told_as_user_error(path):
+        return sqlite3.connect(
+            uri_of(path.absolute(), mode), uri=True, isolation_level=None, timeout=BUSY_S
+        )
 
 
 def connect_for_reading(path: Path) -> tuple[sqlite3.Connection, Callable[[], None]]:
