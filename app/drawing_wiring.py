@@ -14,6 +14,7 @@ from widgets.mouse_tools.draw_parallel import DrawParallel
 from widgets.mouse_tools.gesture import REACH_PX
 from widgets.mouse_tools.measure import MeasureTool
 from widgets.mouse_tools.menu_wish import MenuWish
+from widgets.parts.literal_text import literal
 from widgets.shared.mouse_shape import drawing_cursor
 from widgets.shared.snap_state import SnapMode
 
@@ -80,7 +81,7 @@ class _DrawingWiring(QObject):
         actions = self._parts.window.actions_by_id
         for key in NUMBER_KEYS:
             title = kind_title(self._parts, key)
-            actions[f"kind-key-{key}"].setText(title.spoken(self._parts.language))
+            actions[f"kind-key-{key}"].setText(literal(title.spoken(self._parts.language)))
 
     def on_bar_kind_wanted(self) -> None:
         show_kind_palette(self._parts)

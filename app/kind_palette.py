@@ -7,6 +7,7 @@ from PySide6.QtGui import QAction, QKeySequence
 from app.window_parts import WindowParts
 from processing.project.catalogue import FeatureKind
 from widgets.parts.command_palette import CommandPalette, NamedAction
+from widgets.parts.literal_text import literal
 from widgets.shared.swatch import swatch_of
 
 
@@ -27,7 +28,7 @@ def named_kinds(parts: WindowParts) -> list[NamedAction]:
 
 
 def _named(parts: WindowParts, kind: FeatureKind) -> NamedAction:
-    action = QAction(kind.name.spoken(parts.language), parts.window.centralWidget())
+    action = QAction(literal(kind.name.spoken(parts.language)), parts.window.centralWidget())
     action.setIcon(swatch_of(kind.colour))
     action.setShortcut(QKeySequence(kind.key))
     action.triggered.connect(lambda: parts.toolbox.choose_kind(kind))

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QMainWindow, QMenu, QToolBar
 
 from app.actions.action import MENUS, NEEDS_PROJECT, NOTHING, SUBMENUS, Action
 from processing.text import Language, Text
+from widgets.parts.literal_text import literal
 
 _NATIVE = QKeySequence.SequenceFormat.NativeText
 
@@ -72,7 +73,7 @@ class WindowActions(QObject):
     def add(self, actions: Sequence[Action]) -> None:
         """Put actions into menus and toolbar, in their order."""
         for action in actions:
-            made = QAction(action.text.spoken(self._language), self)
+            made = QAction(literal(action.text.spoken(self._language)), self)
             made.setObjectName(action.id)
             made.setCheckable(action.is_checkable)
             made.setChecked(action.is_checked)

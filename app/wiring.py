@@ -22,6 +22,7 @@ from processing.project.change import Change
 from processing.runner import check_needs, tool_of
 from processing.text import Text
 from widgets.panels.jobs_panel import JobView
+from widgets.parts.literal_text import literal
 
 
 def connect_lasting(parts: WindowParts) -> None:
@@ -158,7 +159,7 @@ class _Wiring(QObject):
         plain = {"undo": Text("Undo", "元に戻す"), "redo": Text("Redo", "やり直す")}
         for name, label in labels.items():
             text = plain[name] if label is None else verbs[name].filled(label=label)
-            actions[name].setText(text.spoken(language))
+            actions[name].setText(literal(text.spoken(language)))
             # While something is drawn, undo takes its last vertex back.
             is_drawing = name == "undo" and self._was_drawing
             is_allowed = label is not None or is_drawing

@@ -45,10 +45,10 @@ _SUBSTITUTES = {
 
 
 def write_every_character() -> None:
-    """Let standard output and error replace what their encoding lacks, from now on.
+    r"""Let standard output and error replace what their encoding lacks, from now on.
 
     Signs of our own sentences become what one types for them, bytes of a file's name that are no
-    text ``\\xff``, other characters ``\\u9ad9``.
+    text ``\xff``, other characters ``\u9ad9``.
     """
     codecs.register_error(_HANDLER, _substitute)
     for stream in (sys.stdout, sys.stderr):

@@ -56,8 +56,8 @@ class Action:
 
     @property
     def name(self) -> Text:
-        """The name by which it is found outside its menu, without marks that only a menu needs."""
-        bare = Text(_bare(self.text.en), _bare(self.text.ja))
+        """The name by which it is found outside its menu, without dots that only a menu needs."""
+        bare = Text(self.text.en.rstrip("…"), self.text.ja.rstrip("…"))
         title = SUBMENUS.get(self.menu)
         return (
             bare

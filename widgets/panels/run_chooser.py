@@ -10,6 +10,7 @@ from processing.project.review_state import ReviewOrder
 from processing.text import Language
 from widgets.panels.feature_tally import RunOfTool, RunTally
 from widgets.panels.run_words import name_of_run
+from widgets.parts.literal_text import literal
 from widgets.shared.map_source import MapSource
 
 
@@ -60,7 +61,11 @@ class RunChooser(QWidget):
     @property
     def words(self) -> str:
         """What the button says."""
-        return self._button.text()
+        if len(self._chosen) == 1:
+            return self._names[self._chosen[0]]
+        if len(self._chosen) == len(self._names):
+            return self.tr("All runs")
+        return self.tr("%n run(s)", "", len(self._chosen))
 
     @property
     def menu(self) -> QMenu:
@@ -78,14 +83,7 @@ class RunChooser(QWidget):
         self._tallies = tallies
         self._chosen = tuple(run for run in chosen if run in known)
         self._order.setCurrentIndex(self._order.findData(order))
-        self._button.setText(self._words())
-
-    def _words(self) -> str:
-        if len(self._chosen) == 1:
-            return self._names[self._chosen[0]]
-        if len(self._chosen) == len(self._names):
-            return self.tr("All runs")
-        return self.tr("%n run(s)", "", len(self._chosen))
+        self._button.setText(literal(self.words))
 
     def _fill(self) -> None:
         self._menu.clear()
@@ -95,7 +93,7 @@ class RunChooser(QWidget):
         for origin, tally in self._tallies.items():
             name = self._names[origin.run]
             left = self.tr("%n left", "", tally.candidates)
-            action = self._menu.addAction(f"{name}  ({left})")
+            action = self._menu.addAction(literal(f"{name}  ({left})"))
             action.setCheckable(True)
             action.setChecked(origin.run in self._chosen)
             self._connect(action, origin.run)

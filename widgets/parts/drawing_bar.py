@@ -19,6 +19,7 @@ from processing.project.catalogue import FeatureKind
 from processing.text import Language, Text
 from widgets.parts.class_chips import ClassChips
 from widgets.parts.elided_label import ElidedLabel
+from widgets.parts.literal_text import literal
 from widgets.shared.shared_state import SharedState
 from widgets.shared.snap_state import SNAP_NAMES, SnapMode
 from widgets.shared.swatch import SWATCH_PX, swatch_of
@@ -74,6 +75,7 @@ class DrawingBar(QWidget):
         self._shared = shared
         self._hints = hints
         self._language: Language = language
+        self._kind_name = _NO_KIND
         self._kind = QToolButton(self)
         self._kind.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
         self._kind.setIconSize(QSize(SWATCH_PX, SWATCH_PX))
@@ -123,7 +125,7 @@ class DrawingBar(QWidget):
     @property
     def kind_name(self) -> str:
         """What the button says is drawn."""
-        return self._kind.text()
+        return self._kind_name.spoken(self._language)
 
     def choose_kind(self) -> None:
         """Ask for the list of kinds."""
@@ -131,8 +133,8 @@ class DrawingBar(QWidget):
 
     def show_kind(self, kind: FeatureKind | None) -> None:
         """Say what is drawn."""
-        name = _NO_KIND if kind is None else kind.name
-        self._kind.setText(name.spoken(self._language))
+        self._kind_name = _NO_KIND if kind is None else kind.name
+        self._kind.setText(literal(self.kind_name))
         self._kind.setIcon(QIcon() if kind is None else swatch_of(kind.colour))
 
     def show_tool(self, name: str) -> None:

@@ -13,6 +13,7 @@ from processing.project.feature import Feature, Status
 from processing.text import Language
 from widgets.mouse_tools.removal import removal_of
 from widgets.panels.feature_changes import kind_change, kinds_for, status_change
+from widgets.parts.literal_text import literal
 from widgets.shared.swatch import swatch_of
 
 
@@ -75,7 +76,7 @@ class FeatureMenu(QMenu):
         now = {feature.kind for feature in self._features}
         for kind in kinds:
             name = kind.name.spoken(self._language)
-            action = menu.addAction(swatch_of(kind.colour), name)
+            action = menu.addAction(swatch_of(kind.colour), literal(name))
             action.setData(kind.id)
             action.setEnabled(now != {kind.id})
             action.triggered.connect(partial(self._on_kind, kind.id))
