@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import qtawesome
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QIcon, QPainter, QPalette, QPen
+from PySide6.QtGui import QColor, QIcon, QPainter, QPalette, QPen
 from PySide6.QtWidgets import QApplication, QLabel, QProxyStyle, QStyle, QStyleOption, QWidget
 from typing_extensions import override
 
@@ -30,7 +30,7 @@ class EdgedStyle(QProxyStyle):
         super().__init__("Fusion")
 
     @override
-    def polish(self, polished: QWidget | QApplication | QPalette) -> None:
+    def polish(self, polished: QWidget | QApplication | QPalette | QColor | Qt.GlobalColor) -> None:
         # Every label comes by here before it is first measured, those that Qt makes as well.
         if isinstance(polished, QLabel):
             polished.setTextFormat(Qt.TextFormat.PlainText)

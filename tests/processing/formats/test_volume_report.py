@@ -289,6 +289,18 @@ def test_the_workbook_has_numbers_sections_and_the_map(tmp_path: Path) -> None:
     assert book["断面"].cell(6, 4).value == 165.0
 
 
+def test_names_are_printed_as_they_are_and_never_as_markup(tmp_path: Path) -> None:
+    name = "R&D <b>Bank</b> &amp; =1+1"
+    told = facts()
+    told = replace(told, work=replace(told.work, work=name), before=replace(told.before, name=name))
+    report, table = tmp_path / "volume.pdf", tmp_path / "volume.xlsx"
+    write_volume_report(report, volume(), told, "en")
+    assert plain(name) in plain(words_of(report)[0])
+    write_volume_xlsx(table, volume(), told, "en")
+    cells = [cell.value for row in openpyxl.load_workbook(table).worksheets[0] for cell in row]
+    assert name in cells
+
+
 def test_an_input_is_never_overwritten_and_a_full_disk_leaves_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
