@@ -32,6 +32,7 @@ from processing.project.change import Change
 from processing.project.feature import Feature, Status, Vertex
 from processing.text import Text
 from tests.widgets.builders import OpenMap
+from tests.widgets.panels.table_hand import menu_of
 from widgets.panels.attribute_panel import AttributePanel
 from widgets.panels.candidate_card import CandidateCard
 from widgets.panels.feature_table import FeatureTable
@@ -239,8 +240,7 @@ def test_menus_and_buttons_show_an_ampersand(
     menu = table.menu()
     assert menu is not None
     (kinds,) = [one for one in menu.actions() if one.text() == "Change kind to"]
-    submenu = kinds.menu()
-    names = [one.text() for one in submenu.actions()]  # type: ignore[attr-defined]
+    names = [one.text() for one in menu_of(kinds).actions()]
     assert SHOWN_HARMLESS in names
     bar.show_kind(open_map.kinds["wall"])
     assert bar.kind_name == HARMLESS
