@@ -20,6 +20,7 @@ from typing_extensions import override
 
 from app.actions.action import Action
 from app.panel_room import hide_stray_tabs
+from app.screen_room import bring_onto_screen
 from app.settings import WindowLayout
 from app.view_area import ViewArea
 from app.window_actions import WindowActions
@@ -67,6 +68,7 @@ class MainWindow(QMainWindow):
         self.setAcceptDrops(True)
         self.setDockNestingEnabled(True)
         self.resize(1600, 1000)
+        bring_onto_screen(self)
         self.show_title("")
 
     @property
@@ -200,6 +202,8 @@ class MainWindow(QMainWindow):
     def restore_layout(self, layout: WindowLayout) -> None:
         """Stand as it was left; called while no project is open."""
         self.restoreGeometry(layout.geometry)
+        if not self.isMaximized() and not self.isFullScreen():
+            bring_onto_screen(self)
         self._docks_when_open = layout.docks
         self.area.restore(layout.views)
         self.area.show_apart(is_shown=False)
