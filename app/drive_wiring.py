@@ -6,6 +6,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject
 
+from app.look_news import LookNews
 from app.source_words import told_found, told_troubles, words_by_drive
 from app.view_memory import ViewMemory
 from app.window_parts import WindowParts
@@ -15,6 +16,7 @@ def connect_drives(parts: WindowParts) -> None:
     """Connect tree, images and the watch over delivered files; again for new widgets."""
     wiring = DriveWiring(parts)
     ViewMemory(parts.document, parts.image_views, wiring)
+    LookNews(parts.document, wiring).told.connect(parts.status_line.show_message)
     tree, watch = parts.project_tree, parts.source_watch
     tree.beside_requested.connect(parts.image_views.show_beside)
     tree.find_requested.connect(wiring.on_tree_find_requested)

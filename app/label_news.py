@@ -31,6 +31,8 @@ def tell_labels(
     counts: dict[str, int] = dict.fromkeys(filed, _MANY_POINTS + 1)
     for drive, label in labels:
         counts[drive.id] = counts.get(drive.id, 0) + label.count
+    # The first classes of a drive take the place of what it was shown by without any.
+    counts |= {id_: _MANY_POINTS + 1 for id_ in counts if tiles.is_stand_in(id_)}
     for id_, count in counts.items():
         if count > _MANY_POINTS:
             tiles.drop(id_)

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.cameras.colouring import colours_from_images
-from processing.errors import Unsuitable
+from processing.errors import Unsuitable, UserError
 from processing.image.colour_maps import (
     EMPTY_COLOUR,
     UNKNOWN_COLOUR,
@@ -27,7 +29,7 @@ from processing.image.kinds import ImageKind
 from processing.image.normals import RowLayout, SurfaceShapes, surface_shapes
 from processing.points.counted_classes import class_columns
 from processing.points.judgement import JUDGED
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_stretch, stretches
 from processing.text import Text
 
 if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a circle
@@ -142,11 +144,15 @@ def colours(
 
 def available(drive: Drive) -> tuple[str, ...]:
     """Ids of the attributes that a drive can be shown by."""
-    return tuple(name for name, attribute in ATTRIBUTES.items() if not _lacks(drive, attribute))
+    return tuple(
+        name
+        for name, attribute in ATTRIBUTES.items()
+        if not (_lacks(drive, attribute) or (name == "class" and not _is_classified(drive)))
+    )
 
 
 def telling_attribute(drive: Drive, wanted: str) -> str:
-    """What a drive is best shown by at first: what is wanted, unless it is the same everywhere.
+    """What a drive is shown by: what is wanted, unless it lacks that or is the same everywhere.
 
     Colour-only clouds have an intensity of 0 throughout; others have nothing but their shape.
     """
@@ -157,19 +163,45 @@ def telling_attribute(drive: Drive, wanted: str) -> str:
 
 _TELLING = ("intensity", "color", "height")
 _PIECES, _PIECE_POINTS = 16, 512
+_STRETCH_POINTS = 8_000_000
+_UNCLASSIFIED = 1
 
 
 def _varies(drive: Drive, attribute: str) -> bool:
     """Whether a column as delivered holds more than one value; others are taken to."""
     if attribute not in ("intensity", "color") or not drive.columns.has(attribute):
         return True
-    first = read_stretch(drive.folder, attribute, 0, 1)
-    starts = np.linspace(0, max(0, drive.count - _PIECE_POINTS), _PIECES).astype(np.int64)
+    try:
+        return _varies_in(drive.folder, attribute, drive.count)
+    except UserError:  # said where its points are shown
+        return True
+
+
+@lru_cache(maxsize=256)
+def _varies_in(folder: Path, attribute: str, count: int) -> bool:
+    first = read_stretch(folder, attribute, 0, 1)
+    starts = np.linspace(0, max(0, count - _PIECE_POINTS), _PIECES).astype(np.int64)
     pieces = (
-        read_stretch(drive.folder, attribute, start, start + _PIECE_POINTS)
-        for start in starts.tolist()
+        read_stretch(folder, attribute, start, start + _PIECE_POINTS) for start in starts.tolist()
     )
     return any((piece != first).any() for piece in pieces)
+
+
+def _is_classified(drive: Drive) -> bool:
+    """Whether a point has a class, by hand, by a tool or as delivered; 0 and 1 are none."""
+    try:
+        return drive.columns.has("label") or _has_classes(drive.folder, drive.count)
+    except UserError:  # said where its points are shown
+        return True
+
+
+@lru_cache(maxsize=256)
+def _has_classes(folder: Path, count: int) -> bool:
+    """Whether a delivered class is above 1; as delivered, a column never changes."""
+    return any(
+        (read_stretch(folder, "classification", start, stop) > _UNCLASSIFIED).any()
+        for start, stop in stretches(count, _STRETCH_POINTS)
+    )
 
 
 def _lacks(drive: Drive, attribute: Attribute) -> bool:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from processing.errors import UNCHANGED, NoSpace, UserError
 from processing.image import point_image
-from processing.image.attributes import SHOWS_LABELS, colours
+from processing.image.attributes import SHOWS_LABELS, colours, telling_attribute
 from processing.image.kinds import ImageKind
 from processing.image.tile_reading import expect_tile
 from processing.image.tiles import TileKey
@@ -95,6 +95,7 @@ class TileCache:
         self._waiting: OrderedDict[TileRequest, _Listeners] = OrderedDict()
         self._loading: dict[TileRequest, _Listeners] = {}
         self._refusals: dict[tuple[str, str], UserError] = {}
+        self._stand_ins: set[str] = set()
         self._ages: dict[str, int] = {}
         self._busy = 0
         self._is_warm = True
@@ -202,6 +203,7 @@ class TileCache:
             self._ages[drive_id] = self._ages.get(drive_id, 0) + 1
             for request in [request for request in self._tiles if request.drive_id == drive_id]:
                 self._held_bytes -= self._tiles.pop(request).size_bytes
+            self._stand_ins.discard(drive_id)
             for refused in [refused for refused in self._refusals if refused[0] == drive_id]:
                 del self._refusals[refused]
 
@@ -230,6 +232,11 @@ class TileCache:
                 if request.key in touched[request.kind]:
                     pixels = self._tiles.pop(request, None)
                     self._held_bytes -= pixels.size_bytes if pixels is not None else 0
+
+    def is_stand_in(self, drive_id: str) -> bool:
+        """Whether tiles of a drive that lacks classes show something else in their place."""
+        with self._changed:
+            return drive_id in self._stand_ins
 
     def close(self) -> None:
         """Stop the loaders and wait for them; nothing is told afterwards."""
@@ -329,11 +336,14 @@ class TileCache:
     def _pixels_of(self, request: TileRequest, drive_of: Callable[[str], Drive]) -> TilePixels:
         drive = drive_of(request.drive_id)
         image = drive.image(request.kind)
-        hides_noise = request.hides_noise
-        expect_tile(drive.columns, image, request.key, request.attribute, hides_noise=hides_noise)
+        hides_noise, attribute = request.hides_noise, telling_attribute(drive, request.attribute)
+        if attribute != request.attribute and request.attribute in SHOWS_LABELS:
+            with self._changed:
+                self._stand_ins.add(drive.id)
+        expect_tile(drive.columns, image, request.key, attribute, hides_noise=hides_noise)
         classes = class_columns(drive.columns) if hides_noise else None
         points = image.pyramid.points(request.key, without_noise=classes)
-        shown = colours(drive, points, request.attribute, request.low_percent, request.high_percent)
+        shown = colours(drive, points, attribute, request.low_percent, request.high_percent)
         return TilePixels(points, shown)
 
     def _keep(self, request: TileRequest, pixels: TilePixels) -> None:

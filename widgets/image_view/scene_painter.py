@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QPainter, QPolygonF
 from PySide6.QtWidgets import QWidget
 
 from processing.errors import UserError
-from processing.image.attributes import ATTRIBUTES
+from processing.image.attributes import ATTRIBUTES, telling_attribute
 from processing.project.catalogue import Catalogue
 from processing.text import Language
 from widgets.image_view.feature_overlay import FeatureOverlay
@@ -133,7 +133,7 @@ class ScenePainter:
             paint_outline(painter, overlays.outline)
 
     def _described(self, picture: Picture, viewport: Viewport, look: PointLook) -> str:
-        attribute = ATTRIBUTES.get(look.attribute)
+        shown = telling_attribute(picture.drive, look.attribute)
         row_m = picture.lay.length_m / max(picture.size[0], 1)
         scale = QCoreApplication.translate("ScenePainter", "1 px = {metres:.3f} m").format(
             metres=row_m / viewport.zoom_u
@@ -141,10 +141,15 @@ class ScenePainter:
         words = (
             picture.drive.info.name,
             picture.image.kind.title.spoken(self._language),
-            "" if attribute is None else attribute.title.spoken(self._language),
+            ATTRIBUTES[shown].title.spoken(self._language),
+            "" if shown == look.attribute else self._lacks(look.attribute),
             scale,
         )
         return "  ·  ".join(word for word in words if word)
+
+    def _lacks(self, attribute: str) -> str:
+        told = QCoreApplication.translate("ScenePainter", "no “{name}” in this drive")
+        return told.format(name=ATTRIBUTES[attribute].title.spoken(self._language))
 
     def _paint_line(self, painter: QPainter, line: str) -> None:
         clip = painter.clipBoundingRect()

@@ -9,7 +9,6 @@ from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, Qt, Signal
 from PySide6.QtWidgets import QSplitter, QVBoxLayout, QWidget
 from typing_extensions import override
 
-from processing.image.attributes import available
 from processing.image.tile_cache import TileCache
 from processing.points.drive import Drive
 from processing.text import Language
@@ -307,8 +306,6 @@ class ImageViews(QWidget):
         """As the main one is shown; turned about where the drive went the other way."""
         settings, kinds = self._shared.view_settings, drive.image_kinds
         attribute = settings.look.attribute
-        if attribute not in available(drive):
-            attribute = "intensity"
         kind = settings.image_kind if settings.image_kind in kinds else kinds[0]
         lay, main = settings.image_lay, self._main.picture
         if main is not None and is_opposite(main, self._main.viewport.centre, drive, kind):

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from processing.errors import UserError
-from processing.image.attributes import colours
+from processing.image.attributes import colours, telling_attribute
 from processing.points.drive import Drive
 from processing.section.cut import Cut
 from processing.section.points_in_cut import MOST_POINTS, SectionPoints, section_points
@@ -219,6 +219,7 @@ def _colours_of(
     drive: Drive, points: NDArray[np.int64], attribute: str, look: PointLook
 ) -> NDArray[np.uint8]:
     try:
-        return colours(drive, points, attribute, look.low_percent, look.high_percent)
-    except UserError:  # this drive lacks what others have; the image view says so
+        shown = telling_attribute(drive, attribute)
+        return colours(drive, points, shown, look.low_percent, look.high_percent)
+    except UserError:  # camera images can't be read; the image view says so
         return colours(drive, points, _PLAIN, look.low_percent, look.high_percent)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QMenu, QSizePolicy, QToolButton, QWidget
 
-from processing.image.attributes import ATTRIBUTES, available
+from processing.image.attributes import ATTRIBUTES, available, telling_attribute
 from processing.image.kinds import ImageKind
 from processing.points.drive import Drive
 from processing.text import Language
@@ -94,7 +94,7 @@ class ImageChoice(QWidget):
         _fill(
             self._attribute,
             [(ATTRIBUTES[name].title.spoken(self._language), name) for name in names],
-            settings.look.attribute,
+            telling_attribute(drive, settings.look.attribute) if drive else "",
         )
         lay = settings.image_lay if settings.image_kind.follows_way else ImageLay()
         arrow = _ARROWS[lay.is_vertical, lay.is_reversed_along]

@@ -91,6 +91,23 @@ def test_what_tells_something_is_shown_first(
     assert telling_attribute(drive, "normal") == "normal"
 
 
+def test_a_drive_without_classes_is_not_shown_by_class(drive: Drive) -> None:
+    assert "class" not in available(drive)
+    assert telling_attribute(drive, "class") == "intensity"
+    drive.columns.add("label", np.full(drive.count, 2, np.uint8))
+    assert "class" in available(drive)
+    assert telling_attribute(drive, "class") == "class"
+
+
+@pytest.mark.parametrize(("code", "shown"), [(0, "intensity"), (1, "intensity"), (2, "class")])
+def test_delivered_classes_above_1_are_classes(tmp_path: Path, code: int, shown: str) -> None:
+    drive, _ = small_drive(tmp_path / "d")
+    classes = np.zeros(drive.count, np.uint8)
+    classes[-1] = code
+    drive.columns.add("classification", classes)
+    assert telling_attribute(drive, "class") == shown
+
+
 def test_walls_are_blue_and_the_road_is_red_by_normal(tmp_path: Path) -> None:
     drive, street = small_drive(tmp_path / "d")
     everything = np.arange(drive.count)
@@ -122,7 +139,7 @@ def test_results_of_tools_are_shown_where_they_are_stored(drive: Drive) -> None:
 
 
 def test_what_is_missing_is_said_with_what_to_do(drive: Drive) -> None:
-    assert available(drive) == ("intensity", "height", "normal", "shape", "label", "class")
+    assert available(drive) == ("intensity", "height", "normal", "shape", "label")
     for attribute in ("segment", "color"):
         with pytest.raises(Unsuitable) as refusal:
             colours(drive, np.array([0]), attribute, 2, 98)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from processing.image.attributes import ATTRIBUTES, available
+from processing.image.attributes import ATTRIBUTES
 from processing.image.coordinates import Coordinates
 from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
@@ -32,7 +32,6 @@ class ToldColumns(Columns):
 @pytest.mark.parametrize("attribute", ["intensity", "height", "class"])
 def test_every_point_that_a_tile_shows_was_told_of(tmp_path: Path, attribute: str) -> None:
     drive, _ = small_drive(tmp_path / "d")
-    assert attribute in available(drive)
     image = drive.image(ImageKind.TRAJECTORY_REVERSIBLE)
     for level in range(image.pyramid.levels):
         for key in image.pyramid.keys(level):

@@ -270,15 +270,15 @@ def test_closing_the_project_empties_the_view(hand: Hand) -> None:
     assert not minimap.isVisible()
 
 
-def test_an_attribute_that_the_points_lack_is_refused_in_words(hand: Hand) -> None:
-    with hand.qtbot.waitSignal(hand.view._images.changed, timeout=30_000):
-        hand.map.shared.view_settings.change_look(attribute="segment")
+def test_an_attribute_that_the_points_lack_gives_way_to_one_that_they_have(hand: Hand) -> None:
+    (point,) = hand.points_across(1)
+    with hand.qtbot.waitSignal(hand.view.sharpened, raising=False, timeout=2_000):
         hand.view.repaint()
-    assert hand.view._images.refusal is not None
-    hand.view.grab()
+    before = QColor(hand.view.grab().toImage().pixel(hand.spot(point)))
     with hand.qtbot.waitSignal(hand.view.sharpened, timeout=30_000):
-        hand.map.shared.view_settings.change_look(attribute="height")
+        hand.map.shared.view_settings.change_look(attribute="segment")
     assert hand.view._images.refusal is None
+    assert QColor(hand.view.grab().toImage().pixel(hand.spot(point))) == before
 
 
 def test_chosen_points_are_tinted(hand: Hand) -> None:

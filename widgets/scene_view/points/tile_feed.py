@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from processing.errors import UserError
-from processing.image.attributes import colours
+from processing.image.attributes import colours, telling_attribute
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.tile_choice import Camera3D, tiles_in_view
@@ -246,7 +246,8 @@ def _with_their_points(wish: Wish) -> frozenset[TileId]:
 def _coloured(tile: SceneTile, drive: Drive, look: PointLook) -> SceneTile:
     """The tile before it was clipped, in other colours."""
     whole = tile if tile.whole is None else tile.whole
-    shown = colours(drive, whole.points, look.attribute, look.low_percent, look.high_percent)
+    attribute = telling_attribute(drive, look.attribute)
+    shown = colours(drive, whole.points, attribute, look.low_percent, look.high_percent)
     return replace(whole, request=_request_of(tile.id, look), colours=shown)
 
 
