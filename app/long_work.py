@@ -82,7 +82,25 @@ def imported_words(drives: Sequence[Drive], crs: str) -> Text:
             "Imported {points:,} points; no file names their reference system (Ctrl+R)",
             "{points:,}点をインポートしました。座標参照系の記載がありません（Ctrl+R）",
         )
-    return told.filled(points=sum(drive.count for drive in drives))
+    told = told.filled(points=sum(drive.count for drive in drives))
+    for line in told_columns(drives):
+        told = Text("{told}; {line}", "{told} {line}").filled(told=told, line=line)
+    return told
+
+
+def told_columns(drives: Sequence[Drive]) -> tuple[Text, ...]:
+    """A line for each delivered text file that doesn't say what its columns are."""
+    sources = {
+        one.path: one.columns
+        for drive in drives
+        for one in drive.info.sources
+        if one.points and one.columns
+    }
+    told = Text("{name}: columns taken as {columns}", "{name}の列を {columns} として読み込みました")
+    return tuple(
+        told.filled(name=Path(path).name, columns=" ".join(columns))
+        for path, columns in sources.items()
+    )
 
 
 def prepare_images(drive: Drive, monitor: Monitor) -> None:

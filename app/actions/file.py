@@ -10,11 +10,13 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.actions.action import Action
 from app.catalogue_wish import adopt_catalogue
+from app.column_wish import with_columns
 from app.simulate_wiring import Simulations
 from app.window_parts import WindowParts
 from processing.errors import UserError
 from processing.project.dropped_files import request_of_files
 from processing.project.export import FORMATS, ExportRequest
+from processing.project.importing import ImportRequest
 from processing.project.project import is_project
 from processing.project.work_details import WorkDetails
 from processing.project.work_store import WorkStore
@@ -290,10 +292,14 @@ class FileActions:
             self._parts.message_bar.show_error(error)
             return
         document = self._parts.document
-        if document.project is None:
-            document.import_into_new(self._new_project_for(request.inputs), request)
-        else:
-            document.import_files(request)
+
+        def start(clear: ImportRequest) -> None:
+            if document.project is None:
+                document.import_into_new(self._new_project_for(clear.inputs), clear)
+            else:
+                document.import_files(clear)
+
+        with_columns(self._parts, request, start)
 
     def open_demo(self) -> None:
         """Open the sample street; the first time it is imported."""
@@ -316,8 +322,6 @@ class FileActions:
         return folder
 
     def _on_form_import_requested(self, wish: ImportWish) -> None:
-        document = self._parts.document
-        is_open = document.project is not None and document.project.folder == wish.project.resolve()
         try:
             request = request_of_files(wish.files, wish.crs)
             if wish.classes_as_labels:
@@ -325,9 +329,14 @@ class FileActions:
         except UserError as error:
             self._parts.message_bar.show_error(error)
             return
-        if not is_open and not is_project(wish.project):
-            document.import_into_new(wish.project, request)
-        elif is_open or document.open(wish.project):
+        with_columns(self._parts, request, lambda clear: self._import_into(wish.project, clear))
+
+    def _import_into(self, folder: Path, request: ImportRequest) -> None:
+        document = self._parts.document
+        is_open = document.project is not None and document.project.folder == folder.resolve()
+        if not is_open and not is_project(folder):
+            document.import_into_new(folder, request)
+        elif is_open or document.open(folder):
             document.import_files(request)
 
     def _on_form_export_requested(self, wish: ExportWish) -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from app.cli.opened import request_of, terminal_monitor
 from app.cli.output import print_lines
 from app.language import system_language
-from app.long_work import prepare_images
+from app.long_work import prepare_images, told_columns
 from processing.points.drive import Drive
 from processing.project.importing import import_drives
 from processing.project.project import Project, is_project
@@ -44,6 +44,7 @@ def command(arguments: argparse.Namespace) -> int:
             Project.remove_new(arguments.project)
     for drive in drives:
         print_lines(describe_drive(drive))
+    print_lines(*(told.spoken(system_language()) for told in told_columns(drives)))
     return 0
 
 

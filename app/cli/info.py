@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from app.cli.import_drives import describe_drive
+from app.cli.opened import columns_of
 from app.cli.output import print_json, print_lines
 from app.language import system_language
 from processing.formats.point_files import read_info, read_sample
@@ -20,7 +21,9 @@ _SAMPLE_POINTS = 2_000
 def command(arguments: argparse.Namespace) -> int:
     """Tell about a project or a point file."""
     told = (
-        _of_project(arguments.input) if is_project(arguments.input) else _of_file(arguments.input)
+        _of_project(arguments.input)
+        if is_project(arguments.input)
+        else _of_file(arguments.input, columns_of(arguments))
     )
     if arguments.json:
         print_json(told)
@@ -64,9 +67,9 @@ def _of_drive(drive: Drive) -> dict[str, object]:
     }
 
 
-def _of_file(path: Path) -> dict[str, object]:
-    info = read_info(path)
-    sample = read_sample(path, _SAMPLE_POINTS)
+def _of_file(path: Path, columns: tuple[str, ...]) -> dict[str, object]:
+    info = read_info(path, columns=columns)
+    sample = read_sample(path, _SAMPLE_POINTS, columns=columns)
     times = sample.get("time", np.empty(0))
     times = times[np.isfinite(times)]
     scanners = sorted(int(number) for number in np.unique(sample.get("scanner", np.empty(0, int))))
@@ -80,6 +83,7 @@ def _of_file(path: Path) -> dict[str, object]:
         "extent": _extent(info.lowest, info.highest),
         "scale": list(info.scale),
         "attributes": list(info.attributes),
+        "columns_taken": list(info.columns_taken),
         "scanners": scanners,
         "times": [float(times.min()), float(times.max())] if times.size else None,
         "waveforms": info.has_waveforms,

@@ -92,4 +92,10 @@ def request_of(arguments: argparse.Namespace) -> ImportRequest:
         trajectories=tuple(arguments.trajectory),
         images=tuple(arguments.images),
         crs=arguments.crs,
+        columns=columns_of(arguments),
     )
+
+
+def columns_of(arguments: argparse.Namespace) -> tuple[str, ...]:
+    """What ``--columns`` says of the columns of text files; nothing without it."""
+    return tuple(name.strip() for name in arguments.columns.split(",")) if arguments.columns else ()

@@ -83,6 +83,7 @@ def _add_reading_commands(commands: _Commands[_Parser]) -> None:
     telling = commands.add_parser("info", help="what a cloud or a project holds")
     telling.add_argument("input", type=Path, metavar="INPUT")
     telling.add_argument("--json", action="store_true")
+    _add_columns(telling)
     telling.set_defaults(module="info")
     listing = commands.add_parser("tools", help="every processing tool and its parameters")
     listing.add_argument("name", nargs="?", metavar="NAME")
@@ -186,3 +187,13 @@ def _add_inputs(parser: argparse.ArgumentParser, least: str = "+") -> None:
     parser.add_argument("--trajectory", action="append", default=[], type=Path, metavar="T")
     parser.add_argument("--images", action="append", default=[], type=Path, metavar="I")
     parser.add_argument("--crs", default="", metavar="EPSG:n")
+    _add_columns(parser)
+
+
+def _add_columns(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--columns",
+        default="",
+        metavar="NAME,NAME...",
+        help="of text files: x,y,z and intensity, red, green, blue, time, class; - passes one over",
+    )

@@ -86,7 +86,12 @@ def named_side(
         yield _read_design(*design, monitor)
     else:
         one = argparse.Namespace(
-            inputs=[words], trajectory=[], images=[], crs=arguments.crs, output=arguments.output
+            inputs=[words],
+            trajectory=[],
+            images=[],
+            crs=arguments.crs,
+            columns=arguments.columns,
+            output=arguments.output,
         )
         opening, finding = PartMonitor(monitor, 0.0, _FOUND), PartMonitor(monitor, _FOUND, 1.0)
         with opened_input(one, opening) as opened:

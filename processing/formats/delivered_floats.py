@@ -48,11 +48,14 @@ class FloatFile:
         standing scanner have ``grid`` (n, 2) int64: sweep and place in it, −1 where unknown;
         ``scan`` (n,): number in the file from 1; ``scanner_place`` (n, 3) float64: where the
         scanner stood, m. A block is of one scan, and scans follow one another.
+    columns_taken : tuple of str
+        As :class:`PointFileInfo` says.
     """
 
     path: Path
     format: str
     blocks: Callable[[], Iterator[Block]]
+    columns_taken: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -92,6 +95,7 @@ def info_of(file: FloatFile) -> PointFileInfo:
         first_time=summary.first_time,
         attributes=tuple(name for name in summary.names if name not in _OF_SCANS),
         scanner_places=summary.scanner_places,
+        columns_taken=file.columns_taken,
     )
 
 
@@ -206,7 +210,7 @@ def _summary_of(file: FloatFile) -> _Summary:
 
 @dataclass(frozen=True)
 class _Key:
-    """A file in a certain state; equal for the same path, size and time of change."""
+    """A file in a certain state; equal for the same path, columns, size and time of change."""
 
     file: FloatFile
     size: int
@@ -218,8 +222,8 @@ class _Key:
     def __hash__(self) -> int:
         return hash(self._state())
 
-    def _state(self) -> tuple[Path, int, int]:
-        return (self.file.path, self.size, self.modified_ns)
+    def _state(self) -> tuple[Path, tuple[str, ...], int, int]:
+        return (self.file.path, self.file.columns_taken, self.size, self.modified_ns)
 
 
 @lru_cache(maxsize=256)

@@ -27,6 +27,10 @@ _SINGLE = {
 GRID_NAMES = (("columnindex", "column", "col"), ("rowindex", "row"))
 """A structured scan's column, which is taken as a sweep, and row: plain names."""
 
+_ALL = (*_POSITION, *_ORIGIN, *_COLOR, *_SINGLE.values(), *GRID_NAMES, ("theta",))
+FIELD_NAMES = {names[0]: names for names in _ALL}
+"""The plain names of each field that :func:`block_of` knows, by the first of them."""
+
 _EIGHT_TO_SIXTEEN_BITS = 257
 _FULL = 65535.0
 

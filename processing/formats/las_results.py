@@ -69,7 +69,14 @@ class _Plan:
     is_las: bool
 
 
-def write_results(source: Path, output: Path, results: Results, monitor: Monitor) -> None:
+def write_results(
+    source: Path,
+    output: Path,
+    results: Results,
+    monitor: Monitor,
+    *,
+    columns: tuple[str, ...] = (),
+) -> None:
     """Write the points of a file with results added.
 
     Parameters
@@ -87,6 +94,8 @@ def write_results(source: Path, output: Path, results: Results, monitor: Monitor
         floating type becomes an extra dimension, or replaces the one of this name and type.
         Arrays are in the file's order; or a function of ``start, stop`` that gives the part of
         these points, of length 0 when both are 0.
+    columns : tuple of str
+        What the columns of a text file are, as :func:`processing.formats.point_files.read_info`.
 
     Raises
     ------
@@ -100,7 +109,7 @@ def write_results(source: Path, output: Path, results: Results, monitor: Monitor
     is_compressed = _is_compressed(output)
     part = results if callable(results) else _parts_of(results)
     with written_safely(output, never=(source,)) as temporary:
-        plan = _plan_of(source, part)
+        plan = _plan_of(source, part, columns)
         with temporary.open("wb+") as file, source.open("rb") as source_file:
             of_return = _write_points(file, plan, part, monitor, is_compressed=is_compressed)
             plan.frame.finish(file, source_file)
@@ -126,14 +135,15 @@ def _parts_of(results: Columns) -> Callable[[int, int], Columns]:
     return lambda start, stop: {name: values[start:stop] for name, values in results.items()}
 
 
-def _plan_of(source: Path, part: Callable[[int, int], Columns]) -> _Plan:
+def _plan_of(source: Path, part: Callable[[int, int], Columns], columns: tuple[str, ...]) -> _Plan:
     records: Iterator[NDArray[np.uint8]]
     if not is_las(source):
-        info = read_info(source)
+        info = read_info(source, columns=columns)
         frame = new_frame(info)
         size, count = RECORD_SIZES[frame.point_format], info.count
         own = frame.point_format
-        records = (records_of(chunk, own) for chunk in read_chunks(source, _CHUNK_POINTS))
+        chunks = read_chunks(source, _CHUNK_POINTS, columns=columns)
+        records = (records_of(chunk, own) for chunk in chunks)
         promoted_from = -1
     else:
         header = read_header(source)

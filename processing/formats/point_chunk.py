@@ -44,6 +44,9 @@ class PointFileInfo:
     scanner_places : tuple of (int, tuple of float)
         Of files of standing scanners: each scan's number, which is that of its points' scanner
         where there are several, and where the scanner stood, m.
+    columns_taken : tuple of str
+        Of text that doesn't name its columns: what each is taken for, ``-`` for one that is passed
+        over.
     """
 
     path: Path
@@ -64,6 +67,7 @@ class PointFileInfo:
     has_waveforms: bool = False
     attributes: tuple[str, ...] = ()
     scanner_places: tuple[tuple[int, Vector3], ...] = ()
+    columns_taken: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import re
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -15,7 +16,9 @@ from processing.text import Text
 
 _BLOCK_BYTES = 8 << 20
 _SEPARATORS = bytes.maketrans(b",;\t\r", b"    ")
-_COMMENTS = (b"#", b"//")
+_COMMENTS = (b"#", b"//", b"%")
+_EMPTY_CELLS = (b",,", b", ,", b";;", b"; ;", b"\t\t", b"\n,")
+_EMPTY_CELL = re.compile(rb"(?m)(?:^|(?<=,)) *(?=,)|(?<=;) *(?=;)|(?<=\t) *(?=\t)")
 
 
 @dataclass(frozen=True)
@@ -30,19 +33,22 @@ class TextPart:
         Lines to pass over from there, blank ones and comments not counted.
     limit : int or None
         Lines to take after that.
+    width : int or None
+        Words that each line has where some are no numbers, so that none can be taken for another.
     """
 
     path: Path
     start: int = 0
     skip: int = 0
     limit: int | None = None
+    width: int | None = None
 
 
 class NumberLines:
     """The lines of an open text file, taken one stretch after the other.
 
-    Blank lines and lines that begin with ``#`` or ``//`` are passed over. Numbers are divided by
-    blanks, tabs, commas or semicolons.
+    Blank lines and lines that begin with ``#``, ``//`` or ``%`` are passed over. Numbers are
+    divided by blanks, tabs, commas or semicolons; a cell without anything is no number.
 
     Parameters
     ----------
@@ -78,15 +84,19 @@ class NumberLines:
         """Words in the next line, which is not taken; 0 at the end."""
         return len(self._kept[self._taken][1].split()) if self._has_more() else 0
 
-    def numbers(self, columns: int, limit: int | None = None) -> Iterator[NDArray[np.float64]]:
+    def numbers(
+        self, columns: int | Sequence[int], limit: int | None = None, *, width: int | None = None
+    ) -> Iterator[NDArray[np.float64]]:
         """The numbers of the next lines.
 
         Parameters
         ----------
-        columns : int
-            How many numbers to take of each line; more on the line are passed over.
+        columns : int or sequence of int
+            How many numbers to take of each line, or which; others on the line are passed over.
         limit : int or None
             Lines to take; None for all that are left.
+        width : int or None
+            Words that each line must have.
 
         Yields
         ------
@@ -95,13 +105,16 @@ class NumberLines:
         Raises
         ------
         MissingInput, NoSpace, BadFile
-            The file can't be read, or a line doesn't begin with so many numbers: names the line.
+            The file can't be read, or a line hasn't these numbers: names the line.
         """
+        wanted = tuple(range(columns)) if isinstance(columns, int) else tuple(columns)
         while (limit is None or limit > 0) and self._has_more():
             end = len(self._kept) if limit is None else self._taken + limit
             lines = self._kept[self._taken : end]
             self._taken += len(lines)
-            yield _parsed(self._path, lines, columns)
+            if width is not None:
+                _refuse_other_widths(self._path, lines, width)
+            yield _parsed(self._path, lines, wanted)
             if limit is not None:
                 limit -= len(lines)
 
@@ -121,7 +134,7 @@ class NumberLines:
         first_line, self._data = self._following_line, following
         if not end:
             raise _bad_line(self._path, first_line, b"")
-        lines = head.translate(_SEPARATORS).split(b"\n")
+        lines = _divided(head).split(b"\n")
         self._following_line += len(lines)
         return [
             (first_line + i, line)
@@ -130,7 +143,12 @@ class NumberLines:
         ]
 
 
-def number_blocks(part: TextPart, columns: int) -> Iterator[NDArray[np.float64]]:
+def words_in(line: bytes) -> list[bytes]:
+    """The words of a line of numbers as they are counted here; ``?`` for an empty cell."""
+    return _divided(line.rstrip(b",;\t\r\n ")).split()
+
+
+def number_blocks(part: TextPart, columns: int | Sequence[int]) -> Iterator[NDArray[np.float64]]:
     """The numbers of a part of a text file: (k, columns) float64 at a time.
 
     Raises
@@ -142,7 +160,14 @@ def number_blocks(part: TextPart, columns: int) -> Iterator[NDArray[np.float64]]
         file.seek(part.start)
         lines = NumberLines(part.path, file)
         lines.skip(part.skip)
-        yield from lines.numbers(columns, part.limit)
+        yield from lines.numbers(columns, part.limit, width=part.width)
+
+
+def _divided(text: bytes) -> bytes:
+    """Lines with separators made blanks; an empty cell stays a word, or the others would move."""
+    if text.startswith(b",") or any(cell in text for cell in _EMPTY_CELLS):
+        text = _EMPTY_CELL.sub(b"?", text)
+    return text.translate(_SEPARATORS)
 
 
 def _lines_before(file: BinaryIO) -> int:
@@ -154,10 +179,18 @@ def _lines_before(file: BinaryIO) -> int:
     return lines
 
 
-def _parsed(path: Path, lines: list[tuple[int, bytes]], columns: int) -> NDArray[np.float64]:
+def _refuse_other_widths(path: Path, lines: list[tuple[int, bytes]], width: int) -> None:
+    for number, line in lines:
+        if len(line.split()) != width:
+            raise _bad_line(path, number, line)
+
+
+def _parsed(
+    path: Path, lines: list[tuple[int, bytes]], columns: tuple[int, ...]
+) -> NDArray[np.float64]:
     words = [line.decode("latin-1") for _, line in lines]
     try:
-        return np.loadtxt(words, usecols=range(columns), ndmin=2, comments=None)
+        return np.loadtxt(words, usecols=columns, ndmin=2, comments=None)
     except ValueError as error:
         for number, line in lines:
             if not _has_numbers(line, columns):
@@ -165,12 +198,14 @@ def _parsed(path: Path, lines: list[tuple[int, bytes]], columns: int) -> NDArray
         raise _bad_line(path, lines[0][0], lines[0][1]) from error
 
 
-def _has_numbers(line: bytes, columns: int) -> bool:
-    words = line.split()[:columns]
+def _has_numbers(line: bytes, columns: tuple[int, ...]) -> bool:
+    words = line.split()
     try:
-        return len([float(word) for word in words]) == columns
-    except ValueError:
+        for at in columns:
+            float(words[at])
+    except (ValueError, IndexError):
         return False
+    return True
 
 
 def _bad_line(path: Path, number: int, line: bytes) -> BadFile:

@@ -9,6 +9,9 @@ from processing.formats.sbet import RECORD_BYTES, read_sbet
 from processing.formats.trajectory_csv import read_trajectory_csv
 from processing.points.trajectory import Trajectory
 
+TRAJECTORY_ENDINGS = (".out", ".sbet")
+"""How the names of trajectories end that are no text."""
+
 _TEXT_CONTROLS = frozenset(b"\t\n\v\f\r\x1a")
 
 

@@ -27,6 +27,9 @@ class SourceFile:
         Checksum of the whole file; empty when it wasn't taken.
     points : int
         Points that the drive has of it.
+    columns : tuple of str
+        What the columns of text were taken for, ``-`` for one that was passed over; empty where
+        the file says it.
     """
 
     path: str
@@ -34,6 +37,7 @@ class SourceFile:
     modified_ns: int
     sha256: str
     points: int
+    columns: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -128,7 +132,10 @@ def _from_json(values: dict[str, Any]) -> DriveInfo:
         name: (float(values[name][0]), float(values[name][1]), float(values[name][2]))
         for name in ("scale", "offset", "lowest", "highest")
     }
-    sources = tuple(SourceFile(**source) for source in values["sources"])
+    sources = tuple(
+        SourceFile(**{**source, "columns": tuple(source.get("columns", ()))})
+        for source in values["sources"]
+    )
     runs = tuple(SourceRun(**run) for run in values["source_runs"])
     reason = Text(**values["rows_reason"])
     place = values.get("scanner_place")

@@ -84,13 +84,17 @@ class Delivery:
     crs: str
 
 
-def read_delivery(inputs: tuple[Path, ...], crs: str, monitor: Monitor) -> Delivery:
+def read_delivery(
+    inputs: tuple[Path, ...], crs: str, monitor: Monitor, *, columns: tuple[str, ...] = ()
+) -> Delivery:
     """Look at the headers and at the ends of all files, and sort them out.
 
     Parameters
     ----------
     crs : str
         What the user says; empty to take the files'.
+    columns : tuple of str
+        Of text files, as the user says; empty to go by the files.
 
     Raises
     ------
@@ -101,23 +105,20 @@ def read_delivery(inputs: tuple[Path, ...], crs: str, monitor: Monitor) -> Deliv
         raise MissingInput(
             Text("No point files were given.", "点群ファイルが指定されていません。"),
             Text.same("zuka import"),
-            Text(
-                "Name one or more LAS, LAZ or PLY files.",
-                "LAS・LAZ・PLYファイルを指定してください。",
-            ),
+            Text("Name one or more point files.", "点群ファイルを1つ以上指定してください。"),
         )
     files = []
     for path in inputs:
         monitor.check()
-        files.append(_looked_at(path))
+        files.append(_looked_at(path, columns))
     groups = _grouped(files)
     recordings = tuple(tuple(group.files) for group in groups)
     return Delivery(recordings, _dates_of(groups), _plane_system(crs or _common_crs(files), files))
 
 
-def _looked_at(path: Path) -> DeliveredFile:
-    info = read_info(path)
-    sample = read_sample(path, _SAMPLE_POINTS)
+def _looked_at(path: Path, columns: tuple[str, ...]) -> DeliveredFile:
+    info = read_info(path, columns=columns)
+    sample = read_sample(path, _SAMPLE_POINTS, columns=columns)
     _refuse_empty_end(info, sample)
     times = sample.get("time", np.empty(0))
     times = times[np.isfinite(times)]

@@ -5,13 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 
 from processing.errors import MissingInput, told_as_user_error
+from processing.formats.point_files import POINT_ENDINGS, TEXT_ENDINGS
 from processing.formats.pulse_folder import is_pulse_folder
+from processing.formats.trajectory_files import TRAJECTORY_ENDINGS
 from processing.project.importing import ImportRequest
 from processing.text import Text
 
-_TRAJECTORY_WORDS = (b"time_s,easting_m", b"gpstime", b"heading")
+_TRAJECTORY_WORDS = (b"time_s,easting_m", b"heading", b"azimuth")
 _IMAGE_WORD = b"omega_deg"
 _SBET_RECORD = 136
+
+DELIVERED_ENDINGS = (*POINT_ENDINGS, *TEXT_ENDINGS, *TRAJECTORY_ENDINGS)
+"""How the names of files end that may belong to a delivery: points, trajectories, image lists."""
 
 
 def request_of_files(files: tuple[Path, ...], crs: str) -> ImportRequest:
@@ -31,15 +36,13 @@ def request_of_files(files: tuple[Path, ...], crs: str) -> ImportRequest:
             Text("There are no point files among them.", "点群ファイルが含まれていません。"),
             Text.same(", ".join(path.name for path in files)),
             Text(
-                "Choose LAS, LAZ or PLY files, with the trajectory beside them.",
-                "LAS・LAZ・PLYファイルを、軌跡ファイルとともに選んでください。",
+                "Choose point files (LAS, LAZ, PLY, PCD, E57, PTX, text), with the trajectory "
+                "beside them.",
+                "点群ファイル（LAS・LAZ・PLY・PCD・E57・PTX・テキスト）を、軌跡ファイルとともに"
+                "選んでください。",
             ),
         )
     return ImportRequest(tuple(points), tuple(trajectories), tuple(images), crs)
-
-
-_POINT_ENDINGS = {".las", ".laz", ".ply", ".pcd", ".pts", ".xyz", ".e57"}
-_OTHER_ENDINGS = {".csv", ".out", ".sbet", ".txt"}
 
 
 def _unfolded(files: tuple[Path, ...]) -> list[Path]:
@@ -49,15 +52,15 @@ def _unfolded(files: tuple[Path, ...]) -> list[Path]:
             if is_pulse_folder(path):
                 found.append(path)
             elif path.is_dir():
-                known = _POINT_ENDINGS | _OTHER_ENDINGS
-                found += sorted(p for p in path.iterdir() if p.suffix.lower() in known)
+                inside = sorted(path.iterdir())
+                found += [one for one in inside if one.suffix.lower() in DELIVERED_ENDINGS]
             else:
                 found.append(path)
     return found
 
 
 def _content(path: Path) -> str:
-    if path.suffix.lower() in _POINT_ENDINGS or path.is_dir():
+    if path.suffix.lower() in POINT_ENDINGS or path.is_dir():
         return "points"
     with told_as_user_error(path):
         size = path.stat().st_size

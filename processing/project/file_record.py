@@ -146,6 +146,8 @@ class FileJob:
         The column that tells scanners apart.
     keeps_angles, has_labels : bool
         Whether scan angles are wanted; whether any file has labels.
+    columns : tuple of str
+        What the columns of text are taken for; empty where the file says it.
     place : Place or None
         None: each scanner's points go to a folder of their own below ``parts``.
     """
@@ -163,6 +165,7 @@ class FileJob:
     labels: Labels
     parts: str
     place: Place | None = None
+    columns: tuple[str, ...] = ()
 
 
 def job_from(values: dict[str, Any]) -> FileJob:
@@ -171,7 +174,8 @@ def job_from(values: dict[str, Any]) -> FileJob:
     if place is not None:
         kept = {"names": tuple(place["names"]), "lattice": _lattice(place["lattice"])}
         place = Place(**{**place, **kept})
-    return FileJob(**{**values, "lattice": _lattice(values["lattice"]), "place": place})
+    made = {"lattice": _lattice(values["lattice"]), "columns": tuple(values["columns"])}
+    return FileJob(**{**values, **made, "place": place})
 
 
 def _lattice(values: dict[str, Any]) -> Lattice:

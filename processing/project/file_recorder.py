@@ -251,7 +251,7 @@ def write_indices(columns: PlacedColumns, stream: Stream) -> None:
 
 def _chunks_after(job: FileJob, done: int) -> Iterator[PointChunk]:
     """The chunks that are still to be read; they end where they ended in an earlier try."""
-    return read_chunks(Path(job.path), CHUNK_POINTS, after=done)
+    return read_chunks(Path(job.path), CHUNK_POINTS, after=done, columns=job.columns)
 
 
 def _check_unchanged(job: FileJob, points: int) -> None:

@@ -129,6 +129,7 @@ def _job(
         has_labels=way.has_labels,
         labels=way.labels,
         parts=str(parts),
+        columns=file.info.columns_taken,
     )
 
 

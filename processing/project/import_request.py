@@ -31,6 +31,8 @@ class ImportRequest:
     labels : "label" or "classification"
         What becomes of the points' labels: the extra dimension of this name, where there is one;
         or the delivered classes.
+    columns : tuple of str
+        What the columns of text files are, whatever they say; empty to go by the files.
     """
 
     inputs: tuple[Path, ...]
@@ -38,6 +40,7 @@ class ImportRequest:
     images: tuple[Path, ...] = ()
     crs: str = ""
     labels: Labels = "label"
+    columns: tuple[str, ...] = ()
 
     @property
     def files(self) -> tuple[Path, ...]:
@@ -80,12 +83,15 @@ def marks_of(request: ImportRequest) -> tuple[FileMark, ...]:
 
 def described(request: ImportRequest, marks: tuple[FileMark, ...]) -> dict[str, object]:
     """A request as JSON keeps it; paths are whole, so another folder to work in changes nothing."""
+    # Only where it says something, so that an import of an earlier version goes on.
+    columns = {"columns": list(request.columns)} if request.columns else {}
     return {
         "inputs": [str(path.resolve()) for path in request.inputs],
         "trajectories": [str(path.resolve()) for path in request.trajectories],
         "images": [str(path.resolve()) for path in request.images],
         "crs": request.crs,
         "labels": request.labels,
+        **columns,
         "marks": [[mark.path, mark.size, mark.modified_ns] for mark in marks],
         "grouping": _GROUPING,
     }
@@ -108,8 +114,9 @@ def request_from(values: dict[str, Any]) -> tuple[ImportRequest, tuple[FileMark,
     inputs, trajectories, images = (
         tuple(Path(path) for path in values[name]) for name in ("inputs", "trajectories", "images")
     )
+    columns = tuple(str(name) for name in values.get("columns", ()))
     request = ImportRequest(
-        inputs, trajectories, images, str(values["crs"]), cast("Labels", labels)
+        inputs, trajectories, images, str(values["crs"]), cast("Labels", labels), columns
     )
     marks = tuple(FileMark(str(path), int(size), int(ns)) for path, size, ns in values["marks"])
     return request, marks

@@ -85,7 +85,7 @@ def import_drives(
         is done as a kill does.
     """
     marks = marks_of(request)
-    delivery = read_delivery(request.inputs, request.crs, monitor)
+    delivery = read_delivery(request.inputs, request.crs, monitor, columns=request.columns)
     with told_as_user_error(into):
         into.mkdir(parents=True, exist_ok=True)
     journal = ImportJournal(into, is_kept=is_import_folder(into))
@@ -165,7 +165,7 @@ class _Import:
             _is_adjusted_standard(self._files),
             _shared_sources(recordings),
             _scanner_places(self._files),
-            identity=(*checksums, self._request.labels, self._request.crs),
+            identity=(*checksums, self._request.labels, self._request.crs, *self._request.columns),
         )
         return self._build_all(recordings, plan, taken)
 
@@ -255,7 +255,14 @@ class _Import:
 
     def _sources(self) -> tuple[SourceFile, ...]:
         return tuple(
-            SourceFile(job.path, job.size, job.modified_ns, self._records[job.number].sha256, 0)
+            SourceFile(
+                job.path,
+                job.size,
+                job.modified_ns,
+                self._records[job.number].sha256,
+                0,
+                job.columns,
+            )
             for job in self._layout.jobs
         )
 

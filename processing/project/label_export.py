@@ -45,11 +45,12 @@ def write_labelled_points(
     NoSpace, InUse, Cancelled
     """
     noted = [(drive, one) for drive in drives for one in drive.info.sources if one.points]
+    columns = {drive.source_path(one): one.columns for drive, one in noted}
     for drive, one in noted:
         require_delivered(one, drive.source_path(one), monitor.check)
     for drive in drives:
         _check_codes(drive)
-    sources = sorted({drive.source_path(one) for drive, one in noted})
+    sources = sorted(columns)
     paths = [place(name) for name in _names_of(sources)]
     if not paths:
         return
@@ -60,7 +61,8 @@ def write_labelled_points(
         for number, (source, path) in enumerate(zip(sources, paths, strict=True)):
             first = _DEALING + number * share
             part = PartMonitor(monitor, first, first + share)
-            write_results(source, path, _results_of(order, source), part)
+            results = _results_of(order, source)
+            write_results(source, path, results, part, columns=columns[source])
 
 
 def _check_codes(drive: Drive) -> None:

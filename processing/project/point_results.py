@@ -96,6 +96,7 @@ def write_point_results(
     NoSpace, Cancelled
     """
     drives = [drive for drive, _ in results]
+    noted = {drive.source_path(one): one for drive in drives for one in drive.info.sources}
     files = check_point_output(drives, output, monitor)
     with ExitStack() as whole:
         scratch = whole.enter_context(scratch_folder(output.parent))
@@ -107,7 +108,8 @@ def write_point_results(
             monitor.report(first, _WRITING.filled(name=path.name))
             part = PartMonitor(monitor, first, first + share)
             temporary = whole.enter_context(written_safely(path, never=_delivered(drives)))
-            write_results(source, temporary, _results_of(order, source), part)
+            found, columns = _results_of(order, source), noted[source].columns
+            write_results(source, temporary, found, part, columns=columns)
     return tuple(path for _, path in files)
 
 

@@ -336,6 +336,25 @@ kept</source>
     </message>
 </context>
 <context>
+    <name>ColumnsForm</name>
+    <message>
+        <source>Columns of the points</source>
+        <translation>点群の列</translation>
+    </message>
+    <message>
+        <source>Import</source>
+        <translation>インポート</translation>
+    </message>
+    <message>
+        <source>Choose the columns of {names}.</source>
+        <translation>{names} の列を選んでください。</translation>
+    </message>
+    <message>
+        <source>Two columns have the same name.</source>
+        <translation>同じ名前の列が2つあります。</translation>
+    </message>
+</context>
+<context>
     <name>CommandPalette</name>
     <message>
         <source>Commands</source>
@@ -879,8 +898,12 @@ kept</source>
         <translation>座標参照系</translation>
     </message>
     <message>
-        <source>Deliveries (*.las *.laz *.ply *.pcd *.e57 *.pts *.xyz *.txt *.csv *.out *.sbet)</source>
-        <translation>納品ファイル (*.las *.laz *.ply *.pcd *.e57 *.pts *.xyz *.txt *.csv *.out *.sbet)</translation>
+        <source>Deliveries</source>
+        <translation>納品ファイル</translation>
+    </message>
+    <message>
+        <source>All files</source>
+        <translation>すべてのファイル</translation>
     </message>
     <message>
         <source>Add files</source>
@@ -1510,6 +1533,10 @@ kept</source>
     <message>
         <source>1 px = {metres:.3f} m</source>
         <translation>1 px = {metres:.3f} m</translation>
+    </message>
+    <message>
+        <source>no “{name}” in this drive</source>
+        <translation>この走行データに「{name}」なし</translation>
     </message>
 </context>
 <context>

@@ -217,7 +217,7 @@ def test_every_command_is_listed_with_its_options(capsys: pytest.CaptureFixture[
             # Some options of several commands are told at one of them.
             own = set(re.findall(r"--[a-z-]+", told))
             assert own <= known, command
-            assert known - own <= {"--images", "--crs", "--trajectory"}, command
+            assert known - own <= {"--images", "--crs", "--trajectory", "--columns"}, command
 
 
 def test_no_command_is_forgotten(capsys: pytest.CaptureFixture[str]) -> None:

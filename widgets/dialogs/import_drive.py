@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from processing.project.dropped_files import DELIVERED_ENDINGS
 from widgets.dialogs.reference_systems import ReferenceSystemBox
 from widgets.parts.plain_buttons import without_icons
 
@@ -86,11 +87,21 @@ class ImportForm(QDialog):
                 self._files.addItem(str(file))
         self._import.setEnabled(self._files.count() > 0)
 
+    def ask_for_files(self) -> None:
+        """Ask for files to add; the list shows those that a delivery may have."""
+        kinds = "{} ({});;{} (*)".format(
+            self.tr("Deliveries"),
+            " ".join(f"*{ending}" for ending in DELIVERED_ENDINGS),
+            self.tr("All files"),
+        )
+        names, _ = QFileDialog.getOpenFileNames(self, self.tr("Add files"), "", kinds)
+        self.add_files(tuple(Path(name) for name in names))
+
     def _lay_out(self) -> None:
         add = QPushButton(self.tr("Add files…"), self)
         remove = QPushButton(self.tr("Remove"), self)
         place = QPushButton(self.tr("Choose…"), self)
-        add.clicked.connect(self._on_add_clicked)
+        add.clicked.connect(self.ask_for_files)
         remove.clicked.connect(self._on_remove_clicked)
         place.clicked.connect(self._on_place_clicked)
         beside = QVBoxLayout()
@@ -120,13 +131,6 @@ class ImportForm(QDialog):
         layout.addLayout(form)
         layout.addWidget(self._trouble)
         layout.addWidget(self._buttons)
-
-    def _on_add_clicked(self) -> None:
-        kinds = self.tr(
-            "Deliveries (*.las *.laz *.ply *.pcd *.e57 *.pts *.xyz *.txt *.csv *.out *.sbet)"
-        )
-        names, _ = QFileDialog.getOpenFileNames(self, self.tr("Add files"), "", kinds)
-        self.add_files(tuple(Path(name) for name in names))
 
     def _on_remove_clicked(self) -> None:
         for item in self._files.selectedItems():
