@@ -14,7 +14,7 @@ from app.first_look import FirstLook
 from app.jobs import JobQueue, Lane
 from app.label_news import tell_labels
 from app.label_steps import LabelSteps
-from app.long_work import export_work, import_work, imported_words
+from app.long_work import export_work, exported_words, import_work, imported_words
 from app.preparation import Preparation
 from app.refusals import changed_meanwhile
 from app.run_taking import RunTaking
@@ -27,6 +27,7 @@ from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.change import Change
 from processing.project.export import ExportRequest
 from processing.project.feature import Feature
+from processing.project.found_again import found_again
 from processing.project.found_classes import classes_now
 from processing.project.found_features import FoundFeatures
 from processing.project.importing import ImportRequest
@@ -223,11 +224,8 @@ class Document(QObject):
             return False
         self.catalogue_changed.emit()
         self.shared.map_changes.features_changed.emit(tuple(f.id for f in self.features()))
-        self.told.emit(
-            Text(
-                "The catalogue has {count} kinds now.", "カタログは{count}種別になりました。"
-            ).filled(count=len(self.catalogue()))
-        )
+        told = Text("The catalogue has {count} kinds now.", "カタログは{count}種別になりました。")
+        self.told.emit(told.filled(count=len(self.catalogue())))
         return True
 
     def export_catalogue(self, path: Path) -> None:
@@ -279,20 +277,26 @@ class Document(QObject):
 
     def store_run(self, found: FoundFeatures) -> bool:
         """Put a run with what it found on the map as one undoable step; says whether it could."""
-        if found.change.labels and not self._needed().features.fits(found.change):
+        project = self._needed()
+        if found.change.labels and not project.features.fits(found.change):
             # Points were painted while the tool ran.
-            found = classes_now(found, tool_of(found.run.tool), self.drive)
+            found = classes_now(found, found.tool, self.drive)
+        stored: list[FoundFeatures] = []
 
         def push() -> Change:
-            if found.change.is_empty:
-                self._needed().runs.add(found.run)
-            self.undo_stack.push(found.run.summary, found.change, run=found.run)
-            self.told.emit(found.run.summary)
-            return found.change
+            new = found_again(found, project)
+            if new.change.is_empty:
+                project.runs.add(new.run)
+            self.undo_stack.push(new.run.summary, new.change, run=new.run)
+            stored.append(new)
+            return new.change
 
         is_stored = self._changed(push)
-        if is_stored and found.change.added:
-            self.shared.map_changes.candidates_found.emit(found.run.tool, found.run.id)
+        # Told last: the review says what it loses by this step, which is the lesser news.
+        for one in stored:
+            self.told.emit(one.run.summary)
+            if one.change.added:
+                self.shared.map_changes.candidates_found.emit(one.run.tool, one.run.id)
         if found.change.labels or found.change.filed:
             self._first_look.show_classes()
         return is_stored
@@ -318,12 +322,7 @@ class Document(QObject):
         title, work = export_work(project, request)
 
         def take(paths: tuple[Path, ...]) -> None:
-            self.told.emit(
-                Text(
-                    "Exported {count} files to {folder}",
-                    "{folder} に{count}個のファイルを書き出しました",
-                ).filled(count=len(paths), folder=request.folder)
-            )
+            self.told.emit(exported_words(paths, request.folder))
 
         return self._adoption.start(project, title, work, take)
 

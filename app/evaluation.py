@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from app.document import Document
 from processing.errors import UserError
 from processing.project.feature import Feature, Status
+from processing.project.found_again import runs_before
 from processing.project.mapped_map import mapped_of
 from processing.project.run_evaluation import RunEvaluation, evaluate_runs, within_drives
 from processing.score.file_scores import FeatureScorer, FileScore
@@ -52,17 +53,21 @@ class Evaluation:
         ----------
         take : callable
             Gets the scores by the runs' ids, on the window's thread; those alone for which there
-            are a scorer and something that a person agreed to.
+            are a scorer and something that a person agreed to. A run isn't asked for what was
+            accepted of earlier runs of its tool, since it doesn't propose that again.
         """
         project = self._document.project
         if project is None:
             return
         agreed = [one for one in self._document.features() if one.status is Status.ACCEPTED]
         asked: list[tuple[str, FeatureScorer, MappedFile, MappedFile]] = []
-        for run in self._document.runs():
+        runs = self._document.runs()
+        for run in runs:
             scorer = SCORERS.get(run.tool)
             found = self._originals.get(run.id, {}).values()
-            true = within_drives(agreed, run, project.drives)
+            before = {one.id for one in runs_before(run, runs)}
+            asked_of = [one for one in agreed if one.provenance.run not in before]
+            true = within_drives(asked_of, run, project.drives)
             kinds = {one.kind for one in found}
             if isinstance(scorer, FeatureScorer) and kinds & {one.kind for one in true}:
                 result = mapped_of(found, project.folder, project.crs)

@@ -103,6 +103,14 @@ def told_columns(drives: Sequence[Drive]) -> tuple[Text, ...]:
     )
 
 
+def exported_words(paths: Sequence[Path], folder: Path) -> Text:
+    """What is said after an export."""
+    told = Text(
+        "Exported {count} files to {folder}", "{folder} に{count}個のファイルを書き出しました"
+    )
+    return told.filled(count=len(paths), folder=folder)
+
+
 def prepare_images(drive: Drive, monitor: Monitor) -> None:
     """Note the rows of all images of a long drive, which a window would have to look for.
 

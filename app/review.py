@@ -319,8 +319,10 @@ class Review(QObject):
 
     def _follow(self, ids: tuple[str, ...]) -> None:
         features = {id_: self._document.feature(id_) for id_ in ids}
-        runs = set(self._state.runs)
         gone = {id_ for id_, one in features.items() if one is None and id_ in self._queue}
+        if gone:
+            self._join_runs_in_place_of_gone(features.values())
+        runs = set(self._state.runs)
         new = [
             one.id
             for one in features.values()
@@ -337,6 +339,16 @@ class Review(QObject):
             self._go_on()
         elif changed or self._state.feature in features:
             self.changed.emit()
+
+    def _join_runs_in_place_of_gone(self, features: Iterable[Feature | None]) -> None:
+        """What came in the step that took candidates away is judged instead: a tool ran again."""
+        came = [
+            one.provenance.run
+            for one in features
+            if one is not None and one.provenance.run and one.status is Status.CANDIDATE
+        ]
+        runs = tuple(dict.fromkeys((*self._state.runs, *came)))
+        self._state = replace(self._state, runs=runs)
 
     def _took_statuses(self, features: Iterable[Feature | None]) -> list[str]:
         """Note what features are now; gives those that were something else."""

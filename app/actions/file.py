@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from PySide6.QtCore import QCoreApplication, Qt
+from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QFileDialog
 
 from app.actions.action import Action
 from app.catalogue_wish import adopt_catalogue
 from app.column_wish import with_columns
+from app.project_dialogs import ProjectDialogs
 from app.simulate_wiring import Simulations
 from app.window_parts import WindowParts
 from processing.errors import UserError
@@ -34,6 +35,7 @@ class FileActions:
     def __init__(self, parts: WindowParts, projects_folder: Path) -> None:
         self._parts = parts
         self._projects_folder = projects_folder
+        self._dialogs = ProjectDialogs(parts)
         self.simulations = Simulations(parts, projects_folder)
 
     def actions(self) -> tuple[Action, ...]:
@@ -196,9 +198,13 @@ class FileActions:
         """Show the import form, with some files in it."""
         project = self._parts.document.project
         folder = project.folder if project else self._new_project_for(files)
-        form = ImportForm(folder, files, self._parts.window)
-        form.import_requested.connect(self._on_form_import_requested)
-        form.show()
+
+        def make() -> ImportForm:
+            form = ImportForm(folder, files, self._parts.window)
+            form.import_requested.connect(self._on_form_import_requested)
+            return form
+
+        self._dialogs.show(ImportForm, make).add_files(files)
 
     def choose_export(self) -> None:
         """Show the export form."""
@@ -206,19 +212,27 @@ class FileActions:
         if project is None:
             return
         formats = tuple((id_, f.title.spoken(self._parts.language)) for id_, f in FORMATS.items())
-        form = ExportForm(
-            project.folder.parent / f"{project.name}-export", formats, self._parts.window
-        )
-        form.export_requested.connect(self._on_form_export_requested)
-        form.show()
+        folder = project.folder.parent / f"{project.name}-export"
+
+        def make() -> ExportForm:
+            form = ExportForm(folder, formats, self._parts.window)
+            form.export_requested.connect(self._on_form_export_requested)
+            return form
+
+        self._dialogs.show(ExportForm, make)
 
     def choose_reference_system(self) -> None:
         """Ask what reference system the coordinates of the project are in."""
-        if self._parts.document.project is None:
+        document = self._parts.document
+        if document.project is None:
             return
-        form = ReferenceSystemForm(self._parts.document.crs(), self._parts.window)
-        form.system_chosen.connect(self._parts.document.set_reference_system)
-        form.show()
+
+        def make() -> ReferenceSystemForm:
+            form = ReferenceSystemForm(document.crs(), self._parts.window)
+            form.system_chosen.connect(document.set_reference_system)
+            return form
+
+        self._dialogs.show(ReferenceSystemForm, make)
 
     def choose_work_details(self) -> None:
         """Ask what the papers of the project say of the work."""
@@ -226,11 +240,17 @@ class FileActions:
         project = document.project
         if project is None:
             return
-        store, details = WorkStore(project.settings), WorkDetails()
-        try:
-            details = store.details()
-        except UserError as error:  # entered once more, they are right again
-            document.refused.emit(error)
+        store, name = WorkStore(project.settings), project.name
+
+        def make() -> WorkDetailsForm:
+            details = WorkDetails()
+            try:
+                details = store.details()
+            except UserError as error:  # entered once more, they are right again
+                document.refused.emit(error)
+            form = WorkDetailsForm(details, name, self._parts.language, self._parts.window)
+            form.details_given.connect(keep)
+            return form
 
         def keep(given: WorkDetails) -> None:
             try:
@@ -240,11 +260,7 @@ class FileActions:
                 return
             form.close()
 
-        form = WorkDetailsForm(details, project.name, self._parts.language, self._parts.window)
-        form.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        form.details_given.connect(keep)
-        document.about_to_close.connect(form.close)
-        form.show()
+        form = self._dialogs.show(WorkDetailsForm, make)
 
     def choose_delivery(self) -> None:
         """Ask in which folder delivered files are now."""

@@ -89,7 +89,7 @@ def found_classes(
         finished=finished,
         summary=_summary(tool, tally, note),
     )
-    return FoundFeatures(run, change)
+    return FoundFeatures(run, change, tool, note)
 
 
 class _Tally:

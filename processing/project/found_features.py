@@ -27,6 +27,22 @@ from processing.tools.tool import Candidate, CandidateResult, Tool
 _FOUND = Text("{tool}: {count} candidates", "{tool}: 候補{count}件")
 _FOUND_ONE = Text("{tool}: 1 candidate", "{tool}: 候補1件")
 _NOTHING = Text("{tool}: nothing found", "{tool}: 何も見つかりませんでした")
+_NOTHING_NEW = Text("{tool}: nothing new", "{tool}: 新しい候補はありません")
+_REPLACED = Text(
+    "{summary}; {count} earlier undecided ones were replaced",
+    "{summary}（未判定だった以前の候補{count}件を置き換えました）",
+)
+_REPLACED_ONE = Text(
+    "{summary}; 1 earlier undecided one was replaced",
+    "{summary}（未判定だった以前の候補1件を置き換えました）",
+)
+_DECIDED = Text(
+    "{summary}; {count} places had been decided",
+    "{summary}（判定済みの{count}か所は除きました）",
+)
+_DECIDED_ONE = Text(
+    "{summary}; 1 place had been decided", "{summary}（判定済みの1か所は除きました）"
+)
 _NO_NOTE = Text("", "")
 _NOTED = Text("{summary}. {note}", "{summary}。{note}")
 _LEAST = {"point": 1, "line": 2, "area": 3}
@@ -42,10 +58,35 @@ class FoundFeatures:
         Its ``summary`` is the step's line in the undo menu.
     change : Change
         Adds the candidates; empty when nothing was found.
+    tool : Tool
+        What ran.
+    note : Text
+        What the summary says beside the count; empty where nothing is to be said.
     """
 
     run: Run
     change: Change
+    tool: Tool
+    note: Text = _NO_NOTE
+
+
+@dataclass(frozen=True)
+class Beside:
+    """What became of a run beside what it put on the map.
+
+    Attributes
+    ----------
+    replaced : int
+        Undecided candidates of earlier runs that went.
+    decided : int
+        Candidates left out, since a person had decided about their places.
+    """
+
+    replaced: int = 0
+    decided: int = 0
+
+
+_ALONE = Beside()
 
 
 def found_features(
@@ -85,7 +126,7 @@ def found_features(
         summary=summary_of(tool, len(result.candidates), result.note),
     )
     features = tuple(_feature(one, run, drives) for one in result.candidates)
-    return FoundFeatures(run, Change(added=features))
+    return FoundFeatures(run, Change(added=features), tool, result.note)
 
 
 def parameter_values(tool: Tool, parameters: object) -> Mapping[str, AttributeValue]:
@@ -94,10 +135,20 @@ def parameter_values(tool: Tool, parameters: object) -> Mapping[str, AttributeVa
     return {parameter.id: getattr(parameters, parameter.id) for parameter in declared}
 
 
-def summary_of(tool: Tool, count: int, note: Text = _NO_NOTE) -> Text:
+def summary_of(
+    tool: Tool, count: int, note: Text = _NO_NOTE, beside: Beside = _ALONE
+) -> Text:
     """What came of a run: “Curbs: 214 candidates”, and why there are no more."""
-    text = _FOUND if count > 1 else (_FOUND_ONE if count else _NOTHING)
+    nothing = _NOTHING_NEW if beside.decided else _NOTHING
+    text = _FOUND if count > 1 else (_FOUND_ONE if count else nothing)
     summary = text.filled(tool=tool.name, count=f"{count:,}")
+    for number, one, many in (
+        (beside.replaced, _REPLACED_ONE, _REPLACED),
+        (beside.decided, _DECIDED_ONE, _DECIDED),
+    ):
+        if number:
+            told = one if number == 1 else many
+            summary = told.filled(summary=summary, count=f"{number:,}")
     return _NOTED.filled(summary=summary, note=note) if note.en else summary
 
 

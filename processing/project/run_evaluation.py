@@ -126,6 +126,15 @@ def within_drives(features: Iterable[Feature], run: Run, drives: Sequence[Drive]
     return _Drawn.of(list(features)).within((run,), drives)
 
 
+def was_corrected(feature: Feature, original: Feature | None) -> bool:
+    """Whether place, kind or attributes aren't any longer as the run gave them."""
+    return original is not None and (
+        [vertex.xyz for vertex in feature.vertices] != [vertex.xyz for vertex in original.vertices]
+        or feature.kind != original.kind
+        or dict(feature.attributes) != dict(original.attributes)
+    )
+
+
 @dataclass(frozen=True)
 class _Drawn:
     """What was drawn by hand, and where."""
@@ -163,7 +172,7 @@ def _evaluation(
     decided = [*accepted, *rejected]
     kinds = {one.kind for one in (*features, *_originals(features, originals))}
     missed = [one for one in drawn if one.kind in kinds]
-    corrected = [one for one in accepted if _was_corrected(one, originals.get(one.id))]
+    corrected = [one for one in accepted if was_corrected(one, originals.get(one.id))]
     shifts = [_shift_m(one, originals[one.id]) for one in corrected]
     moved = [shift for shift in shifts if shift > _SAME_M]
     length, missing = _length_m(accepted), _length_m(missed)
@@ -189,14 +198,6 @@ def _evaluation(
 
 def _originals(features: list[Feature], originals: Mapping[str, Feature]) -> list[Feature]:
     return [originals[one.id] for one in features if one.id in originals]
-
-
-def _was_corrected(feature: Feature, original: Feature | None) -> bool:
-    return original is not None and (
-        [vertex.xyz for vertex in feature.vertices] != [vertex.xyz for vertex in original.vertices]
-        or feature.kind != original.kind
-        or dict(feature.attributes) != dict(original.attributes)
-    )
 
 
 def _length_m(features: Iterable[Feature]) -> float:

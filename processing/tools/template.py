@@ -234,4 +234,5 @@ TEMPLATE = Tool(
     parameters=TemplateParameters,
     find=find_template,
     remark=_remark,
+    sought=("template", "easting_m", "northing_m", "height_m", "heading_deg"),
 )

@@ -272,6 +272,9 @@ class Tool:
         What lies between two grounds, for a tool that needs two of them and no drive.
     remark : callable
         What must be given so that it can run on a drive; None where nothing must.
+    sought : tuple of str
+        Names of the parameters that say what is looked for, and where: runs of a project that
+        differ in them find different things, so that none replaces what another found.
     """
 
     id: str
@@ -292,6 +295,7 @@ class Tool:
     find_together: FindTogether | None = None
     compare: Compare | None = None
     remark: Remark = nothing_to_remark
+    sought: tuple[str, ...] = ()
 
     @property
     def gives_candidates(self) -> bool:

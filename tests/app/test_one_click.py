@@ -101,11 +101,20 @@ def test_one_click_finds_lids_and_puts_them_before_the_reviewer(
     shown = parts.review.current
     assert shown is not None
     assert shown.provenance.confidence == 0.5
-    # What a second click finds joins the queue that is open, behind what is shown.
+    # A second click takes the place of what is undecided, in the queue that is open.
+    with qtbot.waitActive(parts.window):
+        parts.window.activateWindow()
+    parts.image_view.setFocus()
+    qtbot.keyClick(parts.image_view, Qt.Key.Key_Return)
+    assert parts.review.progress.accepted == 1
     with qtbot.waitSignal(found, timeout=WAIT_MS):
-        parts.window.actions_by_id["run-gutters"].trigger()
-    assert parts.review.progress.total == 10
-    assert parts.review.current == shown
+        qtbot.keyClick(parts.window, Qt.Key.Key_F9, Qt.KeyboardModifier.ShiftModifier)
+    assert parts.review.progress.total == 5
+    assert (parts.review.progress.accepted, parts.review.progress.left) == (1, 4)
+    now = parts.review.current
+    assert now is not None
+    assert now.provenance.run != shown.provenance.run
+    assert now.provenance.confidence == 0.6
 
 
 def test_a_row_of_lids_is_accepted_by_one_key_over_any_view(

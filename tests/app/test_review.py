@@ -264,7 +264,7 @@ def test_a_run_taken_back_while_its_queue_is_open_empties_it_and_says_so(
 
 
 def test_of_two_runs_one_can_be_deleted_and_the_other_goes_on(desk: Desk) -> None:
-    first, second = found_lines(10), found_lines(10, seed=2)
+    first, second = found_lines(10), found_lines(10, seed=2, drive="right")
     runs = (desk.store(first), desk.store(second))
     desk.review.open(runs, ReviewOrder.CONFIDENCE)
     assert desk.review.progress.total == 20
@@ -281,6 +281,40 @@ def test_of_two_runs_one_can_be_deleted_and_the_other_goes_on(desk: Desk) -> Non
     while desk.review.current is not None:
         desk.review.accept()
     assert desk.review.progress.left == 0
+
+
+def test_the_queue_goes_on_with_what_a_second_run_put_in_the_place_of_the_undecided(
+    desk: Desk, found: FoundFeatures
+) -> None:
+    desk.review.accept()
+    desk.review.reject()
+    again = found_lines(COUNT, seed=2)
+    desk.store(again)
+    progress = desk.review.progress
+    # Pieces of the street of 2 m overlap by half, so that the neighbours of the two stay unknown.
+    assert (progress.accepted, progress.rejected, progress.left) == (1, 1, COUNT - 2)
+    assert desk.current().provenance.run == again.run.id
+    assert desk.told[-1] == (
+        "Curbs: 48 candidates; 48 earlier undecided ones were replaced; 2 places had been decided"
+    )
+    desk.document.undo()
+    assert desk.review.progress.left == COUNT - 2
+    assert desk.current().provenance.run == found.run.id
+    desk.document.redo()
+    assert desk.current().provenance.run == again.run.id
+    assert desk.review.progress.left == COUNT - 2
+
+
+def test_a_queue_of_a_second_run_goes_back_to_the_first_by_undo(
+    desk: Desk, found: FoundFeatures
+) -> None:
+    again = found_lines(COUNT, seed=2)
+    desk.review.close()
+    desk.store(again)
+    desk.review.open((again.run.id,), ReviewOrder.CONFIDENCE)
+    desk.document.undo()
+    assert desk.current().id == by_confidence(found)[0]
+    assert desk.review.progress.left == COUNT
 
 
 def test_the_pieces_of_a_cut_candidate_are_judged_next(desk: Desk, found: FoundFeatures) -> None:
