@@ -29,20 +29,15 @@ _FOUND_ONE = Text("{tool}: 1 candidate", "{tool}: 候補1件")
 _NOTHING = Text("{tool}: nothing found", "{tool}: 何も見つかりませんでした")
 _NOTHING_NEW = Text("{tool}: nothing new", "{tool}: 新しい候補はありません")
 _REPLACED = Text(
-    "{summary}; {count} earlier undecided ones were replaced",
-    "{summary}（未判定だった以前の候補{count}件を置き換えました）",
+    "{count} earlier undecided ones were replaced", "以前の未判定候補{count}件を置き換え"
 )
 _REPLACED_ONE = Text(
-    "{summary}; 1 earlier undecided one was replaced",
-    "{summary}（未判定だった以前の候補1件を置き換えました）",
+    "1 earlier undecided one was replaced", "以前の未判定候補1件を置き換え"
 )
-_DECIDED = Text(
-    "{summary}; {count} places had been decided",
-    "{summary}（判定済みの{count}か所は除きました）",
-)
-_DECIDED_ONE = Text(
-    "{summary}; 1 place had been decided", "{summary}（判定済みの1か所は除きました）"
-)
+_DECIDED = Text("{count} places had been decided", "判定済みの{count}か所を除外")
+_DECIDED_ONE = Text("1 place had been decided", "判定済みの1か所を除外")
+_BESIDE = Text("{summary}; {told}", "{summary}（{told}）")
+_BOTH = Text("{replaced}, {decided}", "{replaced}、{decided}")
 _NO_NOTE = Text("", "")
 _NOTED = Text("{summary}. {note}", "{summary}。{note}")
 _LEAST = {"point": 1, "line": 2, "area": 3}
@@ -142,14 +137,17 @@ def summary_of(
     nothing = _NOTHING_NEW if beside.decided else _NOTHING
     text = _FOUND if count > 1 else (_FOUND_ONE if count else nothing)
     summary = text.filled(tool=tool.name, count=f"{count:,}")
-    for number, one, many in (
-        (beside.replaced, _REPLACED_ONE, _REPLACED),
-        (beside.decided, _DECIDED_ONE, _DECIDED),
-    ):
-        if number:
-            told = one if number == 1 else many
-            summary = told.filled(summary=summary, count=f"{number:,}")
+    replaced = _counted(beside.replaced, _REPLACED_ONE, _REPLACED)
+    decided = _counted(beside.decided, _DECIDED_ONE, _DECIDED)
+    told = _BOTH.filled(replaced=replaced, decided=decided) if replaced and decided else None
+    if told := told or replaced or decided:
+        summary = _BESIDE.filled(summary=summary, told=told)
     return _NOTED.filled(summary=summary, note=note) if note.en else summary
+
+
+def _counted(count: int, one: Text, many: Text) -> Text | None:
+    """None where there is nothing to count."""
+    return (one if count == 1 else many).filled(count=f"{count:,}") if count else None
 
 
 def _feature(candidate: Candidate, run: Run, drives: Sequence[str]) -> Feature:

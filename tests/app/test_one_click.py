@@ -28,12 +28,13 @@ WAIT_MS = 30_000
 
 
 def find_lids(drive: Drive, _parameters: NormalsParameters, monitor: Monitor) -> CandidateResult:
-    """Five lids on the drive's points."""
+    """Five lids of 5 cm, apart from each other, each with a corner on one of the drive's points."""
     monitor.check()
     found = []
+    corners = np.array([[0.0, 0.0, 0.0], [0.05, 0.0, 0.0], [0.05, 0.05, 0.0], [0.0, 0.05, 0.0]])
     for at in range(5):
-        points = np.array([at, at + 200, at + 400]) * 3
-        lid = Candidate("gutter_lid", "area", drive.xyz(points), points, 0.5 + at / 10)
+        points = np.array([at * (drive.count // 5), -1, -1, -1])
+        lid = Candidate("gutter_lid", "area", drive.xyz(points[:1]) + corners, points, 0.5 + at / 10)
         found.append(replace(lid, attributes={"run": at // 3}))
     return CandidateResult(tuple(found))
 
@@ -108,7 +109,7 @@ def test_one_click_finds_lids_and_puts_them_before_the_reviewer(
     qtbot.keyClick(parts.image_view, Qt.Key.Key_Return)
     assert parts.review.progress.accepted == 1
     with qtbot.waitSignal(found, timeout=WAIT_MS):
-        qtbot.keyClick(parts.window, Qt.Key.Key_F9, Qt.KeyboardModifier.ShiftModifier)
+        qtbot.keyClick(parts.image_view, Qt.Key.Key_F9, Qt.KeyboardModifier.ShiftModifier)
     assert parts.review.progress.total == 5
     assert (parts.review.progress.accepted, parts.review.progress.left) == (1, 4)
     now = parts.review.current

@@ -17,7 +17,9 @@ from processing.project.feature import Feature, Status
 from processing.project.found_features import FoundFeatures
 from processing.project.review_state import ReviewOrder, ReviewState
 from processing.text import Text
-from tests.processing.project.candidates import found_lines
+from processing.tools.tool import CandidateResult
+from tests.processing.project.candidates import found as candidates_of
+from tests.processing.project.candidates import found_lines, line
 from widgets.shared.cursor import Place
 
 LABEL = Text("Edit", "編集")
@@ -284,22 +286,24 @@ def test_of_two_runs_one_can_be_deleted_and_the_other_goes_on(desk: Desk) -> Non
 
 
 def test_the_queue_goes_on_with_what_a_second_run_put_in_the_place_of_the_undecided(
-    desk: Desk, found: FoundFeatures
+    desk: Desk,
 ) -> None:
+    apart = CandidateResult(tuple(line(3 * place, place / COUNT) for place in range(COUNT)))
+    first, again = candidates_of(apart), candidates_of(apart)
+    desk.store(first)
+    desk.review.open((first.run.id,), ReviewOrder.CONFIDENCE)
     desk.review.accept()
     desk.review.reject()
-    again = found_lines(COUNT, seed=2)
     desk.store(again)
     progress = desk.review.progress
-    # Pieces of the street of 2 m overlap by half, so that the neighbours of the two stay unknown.
     assert (progress.accepted, progress.rejected, progress.left) == (1, 1, COUNT - 2)
     assert desk.current().provenance.run == again.run.id
     assert desk.told[-1] == (
-        "Curbs: 48 candidates; 48 earlier undecided ones were replaced; 2 places had been decided"
+        "Curbs: 48 candidates; 48 earlier undecided ones were replaced, 2 places had been decided"
     )
     desk.document.undo()
     assert desk.review.progress.left == COUNT - 2
-    assert desk.current().provenance.run == found.run.id
+    assert desk.current().provenance.run == first.run.id
     desk.document.redo()
     assert desk.current().provenance.run == again.run.id
     assert desk.review.progress.left == COUNT - 2

@@ -15,14 +15,14 @@ from tests.processing.project.candidates import found, line
 __all__ = ["desk"]
 
 
-def store(desk: Desk, *lines: int | None) -> str:
+def store(desk: Desk, *lines: int | None, drive: str = "left") -> str:
     """Candidates along the street, each of the line that is given, less sure one by one."""
     made = [line(at, 0.9 - at / 100) for at in range(len(lines))]
     numbered = [
         replace(one, attributes={} if number is None else {"run": number})
         for one, number in zip(made, lines, strict=True)
     ]
-    return desk.store(found(CandidateResult(tuple(numbered))))
+    return desk.store(found(CandidateResult(tuple(numbered)), drive=drive))
 
 
 def statuses(desk: Desk) -> str:
@@ -62,7 +62,7 @@ def test_a_line_that_is_none_is_rejected_and_what_follows_is_shown(desk: Desk) -
 
 
 def test_lines_of_another_run_with_the_same_number_are_others(desk: Desk) -> None:
-    first, second = store(desk, 1, 1), store(desk, 1, 1)
+    first, second = store(desk, 1, 1), store(desk, 1, 1, drive="right")
     desk.review.open([first, second], ReviewOrder.CONFIDENCE)
     assert desk.review.line_count == 2
     desk.review.accept_line()
@@ -81,7 +81,7 @@ def test_what_is_of_no_line_or_alone_is_no_line(desk: Desk, number: int | None) 
 def test_a_run_that_comes_while_another_is_judged_joins_it(desk: Desk) -> None:
     desk.review.open([store(desk, 1, 1)], ReviewOrder.STREET)
     shown = desk.current()
-    later = store(desk, 1, 1, 1)
+    later = store(desk, 1, 1, 1, drive="right")
     desk.review.add(later)
     assert desk.current() == shown
     assert desk.review.progress.total == 5

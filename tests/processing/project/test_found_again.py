@@ -26,7 +26,7 @@ APART = (0, 10, 20, 30)
 
 @pytest.fixture
 def project(tmp_path: Path) -> Iterator[Project]:
-    made = new_project(tmp_path)
+    made = Project.open(new_project(tmp_path / "p.zuka"))
     yield made
     made.close()
 
@@ -75,7 +75,7 @@ def test_a_second_run_takes_the_place_of_what_was_undecided(project: Project) ->
     assert len(project.features) == len(APART)
     told = "Curbs: 4 candidates; 4 earlier undecided ones were replaced"
     assert second.run.summary == Text(
-        told, "縁石: 候補4件（未判定だった以前の候補4件を置き換えました）"
+        told, "縁石: 候補4件（以前の未判定候補4件を置き換え）"
     )
     assert project.history.undo_label == second.run.summary
     project.features.undo()
@@ -92,7 +92,7 @@ def test_what_was_decided_stays_and_is_not_proposed_again(project: Project) -> N
     assert places(project) == [0, 10, 20, 30, 40]
     assert {one.id for one in project.features.all()} >= {one.id for one in kept}
     assert second.run.summary.en == (
-        "Curbs: 3 candidates; 2 earlier undecided ones were replaced; 2 places had been decided"
+        "Curbs: 3 candidates; 2 earlier undecided ones were replaced, 2 places had been decided"
     )
 
 
@@ -108,7 +108,7 @@ def test_a_candidate_that_was_moved_by_hand_is_known_where_it_was_and_where_it_i
     second = store(project, lines(0))
     assert [one.id for one in project.features.all()] == [before.id]
     assert second.run.summary.en == (
-        "Curbs: nothing new; 1 earlier undecided one was replaced; 1 place had been decided"
+        "Curbs: nothing new; 1 earlier undecided one was replaced, 1 place had been decided"
     )
     third = store(project, lines(0))
     assert third.change.is_empty
@@ -125,9 +125,9 @@ def test_a_piece_that_was_cut_from_a_candidate_is_not_thrown_away(project: Proje
 
 
 def test_runs_of_other_tools_and_on_other_drives_are_left_alone(project: Project) -> None:
+    store(project, lines(20, drives=("left", "right")))
     store(project, lines(0, tool="other"))
     store(project, lines(10, drives=("right",)))
-    store(project, lines(20, drives=("left", "right")))
     assert store(project, lines(0, 10, 20)).run.summary.en == "Curbs: 3 candidates"
     assert places(project) == [0, 0, 10, 10, 20, 20]
 
