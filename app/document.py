@@ -35,7 +35,7 @@ from processing.project.label_filing import are_many
 from processing.project.project import Project
 from processing.project.runs import Run
 from processing.project.template_store import TemplateStore
-from processing.runner import RunRequest, tool_of
+from processing.runner import RunRequest
 from processing.text import Text
 from processing.tools.tool import FinishedColumns, Tool
 from resources import path_of

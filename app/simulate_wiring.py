@@ -5,10 +5,11 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from PySide6.QtCore import QObject, QUrl
-from PySide6.QtGui import QAction, QDesktopServices
+from PySide6.QtCore import QObject
+from PySide6.QtGui import QAction
 
 from app.jobs import Lane
+from app.manual import show_manual
 from app.window_parts import WindowParts
 from processing.errors import UserError
 from processing.monitor import Monitor
@@ -17,7 +18,6 @@ from processing.simulate.forecast import Forecast
 from processing.simulate.orders import ORDERS
 from processing.simulate.simulated import Simulated
 from processing.text import Text
-from resources import path_of
 from widgets.dialogs.simulate import SimulateForm, SimulationWish
 
 
@@ -63,8 +63,7 @@ class Simulations(QObject):
         self._form = None
 
     def _on_form_help_requested(self) -> None:
-        page = path_of(f"manual/{self._parts.language}") / "simulate.html"
-        QDesktopServices.openUrl(QUrl.fromLocalFile(str(page)))
+        show_manual(self._parts, "simulate.html")
 
     def _on_form_forecast_wanted(self, asked: SimulationWish) -> None:
         def work(_monitor: Monitor) -> tuple[Forecast, int]:

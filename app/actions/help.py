@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QUrl
-from PySide6.QtGui import QDesktopServices
 
 from app.actions.action import Action
 from app.error_log import log_path
+from app.manual import open_outside, show_manual
 from app.shortcut_editing import edit_shortcuts
 from app.window_parts import WindowParts
 from processing.text import Text
-from resources import path_of
 from widgets.parts.command_palette import CommandPalette, NamedAction
 
 
@@ -29,7 +28,10 @@ class HelpActions:
                 self.show_manual,
                 "help",
                 ("F1",),
-                hint=Text("Opens the manual in the browser.", "マニュアルをブラウザで開きます。"),
+                hint=Text(
+                    "Opens the manual in a window of its own, with a search.",
+                    "マニュアルを別ウィンドウで開きます。検索もできます。",
+                ),
             ),
             Action(
                 "palette",
@@ -86,10 +88,9 @@ class HelpActions:
         edit_shortcuts(self._parts)
 
     def show_manual(self) -> None:
-        """Open the manual's first page in the user's language."""
-        page = path_of(f"manual/{self._parts.language}") / "index.html"
-        QDesktopServices.openUrl(QUrl.fromLocalFile(str(page)))
+        """Open the manual in the user's language."""
+        show_manual(self._parts)
 
     def show_log(self) -> None:
         """Open the folder of the log."""
-        QDesktopServices.openUrl(QUrl.fromLocalFile(str(log_path().parent)))
+        open_outside(self._parts, QUrl.fromLocalFile(str(log_path().parent)))

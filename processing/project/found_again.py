@@ -64,9 +64,7 @@ def found_again(found: FoundFeatures, project: Project) -> FoundFeatures:
     runs = project.runs.all()
     earlier = _Earlier.of(found, project, runs)
     is_known = are_known(found.change.added, earlier.decided)
-    added = tuple(
-        one for one, known in zip(found.change.added, is_known, strict=True) if not known
-    )
+    added = tuple(one for one, known in zip(found.change.added, is_known, strict=True) if not known)
     beside = Beside(replaced=len(earlier.replaced), decided=sum(is_known))
     summary = summary_of(found.tool, len(added), found.note, beside)
     change = replace(found.change, added=added, removed=earlier.replaced)
@@ -108,9 +106,7 @@ class _Earlier:
     @staticmethod
     def of(found: FoundFeatures, project: Project, runs: Iterable[Run]) -> _Earlier:
         before = {run.id: run for run in runs_before(found.run, runs)}
-        originals = {
-            one.id: one for run in before for one in project.history.additions_of(run)
-        }
+        originals = {one.id: one for run in before for one in project.history.additions_of(run)}
         replaced, decided = [], []
         for feature in project.features.all():
             run = before.get(feature.provenance.run)
@@ -188,7 +184,9 @@ def _along(line: Floats) -> Floats:
 
 
 def _areas_known(new: Sequence[Floats], old: Sequence[Floats]) -> NDArray[np.bool_]:
-    rings = [np.array([shapely.Polygon(ring[:, :2]).buffer(0) for ring in one]) for one in (new, old)]
+    rings = [
+        np.array([shapely.Polygon(ring[:, :2]).buffer(0) for ring in one]) for one in (new, old)
+    ]
     levels = [np.array([ring[:, 2].mean() for ring in one]) for one in (new, old)]
     of_new, of_old = shapely.STRtree(rings[1]).query(rings[0], predicate="intersects")
     ours, theirs = rings[0][of_new], rings[1][of_old]

@@ -31,9 +31,7 @@ _NOTHING_NEW = Text("{tool}: nothing new", "{tool}: 新しい候補はありま�
 _REPLACED = Text(
     "{count} earlier undecided ones were replaced", "以前の未判定候補{count}件を置き換え"
 )
-_REPLACED_ONE = Text(
-    "1 earlier undecided one was replaced", "以前の未判定候補1件を置き換え"
-)
+_REPLACED_ONE = Text("1 earlier undecided one was replaced", "以前の未判定候補1件を置き換え")
 _DECIDED = Text("{count} places had been decided", "判定済みの{count}か所を除外")
 _DECIDED_ONE = Text("1 place had been decided", "判定済みの1か所を除外")
 _BESIDE = Text("{summary}; {told}", "{summary}（{told}）")
@@ -130,9 +128,7 @@ def parameter_values(tool: Tool, parameters: object) -> Mapping[str, AttributeVa
     return {parameter.id: getattr(parameters, parameter.id) for parameter in declared}
 
 
-def summary_of(
-    tool: Tool, count: int, note: Text = _NO_NOTE, beside: Beside = _ALONE
-) -> Text:
+def summary_of(tool: Tool, count: int, note: Text = _NO_NOTE, beside: Beside = _ALONE) -> Text:
     """What came of a run: “Curbs: 214 candidates”, and why there are no more."""
     nothing = _NOTHING_NEW if beside.decided else _NOTHING
     text = _FOUND if count > 1 else (_FOUND_ONE if count else nothing)

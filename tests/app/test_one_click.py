@@ -34,7 +34,9 @@ def find_lids(drive: Drive, _parameters: NormalsParameters, monitor: Monitor) ->
     corners = np.array([[0.0, 0.0, 0.0], [0.05, 0.0, 0.0], [0.05, 0.05, 0.0], [0.0, 0.05, 0.0]])
     for at in range(5):
         points = np.array([at * (drive.count // 5), -1, -1, -1])
-        lid = Candidate("gutter_lid", "area", drive.xyz(points[:1]) + corners, points, 0.5 + at / 10)
+        lid = Candidate(
+            "gutter_lid", "area", drive.xyz(points[:1]) + corners, points, 0.5 + at / 10
+        )
         found.append(replace(lid, attributes={"run": at // 3}))
     return CandidateResult(tuple(found))
 

@@ -80,9 +80,7 @@ def test_a_drawing_never_lands_in_the_folder_of_the_project_that_was_closed(
 
 
 @pytest.mark.parametrize("action", FORMS)
-def test_a_form_of_a_project_goes_with_it(
-    parts: WindowParts, action: str, tmp_path: Path
-) -> None:
+def test_a_form_of_a_project_goes_with_it(parts: WindowParts, action: str, tmp_path: Path) -> None:
     parts.window.actions_by_id[action].trigger()
     assert len(shown(parts, FORMS[action])) == 1
     assert parts.document.open(tmp_path / "B.zuka")
@@ -153,9 +151,7 @@ def test_a_file_dialog_of_a_project_gives_no_answer_after_it(
     assert set(tmp_path.rglob("*.toml")) == before
 
 
-def test_the_file_dialog_of_a_form_goes_before_the_form(
-    qtbot: QtBot, parts: WindowParts
-) -> None:
+def test_the_file_dialog_of_a_form_goes_before_the_form(qtbot: QtBot, parts: WindowParts) -> None:
     parts.window.actions_by_id["export"].trigger()
     (form,) = shown(parts, ExportForm)
     (choose,) = (one for one in form.findChildren(QPushButton) if one.text() == "Choose…")

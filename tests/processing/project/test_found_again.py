@@ -74,9 +74,7 @@ def test_a_second_run_takes_the_place_of_what_was_undecided(project: Project) ->
     assert {one.provenance.run for one in project.features.all()} == {second.run.id}
     assert len(project.features) == len(APART)
     told = "Curbs: 4 candidates; 4 earlier undecided ones were replaced"
-    assert second.run.summary == Text(
-        told, "縁石: 候補4件（以前の未判定候補4件を置き換え）"
-    )
+    assert second.run.summary == Text(told, "縁石: 候補4件（以前の未判定候補4件を置き換え）")
     assert project.history.undo_label == second.run.summary
     project.features.undo()
     assert {one.id for one in project.features.all()} == {one.id for one in first.change.added}
