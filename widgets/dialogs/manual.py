@@ -220,8 +220,9 @@ class _Page(QTextBrowser):
 
     # What it gives is Qt's own QVariant.
     @override
-    def loadResource(self, type: int, name: QUrl) -> Any:
-        url = self.source().resolved(name) if name.isRelative() else name
+    def loadResource(self, type: int, name: QUrl | str) -> Any:
+        asked = QUrl(name)
+        url = self.source().resolved(asked) if asked.isRelative() else asked
         path = Path(url.toLocalFile()).resolve() if url.isLocalFile() else None
         if path is None or not path.is_relative_to(self._root) or not path.is_file():
             return QByteArray()

@@ -12,7 +12,7 @@ import pytest
 from processing.project.catalogue import Geometry
 from processing.project.change import Change, Replacement
 from processing.project.feature import Feature, Status, Vertex, new_feature_id
-from processing.project.found_again import are_known, found_again
+from processing.project.found_again import are_known, found_again, runs_before
 from processing.project.found_features import FoundFeatures
 from processing.project.project import Project
 from processing.text import Text
@@ -212,3 +212,12 @@ def test_ten_thousand_candidates_are_told_from_ten_thousand_decided() -> None:
     xs = np.arange(10_000) * 2.0
     new, decided = ([square(float(x) + off) for x in xs] for off in (0.1, 0.0))
     assert are_known(new, decided[::2]) == [n % 2 == 0 for n in range(len(xs))]
+
+
+def test_a_run_is_not_asked_for_what_was_decided_before_it(project: Project) -> None:
+    first = store(project, lines(0)).run
+    elsewhere = store(project, lines(0, drives=("right",))).run
+    second = store(project, lines(10, drives=("left", "middle"))).run
+    runs = project.runs.all()
+    assert runs_before(second, runs) == (first,)
+    assert runs_before(first, runs) == runs_before(elsewhere, runs) == ()
