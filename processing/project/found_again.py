@@ -107,7 +107,8 @@ class _Earlier:
     def of(found: FoundFeatures, project: Project, runs: Iterable[Run]) -> _Earlier:
         before = {run.id: run for run in runs_before(found.run, runs)}
         originals = {one.id: one for run in before for one in project.history.additions_of(run)}
-        replaced, decided = [], []
+        replaced: list[Feature] = []
+        decided: list[Feature] = []
         for feature in project.features.all():
             run = before.get(feature.provenance.run)
             if run is None:
