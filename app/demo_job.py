@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable
 from pathlib import Path
 
@@ -16,9 +15,10 @@ from app.cli.import_drives import describe_drive
 from app.cli.output import print_lines
 from app.sample_drawing import read_sample_drawing
 from app.window_parts import WindowParts
-from processing.errors import MissingInput, UserError, told_as_user_error
+from processing.errors import InUse, MissingInput, UserError, told_as_user_error
 from processing.image.attributes import available
 from processing.image.kinds import ImageKind
+from processing.owned_files import mark, remove_marked
 from processing.points.drive import Drive
 from processing.project.dropped_files import request_of_files
 from processing.project.export import FORMATS, ExportRequest
@@ -82,10 +82,12 @@ class _DemoJob:
 
     def import_street(self) -> None:
         folder = self._out / "sample_street.zuka"
-        if is_project(folder):
-            shutil.rmtree(folder)
+        if is_project(folder) and not remove_marked(folder):
+            raise _no_demo(folder)
         self._document.create(folder, "")
         self._raise_refusal()
+        with told_as_user_error(folder):
+            mark(folder)
         request = request_of_files((path_of("sample_street"),), "")
         self._wait_for_job(lambda: self._document.import_files(request))
         self.made += [describe_drive(drive) for drive in self._document.drives()]
@@ -225,6 +227,20 @@ class _DemoJob:
     def _raise_refusal(self) -> None:
         if self._errors:
             raise self._errors[0]
+
+
+def _no_demo(folder: Path) -> InUse:
+    return InUse(
+        Text(
+            "There is a project in this place that the demo did not make.",
+            "この場所には、デモで作成したものではないプロジェクトがあります。",
+        ),
+        Text.same(str(folder)),
+        Text(
+            "Name another folder with --out, or move the project away.",
+            "--out で別のフォルダを指定するか、プロジェクトを移動してください。",
+        ),
+    )
 
 
 def _click(widget: QWidget, position: QPointF) -> None:

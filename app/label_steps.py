@@ -6,7 +6,6 @@ points to who painted them since, and to undo labels is given up where the map h
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -19,6 +18,7 @@ from app.jobs import Lane
 from app.undo import UndoStack
 from processing.errors import UserError
 from processing.monitor import Monitor
+from processing.owned_files import remove_folder
 from processing.project.change import Change
 from processing.project.database_errors import changed_elsewhere
 from processing.project.filed_labels import FiledLabels
@@ -111,7 +111,7 @@ class LabelSteps(QObject):
         """Nothing comes of a step."""
         self._steps = [one for one in self._steps if one is not step]
         if change is not None and change.filed is not None:
-            shutil.rmtree(change.filed.folder, ignore_errors=True)
+            remove_folder(change.filed.folder)
 
     def arrive(self, step: LabelStep, change: Change, take: Callable[[Change], object]) -> None:
         """What a step's job made goes on the map once it has caught up with what was painted."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -13,6 +12,7 @@ from processing.formats.safe_write import refuse_inputs
 from processing.ground.stored_surface import FILE_NAME as SURFACE
 from processing.ground.stored_surface import StoredSurface, keep_surface
 from processing.monitor import Monitor
+from processing.owned_files import make_marked, remove_folder
 from processing.points.drive import Drive
 from processing.project.found_classes import found_classes
 from processing.project.found_features import FoundFeatures, found_features
@@ -60,7 +60,7 @@ class FinishedRun:
             if surface.is_file():
                 keep_surface(surface, drives)
         finally:
-            shutil.rmtree(self.kept, ignore_errors=True)
+            remove_folder(self.kept)
 
 
 def finished_run(
@@ -117,7 +117,7 @@ def _classes(
     kept = into.with_name(f"{into.name}-kept")
     try:
         with told_as_user_error(kept):
-            kept.mkdir()
+            make_marked(kept)
             for file in together.kept:
                 file.replace(kept / file.name)
         results = list(zip(drives, together.columns, strict=True))
@@ -140,8 +140,8 @@ def _classes(
             note=together.note,
         )
     except BaseException:
-        shutil.rmtree(kept, ignore_errors=True)
+        remove_folder(kept)
         raise
     finally:
-        shutil.rmtree(into, ignore_errors=True)
+        remove_folder(into)
     return FinishedRun(found=found, kept=kept)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
@@ -15,6 +14,7 @@ from numpy.typing import NDArray
 from processing.errors import Unsuitable, named, told_as_user_error
 from processing.image.point_image import PointCloudImage
 from processing.monitor import Monitor, parts_of
+from processing.owned_files import make_marked, remove_folder
 from processing.points.columns import Columns
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
@@ -320,11 +320,11 @@ def _marked_together(
 @contextmanager
 def _removed_on_failure(folder: Path) -> Iterator[None]:
     with told_as_user_error(folder):
-        folder.mkdir(parents=True)
+        make_marked(folder)
     try:
         yield
     except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
+        remove_folder(folder)
         raise
 
 

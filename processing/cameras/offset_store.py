@@ -10,6 +10,7 @@ from pathlib import Path
 
 from processing.cameras.calibration import CameraOffset
 from processing.errors import BadFile, told_as_user_error
+from processing.owned_files import new_file
 from processing.text import Text
 
 _FILE_NAME = "camera_offsets.json"
@@ -32,7 +33,8 @@ def write_offsets(folder: Path, offsets: Mapping[str, CameraOffset]) -> None:
     temporary = path.with_suffix(".part")
     with told_as_user_error(path):
         try:
-            temporary.write_text(json.dumps(noted, ensure_ascii=False), encoding="utf-8")
+            with new_file(temporary) as file:
+                file.write(json.dumps(noted, ensure_ascii=False).encode())
             temporary.replace(path)
         finally:
             temporary.unlink(missing_ok=True)

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import UNCHANGED, BadFile, told_as_user_error
+from processing.owned_files import new_file
 from processing.points.mapped_pages import MappedPages
 from processing.text import Text
 
@@ -197,7 +198,8 @@ class Columns:
         temporary = path.with_suffix(".part")
         with told_as_user_error(path):
             try:
-                temporary.write_bytes(np.ascontiguousarray(values, dtype=dtype).data)
+                with new_file(temporary) as part:
+                    part.write(np.ascontiguousarray(values, dtype=dtype).data)
                 self.release(name)
                 temporary.replace(path)
             finally:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from processing.errors import BadFile, told_as_user_error
+from processing.owned_files import new_file
 from processing.points.source_order import SourceRun
 from processing.text import Text
 
@@ -92,11 +94,10 @@ def write_drive_info(folder: Path, info: DriveInfo) -> None:
     path = folder / FILE_NAME
     temporary = path.with_suffix(".part")
     with told_as_user_error(path):
-        temporary.write_text(
-            json.dumps(dataclasses.asdict(info), ensure_ascii=False, indent=1),
-            encoding="utf-8",
-            errors="backslashreplace",  # names of files may be no text; JSON reads them back
-        )
+        text = json.dumps(dataclasses.asdict(info), ensure_ascii=False, indent=1)
+        with new_file(temporary) as file:
+            # Names of files may be no text; JSON reads them back.
+            file.write(text.encode("utf-8", errors="backslashreplace"))
         temporary.replace(path)
 
 
@@ -147,4 +148,20 @@ def _from_json(values: dict[str, Any]) -> DriveInfo:
         "scanner_place": stood,
     }
     rest = {**values, **triples, **read}
+    _check(rest)
     return DriveInfo(**rest)
+
+
+def _check(values: dict[str, Any]) -> None:
+    """Refuse by a ValueError numbers that arrays and places in them can't be made from."""
+    for name in ("count", "cells_per_row", "scanner"):
+        if not isinstance(values.get(name, 0), int) or values.get(name, 0) < 0:
+            raise ValueError(name)
+    for name in ("scale", "offset", "lowest", "highest"):
+        # The extent of no points is none.
+        if not all(map(math.isfinite, values[name])) and values["count"]:
+            raise ValueError(name)
+    for run in values["source_runs"]:
+        if not 0 <= run.source < len(values["sources"]) or min(run.start, run.first_index) < 0:
+            message = "source_runs"
+            raise ValueError(message)

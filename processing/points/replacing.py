@@ -7,12 +7,12 @@ on they count, and moving them to their places can be done again as often as nee
 from __future__ import annotations
 
 import os
-import shutil
 from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
 from processing.errors import told_as_user_error
+from processing.owned_files import refuse_link, remove_folder
 
 _UNFINISHED, _WHOLE = "unfinished", "whole"
 
@@ -30,7 +30,8 @@ def new_columns(folder: Path) -> Path:
     """
     unfinished = folder / _UNFINISHED
     with told_as_user_error(unfinished):
-        shutil.rmtree(unfinished, ignore_errors=True)
+        refuse_link(unfinished)
+        remove_folder(unfinished)
         unfinished.mkdir()
     return unfinished
 
@@ -67,6 +68,7 @@ def finish_replacing(folder: Path, note: Callable[[], object] = _nothing) -> boo
     whole = folder / _WHOLE
     if not whole.is_dir():
         return False
+    refuse_link(whole)
     with told_as_user_error(folder):
         for path in sorted(whole.iterdir()):
             path.replace(folder / path.name)

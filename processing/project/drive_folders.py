@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import sqlite3
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
@@ -10,7 +9,9 @@ from pathlib import Path
 from uuid import uuid4
 
 from processing.errors import UserError, told_as_user_error
+from processing.owned_files import remove_emptied, remove_folder
 from processing.project.database import Database
+from processing.project.database_errors import damaged
 from processing.project.import_journal import PLAN
 from processing.project.project_settings import JsonValue, ProjectSettings, write_setting
 from processing.project.unfinished_imports import TEMPORARY, remove_import, remove_litter
@@ -33,6 +34,9 @@ class DriveFolders:
         self.ids = tuple(
             str(id_) for (id_,) in database.rows("SELECT id FROM zuka_drives ORDER BY place")
         )
+        for id_ in self.ids:
+            if not _is_name(id_):
+                raise damaged(database.path, f"zuka_drives.id: {id_}")
 
     def path_of(self, id: str) -> Path:  # noqa: A002 - the word of the trade
         """A drive's folder."""
@@ -87,8 +91,7 @@ class DriveFolders:
             # The import's own folder, once the last drive is gone from it.
             if (parent / PLAN).exists():
                 remove_import(parent)
-            with suppress(OSError):
-                parent.rmdir()
+            remove_emptied(parent)
 
     def remove_leftovers(self) -> None:
         """Remove what was never part of the project, but for imports that can go on."""
@@ -107,7 +110,7 @@ class DriveFolders:
             if isinstance(name, str) and _is_name(name) and (home / PLAN).is_file():
                 with suppress(OSError):
                     self.path_of(id_).rename(home / id_)
-            shutil.rmtree(self.path_of(id_), ignore_errors=True)
+            remove_folder(self.path_of(id_), self._folder)
         # On a full disk the note stays until the next time.
         with suppress(UserError):
             self._settings.put(_ARRIVING, [])

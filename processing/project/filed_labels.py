@@ -120,6 +120,12 @@ class FiledLabels:
         return replace(self, is_inverse=not self.is_inverse)
 
 
+def is_file_of_step(name: str) -> bool:
+    """Whether a file of such a folder may have this name."""
+    is_column = name.startswith(("before-", "after-")) and name.endswith(".bin")
+    return name == PARTS or is_column
+
+
 def check_of(content: bytes) -> bytes:
     """What stands behind a part, so that damage is told from labels."""
     return zlib.crc32(content).to_bytes(_CHECK, "little")

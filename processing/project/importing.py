@@ -8,7 +8,6 @@ import that was killed goes on where it was.
 
 from __future__ import annotations
 
-import shutil
 from collections import Counter
 from collections.abc import Collection, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -20,6 +19,7 @@ from processing.errors import (
     BadFile,
     Cancelled,
     Interrupted,
+    InUse,
     UserError,
     told_as_user_error,
 )
@@ -27,6 +27,16 @@ from processing.formats.image_list import read_image_list
 from processing.formats.point_chunk import Vector3
 from processing.formats.point_files import PointFileInfo
 from processing.monitor import Monitor, PartMonitor
+from processing.owned_files import (
+    MARK,
+    holds_only,
+    is_link,
+    is_marked,
+    make_marked,
+    mark,
+    refuse_link,
+    remove_folder,
+)
 from processing.points.drive_info import SourceFile
 from processing.project.build_steps import BuildSteps
 from processing.project.delivery import Delivery, read_delivery
@@ -47,7 +57,7 @@ from processing.project.import_request import (
 from processing.project.part_joining import join_parts
 from processing.project.recording import Recording
 from processing.project.trajectory_choice import NamedTrajectory, read_trajectories
-from processing.project.unfinished_imports import is_import_folder, remove_import
+from processing.project.unfinished_imports import is_import_folder, is_own_import, remove_import
 from processing.text import Text
 
 __all__ = ["ImportRequest", "Labels", "import_drives"]
@@ -87,7 +97,7 @@ def import_drives(
     marks = marks_of(request)
     delivery = read_delivery(request.inputs, request.crs, monitor, columns=request.columns)
     with told_as_user_error(into):
-        into.mkdir(parents=True, exist_ok=True)
+        _make_own(into)
     journal = ImportJournal(into, is_kept=is_import_folder(into))
     running = _Import(request, marks, delivery, journal, monitor)
     try:
@@ -227,7 +237,7 @@ class _Import:
                 self._journal.note(f"mixed {group}", {})
                 self._journal.settle()
                 for recording in self._layout.planned[group]:
-                    shutil.rmtree(recording.folder, ignore_errors=True)
+                    remove_folder(recording.folder, self._into)
                 self._layout = self._planned()
             else:
                 return
@@ -285,13 +295,35 @@ class _Import:
         return any(recording in planned for planned in self._layout.planned.values())
 
 
+def _make_own(into: Path) -> None:
+    """Have an import's folder, marked; what a killed one left there stays, others are refused."""
+    refuse_link(into)
+    if not into.exists():
+        make_marked(into)
+    elif holds_only(into, _no) or (is_own_import(into) and not is_marked(into)):
+        mark(into)
+    elif is_import_folder(into) and not is_own_import(into):
+        raise InUse(
+            Text("There is something else in this place.", "この場所には別のものがあります。"),
+            Text.same(str(into)),
+            Text(
+                "Move it away, then import again.",
+                "それを移動してから、もう一度インポートしてください。",
+            ),
+        )
+
+
+def _no(_: str) -> bool:
+    return False
+
+
 def _empty(folder: Path) -> None:
     """Remove what a killed import left that had noted nothing."""
     with told_as_user_error(folder):
         for path in folder.iterdir():
-            if path.is_dir():
-                shutil.rmtree(path)
-            else:
+            if path.is_dir() and not is_link(path):
+                remove_folder(path)
+            elif path.name != MARK:
                 path.unlink()
 
 

@@ -19,11 +19,18 @@ from numpy.typing import NDArray
 from processing.errors import told_as_user_error
 from processing.labels.label_column import LABEL, labels_of, write_codes
 from processing.monitor import Monitor
+from processing.owned_files import holds_only, is_link, remove_folder, unmark
 from processing.points.columns import column_path
 from processing.points.drive import Drive
 from processing.points.replacing import flush_folder, flush_names
 from processing.project.change import Change
-from processing.project.filed_labels import PARTS, FiledLabels, FiledPart, check_of
+from processing.project.filed_labels import (
+    PARTS,
+    FiledLabels,
+    FiledPart,
+    check_of,
+    is_file_of_step,
+)
 from processing.project.label_change import LabelChange
 from processing.project.scratch_folder import whole_folder
 
@@ -74,6 +81,8 @@ def labels_as_change(
                 parts.append(_filed(file, one))
         filed = FiledLabels(folder, tuple(parts))
         make_columns(filed, drive_of, monitor)
+        with told_as_user_error(folder):
+            unmark(folder)
     return Change(filed=filed)
 
 
@@ -165,9 +174,12 @@ def remove_unlisted(steps: Path, listed: Collection[str]) -> None:
         The project's folder of folders with labels of many points.
     """
     with suppress(OSError):
-        for folder in steps.iterdir():
+        for folder in () if is_link(steps) else steps.iterdir():
+            # What the program didn't file there is somebody else's.
+            if not holds_only(folder, is_file_of_step):
+                continue
             if folder.name not in listed:
-                shutil.rmtree(folder, ignore_errors=True)
+                remove_folder(folder)
                 continue
             for file in folder.iterdir():
                 if file.name != PARTS:

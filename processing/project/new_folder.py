@@ -4,12 +4,18 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from processing.errors import InUse
+from processing.errors import InUse, told_as_user_error
+from processing.project.database import Database
 from processing.project.project_lock import LOCK_FILES
+from processing.project.project_settings import write_setting
+from processing.project.reference_system import write_reference_system
 from processing.text import Text
 
 UNFINISHED = "unfinished.gpkg"
 """A new project's database until it is whole."""
+
+CRS = "crs"
+"""Under which name a project remembers its reference system."""
 
 
 def refuse_occupied(folder: Path) -> None:
@@ -37,3 +43,25 @@ def refuse_occupied(folder: Path) -> None:
 def database_files(name: str) -> tuple[str, ...]:
     """A database's file and those that SQLite puts beside it."""
     return name, f"{name}-journal", f"{name}-wal", f"{name}-shm"
+
+
+def make_database(path: Path, crs: str) -> None:
+    """Make a project's database, which takes its name when it is whole.
+
+    Raises
+    ------
+    NoSpace
+        Until it is whole there is no project.
+    """
+    unfinished = path.with_name(UNFINISHED)
+    Database.create(unfinished)
+    if crs:
+        database = Database(unfinished, writing=True)
+        try:
+            with database.transaction() as connection:
+                write_reference_system(connection, crs)
+                write_setting(connection, CRS, crs)
+        finally:
+            database.close()
+    with told_as_user_error(path):
+        unfinished.rename(path)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from processing.monitor import Monitor
+from processing.owned_files import remove_folder
 from processing.points.ordering import read_stretch, stretches
 from processing.points.placed_columns import PlacedColumns
 from processing.points.source_order import INDEX
@@ -46,9 +46,9 @@ def join_parts(
             _copy(folder, part.stream, PlacedColumns(recording.folder, first), move, monitor)
             journal.note(name, {"parts": number + 1}, (recording.folder,))
             journal.settle()
-            shutil.rmtree(folder, ignore_errors=True)
+            remove_folder(folder)
         elif number:
-            shutil.rmtree(part_folder(job, part.at), ignore_errors=True)
+            remove_folder(part_folder(job, part.at))
         if move is not None:
             recording.parts[number] = replace(part, stream=_moved(part.stream, move))
         first += part.stream.count

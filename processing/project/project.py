@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import shutil
 import sqlite3
 from contextlib import ExitStack, suppress
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import UNCHANGED, MissingInput, OutOfRange, told_as_user_error
+from processing.owned_files import remove_folder
 from processing.points.drive import Drive
 from processing.points.mapped_pages import MappedPages
 from processing.project.catalogue import Catalogue, read_catalogue
@@ -27,7 +27,14 @@ from processing.project.filed_labels import LABEL_STEPS
 from processing.project.history import History
 from processing.project.label_filing import remove_unlisted
 from processing.project.label_layer import LabelLayer
-from processing.project.new_folder import UNFINISHED, database_files, refuse_occupied
+from processing.project.new_folder import (
+    CRS,
+    UNFINISHED,
+    database_files,
+    make_database,
+    refuse_occupied,
+)
+from processing.project.no_links import refuse_links
 from processing.project.project_lock import LOCK_FILES, ProjectLock
 from processing.project.project_settings import ProjectSettings, write_setting
 from processing.project.reference_system import (
@@ -38,12 +45,16 @@ from processing.project.reference_system import (
 from processing.project.runs import Runs
 from processing.project.source_files import HOMES, SourceFiles
 from processing.project.unfinished_imports import TEMPORARY, unfinished_imports
+from processing.project.volume_store import VOLUMES
 from processing.text import Text
 from resources import path_of
 
 _DATABASE = "project.gpkg"
+_FOLDERS = (DRIVES, TEMPORARY, LABEL_STEPS)
+_FILES = (*database_files(_DATABASE), *database_files(UNFINISHED), *LOCK_FILES)
+_OWN = (*_FOLDERS, VOLUMES, *_FILES)
 _ORIGIN_STEP_M = 100.0
-_CRS, _ORIGIN = "crs", "origin"
+_ORIGIN = "origin"
 
 
 def is_project(path: Path) -> bool:
@@ -66,6 +77,7 @@ class Project:
 
     def __init__(self, folder: Path, *, writing: bool) -> None:
         self.folder = folder
+        refuse_links(folder, _OWN)
         with ExitStack() as stack:
             if writing:
                 stack.callback(ProjectLock(folder).release)
@@ -119,10 +131,11 @@ class Project:
         with told_as_user_error(folder):
             refuse_occupied(folder)
             folder.mkdir(parents=True, exist_ok=True)
+        refuse_links(folder, _OWN)
         lock = ProjectLock(folder)
         try:
             # The database takes its name when it is whole: until then there is no project.
-            _make_database(folder / UNFINISHED, folder / _DATABASE, system)
+            make_database(folder / _DATABASE, system)
         except BaseException:
             lock.release()
             Project.remove_new(folder)
@@ -161,9 +174,9 @@ class Project:
 
         Only what the program makes is removed; the folder too when nothing else is in it.
         """
-        for name in (DRIVES, TEMPORARY, LABEL_STEPS):
-            shutil.rmtree(folder / name, ignore_errors=True)
-        for name in (*database_files(_DATABASE), *database_files(UNFINISHED), *LOCK_FILES):
+        for name in _FOLDERS:
+            remove_folder(folder / name)
+        for name in _FILES:
             with suppress(OSError):
                 (folder / name).unlink(missing_ok=True)
         with suppress(OSError):
@@ -177,7 +190,7 @@ class Project:
     @property
     def crs(self) -> str:
         """``EPSG:n``, or empty when unknown."""
-        return self.settings.text(_CRS)
+        return self.settings.text(CRS)
 
     @property
     def catalogue(self) -> Catalogue:
@@ -261,8 +274,8 @@ class Project:
         self.settings.took(HOMES, homes)
         if crs != self.crs:
             self._took_crs(crs)
-        for drive in new:
-            self._drives[drive.id] = Drive(self._folders.path_of(drive.id), self._pages)
+        paths = {drive.id: self._folders.path_of(drive.id) for drive in new}
+        self._drives |= {id_: Drive(path, self._pages) for id_, path in paths.items()}
         return tuple(self._drives[drive.id] for drive in new)
 
     def set_crs(self, crs: str) -> None:
@@ -341,11 +354,11 @@ class Project:
 
     def _write_crs(self, connection: sqlite3.Connection, crs: str) -> None:
         write_reference_system(connection, crs)
-        write_setting(connection, _CRS, crs)
+        write_setting(connection, CRS, crs)
         self.features.rewrite_srs(connection, srs_number(crs))
 
     def _took_crs(self, crs: str) -> None:
-        self.settings.took(_CRS, crs)
+        self.settings.took(CRS, crs)
         self.features.took_srs(srs_number(crs))
 
     def _srs_number(self) -> int:
@@ -363,20 +376,6 @@ class Project:
             if len(numbers) == 3 and all(map(math.isfinite, numbers)):
                 return np.array(numbers)
         raise damaged(self._database.path, f"zuka_settings.origin: {stored}")
-
-
-def _make_database(unfinished: Path, path: Path, crs: str) -> None:
-    Database.create(unfinished)
-    if crs:
-        database = Database(unfinished, writing=True)
-        try:
-            with database.transaction() as connection:
-                write_reference_system(connection, crs)
-                write_setting(connection, _CRS, crs)
-        finally:
-            database.close()
-    with told_as_user_error(path):
-        unfinished.rename(path)
 
 
 def _origin_of(drive: Drive) -> NDArray[np.float64]:

@@ -13,6 +13,7 @@ from pathlib import Path
 from filelock import FileLock, Timeout
 
 from processing.errors import InUse, NoSpace, told_as_user_error
+from processing.owned_files import new_file, refuse_link
 from processing.text import Text
 
 LOCK_FILES = ("lock", "lock-owner.json")
@@ -26,12 +27,16 @@ class ProjectLock:
     ------
     InUse
         Another program, or another window of this one, has the project open; says which.
+        So says a link in the lock's place.
     NoSpace
         The folder can't be written.
     """
 
     def __init__(self, folder: Path) -> None:
         self._owner_path = folder / _OWNER
+        # To lock a file is to open it for writing, which empties what a link leads to.
+        for name in LOCK_FILES:
+            refuse_link(folder / name)
         # Not a singleton: a second window of the same process must be refused too.
         self._lock = FileLock(folder / _LOCK, timeout=0)
         with told_as_user_error(folder / _LOCK):
@@ -49,8 +54,8 @@ class ProjectLock:
             "since": datetime.now(UTC).astimezone().strftime("%Y-%m-%d %H:%M"),
         }
         # On a full disk the project can still be looked at; who has it is a courtesy.
-        with suppress(OSError):
-            self._owner_path.write_text(json.dumps(owner), encoding="utf-8")
+        with suppress(OSError), new_file(self._owner_path) as file:
+            file.write(json.dumps(owner).encode())
 
     def release(self) -> None:
         """Let others have the project; may be called again."""

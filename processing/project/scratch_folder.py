@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,6 +10,14 @@ from uuid import uuid4
 from filelock import FileLock, Timeout
 
 from processing.errors import told_as_user_error
+from processing.owned_files import (
+    is_link,
+    is_marked,
+    make_marked,
+    mark,
+    remove_folder,
+    remove_marked,
+)
 
 _PREFIX = ".zuka-"
 _LOCK = "lock"
@@ -41,12 +48,12 @@ def scratch_folder(beside: Path) -> Iterator[Path]:
         yield folder
     finally:
         lock.release()
-        shutil.rmtree(folder, ignore_errors=True)
+        remove_folder(folder)
 
 
 @contextmanager
 def whole_folder(folder: Path) -> Iterator[Path]:
-    """A new folder for what is kept when it is whole; removed where the body fails.
+    """A new, marked folder for what is kept when it is whole; removed where the body fails.
 
     Raises
     ------
@@ -54,11 +61,11 @@ def whole_folder(folder: Path) -> Iterator[Path]:
         The folder can't be made.
     """
     with told_as_user_error(folder):
-        folder.mkdir(parents=True)
+        make_marked(folder)
     try:
         yield folder
     except BaseException:
-        shutil.rmtree(folder, ignore_errors=True)
+        remove_folder(folder)
         raise
 
 
@@ -72,14 +79,18 @@ def _locked(beside: Path) -> tuple[Path, FileLock]:
         except (Timeout, FileNotFoundError):
             # Another program took it for one that was left, before it was locked.
             continue
+        mark(folder)
         return folder, lock
 
 
 def _remove_if_left(folder: Path) -> None:
+    # Any other folder of such a name, and a link to one, is somebody else's.
+    if not is_marked(folder) or is_link(folder / _LOCK):
+        return
     lock = FileLock(folder / _LOCK, timeout=0)
     try:
         lock.acquire()
     except (Timeout, OSError):
         return
     lock.release()
-    shutil.rmtree(folder, ignore_errors=True)
+    remove_marked(folder)

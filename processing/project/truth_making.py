@@ -6,7 +6,6 @@ The column is written into a folder of its own, a stretch at a time, in a worker
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
@@ -19,6 +18,7 @@ from processing.errors import Unsuitable, told_as_user_error
 from processing.image.clip import Clip
 from processing.labels.label_column import LABEL
 from processing.monitor import Monitor, PartMonitor
+from processing.owned_files import remove_folder
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
@@ -102,7 +102,7 @@ def truth_as_it_stands(
             if count:
                 folders[drive.id], known[drive.id] = folder, count
             else:
-                shutil.rmtree(folder, ignore_errors=True)
+                remove_folder(folder)
         if not known:
             raise _nothing_known(drives, only_painted=only_painted)
     return MadeTruth(folders, known)

@@ -6,7 +6,6 @@ the drive's own columns, in a folder of its own, and the project's settings list
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import told_as_user_error
+from processing.owned_files import holds_only, remove_emptied, remove_folder
 from processing.points.columns import column_path
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
@@ -131,8 +131,10 @@ class TruthStore:
             self._put((*self.all(), truth))
         except BaseException:
             for target in moved:
-                shutil.rmtree(target, ignore_errors=True)
+                remove_folder(target)
             raise
+        for home in {folder.parent for folder in folders.values()}:
+            remove_emptied(home)
 
     def remove(self, id_: str, drive_of: Callable[[str], Drive]) -> None:
         """Forget a truth for good.
@@ -148,16 +150,21 @@ class TruthStore:
         self._put(tuple(one for one in self.all() if one.id != id_))
         for drive_id in truth.known:
             with suppress(KeyError):
-                shutil.rmtree(truth_folder(drive_of(drive_id), id_), ignore_errors=True)
+                drive = drive_of(drive_id)
+                remove_folder(truth_folder(drive, id_), drive.folder)
 
     def remove_unlisted(self, drives: tuple[Drive, ...]) -> None:
-        """Remove columns that a killed program left without a truth that lists them."""
+        """Remove columns that a killed program left without a truth that lists them.
+
+        What is something else than such a column stays.
+        """
         known = {one.id for one in self.all()}
         for drive in drives:
             home = drive.folder / _FOLDER
             for folder in tuple(home.iterdir()) if home.is_dir() else ():
-                if folder.name not in known:
-                    shutil.rmtree(folder, ignore_errors=True)
+                is_column = holds_only(folder, {column_path(folder, TRUTH).name}.__contains__)
+                if folder.name not in known and is_column:
+                    remove_folder(folder, drive.folder)
 
     def _put(self, truths: tuple[Truth, ...]) -> None:
         self._settings.put(_KEY, [_values_of(one) for one in truths])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -12,6 +11,7 @@ from numpy.typing import NDArray
 
 from processing.errors import told_as_user_error
 from processing.monitor import Monitor, PartMonitor
+from processing.owned_files import make_marked, remove_folder
 from processing.points.drive import Drive
 from processing.points.drive_part import write_part
 from processing.points.ordering import read_stretch
@@ -49,13 +49,13 @@ def study_by_truth(
     Cancelled
     """
     with told_as_user_error(into):
-        into.mkdir(parents=True)
+        make_marked(into)
     try:
         if not is_part:
             return study(request, _truth_of(truth), monitor, into)
         return _study_of_parts(request, truth, into, monitor)
     finally:
-        shutil.rmtree(into, ignore_errors=True)
+        remove_folder(into)
 
 
 def _truth_of(id_: str) -> TruthOf:

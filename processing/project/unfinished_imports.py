@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import json
-import shutil
 from collections.abc import Collection
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from processing.errors import UserError
+from processing.owned_files import (
+    is_link,
+    is_marked,
+    mark,
+    remove_emptied,
+    remove_folder,
+    remove_marked,
+)
 from processing.project.import_journal import FINISHED, PLAN
 from processing.project.import_request import (
     ImportRequest,
@@ -69,14 +76,24 @@ def discard(unfinished: UnfinishedImport) -> None:
 
 
 def remove_import(folder: Path) -> None:
-    """Remove an import's folder; a kill meanwhile leaves nothing that could go on."""
+    """Remove an import's folder; a kill meanwhile leaves nothing that could go on.
+
+    Only one that the program made, as its mark or its plan says, and no link.
+    """
+    if not is_own_import(folder):
+        return
     with suppress(OSError):
+        # Without its plan it can't go on; by its mark it is still known as litter.
+        if not is_marked(folder):
+            mark(folder)
         (folder / PLAN).unlink(missing_ok=True)
-    shutil.rmtree(folder, ignore_errors=True)
+    remove_folder(folder)
 
 
 def remove_litter(project: Path, drives: Collection[str]) -> None:
     """Remove what imports left that can't go on, and that of imports whose drives are there.
+
+    What the program didn't make stays, and so does all that lies behind a link.
 
     Parameters
     ----------
@@ -88,17 +105,23 @@ def remove_litter(project: Path, drives: Collection[str]) -> None:
         is_there = bool(finished) and all(id_ in drives for id_ in finished)
         if is_there or _request_of(folder) is None:
             remove_import(folder)
-    for path in (project / TEMPORARY).glob("*"):
-        if path.is_dir() and not is_import_folder(path):
-            shutil.rmtree(path, ignore_errors=True)
-        elif not path.is_dir():
-            with suppress(OSError):
-                path.unlink()
+    home = project / TEMPORARY
+    for path in () if is_link(home) else home.glob("*"):
+        if path.is_dir() and not is_link(path) and not is_import_folder(path):
+            remove_marked(path, project)
+            remove_emptied(path)
 
 
 def _folders(project: Path) -> list[Path]:
-    folders = (project / TEMPORARY).glob(f"{_STEM}*")
-    return sorted(folder for folder in folders if folder.is_dir())
+    home = project / TEMPORARY
+    folders = () if is_link(home) else home.glob(f"{_STEM}*")
+    return sorted(folder for folder in folders if folder.is_dir() and not is_link(folder))
+
+
+def is_own_import(folder: Path) -> bool:
+    """Whether the program made an import's folder, as its mark or its plan says."""
+    plan = folder / PLAN
+    return is_marked(folder) or (plan.is_file() and not is_link(plan) and not is_link(folder))
 
 
 def _request_of(folder: Path) -> ImportRequest | None:

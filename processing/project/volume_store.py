@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -19,11 +18,20 @@ from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.volume_result import VolumeResult
 from processing.errors import BadFile, MissingInput, told_as_user_error
 from processing.ground.cells import CellGrid
+from processing.owned_files import (
+    holds_only,
+    make_marked,
+    refuse_link,
+    remove_folder,
+    unmark,
+)
 from processing.project.volume import KeptVolume
 from processing.project.volume_facts import Facts, damaged, grid_of, kept_of, values_of
 from processing.project.volume_sections import read_sections, write_sections
 
-_RESULTS, _VOLUMES = "results", "volumes"
+VOLUMES = "results/volumes"
+"""Folder of a project: a folder for each volume."""
+
 _FACTS, _SECTIONS = "volume.json", "sections.npz"
 _ARRAYS = {
     "before": np.dtype(np.float32),
@@ -42,7 +50,7 @@ def write_volume(kept: KeptVolume, result: VolumeResult, folder: Path) -> None:
         What the operating system says; what was written so far is removed.
     """
     with told_as_user_error(folder):
-        folder.mkdir(parents=True)
+        make_marked(folder)
         try:
             for name, dtype in _ARRAYS.items():
                 values = np.ascontiguousarray(getattr(result.change, name), dtype)
@@ -56,7 +64,7 @@ def write_volume(kept: KeptVolume, result: VolumeResult, folder: Path) -> None:
                 text.flush()
                 _flush(text.fileno())
         except BaseException:
-            shutil.rmtree(folder, ignore_errors=True)
+            remove_folder(folder)
             raise
 
 
@@ -70,7 +78,7 @@ class VolumeStore:
     """
 
     def __init__(self, project: Path) -> None:
-        self._home = project / _RESULTS / _VOLUMES
+        self._home = project / VOLUMES
 
     def all(self) -> tuple[KeptVolume, ...]:
         """All volumes, the first one first; what can't be read is left out."""
@@ -92,6 +100,7 @@ class VolumeStore:
         with told_as_user_error(folder):
             self._home.mkdir(parents=True, exist_ok=True)
             folder.rename(self._home / kept.id)
+            unmark(self._home / kept.id)
 
     def read_map(self, id_: str) -> ChangeGrid:
         """The map of a volume; its arrays stay on the disk until they are looked at.
@@ -136,22 +145,24 @@ class VolumeStore:
 
         Raises
         ------
-        NoSpace
+        NoSpace, InUse
             It is still there.
         """
         folder = self._home / id_
         if Path(id_).name != id_ or not folder.is_dir():
             return
+        refuse_link(folder)
         with told_as_user_error(folder):
             # Without its facts it is none any more, whatever else a system keeps open.
             (folder / _FACTS).unlink(missing_ok=True)
-        shutil.rmtree(folder, ignore_errors=True)
+        remove_folder(folder, self._home.parent.parent)
 
     def remove_leftovers(self) -> None:
-        """Remove what a killed program was removing."""
+        """Remove what a killed program was removing; what it didn't write there stays."""
+        known = {_SECTIONS, *(f"{name}.npy" for name in _ARRAYS)}
         for folder in tuple(self._home.iterdir()) if self._home.is_dir() else ():
-            if folder.is_dir() and not (folder / _FACTS).exists():
-                shutil.rmtree(folder, ignore_errors=True)
+            if folder.is_dir() and holds_only(folder, known.__contains__):
+                remove_folder(folder, self._home.parent.parent)
 
 
 def _flush(file: int) -> None:

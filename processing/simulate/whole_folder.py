@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import os
-import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -12,6 +11,7 @@ from pathlib import Path
 from filelock import FileLock, Timeout
 
 from processing.errors import InUse, told_as_user_error
+from processing.owned_files import make_marked, refuse_link, remove_folder, remove_marked, unmark
 from processing.text import Text
 
 _NAME_LETTERS = 24  # of at most 4 bytes each: names on a disk have 255 at most
@@ -32,7 +32,8 @@ def made_whole(folder: Path) -> Iterator[Path]:
     Raises
     ------
     InUse
-        There is something in it, or another program is about to make it.
+        There is something in it, another program is about to make it, or somebody else's file is
+        where it would be made.
     NoSpace, MissingInput, BadFile
         What the operating system says, of the body's own writing too.
     """
@@ -45,17 +46,18 @@ def made_whole(folder: Path) -> Iterator[Path]:
         with _locked(folder, hidden.with_name(f"{hidden.name}.lock")):
             # It may have been made since.
             _refuse_what_is_there(folder)
-            if hidden.exists():
-                shutil.rmtree(hidden)
-            hidden.mkdir()
+            if not remove_marked(hidden) and os.path.lexists(hidden):
+                raise _in_the_way(hidden)
+            make_marked(hidden)
             try:
                 yield hidden
                 if folder.exists():
                     folder.rmdir()
                 hidden.rename(folder)
             except BaseException:
-                shutil.rmtree(hidden, ignore_errors=True)
+                remove_folder(hidden)
                 raise
+            unmark(folder)
 
 
 def _beside(folder: Path) -> Path:
@@ -66,6 +68,7 @@ def _beside(folder: Path) -> Path:
 
 @contextmanager
 def _locked(folder: Path, path: Path) -> Iterator[None]:
+    refuse_link(path)
     lock = FileLock(path, timeout=0)
     try:
         lock.acquire()
@@ -88,6 +91,20 @@ def _locked(folder: Path, path: Path) -> Iterator[None]:
         with suppress(PermissionError):
             path.unlink(missing_ok=True)
         lock.release()
+
+
+def _in_the_way(hidden: Path) -> InUse:
+    return InUse(
+        Text(
+            "Something that Zuka did not make is where the folder would be written.",
+            "書き込みに使う場所に、Zukaが作成したものではないファイルがあります。",
+        ),
+        Text.same(str(hidden)),
+        Text(
+            "Move it away, or name another folder.",
+            "それを移動するか、別のフォルダを指定してください。",
+        ),
+    )
 
 
 def _refuse_what_is_there(folder: Path) -> None:

@@ -7,7 +7,6 @@ every point, of a drive where it finds things: no project, no view, no global.
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
@@ -22,6 +21,7 @@ from processing.earthwork.volume_result import VolumeResult
 from processing.earthwork.within import Within
 from processing.image.grid import PixelGrid
 from processing.monitor import Monitor
+from processing.owned_files import remove_folder
 from processing.points.columns import Columns, column_path
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
@@ -115,7 +115,7 @@ class FinishedColumns:
 
     def remove(self) -> None:
         """Remove what is left of the folder; may be called again."""
-        shutil.rmtree(self.folder, ignore_errors=True)
+        remove_folder(self.folder)
 
 
 @dataclass(frozen=True)

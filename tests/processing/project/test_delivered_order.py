@@ -11,6 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from processing.monitor import SilentMonitor
+from processing.owned_files import make_marked
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
 from processing.points.drive_info import SourceFile, read_drive_info, write_drive_info
@@ -119,7 +120,7 @@ def test_points_that_no_drive_has_are_zero(made: Drive) -> None:
 
 def test_what_a_killed_program_left_goes_and_what_is_in_use_stays(tmp_path: Path) -> None:
     left = tmp_path / ".zuka-left"
-    left.mkdir()
+    make_marked(left)
     with ColumnWriter(left) as writer:
         writer.append({"segment": np.arange(5)})
     with scratch_folder(tmp_path) as one:

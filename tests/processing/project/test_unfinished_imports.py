@@ -12,12 +12,12 @@ import laspy
 import numpy as np
 import pytest
 
+from processing import owned_files
 from processing.errors import BadFile, Cancelled, Interrupted, NoSpace
 from processing.formats.las_header import read_header
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project import import_journal, import_processes
-from processing.project import unfinished_imports as unfinished_imports_module
 from processing.project.disk_room import refuse_small_disk
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.project import Project
@@ -186,7 +186,7 @@ def test_a_kill_while_an_import_is_removed_leaves_nothing_to_go_on_with(
     into = import_folder(project.folder, delivery)
     at_kill = []
     monkeypatch.setattr(
-        unfinished_imports_module.shutil,
+        owned_files.shutil,
         "rmtree",
         lambda *_a, **_k: at_kill.append(unfinished_imports(project.folder)),
     )

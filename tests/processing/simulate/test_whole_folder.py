@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from processing.errors import Cancelled, InUse
+from processing.owned_files import MARK
 from processing.simulate.whole_folder import made_whole
 
 ROOT = Path(__file__).parents[3]
@@ -63,7 +64,7 @@ def test_what_a_killed_program_left_is_removed_by_the_next_one(tmp_path: Path) -
     assert killed.returncode == -signal.SIGKILL
     assert len(list(tmp_path.iterdir())) == 2  # what it had written, and its lock
     with made_whole(folder) as hidden:
-        assert not list(hidden.iterdir())
+        assert [one.name for one in hidden.iterdir()] == [MARK]
     assert [one.name for one in tmp_path.iterdir()] == ["通り"]
 
 
