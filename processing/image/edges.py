@@ -31,6 +31,7 @@ from processing.image.edge_sections import (
 )
 from processing.image.edge_steps import Ground, Step, reach_needed, step_at
 from processing.image.points_around import neighbours
+from processing.points.damaged_pulses import damaged_pulses
 
 if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
     from processing.points.drive import Drive
@@ -304,6 +305,8 @@ def _row_around(drive: Drive, point: int, within_px: int) -> _Row:
     pulses = drive.columns["pulse"]
     here = int(pulses[point])
     start, stop = np.searchsorted(pulses, [here - within_px - 1, here + within_px + 2])
+    if not start <= point < stop:
+        raise damaged_pulses(drive.folder)
     xyz = drive.xyz(slice(int(start), int(stop)))
     return _Row(np.asarray(pulses[start:stop], np.int64) - here, xyz, point - int(start))
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import threading
 import zipfile
 from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +19,10 @@ from numpy.typing import NDArray
 from processing.image.gaps import STOP_S, closed_up
 from processing.image.kinds import ImageKind
 from processing.image.rows_of_kind import Revolutions, RowPlan, plan_of_cells, plan_of_turns
+from processing.owned_files import new_file
 from processing.points.array_files import read_arrays
+from processing.points.columns import column_path
+from processing.points.damaged_pulses import damaged_pulses
 from processing.points.ordering import read_stretch, stretches
 
 _Integers = NDArray[np.int64]
@@ -28,6 +32,12 @@ _FEW_POINTS = 100_000
 """Found anew sooner than read."""
 
 _MADE_OF = "made_of"
+
+_MOST_PIXELS = 1 << 40
+"""The facts on the tiles of more would not fit in memory; no recording has as many."""
+
+_ASKED_ROWS = 512
+"""Of kept rows so many are held against the pulses: few enough for a disk that must seek."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,29 +77,47 @@ def image_rows(
         The recording's turns; of a recording without, the number of cells per row.
     folder : Path, optional
         The recording's; rows that were found are kept there and taken from there.
+
+    Raises
+    ------
+    BadFile
+        The pulses are damaged.
     """
+    plan = (
+        plan_of_cells(folding, pulses, folder)
+        if isinstance(folding, int)
+        else plan_of_turns(kind, folding, pulses, folder)
+    )
     if folder is None or pulses.size < _FEW_POINTS:
-        return _found(kind, pulses, folding, None)
-    path = folder / f"image_rows_{kind.value}.npz"
-    made_of = _made_of(pulses, folding)
+        return _found(plan, pulses, folding, folder)
+    path = _path(folder, kind)
+    made_of = _made_of(pulses, folding, folder)
     kept = _read(path, made_of)
-    if kept is None:
-        kept = _found(kind, pulses, folding, folder)
+    if kept is None or not _belongs(kept, plan, pulses):
+        kept = _found(plan, pulses, folding, folder)
         _write(path, kept, made_of)
     return kept
 
 
+def forget_rows(kind: ImageKind, folder: Path | None) -> None:
+    """Have the rows of an image found anew the next time."""
+    if folder is not None:
+        # Where it can't be removed it can't be written either, and no other rows are kept.
+        with suppress(OSError):
+            _path(folder, kind).unlink(missing_ok=True)
+
+
+def _path(folder: Path, kind: ImageKind) -> Path:
+    return folder / f"image_rows_{kind.value}.npz"
+
+
 def _found(
-    kind: ImageKind, pulses: _Integers, folding: Revolutions | int, folder: Path | None
+    plan: RowPlan, pulses: _Integers, folding: Revolutions | int, folder: Path | None
 ) -> ImageRows:
-    if isinstance(folding, int):
-        plan = plan_of_cells(folding, pulses)
-        starts = _row_starts(plan, pulses, folder)
-    else:
-        plan = plan_of_turns(kind, folding, pulses)
-        starts = _row_starts(plan, pulses, folder)
+    starts = _row_starts(plan, pulses, folder)
+    if not isinstance(folding, int):
         plan, starts = closed_up(plan, starts, pulses, STOP_S * folding.pulse_rate_hz)
-    return ImageRows(
+    found = ImageRows(
         starts,
         plan.doubled_origins,
         plan.doubled_spans,
@@ -97,14 +125,20 @@ def _found(
         plan.segments,
         plan.widths,
     )
+    if not _fits(found, pulses.size):
+        raise damaged_pulses(folder)
+    return found
 
 
 def _row_starts(plan: RowPlan, pulses: _Integers, folder: Path | None) -> _Integers:
-    """(rows + 1,) int64: where the points of each row begin."""
+    """(rows + 1,) int64: where the points of each row begin; refuses pulses that fall."""
     firsts = plan.first_pulses
     starts = np.full(firsts.size + 1, pulses.size, np.int64)
-    done = 0
+    done, before = 0, pulses[:1]
     for start, stretch in _stretches_of(pulses, folder):
+        if stretch[0] < before[0] or (stretch[1:] < stretch[:-1]).any():
+            raise damaged_pulses(folder)
+        before = stretch[-1:]
         # Rows that begin behind the stretch are sought in the next one.
         end = int(np.searchsorted(firsts, stretch[-1], side="right"))
         starts[done:end] = start + np.searchsorted(stretch, firsts[done:end])
@@ -121,9 +155,11 @@ def _stretches_of(pulses: _Integers, folder: Path | None) -> Iterator[tuple[int,
             yield start, read_stretch(folder, "pulse", start, stop)
 
 
-def _made_of(pulses: _Integers, folding: Revolutions | int) -> _Integers:
-    """A few numbers that are others for other pulses or turns."""
-    ends = [pulses.size, int(pulses[0]), int(pulses[-1])]
+def _made_of(pulses: _Integers, folding: Revolutions | int, folder: Path) -> _Integers:
+    """A few numbers that are others for other pulses or turns, or for pulses written since."""
+    path = column_path(folder, "pulse")
+    written_ns = path.stat().st_mtime_ns if path.is_file() else 0
+    ends = [pulses.size, int(pulses[0]), int(pulses[-1]), written_ns]
     if isinstance(folding, int):
         return np.array([*ends, folding], np.int64)
     sums = [
@@ -150,20 +186,49 @@ def _read(path: Path, made_of: _Integers) -> ImageRows | None:
     except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile):
         # What can be computed again is computed again when the file is lost or damaged.
         return None
-    return rows if _fits(rows) else None
+    return rows if _fits(rows, int(made_of[0])) else None
 
 
-def _fits(rows: ImageRows) -> bool:
-    """Whether arrays belong to each other."""
-    count = rows.row_starts.size - 1
-    others = (rows.origins, rows.spans, rows.segments, rows.widths)
-    return all(values.shape == (count,) for values in others)
+def _fits(rows: ImageRows, points: int) -> bool:
+    """Whether arrays belong to each other, and kernels may go by them."""
+    starts, count = rows.row_starts, rows.row_starts.size - 1
+    others = (rows.origins, rows.spans, rows.widths)
+    if not all(values.shape == (count,) for values in (*others, rows.segments)):
+        return False
+    types = {values.dtype for values in (starts, *others)}
+    if starts.ndim != 1 or types != {np.dtype(np.int64)} or rows.segments.dtype != np.int32:
+        return False
+    ends_fit = starts[0] == (0 if count else points) and starts[-1] == points
+    are_rising = (np.diff(starts) >= 0).all() and (np.diff(rows.segments) >= 0).all()
+    least = min(rows.per_span, int(rows.spans.min(initial=1)), int(rows.widths.min(initial=1)))
+    pixels = int(rows.widths.max(initial=0)) * count
+    return bool(ends_fit and are_rising and least >= 1 and pixels <= _MOST_PIXELS)
+
+
+def _belongs(kept: ImageRows, plan: RowPlan, pulses: _Integers) -> bool:
+    """Whether kept rows are some of a plan's, and points lie in theirs, as far as is asked."""
+    if kept.per_span != plan.columns_per_span:
+        return False
+    if not kept.origins.size:
+        return True
+    order = np.argsort(plan.doubled_origins, kind="stable")
+    places = np.searchsorted(plan.doubled_origins, kept.origins, sorter=order)
+    same = order[np.minimum(places, order.size - 1)]
+    is_planned = plan.doubled_origins[same] == kept.origins
+    is_planned &= plan.doubled_spans[same] == kept.spans
+    is_planned &= plan.widths[same] == kept.widths
+    filled = np.flatnonzero(np.diff(kept.row_starts))
+    asked = filled[:: -(-filled.size // _ASKED_ROWS)]
+    ends = np.stack([kept.row_starts[asked], kept.row_starts[asked + 1] - 1])
+    columns = (2 * pulses[ends] - kept.origins[asked]) * kept.per_span // kept.spans[asked]
+    are_inside = (columns >= 0) & (columns < kept.widths[asked])
+    return bool(is_planned.all() and are_inside.all())
 
 
 def _write(path: Path, rows: ImageRows, made_of: _Integers) -> None:
     temporary = path.with_suffix(f".{threading.get_ident()}.part")
     try:
-        with temporary.open("wb") as file:
+        with new_file(temporary) as file:
             np.savez(file, allow_pickle=False, **{_MADE_OF: made_of}, **vars(rows))
         temporary.replace(path)
     except OSError:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from processing.image.coordinates import Coordinates
 from processing.image.fixed_raster import FixedRaster, fixed_raster_of
 from processing.image.grid import PixelGrid
-from processing.image.image_rows import image_rows
+from processing.image.image_rows import forget_rows, image_rows
 from processing.image.kinds import ImageKind
 from processing.image.point_image_kernels import (
     PixelLayout,
@@ -29,6 +29,7 @@ from processing.image.point_image_kernels import (
 from processing.image.rows_of_kind import Revolutions
 from processing.image.tiles import TilePyramid
 from processing.points.counted_classes import ClassColumns
+from processing.points.damaged_pulses import damaged_pulses
 
 if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a circle
     from processing.points.drive import Drive
@@ -83,8 +84,8 @@ class PointCloudImage:
     ) -> None:
         self.kind = kind
         self._pulses = _read_only(pulses)
-        folder = None if coordinates is None else coordinates.folder
-        found = image_rows(kind, self._pulses, folding, folder)
+        self._folder = None if coordinates is None else coordinates.folder
+        found = image_rows(kind, self._pulses, folding, self._folder)
         if isinstance(folding, int):
             self.row_times = np.full(found.origins.size, np.nan)
         else:
@@ -139,11 +140,18 @@ class PointCloudImage:
         return TilePyramid(self, self._coordinates)
 
     def columns_of(self, start: int, stop: int) -> NDArray[np.int32]:
-        """Columns of the points ``start … stop − 1``."""
+        """Columns of the points ``start … stop − 1``: inside the image, not falling in a row.
+
+        Raises
+        ------
+        BadFile
+            The pulses are damaged; so say all methods that look at them.
+        """
         columns = np.empty(max(0, stop - start), np.int32)
         if columns.size:
             row = int(np.searchsorted(self.row_starts, start, side="right")) - 1
-            columns_kernel(self.layout, np.array([start, row]), columns)
+            first = np.array([start, row, self.width])
+            self._refuse_damage(columns_kernel(self.layout, first, columns))
         return columns
 
     def points_at(self, row: int, column: int) -> _Integers:
@@ -182,7 +190,9 @@ class PointCloudImage:
         rows = np.searchsorted(self.row_starts, points, side="right").astype(np.int64) - 1
         layout = self.layout
         doubled = 2 * layout.pulses[points] - layout.origins[rows]
-        return rows, (doubled * layout.per_span // layout.spans[rows]).astype(np.int32)
+        columns = doubled * layout.per_span // layout.spans[rows]
+        self._refuse_damage(bool(((columns >= 0) & (columns < self.width)).all()))
+        return rows, columns.astype(np.int32)
 
     def nearest_filled(
         self,
@@ -241,19 +251,37 @@ class PointCloudImage:
         raster = np.empty((height, width), np.int64)
         if raster.size:
             self._check_window(rows, columns)
-            window = np.array([rows.start, step, columns.start, columns.stop])
+            window = np.array([rows.start, step, columns.start, columns.stop, self.width])
             if without_noise is None:
-                raster_kernel(self.layout, window, raster)
+                is_whole = raster_kernel(self.layout, window, raster)
             else:
-                noiseless_raster_kernel(self.layout, without_noise, window, raster)
+                is_whole = noiseless_raster_kernel(self.layout, without_noise, window, raster)
+            self._refuse_damage(is_whole)
         return raster
+
+    def stretches_in(self, windows: _Integers) -> _Integers:
+        """The points of windows, row by row.
+
+        Parameters
+        ----------
+        windows : (k, 4) int64
+            First and end row, first and end column, inside the image.
+
+        Returns
+        -------
+        (rows of all windows, 2) int64
+            First point and the one behind the last.
+        """
+        stretches = np.empty((int((windows[:, 1] - windows[:, 0]).sum()), 2), np.int64)
+        self._refuse_damage(stretches_kernel(self.layout, windows, stretches))
+        return stretches
 
     def points_in(self, rows: range, columns: range) -> _Integers:
         """(n,) int64: all points of the pixels of a window, rising; shown or not."""
         self._check_window(rows, columns)
-        stretches = np.empty((len(rows), 2), np.int64)
-        window = np.array([[rows.start, rows.stop, columns.start, columns.stop]])
-        stretches_kernel(self.layout, window, stretches)
+        stretches = self.stretches_in(
+            np.array([[rows.start, rows.stop, columns.start, columns.stop]])
+        )
         counts = stretches[:, 1] - stretches[:, 0]
         before = np.cumsum(counts) - counts
         points: _Integers = np.arange(int(counts.sum())) + np.repeat(
@@ -280,6 +308,12 @@ class PointCloudImage:
         """The raster of `mode_width` columns for networks, and the points that it leaves out."""
         return fixed_raster_of(self, rows)
 
+    def _refuse_damage(self, is_sound: bool) -> None:  # noqa: FBT001 - what a kernel says
+        """Refuse pulses that don't fit the rows; kept rows may be to blame, so they go."""
+        if not is_sound:
+            forget_rows(self.kind, self._folder)
+            raise damaged_pulses(self._folder)
+
     def _check_window(self, rows: range, columns: range) -> None:
         inside = rows.start >= 0 and rows.stop <= self.rows
         if not (inside and columns.start >= 0 and columns.stop <= self.width):
@@ -296,6 +330,7 @@ def warm_up() -> None:
     image.raster(range(2), range(4), without_noise=ClassColumns(codes, codes))
     image.points_at(0, 1)
     image.columns_of(0, 4)
+    image.points_in(range(2), range(4))
     image.pyramid.prepare()
 
 

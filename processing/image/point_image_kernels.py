@@ -66,21 +66,25 @@ def shown_point(layout: PixelLayout, row: int, start: int, end: int) -> int:
 
 
 @kernel
-def raster_kernel(layout: PixelLayout, window: _Integers, raster: _Integers) -> None:
+def raster_kernel(layout: PixelLayout, window: _Integers, raster: _Integers) -> bool:
     """Fill a raster with the point shown in every pixel, −1 where there is none.
 
-    ``window``: first row, step, first column, end of columns.
+    ``window``: first row, step, first column, end of columns, width of the image. False, and
+    half a raster, where columns fall within a row or lie outside of the image.
     """
     step, first_column = window[1], window[2]
     for i in range(raster.shape[0]):
         row = window[0] + i * step
         stop = layout.row_starts[row + 1]
         raster[i, :] = -1
-        point = first_at_column(layout, row, first_column)
+        point, least = first_at_column(layout, row, first_column), first_column
         while point < stop:
             column = _column(layout, row, point)
+            if column < least or column >= window[4]:
+                return False
             if column >= window[3]:
                 break
+            least = column
             end = point + 1
             while end < stop and _column(layout, row, end) == column:
                 end += 1
@@ -89,23 +93,27 @@ def raster_kernel(layout: PixelLayout, window: _Integers, raster: _Integers) -> 
             point = end
             if step > 1:
                 point = _skip_to(layout, row, end, first_column + (j + 1) * step)
+    return True
 
 
 @kernel
 def noiseless_raster_kernel(
     layout: PixelLayout, classes: ClassColumns, window: _Integers, raster: _Integers
-) -> None:
+) -> bool:
     """As :func:`raster_kernel`, but points of noise are not there."""
     step, first_column = window[1], window[2]
     for i in range(raster.shape[0]):
         row = window[0] + i * step
         stop = layout.row_starts[row + 1]
         raster[i, :] = -1
-        point = first_at_column(layout, row, first_column)
+        point, least = first_at_column(layout, row, first_column), first_column
         while point < stop:
             column = _column(layout, row, point)
+            if column < least or column >= window[4]:
+                return False
             if column >= window[3]:
                 break
+            least = column
             end = point + 1
             while end < stop and _column(layout, row, end) == column:
                 end += 1
@@ -116,30 +124,43 @@ def noiseless_raster_kernel(
                 raster[i, j] = shown
                 if step > 1:
                     point = _skip_to(layout, row, end, first_column + (j + 1) * step)
+    return True
 
 
 @kernel
-def columns_kernel(layout: PixelLayout, first: _Integers, columns: NDArray[np.int32]) -> None:
-    """Columns of consecutive points; ``first``: the first point and its row."""
-    point, row = first[0], first[1]
+def columns_kernel(layout: PixelLayout, first: _Integers, columns: NDArray[np.int32]) -> bool:
+    """Columns of consecutive points; ``first``: the first point, its row, width of the image.
+
+    False, and only some columns, where they fall within a row or lie outside of the image.
+    """
+    point, row, least = first[0], first[1], 0
     for i in range(columns.size):
         while point + i >= layout.row_starts[row + 1]:
             row += 1
-        columns[i] = _column(layout, row, point + i)
+            least = 0
+        column = _column(layout, row, point + i)
+        if column < least or column >= first[2]:
+            return False
+        columns[i] = least = column
+    return True
 
 
 @kernel
-def stretches_kernel(layout: PixelLayout, windows: _Integers, stretches: _Integers) -> None:
+def stretches_kernel(layout: PixelLayout, windows: _Integers, stretches: _Integers) -> bool:
     """The points of windows, row by row: (rows of all windows, 2) first and end.
 
-    ``windows``: first and end row, first and end column.
+    ``windows``: first and end row, first and end column. False where an end comes before its
+    first, as it does only where pulses fall.
     """
     line = 0
     for k in range(windows.shape[0]):
         for row in range(windows[k, 0], windows[k, 1]):
             stretches[line, 0] = first_at_column(layout, row, windows[k, 2])
             stretches[line, 1] = first_at_column(layout, row, windows[k, 3])
+            if stretches[line, 1] < stretches[line, 0]:
+                return False
             line += 1
+    return True
 
 
 @kernel

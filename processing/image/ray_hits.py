@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from processing.image.clip import Clip
 from processing.image.point_image import PointCloudImage
-from processing.image.point_image_kernels import stretches_kernel
 from processing.image.tiles import TileKey
 from processing.kernels import kernel
 from processing.points.counted_classes import class_columns
@@ -109,8 +108,7 @@ class RayHits:
         """
         rows, columns = image.pyramid.rows_columns(key)
         window = np.array([[rows.start, rows.stop, columns.start, columns.stop]])
-        stretches = np.empty((len(rows), 2), np.int64)
-        stretches_kernel(image.layout, window, stretches)
+        stretches = image.stretches_in(window)
         room = int((stretches[:, 1] - stretches[:, 0]).sum())
         xyz = drive.columns["xyz"].view(np.ndarray)
         matrix = self._matrix_of_integers(drive.info.scale, drive.info.offset)

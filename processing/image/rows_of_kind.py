@@ -8,17 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.kinds import ImageKind
+from processing.points.damaged_pulses import damaged_pulses
 
 FIXED_WIDTH_SHARE = 0.99
 """Width of the fixed-width kinds in pulses per turn: a little less, so that no stripes appear."""
 
 _Integers = NDArray[np.int64]
+
+_MOST_ROWS = 1 << 25
+"""More than a scanner of 200 Hz makes in a day and a half: no recording has as many."""
 
 
 class Revolutions(Protocol):
@@ -106,7 +111,9 @@ class RowPlan:
         )
 
 
-def plan_of_turns(kind: ImageKind, turns: Revolutions, pulses: _Integers) -> RowPlan:
+def plan_of_turns(
+    kind: ImageKind, turns: Revolutions, pulses: _Integers, folder: Path | None = None
+) -> RowPlan:
     """The rows of a recording with revolutions.
 
     Pulses before the first and after the last fold of a stretch get rows of the usual length, so
@@ -116,11 +123,21 @@ def plan_of_turns(kind: ImageKind, turns: Revolutions, pulses: _Integers) -> Row
     ----------
     pulses : (n,) int64
         Pulse of every point, not decreasing.
+    folder : Path, optional
+        The recording's, to be named where it is damaged.
+
+    Raises
+    ------
+    BadFile
+        Pulses fall between stops, or there are more rows than any recording has.
     """
     pulses_per_turn = max(1, round(turns.pulses_per_turn))
+    stretches = list(_stretches(turns, pulses, pulses_per_turn))
+    if not all(stretch.is_possible(pulses_per_turn) for stretch in stretches):
+        raise damaged_pulses(folder)
     parts = [
-        _rows_of_stretch(kind, stretch, pulses_per_turn)
-        for stretch in _stretches(turns, pulses, pulses_per_turn)
+        _rows_of_stretch(kind, stretch.covered(pulses_per_turn), pulses_per_turn)
+        for stretch in stretches
     ]
     edges = [part[0] for part in parts]
     origins = np.concatenate([edge[:-1] for edge in edges] or [np.empty(0, np.int64)])
@@ -135,14 +152,23 @@ def plan_of_turns(kind: ImageKind, turns: Revolutions, pulses: _Integers) -> Row
     return RowPlan(firsts, ends, origins, spans, width, segments, np.full_like(spans, width))
 
 
-def plan_of_cells(cells_per_row: int, cells: _Integers) -> RowPlan:
+def plan_of_cells(cells_per_row: int, cells: _Integers, folder: Path | None = None) -> RowPlan:
     """The rows of a top view or a standing scanner's grid, whose cells play the pulses.
 
     Parameters
     ----------
     cells : (n,) int64
         Cell of every point, not decreasing.
+    folder : Path, optional
+        The recording's, to be named where it is damaged.
+
+    Raises
+    ------
+    BadFile
+        Cells are less than 0, or more than any recording has.
     """
+    if cells.size and not 0 <= int(cells[0]) <= int(cells[-1]) < _MOST_ROWS * cells_per_row:
+        raise damaged_pulses(folder)
     rows = int(cells[-1]) // cells_per_row + 1 if cells.size else 0
     firsts = np.arange(rows, dtype=np.int64) * cells_per_row
     return RowPlan(
@@ -158,11 +184,25 @@ def plan_of_cells(cells_per_row: int, cells: _Integers) -> RowPlan:
 
 @dataclass(frozen=True)
 class _Stretch:
-    """Pulses ``start … stop − 1`` between two stops, and folds that cover them."""
+    """Pulses ``start … stop − 1`` between two stops, and the folds between them."""
 
     start: int
     stop: int
     folds: _Integers
+
+    def is_possible(self, pulses_per_turn: int) -> bool:
+        """Whether pulses don't fall in it, and no more rows cover it than a recording has."""
+        first, last = min(self.start, int(self.folds[0])), max(self.stop, int(self.folds[-1]))
+        return self.start < self.stop and (last - first) // pulses_per_turn < _MOST_ROWS
+
+    def covered(self, pulses_per_turn: int) -> _Stretch:
+        """The same with folds at the usual distance before and after, as far as it goes."""
+        folds = self.folds
+        before = max(0, -(-(int(folds[0]) - self.start) // pulses_per_turn))
+        after = max(0, -(-(self.stop - int(folds[-1])) // pulses_per_turn))
+        firsts = folds[0] - pulses_per_turn * np.arange(before, 0, -1, dtype=np.int64)
+        lasts = folds[-1] + pulses_per_turn * np.arange(1, after + 1, dtype=np.int64)
+        return _Stretch(self.start, self.stop, np.concatenate([firsts, folds, lasts]))
 
 
 def _stretches(turns: Revolutions, pulses: _Integers, pulses_per_turn: int) -> Iterator[_Stretch]:
@@ -182,20 +222,8 @@ def _stretches(turns: Revolutions, pulses: _Integers, pulses_per_turn: int) -> I
             # The laser stopped in this revolution; the next fold belongs to after the stop.
             folds[-1] = max(int(folds[-2]) + pulses_per_turn, limit)
         start, stop = int(pulses[after]), int(pulses[end - 1]) + 1
-        yield _Stretch(start, stop, _covering(np.unique(folds), start, stop, pulses_per_turn))
+        yield _Stretch(start, stop, np.unique(folds))
         after = end
-
-
-def _covering(folds: _Integers, start: int, stop: int, pulses_per_turn: int) -> _Integers:
-    before = max(0, -(-(int(folds[0]) - start) // pulses_per_turn))
-    after = max(0, -(-(stop - int(folds[-1])) // pulses_per_turn))
-    return np.concatenate(
-        [
-            folds[0] - pulses_per_turn * np.arange(before, 0, -1, dtype=np.int64),
-            folds,
-            folds[-1] + pulses_per_turn * np.arange(1, after + 1, dtype=np.int64),
-        ]
-    )
 
 
 def _rows_of_stretch(

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from processing.image.scanline_arrays import PointArrays
 from processing.points.counted_classes import class_columns
+from processing.points.damaged_pulses import damaged_pulses
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch
 from processing.points.pass_kernels import advanced_kernel, local_kernel
@@ -145,6 +146,8 @@ def read_rows(
     pulses = drive.columns["pulse"]
     bounds = [int(rows.ends[0, 0]), int(rows.ends[:, 1].max())]
     start, stop = (int(end) for end in np.searchsorted(pulses, bounds))
+    if start > stop:
+        raise damaged_pulses(drive.folder)
     read = {
         name: read_stretch(drive.folder, name, start, stop)
         for name in ("pulse", "xyz", "time", "intensity")

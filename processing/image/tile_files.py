@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.kinds import ImageKind
+from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
+from processing.owned_files import new_file
 from processing.points.array_files import read_array, read_arrays
 
 Floats = NDArray[np.float64]
@@ -44,7 +46,7 @@ class TileFiles:
         except (OSError, ValueError, EOFError):
             return None
         is_table = table.shape == self._shape and table.dtype == np.float64
-        return table if is_table else None
+        return table if is_table and _are_facts(table) else None
 
     def begun(self, sums: tuple[int, int], rows: tuple[int, ...]) -> tuple[Floats, Flags] | None:
         """Sums and which rows of tiles they hold; None where none of these shapes were kept."""
@@ -57,7 +59,7 @@ class TileFiles:
             return None
         is_such = found[0].shape == sums and found[1].shape == rows
         is_such &= found[0].dtype == np.float64 and found[1].dtype == np.bool_
-        return found if is_such else None
+        return found if is_such and _are_facts(found[0]) else None
 
     def keep_whole(self, table: Floats) -> None:
         """Write the table, which makes what was begun useless."""
@@ -71,10 +73,19 @@ class TileFiles:
             _write(self._begun, lambda file: np.savez(file, sums=sums, done=done))
 
 
+def _are_facts(table: Floats) -> bool:
+    """Whether places are known or there are none, and counts and distances are numbers."""
+    low, high, rest = table[:, LOWEST], table[:, HIGHEST], table[:, COUNT:]
+    is_empty = (low == np.inf).all(axis=1) & (high == -np.inf).all(axis=1)
+    is_box = np.isfinite(low).all(axis=1) & np.isfinite(high).all(axis=1)
+    are_boxes = is_box & (low <= high).all(axis=1) | is_empty
+    return bool(are_boxes.all() and ((rest >= 0) & (rest < np.inf)).all())
+
+
 def _write(path: Path, write: Callable[[BinaryIO], None]) -> None:
     temporary = path.with_suffix(f".{threading.get_ident()}.part")
     try:
-        with temporary.open("wb") as file:
+        with new_file(temporary) as file:
             write(file)
         temporary.replace(path)
     except OSError:

@@ -26,7 +26,7 @@ class TouchedTiles:
         self._finest = np.zeros((max(1, rows), max(1, columns)), dtype=np.bool_)
         if points.size and image.rows:
             row = int(np.searchsorted(image.row_starts, points[0], side="right")) - 1
-            _touch_kernel(image.layout, points, max(row, 0), self._finest)
+            _touch_kernel(image.layout, points, min(max(row, 0), image.rows - 1), self._finest)
 
     def __contains__(self, key: TileKey) -> bool:
         """Whether a tile shows one of the points, or would if it were sharper."""
@@ -39,15 +39,21 @@ class TouchedTiles:
 def _touch_kernel(
     layout: PixelLayout, points: NDArray[np.int64], row: int, touched: NDArray[np.bool_]
 ) -> None:
-    """Mark the tile of every point; the first is in ``row`` or behind it."""
+    """Mark the tile of every point; the first is in ``row`` or behind it.
+
+    Points that the recording doesn't have, and those whose pulse is damaged, are in no tile.
+    """
     rows = layout.row_starts.size - 1
     for k in range(points.size):
         point = points[k]
+        if not 0 <= point < layout.pulses.size:
+            continue
         while row < rows - 1 and layout.row_starts[row + 1] <= point:
             row += 1
         doubled = 2 * layout.pulses[point] - layout.origins[row]
         column = doubled * layout.per_span // layout.spans[row]
-        touched[row // TILE, column // TILE] = True
+        if 0 <= column < TILE * touched.shape[1]:
+            touched[row // TILE, column // TILE] = True
 
 
 def warm_up() -> None:

@@ -6,6 +6,8 @@ Python 3.11 counts the depth of what it parses for all threads together (python/
 
 from __future__ import annotations
 
+import struct
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from threading import Lock
@@ -13,6 +15,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+# What the parsers of headers and archives raise beside what they are documented to raise.
+_DAMAGE = (RuntimeError, MemoryError, SyntaxError, struct.error, zlib.error)
 
 _TRIES = 5
 _reading = Lock()
@@ -54,9 +59,12 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
 
 def _tried(read: Callable[[], _Found]) -> _Found:
     with _reading:
-        for _ in range(_TRIES - 1):
-            try:
-                return read()
-            except SystemError:  # other threads may parse something else; the next time goes well
-                continue
-        return read()
+        try:
+            for _ in range(_TRIES - 1):
+                try:
+                    return read()
+                except SystemError:  # other threads may parse too; the next time goes well
+                    continue
+            return read()
+        except _DAMAGE as error:
+            raise ValueError(str(error)) from error

@@ -221,8 +221,14 @@ class Drive:
             Index into ``info.sources``.
         indices : (n,) int64
             Index of the point in that file.
+
+        Raises
+        ------
+        BadFile
+            The columns that say it are damaged.
         """
-        return sources_of(self.columns, self.info.source_runs, start, stop)
+        runs, sources = self.info.source_runs, len(self.info.sources)
+        return sources_of(self.columns, runs, start, stop, sources=sources)
 
     def image(self, kind: ImageKind) -> PointCloudImage:
         """The recording as an image of one kind; made once, then kept.
@@ -314,10 +320,34 @@ def write_trajectory(folder: Path, trajectory: Trajectory) -> None:
 
 def _read_trajectory(path: Path) -> Trajectory:
     with told_as_user_error(path):
-        table = read_array(path)
+        try:
+            table = read_array(path)
+            _check_trajectory(table)
+        except (ValueError, EOFError) as error:
+            raise BadFile(
+                Text(
+                    "The trajectory of a drive is damaged.",
+                    "走行データの走行軌跡が壊れています。",
+                ),
+                Text.same(f"{path}: {error}"),
+                Text(
+                    "Import the drive again from the delivered files.",
+                    "納品ファイルから走行データを再インポートしてください。",
+                ),
+            ) from error
     return Trajectory(
         time=table[:, 0],
         xyz=table[:, 1:4],
         roll_pitch_heading_deg=table[:, 4:7],
         has_attitude=True,
     )
+
+
+def _check_trajectory(table: NDArray[np.float64]) -> None:
+    """Refuse by a ValueError what no place can be taken from."""
+    if table.ndim != 2 or table.shape[1] != 7 or len(table) < 2 or table.dtype != np.float64:
+        message = f"{table.dtype} {table.shape}"
+        raise ValueError(message)
+    if not np.isfinite(table[:, :4]).all() or not (table[:-1, 0] < table[1:, 0]).all():
+        message = "time"
+        raise ValueError(message)

@@ -19,7 +19,7 @@ from processing.errors import told_as_user_error
 from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.points.ordering import read_stretch, stretches
-from processing.points.source_order import FILE, INDEX, SourceRun
+from processing.points.source_order import FILE, INDEX, SourceRun, check_sources
 
 # Any: each column has its own type.
 Values = dict[str, NDArray[Any]]
@@ -79,6 +79,7 @@ class DeliveredOrder:
                 done += stop - start
                 files = read_stretch(drive.folder, FILE, start, stop)
                 indices = read_stretch(drive.folder, INDEX, start, stop)
+                check_sources(drive.folder, files, indices, len(paths))
                 self._dealt.add(paths, files, indices, self._read(drive, start, stop))
 
     def values(self, source: Path, start: int, stop: int) -> Values:

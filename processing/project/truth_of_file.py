@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -12,8 +11,10 @@ from numpy.typing import NDArray
 from processing.errors import BadFile, told_as_user_error
 from processing.formats.point_codes import read_truth
 from processing.monitor import Monitor, PartMonitor
+from processing.owned_files import remove_folder
 from processing.points.columns import ColumnWriter, column_path
 from processing.points.drive import Drive
+from processing.points.source_order import damaged_sources
 from processing.project.scratch_folder import whole_folder
 from processing.project.truth_making import OTHER, MadeTruth
 from processing.project.truth_store import TRUTH
@@ -77,7 +78,7 @@ def truth_of_file(
             folders[drive.id] = into / drive.id
             known[drive.id] = _write(drive, source, codes, folders[drive.id], part)
         del codes
-        shutil.rmtree(scratch, ignore_errors=True)
+        remove_folder(scratch)
     return MadeTruth(folders, known)
 
 
@@ -97,6 +98,8 @@ def _write(
             files, indices = drive.sources(start, stop)
             found = np.zeros(stop - start, np.uint8)
             is_here = files == number
+            if is_here.any() and int(indices[is_here].max()) >= codes.size:
+                raise damaged_sources(drive.folder)
             found[is_here] = np.maximum(codes[indices[is_here]], np.uint8(OTHER))
             known += int(np.count_nonzero(is_here))
             writer.append({TRUTH: found})

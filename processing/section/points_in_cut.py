@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.point_image_kernels import PixelLayout, stretches_kernel
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.image.tiles import TileKey
 from processing.kernels import kernel
@@ -63,7 +62,7 @@ def points_in_cut(
     if drive.count == 0:
         return np.empty(0, np.int64)
     image = drive.image(drive.image_kinds[-1])
-    stretches = _stretches(image.layout, _tiles_touched(drive, cut))
+    stretches = image.stretches_in(_tiles_touched(drive, cut))
     found = np.empty(int((stretches[:, 1] - stretches[:, 0]).sum()), np.int64)
     count = _inside_kernel(
         np.asarray(drive.columns["xyz"]),
@@ -125,13 +124,6 @@ def _tiles_touched(drive: Drive, cut: Cut) -> _Integers:
     return windows
 
 
-def _stretches(layout: PixelLayout, windows: _Integers) -> _Integers:
-    """(m, 2): first and end of the consecutive points of each row of the tiles."""
-    stretches = np.empty((int((windows[:, 1] - windows[:, 0]).sum()), 2), np.int64)
-    stretches_kernel(layout, windows, stretches)
-    return stretches
-
-
 def _plan_of(drive: Drive, cut: Cut) -> _Floats:
     """The cut about the drive's offset: east, north, direction, half length, half width."""
     offset = drive.info.offset
@@ -162,12 +154,8 @@ def _inside_kernel(
 
 
 def warm_up() -> None:
-    """Compile the kernels for mapped columns, which are read-only."""
-    xyz, numbers = np.zeros((1, 3), np.int32), np.zeros(2, np.int64)
-    for array in (xyz, numbers):
-        array.flags.writeable = False
-    layout = PixelLayout(numbers, numbers, numbers, numbers, 1)
-    stretches = np.array([[0, 1]])
-    stretches_kernel(layout, np.array([[0, 1, 0, 1]]), stretches)
+    """Compile the kernel for mapped columns, which are read-only."""
+    xyz = np.zeros((1, 3), np.int32)
+    xyz.flags.writeable = False
     plan = np.array([0.0, 0.0, 1.0, 0.0, 1.0, 1.0])
     _inside_kernel(xyz, np.ones(2), np.array([[0, 1]]), plan, np.empty(1, np.int64))

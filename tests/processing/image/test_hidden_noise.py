@@ -94,7 +94,7 @@ def test_a_pixel_shows_its_next_good_point_or_nothing(
     if step == 1:
         np.testing.assert_array_equal(raster[is_good], shown[is_good])
     plain = np.empty_like(raster)
-    window = np.array([0, step, 0, image.width])
+    window = np.array([0, step, 0, image.width, image.width])
     noiseless_raster_kernel.py_func(image.layout, classes, window, plain)
     np.testing.assert_array_equal(plain, raster)
 
@@ -104,7 +104,7 @@ def test_without_any_noise_hiding_it_changes_nothing(tmp_path: Path) -> None:
     image = drive.image(ImageKind.TRAJECTORY_CENTER)
     shape = image.rows, image.width
     one, other = np.empty(shape, np.int64), np.empty(shape, np.int64)
-    window = np.array([0, 1, 0, image.width])
+    window = np.array([0, 1, 0, image.width, image.width])
     raster_kernel(image.layout, window, one)
     noiseless_raster_kernel(image.layout, class_columns(drive.columns), window, other)
     np.testing.assert_array_equal(one, other)

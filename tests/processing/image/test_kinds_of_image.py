@@ -171,10 +171,10 @@ def test_kernels_do_the_same_without_the_compiler() -> None:
     layout = image.layout
     compiled = image.raster(range(image.rows), range(image.width), 2)
     plain = np.empty_like(compiled)
-    raster_kernel.py_func(layout, np.array([0, 2, 0, image.width]), plain)  # type: ignore[attr-defined]
+    raster_kernel.py_func(layout, np.array([0, 2, 0, image.width, image.width]), plain)  # type: ignore[attr-defined]
     assert plain.tolist() == compiled.tolist()
     columns = np.empty(10, np.int32)
-    columns_kernel.py_func(layout, np.array([0, 0]), columns)  # type: ignore[attr-defined]
+    columns_kernel.py_func(layout, np.array([0, 0, image.width]), columns)  # type: ignore[attr-defined]
     assert columns.tolist() == image.columns_of(0, 10).tolist()
     assert first_at.py_func(layout.pulses, 0, 10, 106) == 2  # type: ignore[attr-defined]
     assert first_at_column.py_func(layout, 1, 0) == image.row_starts[1]  # type: ignore[attr-defined]
