@@ -8,19 +8,23 @@ from pathlib import Path
 
 from processing.cameras.image_list import CameraImage, ImageList
 from processing.errors import BadFile, told_as_user_error
+from processing.owned_files import new_file
 from processing.text import Text
 
 _FILE_NAME = "images.json"
 
 
 def write_images(folder: Path, images: ImageList) -> None:
-    """Note a drive's images in its folder."""
+    """Note a drive's images in its folder, whole or not at all."""
     noted = [{**dataclasses.asdict(image), "path": str(image.path.absolute())} for image in images]
     path = folder / _FILE_NAME
+    temporary = path.with_suffix(".part")
     with told_as_user_error(path):
         text = json.dumps(noted, ensure_ascii=False)
-        # Names of files may be no text; JSON reads them back.
-        path.write_text(text, encoding="utf-8", errors="backslashreplace")
+        with new_file(temporary) as file:
+            # Names of files may be no text; JSON reads them back.
+            file.write(text.encode("utf-8", errors="backslashreplace"))
+        temporary.replace(path)
 
 
 def read_images(folder: Path) -> ImageList | None:

@@ -34,6 +34,7 @@ COLUMN_TYPES: Mapping[str, tuple[str, int]] = {
     "scan_angle_deg": ("<f4", 1),
     "origin": ("<f8", 3),
     "grid": ("<i4", 2),
+    "place_before": ("<i8", 1),
     "normal": ("i1", 3),
     "shape": ("u1", 3),
     "segment": ("<i4", 1),

@@ -21,8 +21,26 @@ class Replacement:
 
 
 @dataclass(frozen=True)
+class ListedDrive:
+    """A drive as the project lists it.
+
+    Attributes
+    ----------
+    id : str
+    place : int
+        By which drives are in their order.
+    folder : str
+        Name of its folder.
+    """
+
+    id: str
+    place: int
+    folder: str
+
+
+@dataclass(frozen=True)
 class Change:
-    """Features added, replaced and removed, and points labelled, in one step.
+    """Features added, replaced and removed, points labelled, drives removed, in one step.
 
     A feature is named at most once in a change, and a point too.
 
@@ -30,6 +48,8 @@ class Change:
     ----------
     filed : FiledLabels or None
         Labels of many points, in place of ``labels``.
+    removed_drives, restored_drives : tuple of ListedDrive
+        Drives that leave the project, or come back; their folders stay until it is closed.
     """
 
     added: tuple[Feature, ...] = ()
@@ -37,12 +57,15 @@ class Change:
     removed: tuple[Feature, ...] = ()
     labels: tuple[LabelChange, ...] = ()
     filed: FiledLabels | None = None
+    removed_drives: tuple[ListedDrive, ...] = ()
+    restored_drives: tuple[ListedDrive, ...] = ()
 
     @property
     def is_empty(self) -> bool:
         """Whether nothing changes."""
         is_labelling = self.labels or (self.filed is not None and self.filed.parts)
-        return not (self.added or self.replaced or self.removed or is_labelling)
+        lists_drives = self.removed_drives or self.restored_drives
+        return not (self.added or self.replaced or self.removed or is_labelling or lists_drives)
 
     @property
     def feature_ids(self) -> tuple[str, ...]:
@@ -61,4 +84,6 @@ class Change:
             removed=self.added,
             labels=tuple(one.inverse() for one in self.labels),
             filed=None if self.filed is None else self.filed.inverse(),
+            removed_drives=self.restored_drives,
+            restored_drives=self.removed_drives,
         )

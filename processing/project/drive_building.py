@@ -45,7 +45,7 @@ from processing.project.trajectory_choice import NamedTrajectory, match_trajecto
 from processing.text import Text
 
 _SAMPLE_POINTS = 200_000
-_SOURCES, _SORTED, _ROWS, _SORTED_BY_CELL = "sources", "sorted", "rows", "sorted by cell"
+SOURCES, _SORTED, _ROWS, _SORTED_BY_CELL = "sources", "sorted", "rows", "sorted by cell"
 _FINDING = Text("Finding turns and pulses of {name}", "{name} の回転とパルスを推定中")
 _SORTING = Text("Restoring the time order of {name}", "{name} の時刻順を復元中")
 _LEAST_FILLED = 0.02
@@ -124,7 +124,7 @@ def build_drive(
         return steps.final
     steps.go_on()
     name = _name_of(recording, plan)
-    recording.has_source_columns = steps.known(_SOURCES) is not None
+    recording.has_source_columns = steps.known(SOURCES) is not None
     if recording.needs_source_columns:
         _names_to_sort(recording, steps)
     rows_known = steps.known(_ROWS)
@@ -253,7 +253,7 @@ def _names_to_sort(recording: Recording, steps: BuildSteps) -> tuple[str, ...]:
     """All columns; those that say where points were delivered are among them."""
     if not recording.has_source_columns:
         recording.write_source_columns()
-        steps.note(_SOURCES, {})
+        steps.note(SOURCES, {})
     return recording.names
 
 

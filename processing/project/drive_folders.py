@@ -5,19 +5,25 @@ from __future__ import annotations
 import sqlite3
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from itertools import count
 from pathlib import Path
 from uuid import uuid4
 
 from processing.errors import UserError, told_as_user_error
 from processing.owned_files import remove_emptied, remove_folder
+from processing.project.change import Change, ListedDrive
 from processing.project.database import Database
 from processing.project.database_errors import damaged
+from processing.project.history import History
 from processing.project.import_journal import PLAN
 from processing.project.project_settings import JsonValue, ProjectSettings, write_setting
 from processing.project.unfinished_imports import TEMPORARY, remove_import, remove_litter
 
 DRIVES = "drives"
 _ARRIVING = "arriving_drives"
+_NAMES = "drive_folders"
+_LEAVING = "leaving_drives"
+_INSERT = "INSERT INTO zuka_drives VALUES (?, ?)"
 
 
 class DriveFolders:
@@ -25,22 +31,36 @@ class DriveFolders:
 
     Before folders are moved in, the database notes which, and where from: what a killed program
     moved in without recording it goes back by that note, and no other folder is ever touched.
+
+    A folder that a drive no longer has stays where it is, since undo may want it. The database
+    notes that it leaves, and it goes when the project is closed, or opened after a kill.
     """
 
     def __init__(self, folder: Path, database: Database, settings: ProjectSettings) -> None:
         self._folder = folder
         self._database = database
         self._settings = settings
-        self.ids = tuple(
-            str(id_) for (id_,) in database.rows("SELECT id FROM zuka_drives ORDER BY place")
-        )
-        for id_ in self.ids:
-            if not _is_name(id_):
-                raise damaged(database.path, f"zuka_drives.id: {id_}")
+        self._leaving_soon: dict[str, int] = {}
+        self._places: dict[str, int] = {}
+        self._read()
+
+    @property
+    def ids(self) -> tuple[str, ...]:
+        """The ids of all drives, in their order."""
+        return tuple(self._places)
+
+    @property
+    def taken(self) -> tuple[str, ...]:
+        """Ids that no new drive may get: those of all drives, and of those that leave."""
+        return tuple({**self._places, **dict.fromkeys(map(_id_in, self._leaving()))})
 
     def path_of(self, id: str) -> Path:  # noqa: A002 - the word of the trade
         """A drive's folder."""
-        return self._folder / DRIVES / id
+        return self._folder / DRIVES / self._name_of(id)
+
+    def listed(self, id: str) -> ListedDrive:  # noqa: A002 - the word of the trade
+        """A drive as it is listed; KeyError when there is none of that id."""
+        return ListedDrive(id, self._places[id], self._name_of(id))
 
     def temporary(self) -> Path:
         """A new name for a folder of drives; what is left there goes at the next opening."""
@@ -62,7 +82,7 @@ class DriveFolders:
         NoSpace, InUse
             The folders are where they were.
         """
-        known = [id_ for id_ in folders if id_ in self.ids or self.path_of(id_).exists()]
+        known = [id_ for id_ in folders if id_ in self.taken or self.path_of(id_).exists()]
         if known:
             message = f"the project has these drives: {known}"
             raise ValueError(message)
@@ -76,22 +96,114 @@ class DriveFolders:
                     folder.rename(target)
                 moved.append((folder, target))
             with self._database.transaction() as connection:
-                places = range(len(self.ids), len(self.ids) + len(folders))
-                connection.executemany(
-                    "INSERT INTO zuka_drives VALUES (?, ?)", zip(folders, places, strict=True)
-                )
+                first = max(self._places.values(), default=-1) + 1
+                places = range(first, first + len(folders))
+                connection.executemany(_INSERT, zip(folders, places, strict=True))
                 write_setting(connection, _ARRIVING, [])
                 yield connection
         except BaseException:
             self._move_back(moved)
             raise
         self._settings.took(_ARRIVING, [])
-        self.ids = (*self.ids, *folders)
+        self._read()
         for parent in {folder.parent for folder in folders.values()}:
             # The import's own folder, once the last drive is gone from it.
             if (parent / PLAN).exists():
                 remove_import(parent)
             remove_emptied(parent)
+
+    @contextmanager
+    def replacing(self, folders: Mapping[str, Path]) -> Iterator[sqlite3.Connection]:
+        """Let drives have other folders from now on, in one transaction with the body.
+
+        Parameters
+        ----------
+        folders : mapping of str to Path
+            Finished temporary folders by the id of a drive of the project.
+
+        Raises
+        ------
+        NoSpace, InUse
+            The folders are where they were, and the drives have those that they had.
+        """
+        names = {id_: self._free_name(id_) for id_ in folders}
+        old, leaving = {self._name_of(id_) for id_ in folders}, self._leaving()
+        # A kill before the transaction leaves a folder that no drive has: it is noted first.
+        self._settings.put(_LEAVING, {**leaving, **dict.fromkeys(names.values(), 0)})
+        moved: list[tuple[Path, Path]] = []
+        try:
+            for id_, folder in folders.items():
+                target = self._folder / DRIVES / names[id_]
+                with told_as_user_error(target):
+                    folder.rename(target)
+                moved.append((folder, target))
+            with self._database.transaction() as connection:
+                told = {**self._table(_NAMES), **names}
+                write_setting(connection, _NAMES, told)
+                write_setting(connection, _LEAVING, {**leaving, **dict.fromkeys(old, 0)})
+                yield connection
+        except BaseException:
+            self._move_back(moved)
+            with suppress(UserError):
+                self._settings.put(_LEAVING, {**leaving})
+            raise
+        self._settings.took(_NAMES, told)
+        self._settings.took(_LEAVING, {**leaving, **dict.fromkeys(old, 0)})
+
+    def write(self, connection: sqlite3.Connection, change: Change, place: int) -> None:
+        """Write which drives there are after a change, in the caller's transaction.
+
+        Parameters
+        ----------
+        place : int
+            Of the change in the history; what leaves is wanted as long as it may be undone.
+        """
+        if not (change.removed_drives or change.restored_drives):
+            return
+        leaving = {
+            **self._leaving(),
+            **dict.fromkeys((one.folder for one in change.removed_drives), place),
+        }
+        for one in change.restored_drives:
+            leaving.pop(one.folder, None)
+        connection.executemany(
+            "DELETE FROM zuka_drives WHERE id = ?", [(one.id,) for one in change.removed_drives]
+        )
+        connection.executemany(_INSERT, [(one.id, one.place) for one in change.restored_drives])
+        write_setting(connection, _LEAVING, {**leaving})
+        self._leaving_soon = leaving
+
+    def follow(self) -> None:
+        """The transaction of :meth:`write` is through."""
+        self._settings.took(_LEAVING, {**self._leaving_soon})
+        self._read()
+
+    def remove_leaving(self, history: History) -> None:
+        """Remove the folders that no drive has any longer; undo can't bring them back then."""
+        leaving = self._leaving()
+        if not leaving:
+            return
+        last = max(leaving.values())
+        # On a full disk they stay until the next time.
+        with suppress(UserError):
+            if last:
+                with self._database.transaction() as connection:
+                    standing = history.end_undo(connection, last)
+                history.ended_undo(standing, last)
+            self._remove(leaving)
+
+    def _remove(self, leaving: Mapping[str, int]) -> None:
+        kept = {self._name_of(id_) for id_ in self.ids}
+        for name in leaving:
+            if name not in kept and _is_name(name):
+                remove_folder(self._folder / DRIVES / name, self._folder)
+        # What a system holds on to goes the next time.
+        there = {
+            name: 0
+            for name in leaving
+            if name not in kept and _is_name(name) and (self._folder / DRIVES / name).exists()
+        }
+        self._settings.put(_LEAVING, {**there})
 
     def remove_leftovers(self) -> None:
         """Remove what was never part of the project, but for imports that can go on."""
@@ -115,12 +227,43 @@ class DriveFolders:
         with suppress(UserError):
             self._settings.put(_ARRIVING, [])
 
+    def _read(self) -> None:
+        rows = self._database.rows("SELECT id, place FROM zuka_drives ORDER BY place, id")
+        self._places = {str(id_): int(str(place)) for id_, place in rows}
+        for id_ in self._places:
+            if not _is_name(id_):
+                raise damaged(self._database.path, f"zuka_drives.id: {id_}")
+
+    def _name_of(self, id_: str) -> str:
+        name = self._table(_NAMES).get(id_)
+        return name if isinstance(name, str) and _is_name(name) else id_
+
+    def _free_name(self, id_: str) -> str:
+        """No drive's id has a dot in it."""
+        numbered = (f"{id_}.{number}" for number in count(2))
+        return next(name for name in numbered if not (self._folder / DRIVES / name).exists())
+
+    def _leaving(self) -> dict[str, int]:
+        """Folders that no drive has, and the places in the history that want them."""
+        return {
+            name: place for name, place in self._table(_LEAVING).items() if isinstance(place, int)
+        }
+
+    def _table(self, name: str) -> dict[str, JsonValue]:
+        stored = self._settings.get(name)
+        return stored if isinstance(stored, dict) else {}
+
     def _move_back(self, moved: Sequence[tuple[Path, Path]]) -> None:
         for folder, target in reversed(moved):
             with suppress(OSError):
                 target.rename(folder)
         with suppress(UserError):
             self._settings.put(_ARRIVING, [])
+
+
+def _id_in(name: str) -> str:
+    """The id of the drive that had a folder."""
+    return name.partition(".")[0]
 
 
 def _is_name(id_: str) -> bool:

@@ -14,6 +14,7 @@ from processing.text import Text
 _TRAJECTORY_WORDS = (b"time_s,easting_m", b"heading", b"azimuth")
 _IMAGE_WORD = b"omega_deg"
 _SBET_RECORD = 136
+POINTS, TRAJECTORY, IMAGES = "points", "trajectory", "images"
 
 DELIVERED_ENDINGS = (*POINT_ENDINGS, *TEXT_ENDINGS, *TRAJECTORY_ENDINGS)
 """How the names of files end that may belong to a delivery: points, trajectories, image lists."""
@@ -27,11 +28,8 @@ def request_of_files(files: tuple[Path, ...], crs: str) -> ImportRequest:
     MissingInput
         There are no point files among them, or a file can't be read.
     """
-    sorted_out: dict[str, list[Path]] = {"points": [], "trajectory": [], "images": []}
-    for path in _unfolded(files):
-        sorted_out[_content(path)].append(path)
-    points, trajectories, images = sorted_out.values()
-    if not points:
+    request = additions_of_files(files, crs)
+    if not request.inputs:
         raise MissingInput(
             Text("There are no point files among them.", "点群ファイルが含まれていません。"),
             Text.same(", ".join(path.name for path in files)),
@@ -42,6 +40,21 @@ def request_of_files(files: tuple[Path, ...], crs: str) -> ImportRequest:
                 "選んでください。",
             ),
         )
+    return request
+
+
+def additions_of_files(files: tuple[Path, ...], crs: str) -> ImportRequest:
+    """As :func:`request_of_files`, for a project with drives: points need not be among them.
+
+    Raises
+    ------
+    MissingInput
+        A file can't be read.
+    """
+    sorted_out: dict[str, list[Path]] = {POINTS: [], TRAJECTORY: [], IMAGES: []}
+    for path in _unfolded(files):
+        sorted_out[content_of(path)].append(path)
+    points, trajectories, images = sorted_out.values()
     return ImportRequest(tuple(points), tuple(trajectories), tuple(images), crs)
 
 
@@ -59,16 +72,23 @@ def _unfolded(files: tuple[Path, ...]) -> list[Path]:
     return found
 
 
-def _content(path: Path) -> str:
+def content_of(path: Path) -> str:
+    """What a file holds: `POINTS`, `TRAJECTORY` or `IMAGES`.
+
+    Raises
+    ------
+    MissingInput
+        It can't be read.
+    """
     if path.suffix.lower() in POINT_ENDINGS or path.is_dir():
-        return "points"
+        return POINTS
     with told_as_user_error(path):
         size = path.stat().st_size
         with path.open("rb") as file:
             start = file.read(2048)
     first_line = start.splitlines()[0].lower() if start else b""
     if _IMAGE_WORD in first_line:
-        return "images"
+        return IMAGES
     is_table = any(word in first_line for word in _TRAJECTORY_WORDS)
     is_sbet = b"\0" in start and size % _SBET_RECORD == 0
-    return "trajectory" if is_table or is_sbet else "points"
+    return TRAJECTORY if is_table or is_sbet else POINTS

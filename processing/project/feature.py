@@ -8,6 +8,9 @@ from dataclasses import dataclass, field
 from enum import Enum
 from uuid import uuid4
 
+import numpy as np
+from numpy.typing import NDArray
+
 from processing.project.catalogue import Geometry
 
 AttributeValue = str | float | int | bool | None
@@ -101,6 +104,33 @@ class Feature:
     def with_vertices(self, vertices: tuple[Vertex, ...]) -> Feature:
         """The same feature in another place."""
         return dataclasses.replace(self, vertices=vertices)
+
+
+def with_points_at(feature: Feature, places: Mapping[str, NDArray[np.int64]]) -> Feature:
+    """A feature whose vertices rest on the same points, where drives have another order now.
+
+    Parameters
+    ----------
+    places : mapping of str to (n,) int64
+        By drive: where each of its points is now. Vertices on other drives stay as they are.
+
+    Returns
+    -------
+    Feature
+        The same object where nothing changes.
+    """
+
+    def moved(vertex: Vertex) -> Vertex:
+        rests = vertex.measured
+        if rests is None or rests.drive not in places:
+            return vertex
+        there = PointReference(rests.drive, int(places[rests.drive][rests.point]))
+        return dataclasses.replace(vertex, measured=there)
+
+    on = {vertex.measured.drive for vertex in feature.vertices if vertex.measured is not None}
+    if on.isdisjoint(places):
+        return feature
+    return feature.with_vertices(tuple(map(moved, feature.vertices)))
 
 
 def new_feature_id() -> str:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from processing.project.catalogue import Geometry
-from processing.project.change import Change, Replacement
+from processing.project.change import Change, ListedDrive, Replacement
 from processing.project.feature import (
     Feature,
     PointReference,
@@ -86,6 +86,8 @@ def change_to_json(change: Change) -> str:
             "replaced": [[_plain(r.before), _plain(r.after)] for r in change.replaced],
             "removed": [_plain(feature) for feature in change.removed],
             **({} if change.filed is None else {"filed": filed_to_plain(change.filed)}),
+            **_plain_drives("removed_drives", change.removed_drives),
+            **_plain_drives("restored_drives", change.restored_drives),
         }
     )
 
@@ -109,7 +111,18 @@ def change_from_json(text: str, label_steps: Path) -> Change:
         replaced=tuple(Replacement(_from_plain(b), _from_plain(a)) for b, a in stored["replaced"]),
         removed=tuple(_from_plain(one) for one in stored["removed"]),
         filed=filed_of_plain(stored["filed"], label_steps) if "filed" in stored else None,
+        removed_drives=_drives_from(stored.get("removed_drives", [])),
+        restored_drives=_drives_from(stored.get("restored_drives", [])),
     )
+
+
+def _plain_drives(name: str, drives: tuple[ListedDrive, ...]) -> dict[str, object]:
+    """Nothing where there are none, as in nearly every step."""
+    return {name: [[one.id, one.place, one.folder] for one in drives]} if drives else {}
+
+
+def _drives_from(plain: list[Any]) -> tuple[ListedDrive, ...]:
+    return tuple(ListedDrive(str(id_), int(place), str(name)) for id_, place, name in plain)
 
 
 def _plain(feature: Feature) -> dict[str, object]:

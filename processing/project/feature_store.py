@@ -4,20 +4,24 @@ from __future__ import annotations
 
 import gc
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+
+import numpy as np
+from numpy.typing import NDArray
 
 from processing.errors import UserError
 from processing.project.catalogue import Catalogue
 from processing.project.change import Change
 from processing.project.database import Database
 from processing.project.database_errors import changed_elsewhere, damaged
-from processing.project.feature import Feature
+from processing.project.feature import Feature, with_points_at
 from processing.project.feature_rows import COLUMNS, feature_of, row_of
 from processing.project.filed_labels import FiledLabels
 from processing.project.history import History, Standing
 from processing.project.label_layer import LabelLayer
 from processing.project.map_extent import Bounds, extent_after, extent_of
+from processing.project.open_drives import OpenDrives
 from processing.project.runs import Run, write_run
 from processing.text import Text
 
@@ -40,6 +44,8 @@ class FeatureStore:
     ----------
     labels : LabelLayer
         Written when the database has a change.
+    drives : OpenDrives
+        Of which steps may remove some.
 
     Raises
     ------
@@ -55,12 +61,14 @@ class FeatureStore:
         srs_id: int,
         *,
         labels: LabelLayer,
+        drives: OpenDrives,
     ) -> None:
         self._database = database
         self._history = history
         self._catalogue = catalogue
         self._srs_id = srs_id
         self._labels = labels
+        self._drives = drives
         self._features = self._stored()
         self._extent = self._stored_extent()
 
@@ -167,6 +175,39 @@ class FeatureStore:
         """The transaction of :meth:`rewrite_srs` is through."""
         self._srs_id = srs_id
 
+    def rewrite_points(
+        self, connection: sqlite3.Connection, places: Mapping[str, NDArray[np.int64]]
+    ) -> tuple[Feature, ...]:
+        """Let vertices rest on the points that they rested on, in a transaction.
+
+        Parameters
+        ----------
+        places : mapping of str to (n,) int64
+            By drive: where each of its points is now.
+
+        Returns
+        -------
+        tuple of Feature
+            For :meth:`took_points` once the transaction is through.
+
+        Raises
+        ------
+        BadFile
+            Another program has changed the features.
+        """
+        self._refuse_changed_elsewhere()
+        moved = tuple(
+            moved
+            for feature in self._features.values()
+            if (moved := with_points_at(feature, places)) is not feature
+        )
+        connection.executemany(_UPDATE, [(*self._row(f, self._srs_id), f.id) for f in moved])
+        return moved
+
+    def took_points(self, features: tuple[Feature, ...]) -> None:
+        """The transaction of :meth:`rewrite_points` is through."""
+        self._features.update((feature.id, feature) for feature in features)
+
     def layers_fit(self) -> bool:
         """Whether the stored layers are those of the catalogue.
 
@@ -183,9 +224,7 @@ class FeatureStore:
         BadFile
             Another program has changed the features.
         """
-        if self._database.was_changed_elsewhere():
-            self._compare()
-            self._database.accept_changes()
+        self._refuse_changed_elsewhere()
         kinds = [str(kind) for (kind,) in connection.execute("SELECT DISTINCT kind FROM features")]
         rows = [(_layer_of(catalogue, kind), kind) for kind in kinds]
         connection.executemany(
@@ -233,6 +272,7 @@ class FeatureStore:
             *(pair.before.id for pair in change.replaced if pair.before.id != pair.after.id),
             *(id_ for id_, feature in expected.items() if self._features.get(id_) != feature),
             *self._labels.misfits(change.labels),
+            *self._drives.misfits(change),
         ]
 
     @contextmanager
@@ -241,9 +281,7 @@ class FeatureStore:
         extent = extent_after(change, self._features, self._extent)
         self._labels.prepare(change.labels)
         with self._database.transaction() as connection:
-            if self._database.was_changed_elsewhere():
-                self._compare()
-                self._database.accept_changes()
+            self._refuse_changed_elsewhere()
             self._write(connection, change)
             connection.execute(_EXTENT, extent or (None, None, None, None))
             yield connection
@@ -257,6 +295,7 @@ class FeatureStore:
         connection.executemany(_INSERT, [self._row(f, self._srs_id) for f in change.added])
         afters = [pair.after for pair in change.replaced]
         connection.executemany(_UPDATE, [(*self._row(f, self._srs_id), f.id) for f in afters])
+        self._drives.write(connection, change, self._history.position + 1)
 
     def _take_over(self, change: Change) -> None:
         for feature in change.removed:
@@ -265,6 +304,7 @@ class FeatureStore:
             self._features[pair.after.id] = pair.after
         for feature in change.added:
             self._features[feature.id] = feature
+        self._drives.follow(change)
 
     def _row(self, feature: Feature, srs_id: int) -> tuple[object, ...]:
         return row_of(feature, _layer_of(self._catalogue, feature.kind), srs_id)
@@ -292,6 +332,11 @@ class FeatureStore:
             ):
                 return low_x, low_y, high_x, high_y
         return extent_of(self._features.values())
+
+    def _refuse_changed_elsewhere(self) -> None:
+        if self._database.was_changed_elsewhere():
+            self._compare()
+            self._database.accept_changes()
 
     def _compare(self) -> None:
         stored = self._stored()

@@ -16,6 +16,7 @@ from processing.project.project_settings import ProjectSettings, write_setting
 from processing.text import Text
 
 _POSITION = "history_position"
+_FIRST = "history_first"
 _FIRST_WITH = "SELECT place FROM zuka_history WHERE instr(change, ?) > 0 ORDER BY place LIMIT 1"
 _FILED = "SELECT place FROM zuka_history WHERE instr(change, '\"filed\":') > 0"
 _LABEL = "SELECT label_en, label_ja FROM zuka_history WHERE place = ?"
@@ -45,9 +46,10 @@ class History:
         self._database = database
         self._label_steps = database.path.parent / LABEL_STEPS
         position = settings.whole(_POSITION)
+        self._first = settings.whole(_FIRST)
         self._pending = settings.whole(PENDING)
         with database.snapshot() as connection:
-            self._standing = _standing_at(connection, position)
+            self._standing = _standing_at(connection, position, self._first)
 
     @property
     def position(self) -> int:
@@ -82,7 +84,7 @@ class History:
         BadFile
             It is damaged.
         """
-        return self._change(self.position)
+        return self._change(self.position) if self.can_undo else None
 
     def coming(self) -> Change | None:
         """The change that redo would do again.
@@ -172,7 +174,31 @@ class History:
         position = self.position + by
         write_pending(connection, max(position, self.position))
         write_setting(connection, _POSITION, position)
-        return _standing_at(connection, position)
+        return _standing_at(connection, position, self._first)
+
+    def end_undo(self, connection: sqlite3.Connection, place: int) -> Standing:
+        """Write that nothing up to a place is taken back any more, in the caller's transaction.
+
+        What was done stays readable: runs are judged by it.
+        """
+        first = max(place, self._first)
+        write_setting(connection, _FIRST, first)
+        return _standing_at(connection, self.position, first)
+
+    def begin_anew(self, connection: sqlite3.Connection) -> Standing:
+        """Write that points have other places now, in the caller's transaction.
+
+        Older steps name points by the places that they had: none is taken back or done again.
+        """
+        connection.execute("DELETE FROM zuka_history WHERE place > ?", (self.position,))
+        connection.execute("DELETE FROM zuka_history_labels WHERE place > ?", (self.position,))
+        write_pending(connection, 0)
+        return self.end_undo(connection, self.position)
+
+    def ended_undo(self, standing: Standing, place: int) -> None:
+        """The transaction of :meth:`end_undo` is through."""
+        self._first = max(place, self._first)
+        self.stands(standing)
 
     def stands(self, standing: Standing) -> None:
         """The transaction that gave this is through."""
@@ -189,8 +215,9 @@ class History:
             raise damaged(self._database.path, f"zuka_history.place {place}: {error}") from error
 
 
-def _standing_at(connection: sqlite3.Connection, position: int) -> Standing:
-    return Standing(position, _label_at(connection, position), _label_at(connection, position + 1))
+def _standing_at(connection: sqlite3.Connection, position: int, first: int) -> Standing:
+    undo = _label_at(connection, position) if position > first else None
+    return Standing(position, undo, _label_at(connection, position + 1))
 
 
 def _label_at(connection: sqlite3.Connection, place: int) -> Text | None:

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 from processing.errors import InUse, told_as_user_error
 from processing.project.database import Database
 from processing.project.project_lock import LOCK_FILES
 from processing.project.project_settings import write_setting
-from processing.project.reference_system import write_reference_system
+from processing.project.reference_system import CRS, write_reference_system
 from processing.text import Text
 
 UNFINISHED = "unfinished.gpkg"
 """A new project's database until it is whole."""
-
-CRS = "crs"
-"""Under which name a project remembers its reference system."""
 
 
 def refuse_occupied(folder: Path) -> None:
@@ -38,6 +36,15 @@ def refuse_occupied(folder: Path) -> None:
                 "別のプロジェクト名を選んでください。",
             ),
         )
+
+
+def remove_database(folder: Path, name: str) -> None:
+    """Remove a closed project's database and lock; the folder too when nothing else is in it."""
+    for one in (*database_files(name), *database_files(UNFINISHED), *LOCK_FILES):
+        with suppress(OSError):
+            (folder / one).unlink(missing_ok=True)
+    with suppress(OSError):
+        folder.rmdir()
 
 
 def database_files(name: str) -> tuple[str, ...]:

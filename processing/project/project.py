@@ -2,42 +2,47 @@
 
 from __future__ import annotations
 
-import math
 import sqlite3
-from contextlib import ExitStack, suppress
+from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UNCHANGED, MissingInput, OutOfRange, told_as_user_error
+from processing.errors import MissingInput, told_as_user_error
 from processing.owned_files import remove_folder
 from processing.points.drive import Drive
-from processing.points.mapped_pages import MappedPages
 from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.catalogue_adoption import CatalogueFile
 from processing.project.catalogue_change import CatalogueComparison, compare
 from processing.project.catalogue_writing import write_catalogue
+from processing.project.change import ListedDrive
 from processing.project.database import Database
 from processing.project.database_errors import damaged
+from processing.project.drive_completion import CompletedDrive, drive_changed
 from processing.project.drive_folders import DRIVES, DriveFolders
 from processing.project.feature_store import FeatureStore
 from processing.project.filed_labels import LABEL_STEPS
 from processing.project.history import History
 from processing.project.label_filing import remove_unlisted
 from processing.project.label_layer import LabelLayer
+from processing.project.map_origin import ORIGIN, origin_of, stored_origin
 from processing.project.new_folder import (
-    CRS,
     UNFINISHED,
     database_files,
     make_database,
     refuse_occupied,
+    remove_database,
 )
 from processing.project.no_links import refuse_links
+from processing.project.open_drives import OpenDrives
 from processing.project.project_lock import LOCK_FILES, ProjectLock
 from processing.project.project_settings import ProjectSettings, write_setting
 from processing.project.reference_system import (
+    CRS,
+    other_system,
     reference_system,
     srs_number,
     write_reference_system,
@@ -53,8 +58,6 @@ _DATABASE = "project.gpkg"
 _FOLDERS = (DRIVES, TEMPORARY, LABEL_STEPS)
 _FILES = (*database_files(_DATABASE), *database_files(UNFINISHED), *LOCK_FILES)
 _OWN = (*_FOLDERS, VOLUMES, *_FILES)
-_ORIGIN_STEP_M = 100.0
-_ORIGIN = "origin"
 
 
 def is_project(path: Path) -> bool:
@@ -88,23 +91,28 @@ class Project:
                 self.settings = ProjectSettings(self._database)
                 self.history = History(self._database, self.settings)
                 labels = LabelLayer(self.drive)
+                self._folders = DriveFolders(folder, self._database, self.settings)
+                self._drives = OpenDrives(self._folders)
                 self.features = FeatureStore(
-                    self._database, self.history, self.catalogue, self._srs_number(), labels=labels
+                    self._database,
+                    self.history,
+                    self.catalogue,
+                    self._srs_number(),
+                    labels=labels,
+                    drives=self._drives,
                 )
                 self.runs = Runs(self._database)
-                self._folders = DriveFolders(folder, self._database, self.settings)
-                self._origin = self._stored_origin()
-            self._pages = MappedPages()
-            self._drives = {
-                id_: Drive(self._folders.path_of(id_), self._pages) for id_ in self._folders.ids
-            }
+                self._origin = stored_origin(self.settings, self._database.path)
+            self._drives.open(self._folders.ids)
             self.sources = SourceFiles(folder, self.settings, writing=writing)
             self.sources.use_known(self.drives)
             labels.follow(self.history.pending(), writing=writing)
             if writing:
                 remove_unlisted(folder / LABEL_STEPS, self.history.label_folders())
                 self._folders.remove_leftovers()
+                self._folders.remove_leaving(self.history)
                 self._catalogue.correct_layers(self.features, self._database)
+                stack.callback(self._folders.remove_leaving, self.history)
             self._closing = stack.pop_all()
 
     @staticmethod
@@ -176,11 +184,7 @@ class Project:
         """
         for name in _FOLDERS:
             remove_folder(folder / name)
-        for name in _FILES:
-            with suppress(OSError):
-                (folder / name).unlink(missing_ok=True)
-        with suppress(OSError):
-            folder.rmdir()
+        remove_database(folder, _DATABASE)
 
     @property
     def name(self) -> str:
@@ -200,7 +204,7 @@ class Project:
     @property
     def drives(self) -> tuple[Drive, ...]:
         """All drives, in the order in which they were imported."""
-        return tuple(self._drives.values())
+        return self._drives.all
 
     @property
     def origin(self) -> NDArray[np.float64]:
@@ -208,13 +212,22 @@ class Project:
         return self._origin.copy()
 
     @property
+    def taken_ids(self) -> tuple[str, ...]:
+        """Ids that no new drive may get."""
+        return self._folders.taken
+
+    @property
     def is_empty(self) -> bool:
         """Whether nothing is in it: no drive, no feature, no import that can go on."""
-        return not (self._drives or len(self.features) or unfinished_imports(self.folder))
+        return not (self.drives or len(self.features) or unfinished_imports(self.folder))
 
     def drive(self, id: str) -> Drive:  # noqa: A002 - the word of the trade
         """One drive; KeyError when there is none of that id."""
         return self._drives[id]
+
+    def listed_drive(self, drive: Drive) -> ListedDrive:
+        """A drive as a step that removes it names it."""
+        return self._folders.listed(drive.id)
 
     def find_sources(self) -> None:
         """Look where delivered files and camera images are now; may wait for file systems.
@@ -261,22 +274,52 @@ class Project:
         if not new:
             return ()
         crs = self._crs_with(new)
-        origin = self._origin if self._drives else _origin_of(new[0])
+        origin = self._origin if self.drives else origin_of(new[0])
         homes = self.sources.homes_with(drive.id for drive in new)
         arriving = {drive.id: folder for drive, folder in zip(new, folders, strict=True)}
         with self._folders.adopting(arriving) as connection:
-            write_setting(connection, _ORIGIN, origin.tolist())
+            write_setting(connection, ORIGIN, origin.tolist())
             write_setting(connection, HOMES, homes)
             if crs != self.crs:
                 self._write_crs(connection, crs)
         self._origin = origin
-        self.settings.took(_ORIGIN, origin.tolist())
+        self.settings.took(ORIGIN, origin.tolist())
         self.settings.took(HOMES, homes)
         if crs != self.crs:
             self._took_crs(crs)
-        paths = {drive.id: self._folders.path_of(drive.id) for drive in new}
-        self._drives |= {id_: Drive(path, self._pages) for id_, path in paths.items()}
-        return tuple(self._drives[drive.id] for drive in new)
+        return self._drives.open(drive.id for drive in new)
+
+    def complete_drives(self, completed: Sequence[CompletedDrive]) -> tuple[Drive, ...]:
+        """Let drives be as they were completed, all of them or none; map and labels stay theirs.
+
+        Where points have another order now, what was done before can't be undone any longer.
+
+        Raises
+        ------
+        OutOfRange
+            A drive is gone, or what is known of its points changed since: nothing was changed.
+        NoSpace, InUse, BadFile
+            Nothing was changed.
+        """
+        for one in completed:
+            if one.id not in self._folders.ids or not one.fits(self.drive(one.id)):
+                raise drive_changed(one.name)
+        places = {one.id: where for one in completed if (where := one.places()) is not None}
+        with self._folders.replacing({one.id: one.folder for one in completed}) as connection:
+            moved = self.features.rewrite_points(connection, places)
+            standing = self.history.begin_anew(connection) if places else None
+        self.features.took_points(moved)
+        if standing is not None:
+            self.history.ended_undo(standing, standing.position)
+        drives = self._drives.open(one.id for one in completed)
+        self.sources.use_known(drives)
+        return drives
+
+    def reopen_drives(self, ids: Sequence[str]) -> tuple[Drive, ...]:
+        """Read drives anew whose notes have changed."""
+        drives = self._drives.open(ids)
+        self.sources.use_known(drives)
+        return drives
 
     def set_crs(self, crs: str) -> None:
         """Say what reference system all coordinates of the project are in.
@@ -291,7 +334,7 @@ class Project:
         code = reference_system(crs)
         for drive in self.drives:
             if drive.info.crs not in ("", code):
-                raise _other_system(drive, drive.info.crs, code)
+                raise other_system(drive.info.name, drive.info.crs, code)
         with self._database.transaction() as connection:
             self._write_crs(connection, code)
         self._took_crs(code)
@@ -348,7 +391,7 @@ class Project:
         for drive in new:
             theirs = drive.info.crs
             if theirs and crs and theirs != crs:
-                raise _other_system(drive, theirs, crs)
+                raise other_system(drive.info.name, theirs, crs)
             crs = crs or (reference_system(theirs) if theirs else "")
         return crs
 
@@ -366,32 +409,3 @@ class Project:
             return srs_number(self.crs)
         except ValueError as error:
             raise damaged(self._database.path, f"zuka_settings.crs: {error}") from error
-
-    def _stored_origin(self) -> NDArray[np.float64]:
-        stored = self.settings.get(_ORIGIN)
-        if stored is None:
-            return np.zeros(3)
-        if isinstance(stored, list) and len(stored) == 3:
-            numbers = [float(one) for one in stored if isinstance(one, (int, float))]
-            if len(numbers) == 3 and all(map(math.isfinite, numbers)):
-                return np.array(numbers)
-        raise damaged(self._database.path, f"zuka_settings.origin: {stored}")
-
-
-def _origin_of(drive: Drive) -> NDArray[np.float64]:
-    middle = (np.array(drive.info.lowest) + np.array(drive.info.highest)) / 2
-    return np.asarray(np.rint(middle / _ORIGIN_STEP_M) * _ORIGIN_STEP_M, dtype=np.float64)
-
-
-def _other_system(drive: Drive, theirs: str, ours: str) -> OutOfRange:
-    return OutOfRange(
-        Text(
-            "The drive's reference system {theirs} is not the project's {ours}.",
-            "走行データの座標参照系 {theirs} がプロジェクトの {ours} と異なります。",
-        ).filled(theirs=theirs, ours=ours),
-        Text.same(drive.info.name),
-        Text(
-            "Import it into a project of its own. {unchanged}",
-            "別のプロジェクトにインポートしてください。{unchanged}",
-        ).filled(unchanged=UNCHANGED),
-    )

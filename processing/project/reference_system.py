@@ -5,8 +5,11 @@ from __future__ import annotations
 import re
 import sqlite3
 
-from processing.errors import OutOfRange
+from processing.errors import UNCHANGED, OutOfRange
 from processing.text import Text
+
+CRS = "crs"
+"""Setting: ``EPSG:n`` of a project; empty when unknown."""
 
 UNKNOWN_SRS = -1
 """The number of coordinates in metres whose reference system nobody knows."""
@@ -33,12 +36,12 @@ def reference_system(words: str) -> str:
     found = re.fullmatch(r"(?:EPSG:)?\s*([0-9]{4,6})", words.strip(), flags=re.IGNORECASE)
     if found is None:
         raise _unknown(words)
-    from pyproj import CRS
+    from pyproj import CRS as System
     from pyproj.exceptions import CRSError
 
     code = f"EPSG:{found.group(1)}"
     try:
-        system = CRS.from_user_input(code)
+        system = System.from_user_input(code)
     except CRSError as error:
         raise _unknown(words) from error
     plan = system.sub_crs_list[0] if system.is_compound else system
@@ -70,9 +73,9 @@ def write_reference_system(connection: sqlite3.Connection, crs: str) -> None:
     crs : str
         Of :func:`reference_system`.
     """
-    from pyproj import CRS
+    from pyproj import CRS as System
 
-    system = CRS.from_user_input(crs)
+    system = System.from_user_input(crs)
     plan = system.sub_crs_list[0] if system.is_compound else system
     number = srs_number(crs)
     connection.execute(
@@ -84,6 +87,21 @@ def write_reference_system(connection: sqlite3.Connection, crs: str) -> None:
             f"UPDATE {table} SET srs_id = ? WHERE table_name = 'features'",  # noqa: S608 - constants
             (number,),
         )
+
+
+def other_system(drive: str, theirs: str, ours: str) -> OutOfRange:
+    """A drive, by its name, is in another system than the project."""
+    return OutOfRange(
+        Text(
+            "The drive's reference system {theirs} is not the project's {ours}.",
+            "走行データの座標参照系 {theirs} がプロジェクトの {ours} と異なります。",
+        ).filled(theirs=theirs, ours=ours),
+        Text.same(drive),
+        Text(
+            "Import it into a project of its own. {unchanged}",
+            "別のプロジェクトにインポートしてください。{unchanged}",
+        ).filled(unchanged=UNCHANGED),
+    )
 
 
 def _unknown(words: str) -> OutOfRange:
