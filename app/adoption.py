@@ -68,6 +68,17 @@ class Adoption(QObject):
         self._waiting[job] = _Adoption(project, take, otherwise)
         return job
 
+    def start_at_hand(
+        self, project: Project, work: Callable[[], object], take: Callable[[object | None], None]
+    ) -> None:
+        """Queue a moment's work for the tool in the hand; it gets None where that failed."""
+
+        def watched(_monitor: Monitor) -> object:
+            return work()
+
+        drawing, lane = Text("Drawing", "作図"), Lane.AT_HAND
+        self.start(project, drawing, watched, take, lane=lane, otherwise=lambda: take(None))
+
     def give_up(self) -> None:
         """The project is closed: jobs are interrupted, what they give is dropped."""
         for job in self._waiting:

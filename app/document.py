@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from pathlib import Path
 
 import numpy as np
@@ -10,18 +10,17 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from app.adoption import Adoption
-from app.first_look import FirstLook
+from app.drive_taking import DriveTaking
 from app.jobs import JobQueue, Lane
 from app.label_news import tell_labels
 from app.label_steps import LabelSteps
-from app.long_work import export_work, exported_words, import_work, imported_words
+from app.long_work import export_work, exported_words
 from app.preparation import Preparation
 from app.refusals import changed_meanwhile
 from app.run_taking import RunTaking
 from app.undo import UndoStack
 from processing.errors import UserError
 from processing.image.tile_cache import TileCache
-from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.project.catalogue import Catalogue, read_catalogue
 from processing.project.change import Change
@@ -92,8 +91,13 @@ class Document(QObject):
         self._label_steps.told.connect(self.told)
         self._label_steps.refused.connect(self.refused)
         self._label_steps.cancelled.connect(jobs.cancel)
+        self.drive_taking = DriveTaking(
+            self._adoption, self._label_steps, self.tiles, self.shared, self
+        )
+        self.drive_taking.told.connect(self.told)
+        self.drive_taking.refused.connect(self.refused)
+        self.drive_taking.taken.connect(self._on_drives_taken)
         self._preparation = Preparation(self._prepare, jobs, self)
-        self._first_look = FirstLook(self.shared.view_settings)
 
     # Reading: what views ask (MapSource).
 
@@ -250,16 +254,21 @@ class Document(QObject):
         if not self.create(folder, request.crs):
             return ""
         project = self._needed()
-        return self._import(request, lambda: self._drop_if_empty(project))
+        return self.drive_taking.start(project, request, lambda: self._drop_if_empty(project), ())
 
-    def import_files(self, request: ImportRequest) -> str:
-        """Import delivered files in the background; gives the job's id."""
-        return self._import(request, lambda: None)
+    def import_files(self, request: ImportRequest, only: Collection[str] = ()) -> str:
+        """Import delivered files, or complete drives with them, in the background; gives the job.
 
-    def _import(self, request: ImportRequest, otherwise: Callable[[], None]) -> str:
-        project = self._needed()
-        title, work = import_work(request, project)
-        return self._adoption.start(project, title, work, self._adopt_drives, otherwise=otherwise)
+        Parameters
+        ----------
+        only : collection of str
+            Ids of drives that trajectories and images without points are for.
+        """
+        return self.drive_taking.start(self._needed(), request, lambda: None, only)
+
+    def remove_drives(self, ids: Iterable[str]) -> bool:
+        """Take drives out of the project as one undoable step; says whether it could."""
+        return self.drive_taking.remove(self._needed(), ids, self.apply)
 
     def start_run(
         self, tool: str, drive_id: str, parameters: object, *, lane: Lane = Lane.ASKED
@@ -271,7 +280,7 @@ class Document(QObject):
         request = RunRequest(tool, drive, parameters, beside)
 
         def store_columns(found: FinishedColumns) -> None:
-            self._store_columns(drive, found, replaces=lane is not Lane.PREPARED)
+            self._store_columns(self.drive(drive_id), found, replaces=lane is not Lane.PREPARED)
 
         return self._runs.start(project, request, store_columns, lane)
 
@@ -298,23 +307,12 @@ class Document(QObject):
             if one.change.added:
                 self.shared.map_changes.candidates_found.emit(one.run.tool, one.run.id)
         if found.change.labels or found.change.filed:
-            self._first_look.show_classes()
+            self.drive_taking.first_look.show_classes()
         return is_stored
 
     def do_at_hand(self, work: Callable[[], object], take: Callable[[object | None], None]) -> None:
         """Do a moment's work for the tool in the hand; it gets None where that failed."""
-
-        def watched(_monitor: Monitor) -> object:
-            return work()
-
-        self._adoption.start(
-            self._needed(),
-            Text("Drawing", "作図"),
-            watched,
-            take,
-            lane=Lane.AT_HAND,
-            otherwise=lambda: take(None),
-        )
+        self._adoption.start_at_hand(self._needed(), work, take)
 
     def export(self, request: ExportRequest) -> str:
         """Write the map to files in the background; gives the job's id."""
@@ -338,13 +336,9 @@ class Document(QObject):
             self.close()
             Project.remove_new(project.folder)
 
-    def _adopt_drives(self, folders: tuple[Path, ...]) -> None:
-        project = self._needed()
-        drives = project.adopt_drives(folders)
-        self._first_look.show(self.drives())
-        self.shared.map_changes.drives_changed.emit()
+    def _on_drives_taken(self) -> None:
+        self.undo_stack.changed.emit()
         self._prepare_drives()
-        self.told.emit(imported_words(drives, project.crs))
 
     def _prepare_drives(self) -> None:
         """Find in the background what attributes show, so that switching to them is quick."""
@@ -379,6 +373,7 @@ class Document(QObject):
         filed = () if change.filed is None else change.filed.counts
         tell_labels(labels, filed, self.tiles, self.shared.map_changes)
         self._label_steps.note(change)
+        self.drive_taking.follow_step(self._needed(), change)
         return True
 
     def _replace_by(self, make: Callable[[], Project]) -> bool:
@@ -390,7 +385,7 @@ class Document(QObject):
         self.close()
         self._project = project
         self.undo_stack.use(project)
-        self._first_look.show(self.drives())
+        self.drive_taking.first_look.show(self.drives())
         self.opened.emit()
         self.shared.map_changes.drives_changed.emit()
         self.shared.map_changes.features_changed.emit(tuple(f.id for f in self.features()))

@@ -16,7 +16,7 @@ from PySide6.QtCore import QObject, Signal
 from app.adoption import Adoption
 from app.jobs import Lane
 from app.undo import UndoStack
-from processing.errors import UserError
+from processing.errors import InUse, UserError
 from processing.monitor import Monitor
 from processing.owned_files import remove_folder
 from processing.project.change import Change
@@ -100,6 +100,25 @@ class LabelSteps(QObject):
         self._changed = changed
         self._steps: list[LabelStep] = []
         self._move: LabelStep | None = None
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether labels of many points are being stored, or a step about them moved."""
+        return self._move is not None or any(one.job for one in self._steps)
+
+    def refuse_busy(self) -> None:
+        """Refuse what has to wait until labels are stored.
+
+        Raises
+        ------
+        InUse
+        """
+        if self.is_busy:
+            raise InUse(
+                Text("Labels are still being stored.", "ラベルを保存中です。"),
+                Text("the map", "地図"),
+                Text("Try again in a moment.", "しばらくしてからもう一度実行してください。"),
+            )
 
     def begin(self, project: Project, label: Text, relabel: Relabel) -> LabelStep:
         """A run begins that may label many points; :meth:`arrive` or :meth:`drop` ends it."""

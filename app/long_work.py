@@ -5,17 +5,18 @@ Each function gives a job's title and its work; the work touches neither the pro
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from pathlib import Path
 
+from app.import_words import adding_words
 from app.run_storing import FinishedRun, finished_run
 from processing.monitor import Monitor
 from processing.points.drive import Drive
+from processing.project.additions import Additions, bring_in, home_of
 from processing.project.export import ExportRequest, export
-from processing.project.importing import ImportRequest, import_drives
+from processing.project.import_request import ImportRequest
 from processing.project.project import Project
-from processing.project.unfinished_imports import import_folder
 from processing.runner import RunRequest, tool_of
 from processing.text import Text
 
@@ -23,22 +24,26 @@ _LONG_POINTS = 10_000_000
 
 
 def import_work(
-    request: ImportRequest, project: Project
-) -> tuple[Text, Callable[[Monitor], tuple[Path, ...]]]:
-    """Delivered files become drive folders for a project; one that was killed goes on."""
-    home, taken = project.folder, tuple(drive.id for drive in project.drives)
+    request: ImportRequest, project: Project, only: Collection[str]
+) -> tuple[Text, Callable[[Monitor], Additions]]:
+    """Delivered files become drives of a project or complete them; what was killed goes on.
 
-    def work(monitor: Monitor) -> tuple[Path, ...]:
-        into = import_folder(home, request)
-        folders = import_drives(request, into, monitor, taken=taken)
-        for folder in folders:
+    Parameters
+    ----------
+    only : collection of str
+        As of :func:`processing.project.additions.bring_in`.
+    """
+    home = home_of(project)
+
+    def work(monitor: Monitor) -> Additions:
+        brought = bring_in(request, home, monitor, only=only)
+        for folder in (*brought.folders, *(one.folder for one in brought.completed)):
             drive = Drive(folder)
             prepare_images(drive, monitor)
             _prepare_tiles(drive, monitor)
-        return folders
+        return brought
 
-    names = ", ".join(path.name for path in request.inputs[:3])
-    return Text("Import {names}", "{names} のインポート").filled(names=names), work
+    return adding_words(request), work
 
 
 def run_work(
@@ -72,35 +77,6 @@ def export_work(
         return export(features, catalogue, crs, request, monitor, drives=drives)
 
     return Text("Export", "書き出し"), work
-
-
-def imported_words(drives: Sequence[Drive], crs: str) -> Text:
-    """What is said after an import into a project of this reference system."""
-    told = Text("Imported {points:,} points", "{points:,}点をインポートしました")
-    if not crs:
-        told = Text(
-            "Imported {points:,} points; no file names their reference system (Ctrl+R)",
-            "{points:,}点をインポートしました。座標参照系の記載がありません（Ctrl+R）",
-        )
-    told = told.filled(points=sum(drive.count for drive in drives))
-    for line in told_columns(drives):
-        told = Text("{told}; {line}", "{told} {line}").filled(told=told, line=line)
-    return told
-
-
-def told_columns(drives: Sequence[Drive]) -> tuple[Text, ...]:
-    """A line for each delivered text file that doesn't say what its columns are."""
-    sources = {
-        one.path: one.columns
-        for drive in drives
-        for one in drive.info.sources
-        if one.points and one.columns
-    }
-    told = Text("{name}: columns taken as {columns}", "{name}の列を {columns} として読み込みました")
-    return tuple(
-        told.filled(name=Path(path).name, columns=" ".join(columns))
-        for path, columns in sources.items()
-    )
 
 
 def exported_words(paths: Sequence[Path], folder: Path) -> Text:

@@ -62,6 +62,16 @@ class FinishedRun:
         finally:
             remove_folder(self.kept)
 
+    def remove(self) -> None:
+        """Nothing comes of it: its files go."""
+        if self.columns is not None:
+            self.columns.remove()
+        folders = [] if self.kept is None else [self.kept]
+        if self.found is not None and self.found.change.filed is not None:
+            folders.append(self.found.change.filed.folder)
+        for folder in folders:
+            remove_folder(folder)
+
 
 def finished_run(
     request: RunRequest,

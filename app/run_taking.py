@@ -12,6 +12,7 @@ from app.label_steps import LabelSteps
 from app.long_work import run_work
 from app.run_storing import FinishedRun
 from processing.project.change import Change
+from processing.project.drive_completion import drive_changed
 from processing.project.found_classes import relabelled
 from processing.project.found_features import FoundFeatures
 from processing.project.project import Project
@@ -56,6 +57,12 @@ class RunTaking:
         )
 
         def take(done: FinishedRun) -> None:
+            if not _is_current(project, request, done):
+                done.remove()
+                drop()
+                if lane is not Lane.PREPARED:
+                    raise drive_changed(request.drive.info.name)
+                return
             if done.columns is not None:
                 steps.drop(step)
                 store_columns(done.columns)
@@ -70,3 +77,11 @@ class RunTaking:
             steps.drop(step)
 
         return self.adoption.start(project, title, work, take, lane=lane, otherwise=drop)
+
+
+def _is_current(project: Project, request: RunRequest, done: FinishedRun) -> bool:
+    """Whether the drives that a run is about still have the points that it was done on."""
+    asked = {drive.id: drive for drive in (request.drive, *request.beside)}
+    ids = (request.drive.id,) if done.found is None else done.found.run.drives
+    folders = {drive.folder for drive in project.drives}
+    return all(asked[id_].folder in folders for id_ in ids)

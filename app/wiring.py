@@ -35,6 +35,7 @@ def connect_lasting(parts: WindowParts) -> None:
 
     toolbox.change_requested.connect(apply)
     document.about_to_close.connect(toolbox.put_away)
+    document.drive_taking.points_leaving.connect(toolbox.put_away)
 
 
 def connect_parts(parts: WindowParts) -> None:

@@ -9,13 +9,15 @@ from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QFileDialog
 
 from app.actions.action import Action
+from app.actions.drives import DriveActions
 from app.catalogue_wish import adopt_catalogue
 from app.column_wish import with_columns
 from app.project_dialogs import ProjectDialogs
 from app.simulate_wiring import Simulations
+from app.trajectory_offer import TrajectoryOffer
 from app.window_parts import WindowParts
 from processing.errors import UserError
-from processing.project.dropped_files import request_of_files
+from processing.project.dropped_files import additions_of_files, request_of_files
 from processing.project.export import FORMATS, ExportRequest
 from processing.project.importing import ImportRequest
 from processing.project.project import is_project
@@ -37,6 +39,7 @@ class FileActions:
         self._projects_folder = projects_folder
         self._dialogs = ProjectDialogs(parts)
         self.simulations = Simulations(parts, projects_folder)
+        self.drives = DriveActions(parts)
 
     def actions(self) -> tuple[Action, ...]:
         """The file menu, from top to bottom."""
@@ -70,6 +73,7 @@ class FileActions:
                     "点群を軌跡・画像とともに読み込みます。元のファイルは変更しません。",
                 ),
             ),
+            *self.drives.actions(),
             self._simulate(),
             Action(
                 "export",
@@ -202,6 +206,7 @@ class FileActions:
         def make() -> ImportForm:
             form = ImportForm(folder, files, self._parts.window)
             form.import_requested.connect(self._on_form_import_requested)
+            TrajectoryOffer(form, self._parts.jobs)
             return form
 
         self._dialogs.show(ImportForm, make).add_files(files)
@@ -302,12 +307,14 @@ class FileActions:
         if len(paths) == 1 and is_project(paths[0]):
             self._parts.document.open(paths[0])
             return
+        document = self._parts.document
+        # Without points they are for drives that are there already.
+        sort_out = request_of_files if document.project is None else additions_of_files
         try:
-            request = request_of_files(paths, "")
+            request = sort_out(paths, "")
         except UserError as error:
             self._parts.message_bar.show_error(error)
             return
-        document = self._parts.document
 
         def start(clear: ImportRequest) -> None:
             if document.project is None:
@@ -338,8 +345,11 @@ class FileActions:
         return folder
 
     def _on_form_import_requested(self, wish: ImportWish) -> None:
+        document = self._parts.document
+        is_open = document.project is not None and document.project.folder == wish.project.resolve()
+        sort_out = additions_of_files if is_open or is_project(wish.project) else request_of_files
         try:
-            request = request_of_files(wish.files, wish.crs)
+            request = sort_out(wish.files, wish.crs)
             if wish.classes_as_labels:
                 request = replace(request, labels="classification")
         except UserError as error:

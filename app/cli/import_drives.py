@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import argparse
 from dataclasses import replace
+from pathlib import Path
 
 from app.cli.opened import request_of, terminal_monitor
 from app.cli.output import print_lines
+from app.cli.terminal import say
+from app.import_words import has_already, known_words, lacking_words, told_columns
 from app.language import system_language
-from app.long_work import prepare_images, told_columns
+from app.long_work import prepare_images
 from processing.points.drive import Drive
-from processing.project.importing import import_drives
+from processing.project.additions import Additions, bring_in, home_of, take_over
+from processing.project.import_request import ImportRequest
 from processing.project.project import Project, is_project
-from processing.project.unfinished_imports import import_folder, unfinished_imports
+from processing.project.unfinished_imports import unfinished_imports
 from processing.text import Text
 
 _ROWS = Text(
@@ -22,7 +26,10 @@ _ROWS = Text(
 
 
 def command(arguments: argparse.Namespace) -> int:
-    """Import files into a project, made if there is none; an import that was killed goes on."""
+    """Import files into a project, made if there is none; an import that was killed goes on.
+
+    What the project has already is not imported again; with a trajectory or images it is completed.
+    """
     is_new = not is_project(arguments.project)
     if is_new:
         project = Project.create(arguments.project, arguments.crs)
@@ -31,21 +38,40 @@ def command(arguments: argparse.Namespace) -> int:
     finished = False
     try:
         request = replace(request_of(arguments), labels=arguments.labels)
-        into = import_folder(project.folder, request)
-        taken = tuple(drive.id for drive in project.drives)
-        folders = import_drives(request, into, terminal_monitor(), taken=taken)
-        drives = project.adopt_drives(folders)
+        brought = bring_in(request, home_of(project), terminal_monitor())
+        if arguments.crs and not brought.folders:
+            project.set_crs(arguments.crs)
+        drives = take_over(project, brought)
         finished = True
         for drive in drives:
             prepare_images(drive, terminal_monitor())
+        _tell(drives, brought, request)
     finally:
         project.close()
         if is_new and not finished and not unfinished_imports(project.folder):
             Project.remove_new(arguments.project)
+    return 0
+
+
+def _tell(drives: tuple[Drive, ...], brought: Additions, request: ImportRequest) -> None:
+    language = system_language()
     for drive in drives:
         print_lines(describe_drive(drive))
-    print_lines(*(told.spoken(system_language()) for told in told_columns(drives)))
-    return 0
+    print_lines(*(told.spoken(language) for told in told_columns(drives)))
+    if brought.known:
+        print_lines(known_words(brought.known).spoken(language))
+    elif brought.are_none and request.files:
+        print_lines(has_already().spoken(language))
+    shown = [_shown(path) for path in brought.beside]
+    lacking = lacking_words(drives, brought, shown).spoken(language)
+    if lacking:
+        say(lacking)
+
+
+def _shown(path: Path) -> str:
+    """A path as one types it in this folder."""
+    here = Path.cwd()
+    return str(path.relative_to(here) if path.is_relative_to(here) else path)
 
 
 def describe_drive(drive: Drive) -> str:

@@ -108,7 +108,7 @@ def _add_reading_commands(commands: _Commands[_Parser]) -> None:
 def _add_working_commands(commands: _Commands[_Parser]) -> None:
     importing = commands.add_parser("import", help="make delivered files a project's drives")
     importing.add_argument("project", type=Path, metavar="PROJECT")
-    _add_inputs(importing)
+    _add_inputs(importing, least="*")
     importing.add_argument(
         "--labels",
         choices=["label", "classification"],

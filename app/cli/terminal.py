@@ -42,7 +42,7 @@ def ended(act: Callable[[], StatusT]) -> StatusT | int:
         return act()
     except UserError as error:
         log_user_error(error)
-        _say(error.line(system_language()))
+        say(error.line(system_language()))
         return BAD_INPUT
     except (Cancelled, KeyboardInterrupt):
         return CANCELLED
@@ -51,11 +51,12 @@ def ended(act: Callable[[], StatusT]) -> StatusT | int:
         sys.stderr.close()
         return DONE
     except Exception as error:  # noqa: BLE001 - the last stop: told in one sentence and logged
-        _say(defect_of(error).line(system_language()))
+        say(defect_of(error).line(system_language()))
         return DEFECT
 
 
-def _say(line: str) -> None:
+def say(line: str) -> None:
+    """Write a line to standard error."""
     print(line, file=sys.stderr)  # noqa: T201 - the terminal is where this belongs
 
 

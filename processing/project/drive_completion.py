@@ -70,6 +70,10 @@ class CompletedDrive:
         """Whether what was carried over is what the drive has now."""
         return self.mark == results_mark(drive)
 
+    def remove_rest(self) -> None:
+        """Remove what is left where it was made, once its folder is taken over."""
+        shutil.rmtree(self.folder.parent, ignore_errors=True)
+
     def places(self) -> NDArray[np.int64] | None:
         """(n,) int64 on the disk: where each point is now; None where all are where they were.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from uuid import uuid4
@@ -212,11 +212,6 @@ class Project:
         return self._origin.copy()
 
     @property
-    def taken_ids(self) -> tuple[str, ...]:
-        """Ids that no new drive may get."""
-        return self._folders.taken
-
-    @property
     def is_empty(self) -> bool:
         """Whether nothing is in it: no drive, no feature, no import that can go on."""
         return not (self.drives or len(self.features) or unfinished_imports(self.folder))
@@ -242,6 +237,11 @@ class Project:
         """A new name for a folder in which labels of many points are filed."""
         return self.folder / LABEL_STEPS / uuid4().hex
 
+    @property
+    def taken_ids(self) -> tuple[str, ...]:
+        """Ids that no new drive may get."""
+        return self._folders.taken
+
     def temporary_folder(self) -> Path:
         """A new name for a folder of an import; what is left there goes at the next opening."""
         return self._folders.temporary()
@@ -259,17 +259,7 @@ class Project:
         return self.adopt_drives((folder,))[0]
 
     def adopt_drives(self, folders: tuple[Path, ...]) -> tuple[Drive, ...]:
-        """Make finished temporary drive folders part of the project, all of them or none.
-
-        Raises
-        ------
-        BadFile
-            One is damaged.
-        OutOfRange
-            Their reference systems are not one, or not the project's.
-        NoSpace, InUse
-            The project and the folders are as they were.
-        """
+        """As :meth:`adopt_drive` for several, all of them or none; ``BadFile`` for a damaged one."""
         new = [Drive(folder) for folder in folders]
         if not new:
             return ()
@@ -301,6 +291,8 @@ class Project:
         NoSpace, InUse, BadFile
             Nothing was changed.
         """
+        if not completed:
+            return ()
         for one in completed:
             if one.id not in self._folders.ids or not one.fits(self.drive(one.id)):
                 raise drive_changed(one.name)
@@ -311,12 +303,12 @@ class Project:
         self.features.took_points(moved)
         if standing is not None:
             self.history.ended_undo(standing, standing.position)
-        drives = self._drives.open(one.id for one in completed)
-        self.sources.use_known(drives)
-        return drives
+        for one in completed:
+            one.remove_rest()
+        return self.reopen_drives(one.id for one in completed)
 
-    def reopen_drives(self, ids: Sequence[str]) -> tuple[Drive, ...]:
-        """Read drives anew whose notes have changed."""
+    def reopen_drives(self, ids: Iterable[str]) -> tuple[Drive, ...]:
+        """Open drives anew whose folders have changed."""
         drives = self._drives.open(ids)
         self.sources.use_known(drives)
         return drives

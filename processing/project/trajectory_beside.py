@@ -48,6 +48,11 @@ def trajectories_beside(inputs: Sequence[Path], crs: str) -> tuple[Path, ...]:
     return tuple(chosen)
 
 
+def wants_trajectory(inputs: Sequence[Path]) -> bool:
+    """Whether a scanner that moved recorded one of the point files, as far as their times tell."""
+    return any(_times_of(path) is not None for path in inputs)
+
+
 def _times_of(path: Path) -> NDArray[np.float64] | None:
     """Some times of a file whose scanner moved; None where no trajectory belongs to it."""
     with suppress(UserError):

@@ -52,6 +52,7 @@ class ImportForm(QDialog):
     """A form beside the window; the window stays usable while it is open."""
 
     import_requested = Signal(object)  # ImportWish
+    files_changed = Signal(object)  # tuple[Path, ...]
 
     def __init__(
         self, project: Path, files: tuple[Path, ...] = (), parent: QWidget | None = None
@@ -67,6 +68,12 @@ class ImportForm(QDialog):
         self._as_labels.setToolTip(
             self.tr("Labels can be corrected by hand and are exported to LAS again.")
         )
+        self._beside = QCheckBox(self)
+        self._beside.hide()
+        self._offered: tuple[Path, ...] = ()
+        self._lacking = QLabel(self)
+        self._lacking.setWordWrap(True)
+        self._lacking.hide()
         self._trouble = QLabel(self)
         self._trouble.setWordWrap(True)
         self._buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
@@ -85,7 +92,44 @@ class ImportForm(QDialog):
         for file in files:
             if str(file) not in listed:
                 self._files.addItem(str(file))
+        self._tell_files()
+
+    @property
+    def files(self) -> tuple[Path, ...]:
+        """The files in the list."""
+        return tuple(Path(self._files.item(row).text()) for row in range(self._files.count()))
+
+    @property
+    def crs(self) -> str:
+        """``EPSG:n`` as far as it is entered; empty for the files' own."""
+        return self._crs.code or ""
+
+    def offer(self, beside: tuple[Path, ...], *, is_lacking: bool) -> None:
+        """Offer trajectories that lie beside the files and cover them; they are ticked at first.
+
+        Parameters
+        ----------
+        is_lacking : bool
+            Whether the files want a trajectory and none is among them.
+        """
+        self._offered = beside
+        names = ", ".join(path.name for path in beside)
+        words = self.tr("Take the trajectory beside them: {name} covers their times")
+        self._beside.setText(words.format(name=names))
+        self._beside.setToolTip("\n".join(str(path) for path in beside))
+        self._beside.setChecked(bool(beside))
+        self._beside.setVisible(bool(beside))
+        self._lacking.setText(
+            self.tr(
+                "No trajectory is among the files. Curbs and covered gutters can't be found "
+                "without one; it can be added to the drive later."
+            )
+        )
+        self._lacking.setVisible(is_lacking and not beside)
+
+    def _tell_files(self) -> None:
         self._import.setEnabled(self._files.count() > 0)
+        self.files_changed.emit(self.files)
 
     def ask_for_files(self) -> None:
         """Ask for files to add; the list shows those that a delivery may have."""
@@ -128,6 +172,8 @@ class ImportForm(QDialog):
         layout = QVBoxLayout(self)
         layout.addWidget(hint)
         layout.addLayout(files, 1)
+        layout.addWidget(self._beside)
+        layout.addWidget(self._lacking)
         layout.addLayout(form)
         layout.addWidget(self._trouble)
         layout.addWidget(self._buttons)
@@ -135,7 +181,7 @@ class ImportForm(QDialog):
     def _on_remove_clicked(self) -> None:
         for item in self._files.selectedItems():
             self._files.takeItem(self._files.row(item))
-        self._import.setEnabled(self._files.count() > 0)
+        self._tell_files()
 
     def _on_place_clicked(self) -> None:
         name, _ = QFileDialog.getSaveFileName(
@@ -151,7 +197,9 @@ class ImportForm(QDialog):
                 self.tr("The reference system must be a code such as EPSG:6677, or be left empty.")
             )
             return
-        files = tuple(Path(self._files.item(row).text()) for row in range(self._files.count()))
+        files = self.files
+        if self._beside.isVisible() and self._beside.isChecked():
+            files += self._offered
         project = Path(self._project.text().strip())
         if project.suffix != ".zuka":
             project = project.with_name(project.name + ".zuka")

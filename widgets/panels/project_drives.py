@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from PySide6.QtCore import QObject, QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QMenu, QStyle, QTreeWidget, QTreeWidgetItem
+from typing_extensions import override
 
 from processing.points.drive import Drive
 from processing.text import Language
@@ -37,11 +39,17 @@ class ProjectDrives(QObject):
         It is to be shown in an image beside the others.
     find_requested()
         The user knows where missing files are.
+    trajectory_requested(id: str), images_requested(id: str)
+        Files are to be chosen for a drive that the project has already.
+    removal_requested(id: str)
     """
 
     drive_chosen = Signal(str)
     beside_requested = Signal(str)
     find_requested = Signal()
+    trajectory_requested = Signal(str)
+    images_requested = Signal(str)
+    removal_requested = Signal(str)
 
     def __init__(
         self, source: MapSource, settings: ViewSettings, tree: QTreeWidget, language: Language
@@ -61,6 +69,7 @@ class ProjectDrives(QObject):
         tree.itemPressed.connect(self._on_tree_item_pressed)
         tree.itemClicked.connect(self._on_tree_item_clicked)
         tree.itemActivated.connect(self._choose)
+        tree.installEventFilter(self)
         settings.hidden_drives_changed.connect(self._show_checks)
         settings.image_changed.connect(self.mark_shown)
 
@@ -134,8 +143,35 @@ class ProjectDrives(QObject):
         if self._troubles:
             menu.addSeparator()
             menu.addAction(self.tr("Find delivered files…"), self.find_requested.emit)
+        menu.addSeparator()
+        has_trajectory = self._source.drive(id_).trajectory is not None
+        menu.addAction(
+            self.tr("Replace the trajectory…") if has_trajectory else self.tr("Add a trajectory…"),
+            lambda: self.trajectory_requested.emit(id_),
+        )
+        menu.addAction(self.tr("Add camera images…"), lambda: self.images_requested.emit(id_))
+        remove = menu.addAction(
+            self.tr("Remove from the project"), lambda: self.removal_requested.emit(id_)
+        )
+        remove.setShortcut(Qt.Key.Key_Delete)
+        remove.setShortcutVisibleInContextMenu(True)
         menu.aboutToHide.connect(menu.deleteLater)
         return menu
+
+    @override
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """The Delete key removes the drive that is chosen; elsewhere it is the map's."""
+        item = self._tree.currentItem()
+        id_ = "" if item is None else str(item.data(0, DRIVE) or "")
+        if not id_ or not isinstance(event, QKeyEvent) or event.key() != Qt.Key.Key_Delete:
+            return super().eventFilter(watched, event)
+        if event.type() == QEvent.Type.ShortcutOverride:
+            event.accept()
+            return True
+        if event.type() == QEvent.Type.KeyPress:
+            self.removal_requested.emit(id_)
+            return True
+        return super().eventFilter(watched, event)
 
     # What the tree tells.
 

@@ -38,6 +38,8 @@ class ProjectTree(QWidget):
         A drive is to be shown in an image beside the others.
     find_requested()
         The user knows where missing files are.
+    trajectory_requested(id: str), images_requested(id: str), removal_requested(id: str)
+        Files are to be added to a drive, or it is to leave the project.
     review_requested(run: str)
         The candidates of a run are to be judged.
     change_requested(label: Text, change: Change)
@@ -46,6 +48,9 @@ class ProjectTree(QWidget):
     drive_chosen = Signal(str)
     beside_requested = Signal(str)
     find_requested = Signal()
+    trajectory_requested = Signal(str)
+    images_requested = Signal(str)
+    removal_requested = Signal(str)
     review_requested = Signal(str)
     change_requested = Signal(object, object)
 
@@ -67,6 +72,9 @@ class ProjectTree(QWidget):
         self._drives.drive_chosen.connect(self.drive_chosen)
         self._drives.beside_requested.connect(self.beside_requested)
         self._drives.find_requested.connect(self.find_requested)
+        self._drives.trajectory_requested.connect(self.trajectory_requested)
+        self._drives.images_requested.connect(self.images_requested)
+        self._drives.removal_requested.connect(self.removal_requested)
         self._runs = ProjectRuns(source, shared.view_settings, self._tree, language)
         self._runs.review_requested.connect(self.review_requested)
         self._runs.change_requested.connect(self.change_requested)

@@ -1,0 +1,244 @@
+"""What delivered files bring to a project: new drives, and what drives that it has still lack."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.cameras.image_list import ImageList
+from processing.cameras.image_store import write_images
+from processing.errors import UNCHANGED, OutOfRange
+from processing.formats.image_list import read_image_list
+from processing.monitor import Monitor, PartMonitor
+from processing.points.drive import SCAN, Drive
+from processing.points.ordering import sampled
+from processing.project.drive_completion import CompletedDrive, complete_drive
+from processing.project.import_request import ImportRequest
+from processing.project.importing import import_drives
+from processing.project.known_files import known_files
+from processing.project.project import Project
+from processing.project.trajectory_beside import trajectories_beside
+from processing.project.trajectory_choice import (
+    NamedTrajectory,
+    match_trajectory,
+    read_trajectories,
+)
+from processing.project.unfinished_imports import import_folder
+from processing.text import Text
+
+_SAMPLE_POINTS = 200_000
+_SLACK_S = 1.0
+
+
+@dataclass(frozen=True)
+class Home:
+    """The project that files are brought to, as far as a worker may know it.
+
+    Attributes
+    ----------
+    folder : Path
+    drives : tuple of Drive
+    taken : collection of str
+        Ids that no new drive may get.
+    crs : str
+    temporary : tuple of Path
+        A new folder for each drive that may be completed.
+    """
+
+    folder: Path
+    drives: tuple[Drive, ...]
+    taken: Collection[str]
+    crs: str
+    temporary: tuple[Path, ...]
+
+
+@dataclass(frozen=True)
+class Additions:
+    """What came of files.
+
+    Attributes
+    ----------
+    folders : tuple of Path
+        New drives, in the import's folder.
+    completed : tuple of CompletedDrive
+    images : mapping of str to ImageList
+        By drive: all images that it has now.
+    known : tuple of Path
+        Point files that are in the project already.
+    beside : tuple of Path
+        Trajectories that lie beside the new files and were not given.
+    """
+
+    folders: tuple[Path, ...] = ()
+    completed: tuple[CompletedDrive, ...] = ()
+    images: Mapping[str, ImageList] = field(default_factory=dict)
+    known: tuple[Path, ...] = ()
+    beside: tuple[Path, ...] = ()
+
+    @property
+    def are_none(self) -> bool:
+        """Whether the project has all of it already."""
+        return not (self.folders or self.completed or self.images)
+
+
+def bring_in(
+    request: ImportRequest, home: Home, monitor: Monitor, *, only: Collection[str] = ()
+) -> Additions:
+    """Import what a project has not, and complete the drives that it has.
+
+    Parameters
+    ----------
+    request : ImportRequest
+        Without point files, its trajectories and images are for drives of the project that lack
+        them; with files that are there already, for the drives of these.
+    only : collection of str
+        Ids of drives that trajectories and images without point files are for.
+
+    Returns
+    -------
+    Additions
+        For the project to take over.
+
+    Raises
+    ------
+    UserError, Cancelled
+        As :func:`processing.project.importing.import_drives`; nothing is left behind.
+    """
+    sorted_out = known_files(request.inputs, home.drives, monitor)
+    new = replace(request, inputs=sorted_out.new)
+    folders: tuple[Path, ...] = ()
+    is_for_drives = not request.inputs and bool(request.files or request.crs)
+    has_drives_to_complete = bool(home.drives) and (bool(sorted_out.known) or is_for_drives)
+    if sorted_out.new or not has_drives_to_complete:
+        into = import_folder(home.folder, new)
+        share = PartMonitor(monitor, 0.0, 0.5 if has_drives_to_complete else 1.0)
+        folders = import_drives(new, into, share, taken=home.taken)
+    completed: tuple[CompletedDrive, ...] = ()
+    images: dict[str, ImageList] = {}
+    if has_drives_to_complete:
+        named = [drive for drive in home.drives if drive.id in only] or sorted_out.drives
+        share = PartMonitor(monitor, 0.5 if folders else 0.0, 1.0)
+        if request.trajectories:
+            completed = _completed(request, home, named, share)
+        if request.images:
+            images = _with_images(request.images, named, home.drives)
+    beside: tuple[Path, ...] = ()
+    if folders and not request.trajectories:
+        lacking = any(lacks_trajectory(Drive(folder)) for folder in folders)
+        beside = trajectories_beside(sorted_out.new, request.crs or home.crs) if lacking else ()
+    return Additions(folders, completed, images, sorted_out.known, beside)
+
+
+def home_of(project: Project) -> Home:
+    """What a worker has to know of a project to bring files in."""
+    temporary = tuple(project.temporary_folder() for _ in project.drives)
+    return Home(project.folder, project.drives, project.taken_ids, project.crs, temporary)
+
+
+def take_over(project: Project, brought: Additions) -> tuple[Drive, ...]:
+    """Let a project have what files brought; gives the drives that are new or others now.
+
+    Raises
+    ------
+    UserError
+        As :meth:`Project.complete_drives` and :meth:`Project.adopt_drives`.
+    """
+    changed = {drive.id: drive for drive in project.complete_drives(brought.completed)}
+    for id_, images in brought.images.items():
+        write_images(project.drive(id_).folder, images)
+        changed[id_] = project.reopen_drives((id_,))[0]
+    return (*project.adopt_drives(brought.folders), *changed.values())
+
+
+def lacks_trajectory(drive: Drive) -> bool:
+    """Whether a trajectory would make more of a drive: its points have times, and it has none."""
+    if drive.trajectory is not None or drive.info.rows_by == SCAN or not drive.count:
+        return False
+    return bool(np.isfinite(_times_of(drive)).any())
+
+
+def _completed(
+    request: ImportRequest, home: Home, named: Sequence[Drive], monitor: Monitor
+) -> tuple[CompletedDrive, ...]:
+    ways = read_trajectories(request.trajectories, request.crs or home.crs)
+    drives = _to_complete(home.drives, named, ways)
+    completed = []
+    for number, (drive, into) in enumerate(zip(drives, home.temporary, strict=False)):
+        part = PartMonitor(monitor, number / len(drives), (number + 1) / len(drives))
+        completed.append(complete_drive(drive, ways, into, part))
+    return tuple(completed)
+
+
+def _to_complete(
+    drives: Sequence[Drive], named: Sequence[Drive], ways: tuple[NamedTrajectory, ...]
+) -> list[Drive]:
+    """The drives that the trajectories are for: those named, or else those that lack one.
+
+    A drive that has the same trajectory already is left as it is.
+    """
+    asked = named or [drive for drive in drives if lacks_trajectory(drive)]
+    covered: list[Drive] = []
+    refusal: OutOfRange | None = None
+    for drive in asked or drives:
+        try:
+            matched = match_trajectory(
+                _times_of(drive), ways, drive.info.name, is_adjusted_standard=None
+            )
+        except OutOfRange as error:
+            refusal = error
+            continue
+        if matched is not None and not _has(drive, matched.trajectory.xyz):
+            covered.append(drive)
+    if refusal is not None and (named or not covered):
+        raise refusal
+    return covered if asked else []
+
+
+def _has(drive: Drive, xyz: NDArray[np.float64]) -> bool:
+    return drive.trajectory is not None and np.array_equal(drive.trajectory.xyz, xyz)
+
+
+def _times_of(drive: Drive) -> NDArray[np.float64]:
+    times = sampled(drive.folder, "time", drive.count, max(1, drive.count // _SAMPLE_POINTS))
+    return np.append(times, drive.columns["time"][-1])
+
+
+def _with_images(
+    lists: tuple[Path, ...], named: Sequence[Drive], drives: Sequence[Drive]
+) -> dict[str, ImageList]:
+    """The images of drives: those that they had, and new ones; the lists are of all drives."""
+    given = [image for path in lists for image in read_image_list(path)]
+    times = np.array([image.time_s for image in given])
+    taken_on = named or [drive for drive in drives if _is_during(times, drive)]
+    if not taken_on:
+        raise OutOfRange(
+            Text(
+                "None of the images was taken while a drive of the project was recorded.",
+                "プロジェクトの走行データの計測中に撮影された画像がありません。",
+            ),
+            Text.same(", ".join(path.name for path in lists)),
+            Text(
+                "Give the image list of these drives. {unchanged}",
+                "この走行の画像一覧を指定してください。{unchanged}",
+            ).filled(unchanged=UNCHANGED),
+        )
+    images = {}
+    for drive in taken_on:
+        had = tuple(drive.noted_images or ())
+        there = {(str(image.path), image.time_s) for image in had}
+        added = [one for one in given if (str(one.path.absolute()), one.time_s) not in there]
+        if added:
+            images[drive.id] = ImageList((*had, *added))
+    return images
+
+
+def _is_during(times: NDArray[np.float64], drive: Drive) -> bool:
+    when = _times_of(drive)
+    when = when[np.isfinite(when)]
+    if not when.size:
+        return False
+    return bool(((times >= when.min() - _SLACK_S) & (times <= when.max() + _SLACK_S)).any())
