@@ -128,10 +128,12 @@ def removed_words(names: str) -> Text:
 def offered_words(offer: ImportRequest) -> UserError:
     """What is said where a trajectory lies beside files that were imported without one."""
     return UserError(
-        Text("The drive was imported without a trajectory.", "走行軌跡なしでインポートしました。"),
+        Text(
+            "The points were imported without a trajectory.", "走行軌跡なしでインポートしました。"
+        ),
         Text.same(", ".join(str(path) for path in offer.trajectories)),
         Text(
-            "This trajectory covers it. Without one, curbs and covered gutters can't be found.",
+            "This trajectory covers them. Without one, curbs and covered gutters can't be found.",
             "この走行軌跡が計測時刻を含んでいます。"
             "走行軌跡がないと縁石と蓋付き側溝を抽出できません。",
         ),

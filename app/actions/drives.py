@@ -28,7 +28,7 @@ class DriveActions:
                 self.choose_trajectory,
                 "file",
                 hint=Text(
-                    "Finds the rows of drives that were imported without one; what was drawn stays.",
+                    "Finds rows anew for drives that were imported without one; the map stays.",
                     "走行軌跡なしで読み込んだ走行データの行を求め直します。"
                     "作図した内容は保たれます。",
                 ),

@@ -259,7 +259,7 @@ class Project:
         return self.adopt_drives((folder,))[0]
 
     def adopt_drives(self, folders: tuple[Path, ...]) -> tuple[Drive, ...]:
-        """As :meth:`adopt_drive` for several, all of them or none; ``BadFile`` for a damaged one."""
+        """As :meth:`adopt_drive` for several, all or none; ``BadFile`` for a damaged one."""
         new = [Drive(folder) for folder in folders]
         if not new:
             return ()

@@ -36,12 +36,12 @@ def reference_system(words: str) -> str:
     found = re.fullmatch(r"(?:EPSG:)?\s*([0-9]{4,6})", words.strip(), flags=re.IGNORECASE)
     if found is None:
         raise _unknown(words)
-    from pyproj import CRS as System
+    import pyproj
     from pyproj.exceptions import CRSError
 
     code = f"EPSG:{found.group(1)}"
     try:
-        system = System.from_user_input(code)
+        system = pyproj.CRS.from_user_input(code)
     except CRSError as error:
         raise _unknown(words) from error
     plan = system.sub_crs_list[0] if system.is_compound else system
@@ -73,9 +73,9 @@ def write_reference_system(connection: sqlite3.Connection, crs: str) -> None:
     crs : str
         Of :func:`reference_system`.
     """
-    from pyproj import CRS as System
+    import pyproj
 
-    system = System.from_user_input(crs)
+    system = pyproj.CRS.from_user_input(crs)
     plan = system.sub_crs_list[0] if system.is_compound else system
     number = srs_number(crs)
     connection.execute(

@@ -98,8 +98,8 @@
 <context>
     <name>CameraView</name>
     <message>
-        <source>There are no camera images. Import a drive together with the list of its images.</source>
-        <translation>カメラ画像がありません。画像一覧と一緒に走行データをインポートしてください。</translation>
+        <source>There are no camera images. Add the list of a drive&apos;s images (File ▸ Add camera images).</source>
+        <translation>カメラ画像がありません。走行データの画像一覧を追加してください（ファイル ▸ カメラ画像を追加）。</translation>
     </message>
     <message>
         <source>Click a place in another view to see it in the camera images.</source>
@@ -424,6 +424,25 @@ kept</source>
     <message>
         <source>How much higher the copy runs: the upper edge of a curb</source>
         <translation>複写線を高くする量（縁石の上端など）</translation>
+    </message>
+</context>
+<context>
+    <name>DriveActions</name>
+    <message>
+        <source>Add a trajectory</source>
+        <translation>走行軌跡を追加</translation>
+    </message>
+    <message>
+        <source>Trajectories (*.csv *.out *.sbet *.txt)</source>
+        <translation>走行軌跡 (*.csv *.out *.sbet *.txt)</translation>
+    </message>
+    <message>
+        <source>Add camera images</source>
+        <translation>カメラ画像を追加</translation>
+    </message>
+    <message>
+        <source>Image lists (*.csv *.txt)</source>
+        <translation>画像一覧 (*.csv *.txt)</translation>
     </message>
 </context>
 <context>
@@ -874,6 +893,14 @@ kept</source>
         <translation>インポート</translation>
     </message>
     <message>
+        <source>Take the trajectory beside them: {name} covers their times</source>
+        <translation>同じ場所にある走行軌跡 {name} も読み込む（計測時刻を含んでいます）</translation>
+    </message>
+    <message>
+        <source>No trajectory is among the files. Curbs and covered gutters can&apos;t be found without one; it can be added to the drive later.</source>
+        <translation>走行軌跡のファイルがありません。走行軌跡がないと縁石と蓋付き側溝を抽出できません。後から走行データに追加することもできます。</translation>
+    </message>
+    <message>
         <source>Add files…</source>
         <translation>ファイルを追加…</translation>
     </message>
@@ -927,6 +954,10 @@ kept</source>
     <message>
         <source>Discard</source>
         <translation>破棄</translation>
+    </message>
+    <message>
+        <source>Add {name}</source>
+        <translation>{name} を追加</translation>
     </message>
 </context>
 <context>
@@ -1335,6 +1366,22 @@ kept</source>
     <message>
         <source>Find delivered files…</source>
         <translation>納品ファイルの場所を指定…</translation>
+    </message>
+    <message>
+        <source>Replace the trajectory…</source>
+        <translation>走行軌跡を差し替え…</translation>
+    </message>
+    <message>
+        <source>Add a trajectory…</source>
+        <translation>走行軌跡を追加…</translation>
+    </message>
+    <message>
+        <source>Add camera images…</source>
+        <translation>カメラ画像を追加…</translation>
+    </message>
+    <message>
+        <source>Remove from the project</source>
+        <translation>プロジェクトから除く</translation>
     </message>
     <message>
         <source>{count} points</source>

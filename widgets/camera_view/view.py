@@ -186,7 +186,8 @@ class CameraView(PlaneView):
         images, place = self.showing.images, self.showing.place
         if not images.images:
             return self.tr(
-                "There are no camera images. Import a drive together with the list of its images."
+                "There are no camera images. Add the list of a drive's images (File ▸ Add camera "
+                "images)."
             )
         if images.remark is not None:
             return images.remark.spoken(self._language)
