@@ -122,7 +122,6 @@ class DriveTaking(QObject):
         for id_ in others:
             self._tiles.drop(id_)
         if others:
-            self._shared.snap.work_on(None)
             self._shared.selection.clear()
             self._shared.cursor.clear()
         self._show(project)
@@ -149,14 +148,15 @@ class DriveTaking(QObject):
     def _take(self, project: Project, brought: Additions) -> None:
         if brought.completed and self._has_to_wait(project, brought):
             return
-        if brought.completed:
+        has_moved = any(one.places_before is not None for one in brought.completed)
+        if has_moved:
             self.points_leaving.emit()
         drives = take_over(project, brought)
         new = drives[: len(brought.folders)]
         others = drives[len(brought.folders) :]
         if drives:
             self.follow(project, [drive.id for drive in others])
-        if any(one.places_before is not None for one in brought.completed):
+        if has_moved:
             ids = tuple(feature.id for feature in project.features.all())
             self._shared.map_changes.features_changed.emit(ids)
         self.taken.emit(drives)

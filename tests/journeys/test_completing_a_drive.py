@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -10,14 +11,21 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QCheckBox, QDialogButtonBox, QMenu, QToolButton, QTreeWidget
 
+from processing.image.kinds import ImageKind
 from processing.labels.label_column import labels_of
+from processing.monitor import SilentMonitor
 from processing.project.catalogue import Geometry
 from processing.project.change import Change
 from processing.project.feature import Feature, PointReference, Vertex
+from processing.project.import_request import ImportRequest
+from processing.project.importing import import_drives
 from processing.project.label_change import label_changes
+from processing.project.project import Project
+from processing.runner import tool_of
 from processing.text import Text
 from resources import path_of
 from tests.journeys.conftest import WAIT_MS
+from tests.processing.project.cells import order_by_cells
 from widgets.dialogs.import_drive import ImportForm
 from widgets.panels.project_drives import DRIVE
 
@@ -103,6 +111,49 @@ def test_a_trajectory_that_is_dropped_completes_the_drive_and_the_map_stays(surv
     assert document.undo()
     assert document.feature("line") is None
     assert (labels_of(surveyor.drive, np.arange(400)) == 5).sum() == 0
+
+
+def test_a_drive_that_was_shown_from_above_gets_rows_and_the_map_stays_on_its_points(
+    surveyor, delivery
+):
+    document = surveyor.document
+    with closing(Project.create(delivery.parent / "通り.zuka", "")) as project:
+        request = ImportRequest((delivery / "left.laz",))
+        folders = import_drives(request, project.temporary_folder(), SilentMonitor())
+        order_by_cells(folders[0])
+        project.adopt_drives(folders)
+    assert document.open(project.folder)
+    settings = document.shared.view_settings
+    assert settings.image_kind is ImageKind.TOP_VIEW
+    places = [surveyor.place_of(point).xyz for point in (5, 70_000)]
+    rests = [PointReference(surveyor.drive.id, point) for point in (5, 70_000)]
+    vertices = tuple(Vertex(*one) for one in zip(places, rests, strict=True))
+    assert document.apply(LABEL, Change(added=(Feature("line", "curb", Geometry.LINE, vertices),)))
+    _import(surveyor, delivery / "trajectory.csv")
+    assert settings.image_kind in surveyor.drive.image_kinds
+    assert surveyor.drive.turns is not None
+    now = [vertex.measured for vertex in document.feature("line").vertices]
+    assert now != rests
+    assert [surveyor.place_of(one.point).xyz for one in now if one is not None] == places
+    assert document.undo_stack.undo_label is None
+    assert not document.undo()
+    moved = document.feature("line")
+    assert document.apply(LABEL, Change(removed=(moved,)))
+    assert document.undo()
+
+
+def test_what_a_tool_finds_on_a_drive_that_was_removed_meanwhile_is_dropped(surveyor, delivery):
+    document, bot = surveyor.document, surveyor.bot
+    _import(surveyor, delivery / "left.laz", delivery / "trajectory.csv")
+    parameters = tool_of("noise").parameters()
+    with bot.waitSignal(document.refused, timeout=WAIT_MS) as refused:
+        document.start_run("noise", surveyor.drive.id, parameters)
+        assert document.remove_drives((surveyor.drive.id,))
+    assert refused.args[0].what.en == "The drive was changed or removed meanwhile."
+    assert document.runs() == ()
+    assert document.undo()
+    assert labels_of(surveyor.drive, np.arange(surveyor.drive.count)).max() == 0
+    assert not any((document.project.folder / "label_steps").glob("*"))
 
 
 def test_a_file_that_is_there_already_makes_no_second_drive_and_is_told(surveyor, delivery):

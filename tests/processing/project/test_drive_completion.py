@@ -6,7 +6,6 @@ import shutil
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -27,6 +26,7 @@ from processing.project.run_findings import finding_path, read_finding
 from processing.project.trajectory_choice import read_trajectories
 from processing.text import Text
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
+from tests.processing.project.cells import order_by_cells
 
 LABEL = Text.same("x")
 
@@ -57,48 +57,9 @@ def project(request, delivery, tmp_path) -> Iterator[Project]:
         asked = replace(delivery, inputs=inputs, trajectories=())
         folders = import_drives(asked, project.temporary_folder(), SilentMonitor())
         if request.param == "top view":
-            _order_by_cells(folders[0])
+            order_by_cells(folders[0])
         project.adopt_drives(folders)
         yield project
-
-
-def _order_by_cells(folder: Path) -> None:
-    """As an import leaves a drive in whose points it finds no turns."""
-    from processing.points.drive_info import write_drive_info
-    from processing.points.ordering import sort_points
-    from processing.points.top_view import top_view_of
-
-    drive = Drive(folder)
-    view = top_view_of(drive.xyz(slice(None)), drive.count, *map(np.array, _extent(drive)))
-    files, indices = drive.sources(0, drive.count)
-    cells = view.cells_of(drive.xyz(slice(None)))
-    files.astype("<u2").tofile(folder / "source_file.bin")
-    indices.astype("<i8").tofile(folder / "source_index.bin")
-    cells.astype("<i8").tofile(folder / "pulse.bin")
-    names = tuple(path.stem for path in folder.glob("*.bin"))
-
-    def by_cell(columns):
-        return columns["pulse"], -columns["xyz"][:, 2].astype(np.int64)
-
-    sort_points(folder, names, drive.count, by_cell, SilentMonitor())
-    (folder / "turns.npz").unlink()
-    for path in folder.glob("image_rows_*"):
-        path.unlink()
-    write_drive_info(
-        folder,
-        replace(
-            drive.info,
-            rows_by="top-view",
-            rows_reason=LABEL,
-            cell_m=view.cell_m,
-            cells_per_row=view.cells_per_row,
-            source_runs=(),
-        ),
-    )
-
-
-def _extent(drive: Drive):
-    return drive.info.lowest, drive.info.highest
 
 
 def _completed(project: Project, delivery: ImportRequest):
