@@ -72,11 +72,12 @@ def known_words(known: Sequence[Path]) -> Text:
 
 
 def has_already() -> Text:
-    """What is said where drives have what was to be added."""
+    """What is said where no drive lacks what was to be added."""
     return Text(
-        "The drives have this already; to replace a trajectory, name their point files with it.",
-        "走行データにはすでに追加されています。走行軌跡を替えるには、点群ファイルとともに"
-        "指定してください。",
+        "Nothing was added: no drive lacks it. To replace a trajectory, name the drive's point "
+        "files with it.",
+        "追加が必要な走行データはありません。走行軌跡を差し替えるには、その走行データの"
+        "点群ファイルとともに指定してください。",
     )
 
 

@@ -110,22 +110,25 @@ def bring_in(
     """
     sorted_out = known_files(request.inputs, home.drives, monitor)
     new = replace(request, inputs=sorted_out.new)
-    folders: tuple[Path, ...] = ()
     is_for_drives = not request.inputs and bool(request.files or request.crs)
-    has_drives_to_complete = bool(home.drives) and (bool(sorted_out.known) or is_for_drives)
-    if sorted_out.new or not has_drives_to_complete:
-        into = import_folder(home.folder, new)
-        share = PartMonitor(monitor, 0.0, 0.5 if has_drives_to_complete else 1.0)
-        folders = import_drives(new, into, share, taken=home.taken)
+    completes = bool(home.drives) and (bool(sorted_out.known) or is_for_drives)
+    imports = bool(sorted_out.new) or not completes
     completed: tuple[CompletedDrive, ...] = ()
     images: dict[str, ImageList] = {}
-    if has_drives_to_complete:
+    if completes:
         named = [drive for drive in home.drives if drive.id in only] or sorted_out.drives
-        share = PartMonitor(monitor, 0.5 if folders else 0.0, 1.0)
-        if request.trajectories:
-            completed = _completed(request, home, named, share)
-        if request.images:
-            images = _with_images(request.images, named, home.drives)
+        asked = _Asked(request, home, tuple(named), is_for_others=imports)
+        images = asked.images()
+        completed = asked.completed(PartMonitor(monitor, 0.0, 0.5 if imports else 1.0))
+    folders: tuple[Path, ...] = ()
+    if imports:
+        share = PartMonitor(monitor, 0.5 if completes else 0.0, 1.0)
+        try:
+            into = import_folder(home.folder, new)
+            folders = import_drives(new, into, share, taken=home.taken)
+        except BaseException:
+            _remove(completed)
+            raise
     beside: tuple[Path, ...] = ()
     if folders and not request.trajectories:
         lacking = any(lacks_trajectory(Drive(folder)) for folder in folders)
@@ -161,41 +164,78 @@ def lacks_trajectory(drive: Drive) -> bool:
     return bool(np.isfinite(_times_of(drive)).any())
 
 
-def _completed(
-    request: ImportRequest, home: Home, named: Sequence[Drive], monitor: Monitor
-) -> tuple[CompletedDrive, ...]:
-    ways = read_trajectories(request.trajectories, request.crs or home.crs)
-    drives = _to_complete(home.drives, named, ways)
-    completed = []
-    for number, (drive, into) in enumerate(zip(drives, home.temporary, strict=False)):
-        part = PartMonitor(monitor, number / len(drives), (number + 1) / len(drives))
-        completed.append(complete_drive(drive, ways, into, part))
-    return tuple(completed)
+@dataclass(frozen=True)
+class _Asked:
+    """What is asked for drives that a project has.
 
-
-def _to_complete(
-    drives: Sequence[Drive], named: Sequence[Drive], ways: tuple[NamedTrajectory, ...]
-) -> list[Drive]:
-    """The drives that the trajectories are for: those named, or else those that lack one.
-
-    A drive that has the same trajectory already is left as it is.
+    Attributes
+    ----------
+    named : tuple of Drive
+        Those that it is for; none for all that lack it.
+    is_for_others : bool
+        Whether it is for new drives as well, so that it need not be for all named.
     """
-    asked = named or [drive for drive in drives if lacks_trajectory(drive)]
-    covered: list[Drive] = []
-    refusal: OutOfRange | None = None
-    for drive in asked or drives:
+
+    request: ImportRequest
+    home: Home
+    named: tuple[Drive, ...]
+    is_for_others: bool
+
+    def completed(self, monitor: Monitor) -> tuple[CompletedDrive, ...]:
+        """The drives built anew with the trajectories."""
+        ways = read_trajectories(self.request.trajectories, self.request.crs or self.home.crs)
+        drives = self._to_complete(ways) if ways else []
+        completed: list[CompletedDrive] = []
         try:
-            matched = match_trajectory(
-                _times_of(drive), ways, drive.info.name, is_adjusted_standard=None
-            )
-        except OutOfRange as error:
-            refusal = error
-            continue
-        if matched is not None and not _has(drive, matched.trajectory.xyz):
-            covered.append(drive)
-    if refusal is not None and (named or not covered):
-        raise refusal
-    return covered if asked else []
+            for number, (drive, into) in enumerate(zip(drives, self.home.temporary, strict=False)):
+                part = PartMonitor(monitor, number / len(drives), (number + 1) / len(drives))
+                completed.append(complete_drive(drive, ways, into, part))
+        except BaseException:
+            _remove(completed)
+            raise
+        return tuple(completed)
+
+    def _to_complete(self, ways: tuple[NamedTrajectory, ...]) -> list[Drive]:
+        """A drive that has the same trajectory already is left as it is."""
+        asked = self.named or [drive for drive in self.home.drives if lacks_trajectory(drive)]
+        covered: list[Drive] = []
+        refusal: OutOfRange | None = None
+        for drive in asked:
+            times, name = _times_of(drive), drive.info.name
+            try:
+                matched = match_trajectory(times, ways, name, is_adjusted_standard=None)
+            except OutOfRange as error:
+                refusal = error
+                continue
+            if matched is not None and not _has(drive, matched.trajectory.xyz):
+                covered.append(drive)
+        if refusal is not None and not self.is_for_others and (self.named or not covered):
+            raise refusal
+        return covered
+
+    def images(self) -> dict[str, ImageList]:
+        """The images of drives: those that they had, and new ones; the lists are of all drives."""
+        lists = self.request.images
+        given = [image for path in lists for image in read_image_list(path)]
+        times = np.array([image.time_s for image in given])
+        taken_on = [one for one in self.named or self.home.drives if _is_during(times, one)]
+        if self.named and not self.is_for_others:
+            taken_on = list(self.named)
+        if given and not taken_on and not self.is_for_others:
+            raise _not_during(lists)
+        images = {}
+        for drive in taken_on:
+            had = tuple(drive.noted_images or ())
+            there = {(str(image.path), image.time_s) for image in had}
+            new = [one for one in given if (str(one.path.absolute()), one.time_s) not in there]
+            if new:
+                images[drive.id] = ImageList((*had, *new))
+        return images
+
+
+def _remove(completed: Sequence[CompletedDrive]) -> None:
+    for one in completed:
+        one.remove_rest()
 
 
 def _has(drive: Drive, xyz: NDArray[np.float64]) -> bool:
@@ -207,33 +247,18 @@ def _times_of(drive: Drive) -> NDArray[np.float64]:
     return np.append(times, drive.columns["time"][-1])
 
 
-def _with_images(
-    lists: tuple[Path, ...], named: Sequence[Drive], drives: Sequence[Drive]
-) -> dict[str, ImageList]:
-    """The images of drives: those that they had, and new ones; the lists are of all drives."""
-    given = [image for path in lists for image in read_image_list(path)]
-    times = np.array([image.time_s for image in given])
-    taken_on = named or [drive for drive in drives if _is_during(times, drive)]
-    if not taken_on:
-        raise OutOfRange(
-            Text(
-                "None of the images was taken while a drive of the project was recorded.",
-                "プロジェクトの走行データの計測中に撮影された画像がありません。",
-            ),
-            Text.same(", ".join(path.name for path in lists)),
-            Text(
-                "Give the image list of these drives. {unchanged}",
-                "この走行の画像一覧を指定してください。{unchanged}",
-            ).filled(unchanged=UNCHANGED),
-        )
-    images = {}
-    for drive in taken_on:
-        had = tuple(drive.noted_images or ())
-        there = {(str(image.path), image.time_s) for image in had}
-        added = [one for one in given if (str(one.path.absolute()), one.time_s) not in there]
-        if added:
-            images[drive.id] = ImageList((*had, *added))
-    return images
+def _not_during(lists: tuple[Path, ...]) -> OutOfRange:
+    return OutOfRange(
+        Text(
+            "None of the images was taken while a drive of the project was recorded.",
+            "プロジェクトの走行データの計測中に撮影された画像がありません。",
+        ),
+        Text.same(", ".join(path.name for path in lists)),
+        Text(
+            "Give the image list of these drives. {unchanged}",
+            "この走行の画像一覧を指定してください。{unchanged}",
+        ).filled(unchanged=UNCHANGED),
+    )
 
 
 def _is_during(times: NDArray[np.float64], drive: Drive) -> bool:

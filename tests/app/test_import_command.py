@@ -78,7 +78,7 @@ def test_a_trajectory_alone_completes_the_drive_that_it_covers(zuka, delivery):
     assert drive.trajectory is not None
     status, out, _ = zuka("import", "a.zuka", "--trajectory", "trajectory.csv")
     assert status == 0
-    assert "have this already" in out[0]
+    assert "no drive lacks it" in out[0]
 
 
 def test_the_same_file_again_changes_nothing_also_under_another_name(zuka, delivery):
@@ -115,6 +115,24 @@ def test_a_trajectory_of_another_day_is_bad_input_and_the_drive_stays(zuka, deli
     assert "lie outside those of the trajectory" in told[0]
     assert _drives(delivery / "a.zuka")[0].trajectory is None
     assert not any((delivery / "a.zuka" / "tmp").iterdir())
+
+
+def test_a_new_day_with_its_trajectory_comes_in_beside_a_known_one_that_it_does_not_cover(
+    zuka, delivery
+):
+    zuka("import", "a.zuka", "street.laz", "--trajectory", "trajectory.csv")
+    (before,) = _drives(delivery / "a.zuka")
+    other = simulated_drive(length_m=4.0, start_time_s=405_000.0)
+    write_laz(other, delivery / "day2.laz")
+    write_trajectory_csv(other, delivery / "day2.csv")
+    status, out, told = zuka(
+        "import", "a.zuka", "street.laz", "day2.laz", "--trajectory", "day2.csv"
+    )
+    assert (status, told) == (0, [])
+    assert out[0].startswith("day2: ")
+    first, second = _drives(delivery / "a.zuka")
+    assert first.folder == before.folder
+    assert second.info.rows_by == "trajectory"
 
 
 def test_a_reference_system_alone_is_given_to_the_project(zuka, delivery):
