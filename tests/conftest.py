@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from filelock import FileLock
 from hypothesis import HealthCheck, settings
 
 from resources import path_of
@@ -87,6 +88,26 @@ def qapp_cls() -> type[QApplication]:
 def sample_street() -> Path:
     """Give the folder of the bundled street; tests read it and write elsewhere."""
     return path_of("sample_street")
+
+
+@pytest.fixture(scope="session")
+def sample_project(
+    tmp_path_factory: pytest.TempPathFactory, request: pytest.FixtureRequest
+) -> Path:
+    """Give a closed project of that street; tests copy it.
+
+    Importing takes seconds: the first of the test processes does it for all.
+    """
+    from tests.sample_project import make_sample_project
+
+    shared = tmp_path_factory.getbasetemp()
+    if hasattr(request.config, "workerinput"):
+        shared = shared.parent
+    project = shared / "sample.zuka"
+    with FileLock(shared / "sample.lock"):
+        if not project.exists():
+            make_sample_project(tmp_path_factory.mktemp("sample") / "new.zuka").rename(project)
+    return project
 
 
 @pytest.fixture(autouse=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,6 +30,8 @@ class Surveyor:
 
     bot: QtBot
     parts: WindowParts
+    sample: Path
+    """The imported street to copy."""
 
     @property
     def document(self):
@@ -76,6 +79,11 @@ class Surveyor:
         with self.bot.waitSignal(self.parts.jobs.finished, timeout=WAIT_MS, check_params_cb=is_it):
             started.append(start())
 
+    def open_sample_street(self, project: Path) -> None:
+        """Open a copy of the street; only what is about importing needs to import it."""
+        shutil.copytree(self.sample, project)
+        assert self.document.open(project)
+
     def import_sample_street(self, project: Path) -> None:
         assert self.document.create(project, "")
         request = request_of_files((path_of("sample_street"),), "")
@@ -83,12 +91,12 @@ class Surveyor:
 
 
 @pytest.fixture
-def surveyor(qtbot, tmp_path) -> Iterator[Surveyor]:
+def surveyor(qtbot, tmp_path, sample_project) -> Iterator[Surveyor]:
     make_application()
     parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
     parts.window.resize(1400, 900)
     parts.window.show()
     qtbot.waitExposed(parts.window)
-    yield Surveyor(qtbot, parts)
+    yield Surveyor(qtbot, parts, sample_project)
     parts.window.close()
     parts.window.deleteLater()

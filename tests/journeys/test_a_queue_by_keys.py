@@ -22,7 +22,7 @@ KEYS = {"accept": Qt.Key.Key_Return, "reject": Qt.Key.Key_Delete, "next": Qt.Key
 @pytest.fixture
 def desk(surveyor, tmp_path, qtbot):
     """Give a window on the sample street that is arranged for checking."""
-    surveyor.import_sample_street(tmp_path / "street.zuka")
+    surveyor.open_sample_street(tmp_path / "street.zuka")
     parts = surveyor.parts
     with qtbot.waitActive(parts.window):
         parts.window.activateWindow()

@@ -33,7 +33,7 @@ _ROOM = 4096
 
 @pytest.fixture
 def street(surveyor: Surveyor, tmp_path: Path) -> Surveyor:
-    surveyor.import_sample_street(tmp_path / "通り.zuka")
+    surveyor.open_sample_street(tmp_path / "通り.zuka")
     # What is clicked here are the pixels' own points.
     surveyor.document.shared.snap.choose_modes(frozenset())
     return surveyor

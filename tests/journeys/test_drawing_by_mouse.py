@@ -14,7 +14,7 @@ from processing.project.export import ExportRequest
 
 @pytest.fixture
 def street(surveyor, tmp_path):
-    surveyor.import_sample_street(tmp_path / "通り.zuka")
+    surveyor.open_sample_street(tmp_path / "通り.zuka")
     # What is clicked here are the pixels' own points.
     surveyor.document.shared.snap.choose_modes(frozenset())
     return surveyor

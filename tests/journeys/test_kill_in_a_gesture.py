@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,7 +13,6 @@ import pytest
 
 from processing.project.project import Project
 from tests.processing.project.drawn import features_of, replayed_history
-from tests.properties.operator_session import imported_street
 
 # Draws lines, then holds one of their vertices, or has clicked some places of another line.
 HOLDING = """
@@ -49,8 +49,10 @@ while True:
 
 
 @pytest.mark.parametrize("what", ["drag", "line"])
-def test_killed_in_a_gesture_the_project_has_all_steps_that_were_done(tmp_path: Path, what) -> None:
-    folder = imported_street(tmp_path / "street.zuka")
+def test_killed_in_a_gesture_the_project_has_all_steps_that_were_done(
+    sample_project: Path, tmp_path: Path, what: str
+) -> None:
+    folder = Path(shutil.copytree(sample_project, tmp_path / "street.zuka"))
     command = [sys.executable, "-c", HOLDING, str(tmp_path), what]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as window:
         assert window.stdout is not None

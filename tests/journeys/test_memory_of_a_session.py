@@ -10,16 +10,11 @@ import pytest
 from PySide6.QtCore import QObject
 
 from tests.properties import operator_actions as actions
-from tests.properties.operator_session import Session, imported_street
+from tests.properties.operator_session import Session
 
 TIMES = 6
 FEW = 25
 """A form or a menu may be there the second time and not the first; a palette has a hundred."""
-
-
-@pytest.fixture(scope="module")
-def street(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return imported_street(tmp_path_factory.mktemp("street") / "street.zuka")
 
 
 @pytest.mark.parametrize(
@@ -33,10 +28,10 @@ def street(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ],
 )
 def test_what_is_done_again_and_again_leaves_no_objects_in_the_window(
-    street: Path, tmp_path: Path, action: actions.Action
+    sample_project: Path, tmp_path: Path, action: actions.Action
 ) -> None:
     choice = random.Random(1)  # noqa: S311 - chance, no secret
-    with Session.on(street, tmp_path / "day") as session:
+    with Session.on(sample_project, tmp_path / "day") as session:
         window = session.operator.parts.window
         session.do(actions.draw_some, choice)
         session.do(action, choice)

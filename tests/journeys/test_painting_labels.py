@@ -63,7 +63,7 @@ class Painter:
 
 @pytest.fixture
 def painter(surveyor, tmp_path):
-    surveyor.import_sample_street(tmp_path / "street.zuka")
+    surveyor.open_sample_street(tmp_path / "street.zuka")
     return Painter(surveyor)
 
 

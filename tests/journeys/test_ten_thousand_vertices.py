@@ -23,7 +23,7 @@ COUNT = 10_000
 
 @pytest.fixture
 def street(surveyor: Surveyor, tmp_path: Path) -> Iterator[Surveyor]:
-    surveyor.import_sample_street(tmp_path / "通り.zuka")
+    surveyor.open_sample_street(tmp_path / "通り.zuka")
     surveyor.document.shared.snap.choose_modes(frozenset())
     return surveyor
 

@@ -37,7 +37,7 @@ NEAR_M = 0.25
 @pytest.fixture
 def street(surveyor: Surveyor, tmp_path: Path, qtbot):
     """Give a window on the sample street with all views to be seen."""
-    surveyor.import_sample_street(tmp_path / "street.zuka")
+    surveyor.open_sample_street(tmp_path / "street.zuka")
     surveyor.parts.window.actions_by_id["layout-checking"].trigger()
     qtbot.waitUntil(lambda: surveyor.parts.scene_view.is_settled, timeout=WAIT_MS)
     return surveyor

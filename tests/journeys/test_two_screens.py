@@ -11,7 +11,7 @@ from tests.journeys.conftest import WAIT_MS, Surveyor
 def test_the_3d_view_goes_to_another_window_and_comes_back(
     surveyor: Surveyor, tmp_path: Path
 ) -> None:
-    surveyor.import_sample_street(tmp_path / "street.zuka")
+    surveyor.open_sample_street(tmp_path / "street.zuka")
     scene, bot = surveyor.parts.scene_view, surveyor.bot
     bot.waitUntil(lambda: scene.cloud is not None and scene.is_settled, timeout=WAIT_MS)
     picture = scene.picture

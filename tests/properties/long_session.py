@@ -19,7 +19,8 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QApplication
 
 from tests.properties.operator_actions import any_action
-from tests.properties.operator_session import Session, check_whole_history, imported_street
+from tests.properties.operator_session import Session, check_whole_history
+from tests.sample_project import make_sample_project
 
 _CHECKED_EACH = 50
 
@@ -32,7 +33,7 @@ def main() -> int:
     wishes = wanted.parse_args()
     with TemporaryDirectory(prefix="zuka-session-") as folder:
         home = Path(folder)
-        street = imported_street(home / "street.zuka")
+        street = make_sample_project(home / "street.zuka")
         choice = random.Random(wishes.seed)  # noqa: S311 - chance, no secret
         started = time.perf_counter()
         with Session.on(street, home / "work") as session:

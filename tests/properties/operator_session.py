@@ -13,17 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from processing.drafting.crossings import crosses_itself
-from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.catalogue import Geometry
-from processing.project.dropped_files import request_of_files
 from processing.project.feature import Feature
-from processing.project.importing import import_drives
 from processing.project.project import Project
-from processing.runner import RunRequest, run
-from processing.tools.registry import POINT_TOOLS
-from processing.tools.tool import FinishedColumns
-from resources import path_of
 from tests.properties.operator_actions import Action
 from tests.properties.operator_hands import Operator
 from tests.properties.watched import watched
@@ -31,20 +24,6 @@ from widgets.mouse_tools.drawing_tool import LEAST_VERTICES
 
 _BESIDE_M = 0.15
 """A vertex on a fitted edge names the measured point beside it."""
-
-
-def imported_street(folder: Path) -> Path:
-    """A closed project with the sample street, its surfaces found."""
-    with closing(Project.create(folder, "")) as project:
-        request = request_of_files((path_of("sample_street"),), "")
-        found = import_drives(request, project.temporary_folder(), SilentMonitor())
-        for drive in project.adopt_drives(found):
-            for tool in POINT_TOOLS.values():
-                request = RunRequest(tool.id, drive, tool.parameters())
-                result = run(request, SilentMonitor(), into=project.temporary_folder())
-                assert isinstance(result, FinishedColumns)
-                result.hand_over(drive.columns)
-    return folder
 
 
 @dataclass

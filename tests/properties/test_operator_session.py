@@ -10,14 +10,13 @@ import random
 from contextlib import ExitStack
 from pathlib import Path
 
-import pytest
 from hypothesis import HealthCheck, Phase, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, rule, run_state_machine_as_test
 from typing_extensions import override
 
 from tests.properties.operator_actions import EDITING, LOOKING, OFTEN, SELDOM, Action
-from tests.properties.operator_session import Session, check_whole_history, imported_street
+from tests.properties.operator_session import Session, check_whole_history
 
 CHANCE = st.randoms(use_true_random=False)
 
@@ -31,11 +30,6 @@ BRIEF = settings(
     phases=[Phase.explicit, Phase.generate],
     suppress_health_check=list(HealthCheck),
 )
-
-
-@pytest.fixture(scope="module")
-def street(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return imported_street(tmp_path_factory.mktemp("street") / "street.zuka")
 
 
 def days_of_an_operator(street: Path, home: Path) -> type[RuleBasedStateMachine]:
@@ -74,6 +68,6 @@ def days_of_an_operator(street: Path, home: Path) -> type[RuleBasedStateMachine]
 
 
 def test_hundreds_of_actions_in_any_order_break_nothing_and_lose_nothing(
-    street: Path, tmp_path: Path
+    sample_project: Path, tmp_path: Path
 ) -> None:
-    run_state_machine_as_test(days_of_an_operator(street, tmp_path), settings=BRIEF)
+    run_state_machine_as_test(days_of_an_operator(sample_project, tmp_path), settings=BRIEF)

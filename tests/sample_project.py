@@ -1,0 +1,29 @@
+"""The sample street as a project: imported once for all test processes, and copied by each test."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from pathlib import Path
+
+from processing.monitor import SilentMonitor
+from processing.project.dropped_files import request_of_files
+from processing.project.importing import import_drives
+from processing.project.project import Project
+from processing.runner import RunRequest, run
+from processing.tools.registry import POINT_TOOLS
+from processing.tools.tool import FinishedColumns
+from resources import path_of
+
+
+def make_sample_project(folder: Path) -> Path:
+    """A closed project with the sample street, its surfaces found."""
+    with closing(Project.create(folder, "")) as project:
+        request = request_of_files((path_of("sample_street"),), "")
+        found = import_drives(request, project.temporary_folder(), SilentMonitor())
+        for drive in project.adopt_drives(found):
+            for tool in POINT_TOOLS.values():
+                wish = RunRequest(tool.id, drive, tool.parameters())
+                result = run(wish, SilentMonitor(), into=project.temporary_folder())
+                assert isinstance(result, FinishedColumns)
+                result.hand_over(drive.columns)
+    return folder
