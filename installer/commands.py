@@ -15,6 +15,9 @@ from installer.steps import Stop, fingerprint, status_of, tell
 DEMO_OUTPUT = "demo-output"
 SCREENSHOTS = "screenshots"
 _LARGE_SCREEN = "2560x1440x24"
+_MOST_TEST_PROCESSES = 6
+"""Each takes up to 2 GB, and the longest test takes a while whatever runs beside it."""
+
 CHECKS: tuple[tuple[str, ...], ...] = (
     ("ruff", "format", "--check", "--quiet", "."),
     ("ruff", "check", "--quiet", "."),
@@ -98,12 +101,18 @@ def _test(environment: Environment, pytest_arguments: Sequence[str]) -> int:
         tell(" ".join((program, *arguments)))
         environment.run(program, *arguments)
     sys.stderr.flush()
+    beside = ("--numprocesses", str(processes_for_tests()), "--dist", "worksteal")
     with virtual_display(environment.variables) as variables:
         return status_of(
-            [environment.program("python"), "-m", "pytest", *pytest_arguments],
+            [environment.program("python"), "-m", "pytest", *beside, *pytest_arguments],
             folder=environment.root,
             environment=variables,
         )
+
+
+def processes_for_tests() -> int:
+    """Give how many processes run the tests: one a core, and no more than memory bears."""
+    return max(2, min(_MOST_TEST_PROCESSES, os.cpu_count() or 1))
 
 
 def _screenshots(environment: Environment, arguments: Sequence[str]) -> int:

@@ -1,7 +1,7 @@
 """What all tests share: their order, the sample street, and that no window stays behind.
 
-Windows need a display; ``installer/bootstrap.py test`` gives one. Nothing here stands in for a
-part of the program.
+Windows need a display; ``installer/bootstrap.py test`` gives one, and every process of
+pytest-xdist (``-n 2``) gets one of its own. Nothing here stands in for a part of the program.
 """
 
 from __future__ import annotations
@@ -9,7 +9,8 @@ from __future__ import annotations
 import gc
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,9 +18,11 @@ import pytest
 from filelock import FileLock
 from hypothesis import HealthCheck, settings
 
+from installer.display import virtual_display
 from resources import path_of
 
 if TYPE_CHECKING:
+    from execnet import XSpec
     from PySide6.QtWidgets import QApplication, QWidget
 
 ORDER = (
@@ -33,6 +36,10 @@ ORDER = (
     "journeys",
 )
 TESTS = Path(__file__).parent
+SCREENS = pytest.StashKey[ExitStack]()
+SCREEN = ("DISPLAY", "QT_QPA_PLATFORM")
+THREADS = ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")
+"""What libraries read when they are loaded; test processes share the cores among themselves."""
 
 # The same cases on every machine, however slow it is.
 settings.register_profile(
@@ -42,6 +49,26 @@ settings.register_profile(
     suppress_health_check=[HealthCheck.too_slow],  # says only that the machine is busy
 )
 settings.load_profile("zuka")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_setupnodes(config: pytest.Config, specs: Sequence[XSpec]) -> None:
+    """Give each test process a share of the cores and a screen of its own.
+
+    Focus and clipboard are the screen's. This process, which hands out the tests, keeps the
+    screens, so that one whose user died is closed as well.
+    """
+    screens = config.stash[SCREENS] = ExitStack()
+    share = max(1, (os.cpu_count() or 1) // len(specs))
+    for spec in specs:
+        variables = screens.enter_context(virtual_display(os.environ))
+        spec.env.update(dict.fromkeys(THREADS, str(share)))
+        spec.env.update((name, variables[name]) for name in SCREEN if name in variables)
+
+
+def pytest_unconfigure(config: pytest.Config) -> None:
+    """Close the screens of the processes."""
+    config.stash.get(SCREENS, ExitStack()).close()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

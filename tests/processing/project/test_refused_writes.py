@@ -5,7 +5,10 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections.abc import Iterator
 from contextlib import closing
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 
@@ -81,12 +84,17 @@ def test_on_a_full_disk_nothing_changes_in_memory_or_on_disk_and_work_goes_on_af
         assert features_of(project) == replayed_history(folder)
 
 
-def test_a_folder_without_rights_is_read_and_refuses_to_be_written_in_one_sentence(tmp_path):
-    folder = new_project(tmp_path / "a.zuka", sign("a"))
+@pytest.fixture
+def folder_for_all() -> Iterator[Path]:
+    """A folder that other users may enter; pytest's own are closed, now and then anew."""
+    with TemporaryDirectory(prefix="zuka-") as place:
+        Path(place).chmod(0o755)
+        yield Path(place)
+
+
+def test_a_folder_without_rights_is_read_and_refuses_to_be_written_in_one_sentence(folder_for_all):
+    folder = new_project(folder_for_all / "a.zuka", sign("a"))
     before = tree_of(folder)
-    for path in (*tmp_path.parents, tmp_path):
-        if path.owner() == tmp_path.owner() and path.name.startswith(("pytest", tmp_path.name)):
-            path.chmod(0o755)
     folder.chmod(0o555)
     for path in folder.iterdir():
         path.chmod(0o444)
