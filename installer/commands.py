@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from installer import system_packages, translations
@@ -45,7 +47,7 @@ def run(command: str, root: Path, arguments: Sequence[str]) -> int:
     """
     environment = Environment(root, os.environ)
     try:
-        set_up(environment)
+        set_up(environment, only_for_demo=command == "demo")
         if command == "demo":
             return _demo(environment)
         if command == "test":
@@ -61,32 +63,71 @@ def run(command: str, root: Path, arguments: Sequence[str]) -> int:
     return 0
 
 
-def set_up(environment: Environment) -> None:
-    """Make everything that the program needs to run; what is there already is left alone."""
+def set_up(environment: Environment, *, only_for_demo: bool = False) -> None:
+    """Make everything that the program needs to run; what is there already is left alone.
+
+    Parameters
+    ----------
+    only_for_demo : bool
+        Leave out the kernels that the demo doesn't use.
+    """
     system_packages.provide(environment.variables)
     environment.prepare()
     translations.compile_all(environment)
-    _warm_kernels(environment)
+    _warm_kernels(environment, only_for_demo=only_for_demo)
 
 
-def _warm_kernels(environment: Environment) -> None:
+def _kernels_mark(environment: Environment) -> str:
     sources = (environment.root / "processing").rglob("*.py")
-    lock = environment.root / "requirements.lock"
-    stamp, mark = environment.stamp("kernels"), fingerprint([*sources, lock])
-    if stamp.fits(mark):
+    return fingerprint([*sources, environment.root / "requirements.lock"])
+
+
+def _warm_kernels(environment: Environment, *, only_for_demo: bool) -> None:
+    """Compile the kernels; those whose sources are the same are only looked up."""
+    stamp, some = environment.stamp("kernels"), environment.stamp("demo-kernels")
+    mark = _kernels_mark(environment)
+    if stamp.fits(mark) or (only_for_demo and some.fits(mark)):
         return
-    stamp.lift()
-    tell("compiling the kernels")
-    environment.run("python", "-m", "installer.warm_kernels")
-    stamp.set(mark)
+    made, wish = (some, ("--demo",)) if only_for_demo else (stamp, ())
+    made.lift()
+    tell("compiling the kernels" + (" that the demo uses" if only_for_demo else ""))
+    environment.run("python", "-m", "installer.warm_kernels", *wish)
+    made.set(mark)
+
+
+@contextmanager
+def _other_kernels_beside(environment: Environment) -> Iterator[subprocess.Popen[bytes] | None]:
+    """Compile the kernels that the demo doesn't use while the body runs, as far as it gets.
+
+    The compiler's process is given, or None where all are compiled.
+    """
+    stamp, mark = environment.stamp("kernels"), _kernels_mark(environment)
+    if stamp.fits(mark):
+        yield None
+        return
+    words = ("-m", "installer.warm_kernels", "--processes", "1")
+    compiler = subprocess.Popen(
+        [environment.program("python"), *words],
+        cwd=environment.root,
+        env=environment.variables,
+        stderr=subprocess.DEVNULL,
+    )
+    try:
+        yield compiler
+    finally:
+        if compiler.poll() == 0:
+            stamp.set(mark)
+        compiler.terminate()
+        compiler.wait()
 
 
 def _demo(environment: Environment) -> int:
     program = environment.program("zuka")
     if has_display(environment.variables):
-        return status_of(
-            [program, "demo"], folder=environment.root, environment=environment.variables
-        )
+        with _other_kernels_beside(environment):
+            return status_of(
+                [program, "demo"], folder=environment.root, environment=environment.variables
+            )
     tell(f"there is no display: the demo runs by itself and leaves its results in {DEMO_OUTPUT}/")
     with virtual_display(environment.variables) as variables:
         return status_of(

@@ -7,22 +7,51 @@ ends the set-up: a kernel that does not compile here fails in the program too.
 
 from __future__ import annotations
 
+import argparse
 import importlib
+import multiprocessing
+import os
 import pkgutil
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections import defaultdict
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
 from types import FunctionType, ModuleType
 
 WARM_UP = "warm_up"
+LATER = (
+    "processing.earthwork",
+    "processing.road",
+    "processing.simulate",
+    "processing.templates",
+)
+"""What the demo doesn't use; numba compiles a kernel at its first use where nobody did before."""
 
 
-def modules_below(package: ModuleType) -> Iterator[ModuleType]:
-    """Import and give every module of a package, in the order of their names."""
-    yield package
-    found = pkgutil.walk_packages(package.__path__, f"{package.__name__}.", onerror=_fail)
-    for name in sorted(information.name for information in found):
-        yield importlib.import_module(name)
+def folders_of(package: ModuleType, without: Sequence[str] = ()) -> tuple[tuple[str, ...], ...]:
+    """Give the names of a package's modules by folder, those with the most kernels first.
+
+    Kernels of a folder call each other: two processes would compile the same ones.
+
+    Parameters
+    ----------
+    without : Sequence[str]
+        Packages in it that are left out.
+    """
+    names: dict[str, list[str]] = defaultdict(list)
+    kernels: dict[str, int] = defaultdict(int)
+    for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}.", onerror=_fail):
+        folder, _, leaf = found.name.rpartition(".")
+        if any(f"{found.name}.".startswith(f"{left}.") for left in without):
+            continue
+        names[folder].append(found.name)
+        if not found.ispkg:
+            source = Path(getattr(found.module_finder, "path", ""), f"{leaf}.py")
+            kernels[folder] += source.read_text(encoding="utf-8").count("@kernel")
+    ordered = sorted(names, key=lambda folder: (-kernels[folder], folder))
+    return tuple(tuple(sorted(names[folder])) for folder in ordered)
 
 
 def warm_up_of(module: ModuleType) -> Callable[[], object] | None:
@@ -33,15 +62,25 @@ def warm_up_of(module: ModuleType) -> Callable[[], object] | None:
     return None
 
 
-def warm(package: ModuleType) -> tuple[str, ...]:
-    """Run the warm-ups of a package; gives the names of the modules that have one."""
+def warm(modules: Sequence[str]) -> tuple[str, ...]:
+    """Import modules and run their warm-ups; gives the names of those that have one."""
     warmed = []
-    for module in modules_below(package):
-        warm_up = warm_up_of(module)
+    for name in modules:
+        warm_up = warm_up_of(importlib.import_module(name))
         if warm_up is not None:
             warm_up()
-            warmed.append(module.__name__)
+            warmed.append(name)
     return tuple(warmed)
+
+
+def warm_beside(folders: Sequence[Sequence[str]], processes: int) -> tuple[str, ...]:
+    """Do the same in several processes, a folder at a time; one process is this one."""
+    if processes == 1:
+        return warm([name for names in folders for name in names])
+    fresh = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(processes, mp_context=fresh) as pool:
+        done = pool.map(warm, folders)
+        return tuple(name for names in done for name in names)
 
 
 def _fail(name: str) -> None:
@@ -50,8 +89,14 @@ def _fail(name: str) -> None:
 
 def main() -> int:
     """Warm the kernels of `processing` and say how long it took."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--demo", action="store_true", help="only what the demo uses")
+    parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
+    wish = parser.parse_args()
+    without = LATER if wish.demo else ()
     start = time.perf_counter()
-    warmed = warm(importlib.import_module("processing"))
+    folders = folders_of(importlib.import_module("processing"), without)
+    warmed = warm_beside(folders, wish.processes)
     seconds = time.perf_counter() - start
     sys.stderr.write(f"zuka: kernels of {len(warmed)} modules are ready after {seconds:.0f} s\n")
     return 0

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import importlib
+import os
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from typing_extensions import override
 
-from installer.warm_kernels import warm
+from installer import commands
+from installer.environment import Environment
+from installer.warm_kernels import folders_of, warm, warm_beside
 
 
 @pytest.fixture
@@ -35,17 +39,109 @@ def test_every_warm_up_runs_once_where_it_is_defined(package: Path) -> None:
     (package / "below" / "__init__.py").touch()
     write_warm_up(package / "below" / "lids.py", "street.warmed.append('lids')")
     street = importlib.import_module("street")
-    assert warm(street) == ("street.below.lids", "street.curbs")
+    names = [name for folder in folders_of(street) for name in folder]
+    assert sorted(names) == ["street.below", "street.below.lids", "street.curbs", "street.trees"]
+    assert warm(sorted(names)) == ("street.below.lids", "street.curbs")
     assert street.warmed == ["lids", "curbs"]
+
+
+def test_the_folder_with_most_kernels_comes_first_and_what_the_demo_leaves_out_not_at_all(
+    package: Path,
+) -> None:
+    for folder, kernels in (("curbs", 1), ("noise", 3), ("noise_maps", 2), ("trees", 0)):
+        (package / folder).mkdir()
+        (package / folder / "__init__.py").touch()
+        (package / folder / "one.py").write_text("# @kernel\n" * kernels)
+    street = importlib.import_module("street")
+    assert [folder[0] for folder in folders_of(street)[:3]] == [
+        "street.noise.one",
+        "street.noise_maps.one",
+        "street.curbs.one",
+    ]
+    names = [name for folder in folders_of(street, ["street.noise"]) for name in folder]
+    assert sorted(names) == [
+        "street.curbs",
+        "street.curbs.one",
+        "street.noise_maps",
+        "street.noise_maps.one",
+        "street.trees",
+        "street.trees.one",
+    ]
+
+
+def test_processes_beside_run_every_warm_up(package: Path) -> None:
+    for name in ("curbs", "lids", "trees"):
+        write_warm_up(package / f"{name}.py", "open(__file__ + '.warm', 'x').close()")
+    street = importlib.import_module("street")
+    assert warm_beside(folders_of(street), 2) == ("street.curbs", "street.lids", "street.trees")
+    assert len(list(package.glob("*.warm"))) == 3
+
+
+def test_a_warm_up_that_fails_beside_ends_the_set_up(package: Path) -> None:
+    write_warm_up(package / "curbs.py", "raise TypeError('no such kernel')")
+    with pytest.raises(TypeError, match="no such kernel"):
+        warm_beside(folders_of(importlib.import_module("street")), 2)
 
 
 def test_a_warm_up_that_fails_ends_the_set_up(package: Path) -> None:
     write_warm_up(package / "curbs.py", "raise TypeError('no such kernel')")
     with pytest.raises(TypeError, match="no such kernel"):
-        warm(importlib.import_module("street"))
+        warm(["street.curbs"])
 
 
 def test_a_module_that_cannot_be_imported_ends_the_set_up(package: Path) -> None:
     (package / "curbs.py").write_text("import street.nowhere\n")
     with pytest.raises(ModuleNotFoundError):
-        warm(importlib.import_module("street"))
+        warm(["street.curbs"])
+
+
+NOTES_ITS_ARGUMENTS = """
+import sys
+from pathlib import Path
+
+with Path("runs.txt").open("a") as notes:
+    notes.write(f"{' '.join(sys.argv[1:])};")
+"""
+
+
+class OwnPython(Environment):
+    """An environment whose programs are those of the tests."""
+
+    @override
+    def program(self, name: str) -> Path:
+        return Path(sys.executable)
+
+
+@pytest.fixture
+def checkout(tmp_path: Path) -> Environment:
+    """Give a set-up checkout whose compiler of kernels only notes how it is called."""
+    for name in (".venv", "installer", "processing"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "installer" / "warm_kernels.py").write_text(NOTES_ITS_ARGUMENTS)
+    (tmp_path / "processing" / "curbs.py").touch()
+    (tmp_path / "requirements.lock").touch()
+    return OwnPython(tmp_path, os.environ)
+
+
+def noted(checkout: Environment) -> list[str]:
+    return (checkout.root / "runs.txt").read_text().split(";")[:-1]
+
+
+def test_kernels_of_the_demo_are_compiled_alone_and_kept_for_the_tests(
+    checkout: Environment,
+) -> None:
+    for only_for_demo in (True, True, False, False, True):
+        commands._warm_kernels(checkout, only_for_demo=only_for_demo)
+    assert noted(checkout) == ["--demo", ""]
+    (checkout.root / "processing" / "curbs.py").write_text("STEP_M = 0.15\n")
+    commands._warm_kernels(checkout, only_for_demo=True)
+    assert noted(checkout) == ["--demo", "", "--demo"]
+
+
+def test_the_other_kernels_are_compiled_beside_the_window_once(checkout: Environment) -> None:
+    for _ in range(2):
+        with commands._other_kernels_beside(checkout) as compiler:
+            if compiler is not None:
+                compiler.wait()
+    commands._warm_kernels(checkout, only_for_demo=False)
+    assert noted(checkout) == ["--processes 1"]
