@@ -5,7 +5,7 @@ Each function gives a job's title and its work; the work touches neither the pro
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 from pathlib import Path
 
