@@ -98,6 +98,7 @@ def test_a_truth_made_by_hand_is_about_all_that_was_recorded_together(
 
 def _wish(delivery: ImportRequest, output: Path, *settings: str) -> Namespace:
     return Namespace(
+        columns="",
         tool="ground",
         inputs=list(delivery.inputs),
         trajectory=list(delivery.trajectories),

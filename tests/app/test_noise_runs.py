@@ -139,6 +139,7 @@ def test_the_command_line_keeps_order_places_and_all_other_classes(
     output = tmp_path / "out.laz"
     (source,) = delivery.inputs
     arguments = Namespace(
+        columns="",
         tool="noise",
         inputs=[source],
         trajectory=list(delivery.trajectories),

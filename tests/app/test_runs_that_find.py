@@ -165,7 +165,7 @@ def arguments(tmp_path: Path, inputs: list[Path], output: str, **others: object)
         "set": [],
         "output": tmp_path / output,
     }
-    return Namespace(**{**given, **others})
+    return Namespace(**{"columns": "", **given, **others})
 
 
 def test_the_command_line_writes_candidates_of_delivered_files(

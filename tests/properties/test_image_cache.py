@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from processing.errors import Unsuitable, UserError
-from processing.image.attributes import colours
+from processing.image.attributes import colours, telling_attribute
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.tiles import TileKey
@@ -78,7 +78,8 @@ REQUESTS = st.builds(
 def assert_right(drive: Drive, request: TileRequest, pixels: TilePixels) -> None:
     points = drive.image(request.kind).pyramid.points(request.key)
     np.testing.assert_array_equal(pixels.points, points)
-    wanted = colours(drive, points, request.attribute, request.low_percent, request.high_percent)
+    shown = telling_attribute(drive, request.attribute)
+    wanted = colours(drive, points, shown, request.low_percent, request.high_percent)
     np.testing.assert_array_equal(pixels.colours, wanted)
 
 
@@ -195,15 +196,26 @@ def test_what_cannot_be_shown_is_refused_until_the_drive_changes(
     cache: TileCache, drives: dict[str, Drive]
 ) -> None:
     listener, refused = Listener(), Listener()
-    cache.request(request_of(attribute="segment"), listener.done, refused.refused)
+    from_above = replace(request_of(attribute="height"), kind=ImageKind.TOP_VIEW)
+    cache.request(from_above, listener.done, refused.refused)
     refused.wait_for(1)
-    assert isinstance(cache.refusal("a", "segment"), Unsuitable)
-    cache.request(request_of(attribute="segment"), listener.done, refused.refused)
+    assert isinstance(cache.refusal("a", "height"), Unsuitable)
+    cache.request(from_above, listener.done, refused.refused)
     cache.request(request_of(), listener.done)
     listener.wait_for(1)
     assert [request for request, _ in listener.told] == [request_of()]
     assert len(refused.reasons) == 1
     cache.drop("a")
+    assert cache.refusal("a", "height") is None
+
+
+def test_a_drive_is_shown_by_what_it_has_where_it_lacks_the_attribute(
+    cache: TileCache, drives: dict[str, Drive]
+) -> None:
+    listener = Listener()
+    cache.request(request_of(attribute="segment"), listener.done)
+    listener.wait_for(1)
+    assert_right(drives["a"], *listener.told[0])
     assert cache.refusal("a", "segment") is None
 
 

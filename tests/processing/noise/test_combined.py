@@ -14,6 +14,7 @@ from processing.noise.beam_origins import beam_origins
 from processing.noise.combined import noise_codes_in_space, noise_codes_with_beams
 from processing.noise.drive_noise import NoiseSearch
 from processing.noise.stretches import stretches_of
+from processing.owned_files import MARK
 from processing.points.drive import Drive
 from processing.runner import RunRequest, columns_of, run
 from processing.tools.noise import NOISE, NoiseParameters
@@ -47,7 +48,7 @@ def codes_of(drive: Drive, parameters: NoiseParameters) -> Codes:
     into = drive.folder.parent / "found"
     result = run(RunRequest(NOISE.id, drive, parameters), SilentMonitor(), into=into)
     assert isinstance(result, FinishedColumns)
-    assert [path.name for path in into.iterdir()] == ["classification.bin"]
+    assert {path.name for path in into.iterdir()} == {"classification.bin", MARK}
     codes = np.array(columns_of(result)["classification"])
     result.remove()
     return codes

@@ -223,6 +223,7 @@ def test_the_command_line_writes_a_row_for_each_setting(
 ) -> None:
     output = tmp_path / "study.csv"
     arguments = Namespace(
+        columns="",
         tool="noise",
         inputs=[files / "左.laz"],
         trajectory=[files / "軌跡.csv"],

@@ -223,7 +223,7 @@ def test_the_offset_is_estimated_from_clicked_pairs(hand: Hand) -> None:
 
 def test_without_images_the_view_says_how_to_get_some(qtbot: QtBot, left_drive: Drive) -> None:
     hand = shown(qtbot, OpenMap((left_drive,)))
-    assert "Import a drive" in hand.view.words()
+    assert "Add camera images" in hand.view.words()
     assert hand.view.lay() is None
     hand.view.close()
 
