@@ -154,18 +154,20 @@ def _make_lasting(settings: Settings) -> LastingParts:
     jobs = JobQueue()
     document = Document(jobs)
     document.shared.view_settings.lay_image(settings.image_lay)
-    review = Review(document, document)
+    owners: tuple[object, ...] = (
+        Review(document, document),
+        SourceWatch(document, document),
+        ClassJudging(document, jobs, document),
+        Earthwork(document, jobs, document),
+    )
     return LastingParts(
         settings=settings,
         theme=theme,
         jobs=jobs,
         document=document,
-        review=review,
-        source_watch=SourceWatch(document, document),
-        judging=ClassJudging(document, jobs, document),
-        earthwork=Earthwork(document, jobs, document),
         toolbox=make_toolbox(document),
         window=MainWindow(),
+        owners={type(owner): owner for owner in owners},
     )
 
 
@@ -196,10 +198,6 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         theme=lasting.theme,
         jobs=lasting.jobs,
         document=document,
-        review=lasting.review,
-        source_watch=lasting.source_watch,
-        judging=lasting.judging,
-        earthwork=lasting.earthwork,
         toolbox=lasting.toolbox,
         image_views=image_views,
         scene_view=scene_view,
@@ -228,6 +226,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         feature_table=FeatureTable(document, shared, language),
         jobs_panel=JobsPanel(language),
         window=lasting.window,
+        owners=lasting.owners,
     )
 
 

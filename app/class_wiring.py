@@ -9,6 +9,7 @@ from PySide6.QtCore import QCoreApplication, QObject
 from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import QFileDialog, QMessageBox
 
+from app.class_judging import ClassJudging
 from app.evaluation_files import write_classes_file, write_study_file
 from app.truth_work import StudyWish
 from app.window_parts import WindowParts
@@ -29,7 +30,7 @@ _WROTE = Text("Wrote {path}.", "{path} を書き出しました。")
 def connect_classes(parts: WindowParts) -> None:
     """Connect the pages of the evaluation with the document; again for new ones."""
     wiring = _ClassWiring(parts)
-    panel, studies, judging = parts.class_panel, parts.study_panel, parts.judging
+    panel, studies, judging = parts.class_panel, parts.study_panel, parts.of(ClassJudging)
     judging.truths_changed.connect(wiring.show_truths)
     judging.studies_changed.connect(wiring.show_studies)
     judging.judged.connect(panel.show_evaluations)
@@ -59,7 +60,7 @@ class _ClassWiring(QObject):
     def __init__(self, parts: WindowParts) -> None:
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
-        self._judging = parts.judging
+        self._judging = parts.of(ClassJudging)
 
     def show_truths(self) -> None:
         self._parts.class_panel.truths.show_truths(self._judging.truths())

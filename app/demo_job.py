@@ -18,6 +18,7 @@ from app.window_parts import WindowParts
 from processing.errors import InUse, MissingInput, UserError, told_as_user_error
 from processing.image.attributes import available
 from processing.image.kinds import ImageKind
+from processing.image.nearest import nearest_point
 from processing.owned_files import mark, remove_marked
 from processing.points.drive import Drive
 from processing.project.dropped_files import request_of_files
@@ -174,7 +175,7 @@ class _DemoJob:
         self.made.append(f"{path}: {rows} x {columns}")
 
     def _click_nearest(self, drive: Drive, xyz: tuple[float, float, float]) -> None:
-        point = drive.nearest_point(np.array(xyz), _NEAR_M)
+        point = nearest_point(drive, np.array(xyz), _NEAR_M)
         if point < 0:
             raise MissingInput(
                 Text("The demo's drawing is off the points.", "デモの図形が点群から外れています。"),

@@ -22,7 +22,8 @@ from app.undo import UndoStack
 from processing.errors import UserError
 from processing.image.tile_cache import TileCache
 from processing.points.drive import Drive
-from processing.project.catalogue import Catalogue, read_catalogue
+from processing.project.catalogue import Catalogue
+from processing.project.catalogue_file import read_catalogue
 from processing.project.change import Change
 from processing.project.export import ExportRequest
 from processing.project.feature import Feature

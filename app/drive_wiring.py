@@ -7,6 +7,7 @@ from pathlib import Path
 from PySide6.QtCore import QObject
 
 from app.look_news import LookNews
+from app.source_watch import SourceWatch
 from app.source_words import told_found, told_troubles, words_by_drive
 from app.view_memory import ViewMemory
 from app.window_parts import WindowParts
@@ -17,7 +18,7 @@ def connect_drives(parts: WindowParts) -> None:
     wiring = DriveWiring(parts)
     ViewMemory(parts.document, parts.image_views, wiring)
     LookNews(parts.document, wiring).told.connect(parts.status_line.show_message)
-    tree, watch = parts.project_tree, parts.source_watch
+    tree, watch = parts.project_tree, parts.of(SourceWatch)
     tree.beside_requested.connect(parts.image_views.show_beside)
     tree.find_requested.connect(wiring.on_tree_find_requested)
     parts.document.opened.connect(wiring.on_document_opened)
@@ -39,7 +40,7 @@ class DriveWiring(QObject):
 
     def show_troubles(self) -> None:
         """Mark the drives whose files are missing."""
-        words = words_by_drive(self._parts.source_watch.troubles, self._parts.language)
+        words = words_by_drive(self._parts.of(SourceWatch).troubles, self._parts.language)
         self._parts.project_tree.show_troubles(words)
 
     def on_document_opened(self) -> None:
@@ -52,11 +53,11 @@ class DriveWiring(QObject):
 
     def on_watch_chosen(self, _folder: Path) -> None:
         """What comes of a folder that the user chose is told."""
-        self._missed_before = len(self._parts.source_watch.troubles)
+        self._missed_before = len(self._parts.of(SourceWatch).troubles)
 
     def on_watch_looked(self) -> None:
         """Tell what is missing, once, with the way to say where it is."""
-        troubles = self._parts.source_watch.troubles
+        troubles = self._parts.of(SourceWatch).troubles
         self.show_troubles()
         before, self._missed_before = self._missed_before, None
         found = None if before is None else told_found(before, troubles)

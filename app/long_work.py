@@ -11,6 +11,7 @@ from pathlib import Path
 
 from app.import_words import adding_words
 from app.run_storing import FinishedRun, finished_run
+from processing.image.images_of_drives import image_of
 from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.project.additions import Additions, bring_in, home_of
@@ -98,10 +99,10 @@ def prepare_images(drive: Drive, monitor: Monitor) -> None:
     for kind in drive.image_kinds:
         monitor.check()
         monitor.report(1.0, kind.title)
-        drive.image(kind)
+        image_of(drive, kind)
 
 
 def _prepare_tiles(drive: Drive, monitor: Monitor) -> None:
     """Note where the tiles of the first image are, so that the window need not look for them."""
     if drive.count:
-        drive.image(drive.image_kinds[0]).pyramid.prepare(monitor)
+        image_of(drive, drive.image_kinds[0]).pyramid.prepare(monitor)

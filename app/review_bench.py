@@ -18,6 +18,7 @@ from PySide6.QtWidgets import QApplication
 from typing_extensions import override
 
 from app.application import build_window, make_application
+from app.review import Review
 from app.settings import Settings
 from app.window_parts import WindowParts
 from processing.bench.street_candidates import street_candidates
@@ -71,18 +72,18 @@ def _measured(parts: WindowParts, folder: Path, count: int) -> dict[str, list[fl
     _wait(lambda: parts.scene_view.is_settled)
     sharp_sections: list[bool] = []
     parts.section_view.sharpened.connect(lambda: sharp_sections.append(True))
-    parts.review.open((made.run.id,), ReviewOrder.CONFIDENCE)
+    parts.of(Review).open((made.run.id,), ReviewOrder.CONFIDENCE)
     _wait(lambda: bool(sharp_sections) and _is_camera_sharp(parts))
     painted = _Painted(parts)
     times: dict[str, list[float]] = {"centred": [], "sharp": []}
-    while parts.review.current is not None:
+    while parts.of(Review).current is not None:
         sharp_sections.clear()
         painted.seen.clear()
         began = time.perf_counter()
         parts.window.actions_by_id["review-accept"].trigger()
         _wait(lambda: painted.seen >= painted.watched)
         times["centred"].append(1000 * (time.perf_counter() - began))
-        if parts.review.current is None:
+        if parts.of(Review).current is None:
             break
         _wait(lambda: bool(sharp_sections) and _is_camera_sharp(parts))
         times["sharp"].append(1000 * (time.perf_counter() - began))

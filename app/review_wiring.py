@@ -6,6 +6,7 @@ from PySide6.QtCore import QObject, Qt
 
 from app.actions.process import one_click_tools
 from app.actions.review import QUEUE_KEYS
+from app.review import Review
 from app.window_parts import WindowParts
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature, Status
@@ -28,7 +29,7 @@ _LEAST_SECTION_SCALE = 200.0
 def connect_review(parts: WindowParts) -> None:
     """Connect the review with the widgets of a window; again for new ones."""
     wiring = _ReviewWiring(parts)
-    review, panel = parts.review, parts.review_panel
+    review, panel = parts.of(Review), parts.review_panel
     review.shown.connect(wiring.on_review_shown)
     review.coming.connect(parts.camera_view.prepare)
     review.changed.connect(wiring.on_review_changed)
@@ -97,7 +98,7 @@ class _ReviewWiring(QObject):
             settings.show_image(place.measured.drive, kind)
 
     def on_review_changed(self) -> None:
-        review = self._parts.review
+        review = self._parts.of(Review)
         self._parts.review_panel.show_review(review.progress, review.current, review.line_count)
         self._allow_keys()
         self._is_near = self._is_near and review.is_open
@@ -126,8 +127,8 @@ class _ReviewWiring(QObject):
         if tool not in {one.tool for one in one_click_tools()}:
             return
         self._parts.window.show_panel("review")
-        if self._parts.review.is_open:
-            self._parts.review.add(run)
+        if self._parts.of(Review).is_open:
+            self._parts.of(Review).add(run)
 
     def on_panel_processing_requested(self) -> None:
         self._parts.window.show_panel("processing")
@@ -136,7 +137,7 @@ class _ReviewWiring(QObject):
         self._parts.window.show_panel("evaluation")
 
     def on_tree_review_requested(self, run: str) -> None:
-        review = self._parts.review
+        review = self._parts.of(Review)
         self._parts.window.show_panel("review")
         review.open((run,), review.progress.state.order)
 
@@ -157,8 +158,8 @@ class _ReviewWiring(QObject):
     def _allow_keys(self) -> None:
         """While something is drawn, Enter and Delete belong to what is drawn."""
         parts = self._parts
-        is_judging = parts.review.is_open and not parts.toolbox.hand.is_busy
+        is_judging = parts.of(Review).is_open and not parts.toolbox.hand.is_busy
         for name in QUEUE_ACTIONS:
             is_key = name in QUEUE_KEYS
-            allowed = is_judging if is_key else parts.review.is_open
+            allowed = is_judging if is_key else parts.of(Review).is_open
             parts.window.actions_made.allow(name, is_allowed=allowed)

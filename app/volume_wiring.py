@@ -10,6 +10,7 @@ from PySide6.QtCore import QCoreApplication, QObject
 from PySide6.QtWidgets import QFileDialog
 from shapely.geometry.base import BaseGeometry
 
+from app.earthwork import Earthwork
 from app.limits_wiring import connect_limits
 from app.volume_exports import VOLUME_EXPORTS
 from app.volume_papers import is_judged
@@ -41,7 +42,7 @@ _SEVERAL = Text(
 def connect_volumes(parts: WindowParts) -> None:
     """Connect the panel of volumes with the document; again for new ones."""
     wiring = _VolumeWiring(parts)
-    panel, earthwork = parts.volume_panel, parts.earthwork
+    panel, earthwork = parts.volume_panel, parts.of(Earthwork)
     form = panel.form
     form.ask_reason_from(wiring.reason_against)
     form.ask_ground_from(wiring.needs_ground)
@@ -74,10 +75,10 @@ class _VolumeWiring(QObject):
         self._parts.window.actions_by_id["heat-map"].setChecked(look.is_shown)
 
     def show_epochs(self) -> None:
-        self._parts.volume_panel.form.show_epochs(self._parts.earthwork.epochs)
+        self._parts.volume_panel.form.show_epochs(self._parts.of(Earthwork).epochs)
 
     def show_volumes(self) -> None:
-        earthwork = self._parts.earthwork
+        earthwork = self._parts.of(Earthwork)
         shown = earthwork.shown
         panel = self._parts.volume_panel
         panel.show_volumes(earthwork.volumes, "" if shown is None else shown.id)
@@ -88,16 +89,16 @@ class _VolumeWiring(QObject):
     def reason_against(self) -> Text | None:
         """Why nothing can be compared as the form stands; None: it can."""
         form = self._parts.volume_panel.form
-        return reason_against(*form.sides, self._parts.earthwork.epochs)
+        return reason_against(*form.sides, self._parts.of(Earthwork).epochs)
 
     def needs_ground(self) -> bool:
         """Whether the ground of a chosen epoch is still to be found."""
-        form, earthwork = self._parts.volume_panel.form, self._parts.earthwork
+        form, earthwork = self._parts.volume_panel.form, self._parts.of(Earthwork)
         return any(earthwork.lacks_ground(box.side) for box in (form.before, form.after))
 
     def on_form_ground_requested(self) -> None:
         form = self._parts.volume_panel.form
-        self._parts.earthwork.find_ground((form.before.side, form.after.side))
+        self._parts.of(Earthwork).find_ground((form.before.side, form.after.side))
 
     def on_form_run_requested(self) -> None:
         try:
@@ -106,14 +107,14 @@ class _VolumeWiring(QObject):
             self._parts.document.refused.emit(error)
             return
         if wish is not None:
-            self._parts.earthwork.compute(wish)
+            self._parts.of(Earthwork).compute(wish)
 
     def on_table_correction_requested(self) -> None:
         """The same again, with the later epoch moved back."""
-        shown = self._parts.earthwork.shown
+        shown = self._parts.of(Earthwork).shown
         if shown is not None:
             parameters = {**shown.wish.parameters, "correct_shift": True}
-            self._parts.earthwork.compute(replace(shown.wish, parameters=parameters))
+            self._parts.of(Earthwork).compute(replace(shown.wish, parameters=parameters))
 
     def on_panel_export_requested(self, id_: str) -> None:
         """What is there already is asked for by the dialog."""
@@ -129,7 +130,7 @@ class _VolumeWiring(QObject):
             f"*{kind.ending}",
         )
         if chosen:
-            parts.earthwork.export(kind, Path(chosen), parts.language)
+            parts.of(Earthwork).export(kind, Path(chosen), parts.language)
 
     def on_form_boundary_wanted(self) -> None:
         path = self._asked_file(

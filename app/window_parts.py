@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from typing import TypeVar
 
-from app.class_judging import ClassJudging
 from app.document import Document
-from app.earthwork import Earthwork
 from app.jobs import JobQueue
 from app.main_window import MainWindow
-from app.review import Review
 from app.settings import Settings
-from app.source_watch import SourceWatch
 from app.theme import Theme
 from app.view_docks import ViewDocks
 from processing.text import Language
@@ -42,21 +40,26 @@ from widgets.parts.status_line import StatusLine
 from widgets.scene_view.view import SceneView
 from widgets.section_view.view import SectionView
 
+_Owner = TypeVar("_Owner")
+
 
 @dataclass(frozen=True)
 class LastingParts:
-    """What stays when the widgets are made anew in another language."""
+    """What stays when the widgets are made anew in another language.
+
+    Attributes
+    ----------
+    owners : mapping
+        What each subject of the program keeps of its own (the review, the volumes), by its type.
+    """
 
     settings: Settings
     theme: Theme
     jobs: JobQueue
     document: Document
-    review: Review
-    source_watch: SourceWatch
-    judging: ClassJudging
-    earthwork: Earthwork
     toolbox: MouseToolbox
     window: MainWindow
+    owners: Mapping[type, object]
 
 
 @dataclass
@@ -71,10 +74,6 @@ class WindowParts:
     theme: Theme
     jobs: JobQueue
     document: Document
-    review: Review
-    source_watch: SourceWatch
-    judging: ClassJudging
-    earthwork: Earthwork
     toolbox: MouseToolbox
     image_views: ImageViews
     scene_view: SceneView
@@ -101,6 +100,15 @@ class WindowParts:
     feature_table: FeatureTable
     jobs_panel: JobsPanel
     window: MainWindow
+    owners: Mapping[type, object]
+
+    def of(self, owner: type[_Owner]) -> _Owner:
+        """What a subject of the program keeps of its own: ``parts.of(Review)``."""
+        found = self.owners[owner]
+        if not isinstance(found, owner):
+            message = f"{owner.__name__} is kept as {type(found).__name__}"
+            raise TypeError(message)
+        return found
 
     @property
     def image_view(self) -> ImageView:

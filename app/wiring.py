@@ -21,7 +21,7 @@ from processing.errors import Unsuitable
 from processing.project.change import Change
 from processing.runner import check_needs, tool_of
 from processing.text import Text
-from widgets.panels.jobs_panel import JobView
+from widgets.parts.job_view import JobView
 from widgets.parts.literal_text import literal
 
 

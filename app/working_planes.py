@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.images_of_drives import image_of
 from processing.points.drive import Drive
 from processing.project.feature import PointReference
 from widgets.shared.map_source import MapSource
@@ -43,7 +44,7 @@ def plane_of_points(source: MapSource, shared: SharedState) -> WorkingPlane | No
 
 def _points_near(drive: Drive, at: PointReference) -> NDArray[np.float64]:
     """(n, 3): measured points within a metre, found by the rows of the image about the point."""
-    image = drive.image(drive.pixel_kind)
+    image = image_of(drive, drive.pixel_kind)
     middle = drive.xyz(np.array([at.point]))[0]
     row = int(image.pixel_of(np.array([at.point]))[0][0])
     found: list[NDArray[np.float64]] = []

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import Unsuitable, named, told_as_user_error
+from processing.image.images_of_drives import image_of
 from processing.image.point_image import PointCloudImage
 from processing.monitor import Monitor, parts_of
 from processing.owned_files import make_marked, remove_folder
@@ -279,7 +280,7 @@ def _columns(
             marked = tool.mark(request.drive, request.parameters, into, points_per_block, monitor)
             monitor.check()
         return marked
-    image = request.drive.image(request.drive.pixel_kind)
+    image = image_of(request.drive, request.drive.pixel_kind)
     total = max(request.drive.count, 1)
     compute = tool.compute
     if tool.compute_of is not None:

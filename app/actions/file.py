@@ -14,6 +14,7 @@ from app.catalogue_wish import adopt_catalogue
 from app.column_wish import with_columns
 from app.project_dialogs import ProjectDialogs
 from app.simulate_wiring import Simulations
+from app.source_watch import SourceWatch
 from app.trajectory_offer import TrajectoryOffer
 from app.window_parts import WindowParts
 from processing.errors import UserError
@@ -277,7 +278,7 @@ class FileActions:
             self._parts.window, title, str(project.folder.parent)
         )
         if name:
-            self._parts.source_watch.look_in(Path(name))
+            self._parts.of(SourceWatch).look_in(Path(name))
 
     def choose_catalogue(self) -> None:
         """Ask for a catalogue file and use it in the project."""

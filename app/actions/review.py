@@ -6,6 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from app.actions.action import NOTHING, Action
+from app.review import Review
 from app.window_parts import WindowParts
 from processing.project.feature import Status
 from processing.project.review_state import ReviewOrder
@@ -41,7 +42,7 @@ def review_actions(parts: WindowParts) -> tuple[Action, ...]:
 
 
 def _start(parts: WindowParts) -> Action:
-    review, document = parts.review, parts.document
+    review, document = parts.of(Review), parts.document
 
     def start() -> None:
         features = document.features()
@@ -77,7 +78,7 @@ def _of_queue(
 
 def _judgements(parts: WindowParts) -> tuple[Action, ...]:
     """What the keys of the queue do."""
-    review = parts.review
+    review = parts.of(Review)
     return (
         _of_queue(
             "review-accept",
@@ -126,7 +127,7 @@ def _judgements(parts: WindowParts) -> tuple[Action, ...]:
 
 def _line_judgements(parts: WindowParts) -> tuple[Action, ...]:
     """What they do with all that a tool gave as one line."""
-    review = parts.review
+    review = parts.of(Review)
     return (
         _of_queue(
             "review-accept-line",
@@ -153,7 +154,7 @@ def _line_judgements(parts: WindowParts) -> tuple[Action, ...]:
 
 
 def _orders(parts: WindowParts) -> tuple[Action, ...]:
-    put = parts.review.put_in_order
+    put = parts.of(Review).put_in_order
     return (
         _of_queue(
             "review-worst",
@@ -165,7 +166,7 @@ def _orders(parts: WindowParts) -> tuple[Action, ...]:
             Text("Order: along the street", "順序: 道路に沿って"),
             partial(put, ReviewOrder.STREET),
         ),
-        _of_queue("review-end", Text("End the review", "確認を終了"), parts.review.close),
+        _of_queue("review-end", Text("End the review", "確認を終了"), parts.of(Review).close),
     )
 
 

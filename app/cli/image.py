@@ -15,6 +15,7 @@ from app.cli.output import print_lines
 from processing.errors import named
 from processing.formats.png import MOST_PIXELS, MOST_ROWS, write_png
 from processing.image.attributes import ATTRIBUTES, colours
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
 from processing.monitor import Monitor, SilentMonitor
@@ -53,7 +54,7 @@ def write_image(
     NoSpace, Cancelled
     """
     monitor = monitor or SilentMonitor()
-    image = drive.image(kind)
+    image = image_of(drive, kind)
     step = 1
     while not _can_be_opened(-(-image.rows // step), -(-image.width // step)):
         step += 1

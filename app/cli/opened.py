@@ -12,7 +12,8 @@ from app.language import system_language
 from processing.errors import MissingInput
 from processing.monitor import Monitor, TerminalMonitor
 from processing.points.drive import Drive
-from processing.project.catalogue import Catalogue, read_catalogue
+from processing.project.catalogue import Catalogue
+from processing.project.catalogue_file import read_catalogue
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.project import Project, is_project
 from processing.project.scratch_folder import scratch_folder

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from app.cli.opened import OpenedInput, opened_input, terminal_monitor
 from app.cli.output import print_lines
+from app.cli.set_option import settings_of_words
 from processing.errors import MissingInput, OutOfRange
 from processing.formats.safe_write import refuse_inputs, written_safely
 from processing.ground.stored_surface import StoredSurface
@@ -171,27 +172,6 @@ def _write_features(
         output, features, opened.catalogue, opened.crs, monitor=monitor, never=_delivered(opened)
     )
     return (output,)
-
-
-def settings_of_words(words: list[str]) -> dict[str, str]:
-    """What ``--set NAME=VALUE`` says, by name.
-
-    Raises
-    ------
-    OutOfRange
-        A setting has no value.
-    """
-    settings = {}
-    for word in words:
-        name, sign, value = word.partition("=")
-        if not sign:
-            raise OutOfRange(
-                Text("A setting has no value.", "設定に値がありません。"),
-                Text.same(f"--set {word}"),
-                Text("Write --set NAME=VALUE.", "--set 名前=値 の形で指定してください。"),
-            )
-        settings[name] = value
-    return settings
 
 
 def _check_inputs(arguments: argparse.Namespace) -> None:

@@ -6,7 +6,7 @@ import argparse
 
 from app.cli.opened import terminal_monitor
 from app.cli.output import print_lines
-from app.cli.run import settings_of_words
+from app.cli.set_option import settings_of_words
 from app.language import system_language
 from processing.simulate.orders import ORDERS
 from processing.simulate.scanning.density import density_map, survey_of

@@ -9,7 +9,7 @@ from pathlib import Path
 from app.cli.aligned import aligned
 from app.cli.opened import OpenedInput, opened_input, terminal_monitor
 from app.cli.output import print_lines
-from app.cli.run import settings_of_words
+from app.cli.set_option import settings_of_words
 from app.language import system_language
 from processing.errors import OutOfRange
 from processing.formats.safe_write import refuse_inputs

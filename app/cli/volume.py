@@ -13,7 +13,7 @@ import shapely
 
 from app.cli.opened import terminal_monitor
 from app.cli.output import print_lines
-from app.cli.run import settings_of_words
+from app.cli.set_option import settings_of_words
 from app.cli.volume_papers import check_ending, check_papers, papers_of
 from app.cli.volume_sides import NamedSide, named_side
 from processing.earthwork.as_built import AsBuiltResult

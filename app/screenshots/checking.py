@@ -10,6 +10,7 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QTreeWidget
 
+from app.review import Review
 from app.screenshots.street import LEFT, RIGHT
 from app.screenshots.studio import Studio
 from processing.project.change import Change
@@ -60,7 +61,7 @@ def with_rejected(studio: Studio) -> None:
 def done(studio: Studio) -> None:
     """All candidates were judged."""
     _open(studio)
-    review = studio.parts.review
+    review = studio.parts.of(Review)
     _judge(studio, 6)
     review.accept_from(0.0)
 
@@ -68,7 +69,7 @@ def done(studio: Studio) -> None:
 def evaluation(studio: Studio) -> None:
     """What became of the candidates, by tool, with the curve of reliability."""
     _found(studio)
-    studio.parts.review.open(_runs(studio), ReviewOrder.CONFIDENCE)
+    studio.parts.of(Review).open(_runs(studio), ReviewOrder.CONFIDENCE)
     _judge(studio, 22)
     studio.act("evaluation")
 
@@ -81,9 +82,9 @@ def evaluation_empty(studio: Studio) -> None:
 def runs(studio: Studio) -> None:
     """The runs in the project's tree, with what can be done to one."""
     _found(studio)
-    studio.parts.review.open(_runs(studio), ReviewOrder.CONFIDENCE)
+    studio.parts.of(Review).open(_runs(studio), ReviewOrder.CONFIDENCE)
     _judge(studio, 4)
-    studio.parts.review.close()
+    studio.parts.of(Review).close()
     studio.bring("project")
     studio.settle()
     tree = studio.parts.project_tree.findChildren(QTreeWidget)[0]
@@ -106,7 +107,7 @@ def _open(studio: Studio) -> None:
 
 def _judge(studio: Studio, count: int) -> None:
     """Decide as somebody does who finds that unsure candidates are often wrong."""
-    review = studio.parts.review
+    review = studio.parts.of(Review)
     for number in range(count):
         feature = review.current
         if feature is None:

@@ -16,9 +16,11 @@ from PySide6.QtGui import QCursor, QGuiApplication, QImage
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDialog, QDockWidget, QLineEdit, QWidget
 
+from app.review import Review
 from app.screenshots.hand import CONTROL, PLAIN, Hand
 from app.view_area import AreaLayout
 from app.window_parts import WindowParts
+from processing.image.nearest import nearest_point
 from processing.points.drive import Drive
 from processing.project.feature import Feature, PointReference, Position
 from widgets.parts.command_palette import CommandPalette
@@ -74,7 +76,7 @@ class Studio:
     def place(self, name: str, xyz: Position) -> Place:
         """The measured point of a drive nearest to a place."""
         drive = self.drive(name)
-        point = drive.nearest_point(np.array(xyz), _NEAR_M)
+        point = nearest_point(drive, np.array(xyz), _NEAR_M)
         if point < 0:
             message = f"no point of {name} is near {xyz}"
             raise LookupError(message)
@@ -186,7 +188,7 @@ class Studio:
         for _ in range(2):
             self.key(Qt.Key.Key_Escape)
         self.letter("H", CONTROL)
-        parts.review.close()
+        parts.of(Review).close()
         for _ in range(_MOST_STEPS):
             if self._changes_made() <= self._changes:
                 break

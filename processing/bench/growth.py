@@ -15,6 +15,7 @@ from processing.bench.case import BenchWish, Measurement
 from processing.bench.large_street import LongDelivery, write_long_delivery
 from processing.bench.timing import median_seconds, seconds_of
 from processing.image.attributes import colours
+from processing.image.images_of_drives import image_of
 from processing.labels.label_column import labels_of
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
@@ -105,12 +106,12 @@ def _open(place: Path) -> None:
     """To the first tile that can be drawn of the drive's beginning."""
     with closing(Project.open(place)) as project:
         (drive,) = project.drives
-        image = drive.image(drive.image_kinds[0])
+        image = image_of(drive, drive.image_kinds[0])
         image.raster(range(min(image.rows, 256)), range(min(image.width, 256)))
 
 
 def _image_times(drive: Drive) -> Iterator[tuple[str, float]]:
-    image = drive.image(drive.image_kinds[0])
+    image = image_of(drive, drive.image_kinds[0])
     middle = image.rows // 2
     rows = range(middle, min(middle + _SCREEN[1], image.rows))
     columns = range(min(image.width, _SCREEN[0]))

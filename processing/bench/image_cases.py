@@ -12,6 +12,7 @@ from processing.bench.case import BenchWish, Measurement
 from processing.bench.large_street import write_large_street
 from processing.bench.timing import median_seconds
 from processing.image.attributes import available, colours
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
@@ -32,7 +33,7 @@ def measure_image(wish: BenchWish) -> tuple[Measurement, ...]:
     with _large_drive(wish.limited(_POINTS)) as drive:
         speeds = {}
         for kind in drive.image_kinds:
-            image = drive.image(kind)
+            image = image_of(drive, kind)
             image.raster(range(image.rows), range(image.width))
             whole = partial(image.raster, range(image.rows), range(image.width))
             speeds[kind] = drive.count / median_seconds(whole, _REPEATS) / 1e6
@@ -64,7 +65,7 @@ def measure_switch(wish: BenchWish) -> tuple[Measurement, ...]:
             found = run(request, SilentMonitor(), into=drive.folder.parent / tool.id)
             if isinstance(found, FinishedColumns):
                 found.hand_over(drive.columns)
-        image = drive.image(ImageKind.TRAJECTORY_CENTER)
+        image = image_of(drive, ImageKind.TRAJECTORY_CENTER)
         rows = range(min(image.rows, _SCREEN[1]))
         columns = range(min(image.width, _SCREEN[0]))
         points = image.raster(rows, columns)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from processing.image.images_of_drives import image_of
 from processing.points.drive import Drive
 from processing.tools.tool import Candidate, CandidateResult
 
@@ -20,7 +21,7 @@ def street_candidates(drive: Drive, count: int, seed: int = 4) -> CandidateResul
     Every third one is a point, the others are lines of three vertices.
     """
     random = np.random.default_rng(seed)
-    rows = drive.image(drive.image_kinds[0]).rows
+    rows = image_of(drive, drive.image_kinds[0]).rows
     middles = np.linspace(0.08 * rows, 0.92 * rows, count).astype(int).tolist()
     confidences = random.uniform(0.2, 0.99, count).tolist()
     made = (
@@ -32,7 +33,7 @@ def street_candidates(drive: Drive, count: int, seed: int = 4) -> CandidateResul
 
 def _candidate(drive: Drive, row: int, number: int, confidence: float) -> Candidate | None:
     """None where the row has no points at that side."""
-    image = drive.image(drive.image_kinds[0])
+    image = image_of(drive, drive.image_kinds[0])
     column = int(_ASIDE[number % len(_ASIDE)] * image.width)
     is_point = number % 3 == 0
     rows = (row,) if is_point else (row - _HALF_ROWS, row, row + _HALF_ROWS)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from processing.cameras.camera import Camera
 from processing.cameras.choice import pixels_per_radian
 from processing.cameras.depth_kernels import ALONE_M, sizes_kernel
+from processing.image.images_of_drives import image_of
 from processing.image.tiles import TileKey, TilePyramid
 from processing.points.counted_classes import class_columns
 
@@ -128,11 +129,11 @@ class Surroundings:
                     yield number, self._kept_points(number, key)
 
     def _pyramids(self) -> Iterator[TilePyramid]:
-        return (drive.image(drive.image_kinds[-1]).pyramid for drive in self.drives)
+        return (image_of(drive, drive.image_kinds[-1]).pyramid for drive in self.drives)
 
     def _tiles(self, number: int, cell_rad: float) -> Iterator[TileKey]:
         drive = self.drives[number]
-        pyramid = drive.image(drive.image_kinds[-1]).pyramid
+        pyramid = image_of(drive, drive.image_kinds[-1]).pyramid
         waiting = [pyramid.top]
         while waiting:
             key = waiting.pop()
@@ -174,7 +175,7 @@ class Surroundings:
 
     def _points_of(self, number: int, key: TileKey) -> SizedPoints:
         drive = self.drives[number]
-        pyramid = drive.image(drive.image_kinds[-1]).pyramid
+        pyramid = image_of(drive, drive.image_kinds[-1]).pyramid
         raster = pyramid.points(key)
         is_filled = raster >= 0
         points = raster[is_filled]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from processing.drafting.height_kernels import near_points_kernel
 from processing.drafting.polyline import Polyline
+from processing.image.images_of_drives import image_of
 from processing.image.point_image import PointCloudImage
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.image.tiles import TILE
@@ -193,9 +194,9 @@ def _without(noise: NDArray[np.bool_], xyz: NDArray[np.int32]) -> NDArray[np.int
 
 def _image_of(drive: Drive) -> PointCloudImage:
     """An image of the drive whose tiles are known already, if there is one."""
-    images = (drive.image(kind) for kind in drive.image_kinds)
+    images = (image_of(drive, kind) for kind in drive.image_kinds)
     ready = next((image for image in images if image.pyramid.is_ready), None)
-    return ready or drive.image(drive.image_kinds[0])
+    return ready or image_of(drive, drive.image_kinds[0])
 
 
 def _united(pairs: Sequence[_Pairs]) -> _Pairs:

@@ -25,6 +25,7 @@ from processing.image.colour_maps import (
     stretched,
 )
 from processing.image.drive_sample import value_at_percent
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.normals import RowLayout, SurfaceShapes, surface_shapes
 from processing.points.counted_classes import class_columns
@@ -267,7 +268,7 @@ def _shape(drive: Drive, points: _Points) -> _Colours:
 
 
 def _surfaces(drive: Drive, points: _Points) -> SurfaceShapes:
-    image = drive.image(drive.pixel_kind)
+    image = image_of(drive, drive.pixel_kind)
     pulses, row_starts, doubled_origins = image.layout[:3]
     layout = RowLayout(
         pulses,

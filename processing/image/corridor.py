@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.nearest import nearest_point
 from processing.kernels import kernel
 from processing.points.drive import Drive
 
@@ -162,7 +163,7 @@ def _road_below(drive: Drive) -> Floats:
     way = trajectory.xyz[inside] if inside.sum() > 1 else trajectory.xyz
     heights = []
     for place in way[np.linspace(0, len(way) - 1, _PROBES).astype(np.int64)]:
-        point = drive.nearest_point(place - [0.0, 0.0, _LOWERED_M], _PROBE_REACH_M)
+        point = nearest_point(drive, place - [0.0, 0.0, _LOWERED_M], _PROBE_REACH_M)
         if point >= 0:
             heights.append(float(place[2] - drive.xyz(np.array([point]))[0, 2]))
     return way - [0.0, 0.0, float(np.median(heights)) if heights else _USUAL_HEIGHT_M]

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:  # the image makes its rasters, so importing it here would be a circle
-    from processing.image.point_image import PointCloudImage
+from processing.image.pixel_rows import PixelRows
 
 
 @dataclass(frozen=True)
@@ -54,7 +53,7 @@ class FixedRaster:
         return spread
 
 
-def fixed_raster_of(image: PointCloudImage, rows: range) -> FixedRaster:
+def fixed_raster_of(image: PixelRows, rows: range) -> FixedRaster:
     """The raster of `mode_width` columns of a stretch of rows."""
     width = min(image.mode_width, image.width)
     points = image.raster(rows, range(width))

@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.coordinates import Coordinates
+from processing.image.images_of_drives import image_of
 from processing.image.point_image import PointCloudImage
 from processing.image.tile_kernels import HIGHEST, LOWEST
 from processing.image.tiles import TILE
+from processing.points.drive import Drive
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -127,6 +129,43 @@ class NearestSearch:
             values = self._integers[chosen, axis]
             chosen = chosen[(values >= low[axis]) & (values <= high[axis])]
         return chosen + self._start, self._integers[chosen] * scale + offset
+
+
+def nearest_point(drive: Drive, xyz: Floats, within_m: float) -> int:
+    """The measured point of a drive nearest to a place.
+
+    Parameters
+    ----------
+    xyz : (3,) float64
+        m, project CRS.
+
+    Returns
+    -------
+    int
+        Index of the point; −1 where none is within the distance.
+    """
+    if drive.count == 0:
+        return -1
+    search = nearest_points(drive, np.reshape(xyz, (1, 3)), within_m)
+    while search.step():
+        pass
+    return int(search.points[0])
+
+
+def nearest_points(drive: Drive, xyz: Floats, within_m: float) -> NearestSearch:
+    """Begin to look for the measured points nearest to many places.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        m, project CRS.
+    """
+    # Any kind will do: to make another one takes seconds where there are many points.
+    made = [image_of(drive, kind) for kind in drive.image_kinds if drive.has_kept(kind)]
+    made.sort(key=lambda one: not one.pyramid.is_ready)
+    image = made[0] if made else image_of(drive, drive.image_kinds[0])
+    places = np.asarray(xyz, dtype=np.float64)
+    return NearestSearch(image, drive.coordinates, places, within_m)
 
 
 def _bounds_of_stretches(image: PointCloudImage) -> tuple[Floats, Floats]:

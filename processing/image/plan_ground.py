@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
+from processing.image.nearest import nearest_point
 from processing.points.drive import Drive
 
 Floats = NDArray[np.float64]
@@ -65,7 +67,7 @@ def ceilings_above(ground: Floats, places: Floats, limit_m: float) -> Floats:
 
 
 def _below_rows(drive: Drive, way: Floats) -> Floats:
-    image = drive.image(ImageKind.TRAJECTORY_CENTER)
+    image = image_of(drive, ImageKind.TRAJECTORY_CENTER)
     filled = np.flatnonzero(np.diff(image.row_starts) >= _POINTS_A_ROW)
     rows = filled[:: max(1, len(filled) // _MOST_ROWS)]
     points = image.row_starts[rows][:, None] + np.arange(_POINTS_A_ROW)
@@ -95,7 +97,7 @@ def _below_samples(drive: Drive, way: Floats) -> Floats:
     chosen = np.linspace(0, len(inside) - 1, min(_SAMPLES, len(inside))).astype(np.int64)
     drops = []
     for place in inside[chosen]:
-        point = drive.nearest_point(place - [0.0, 0.0, _USUAL_DROP_M], _BESIDE_M)
+        point = nearest_point(drive, place - [0.0, 0.0, _USUAL_DROP_M], _BESIDE_M)
         if point >= 0:
             drops.append(float(place[2] - drive.xyz(np.array([point]))[0, 2]))
     drop_m = float(np.median(drops)) if drops else _USUAL_DROP_M

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.image.tiles import TileKey
@@ -94,7 +95,7 @@ class PlanPoints:
     def _tiles_at(self, sought: Sought) -> Iterator[tuple[int, TileKey]]:
         place = np.array([sought.easting, sought.northing])
         for number, (drive, kind) in enumerate(self._drives):
-            pyramid = drive.image(kind).pyramid
+            pyramid = image_of(drive, kind).pyramid
             if not pyramid.is_ready:  # reading its table would take too long for a click
                 continue
             rows, columns = pyramid.shape(0)
@@ -111,7 +112,7 @@ class PlanPoints:
         if there is None:
             drive, kind = self._drives[number]
             classes = class_columns(drive.columns) if self._hides_noise else None
-            points = drive.image(kind).pyramid.points(key, without_noise=classes).ravel()
+            points = image_of(drive, kind).pyramid.points(key, without_noise=classes).ravel()
             points = points[points >= 0]
             there = _TilePoints(points, drive.xyz(points))
         self._read[number, key] = there

@@ -7,7 +7,7 @@ which pixel a point is, and rasters are made for the stretch that is asked for.
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING, Self, TypeVar
+from typing import Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,9 +30,7 @@ from processing.image.rows_of_kind import Revolutions
 from processing.image.tiles import TilePyramid
 from processing.points.counted_classes import ClassColumns
 from processing.points.damaged_pulses import damaged_pulses
-
-if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a circle
-    from processing.points.drive import Drive
+from processing.points.drive import Drive
 
 _Integers = NDArray[np.int64]
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.coordinates import Coordinates
+from processing.image.pixel_rows import PixelRows
 from processing.image.tile_files import TileFiles
 from processing.image.tile_kernels import (
     COUNT,
@@ -26,9 +26,6 @@ from processing.image.tile_kernels import (
     VALUES,
     tile_kernel,
 )
-
-if TYPE_CHECKING:  # the image makes its pyramid, so importing it here would be a circle
-    from processing.image.point_image import PointCloudImage
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -47,7 +44,7 @@ class TileBounds:
 
     Parameters
     ----------
-    image : PointCloudImage
+    image : PixelRows
     coordinates : Coordinates
     shapes : sequence of (rows, columns)
         Of tiles, level by level, the finest first.
@@ -64,7 +61,7 @@ class TileBounds:
     """
 
     def __init__(
-        self, image: PointCloudImage, coordinates: Coordinates, shapes: list[tuple[int, int]]
+        self, image: PixelRows, coordinates: Coordinates, shapes: list[tuple[int, int]]
     ) -> None:
         self._image = image
         self._coordinates = coordinates

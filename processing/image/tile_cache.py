@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from processing.errors import UNCHANGED, NoSpace, UserError
 from processing.image import point_image
 from processing.image.attributes import SHOWS_LABELS, colours, telling_attribute
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.tile_reading import expect_tile
 from processing.image.tiles import TileKey
@@ -225,7 +226,7 @@ class TileCache:
                 if one.drive_id == drive.id and (one.hides_noise or one.attribute in SHOWS_LABELS)
             ]
         touched = {
-            kind: TouchedTiles(drive.image(kind), points) for kind in {one.kind for one in mine}
+            kind: TouchedTiles(image_of(drive, kind), points) for kind in {one.kind for one in mine}
         }
         with self._changed:
             for request in mine:
@@ -335,7 +336,7 @@ class TileCache:
 
     def _pixels_of(self, request: TileRequest, drive_of: Callable[[str], Drive]) -> TilePixels:
         drive = drive_of(request.drive_id)
-        image = drive.image(request.kind)
+        image = image_of(drive, request.kind)
         hides_noise, attribute = request.hides_noise, telling_attribute(drive, request.attribute)
         if attribute != request.attribute and request.attribute in SHOWS_LABELS:
             with self._changed:

@@ -9,21 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.coordinates import Coordinates
+from processing.image.pixel_rows import PixelRows
 from processing.image.tile_bounds import PORTION_POINTS, TileBounds
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST, STEPS
 from processing.image.tile_kernels import TILE as TILE
 from processing.monitor import Monitor
 from processing.points.counted_classes import ClassColumns
-
-if TYPE_CHECKING:  # the image makes its pyramid, so importing it here would be a circle
-    from processing.image.point_image import PointCloudImage
-
 
 _FEW_PIXELS = 4096
 
@@ -61,7 +57,7 @@ class TilePyramid:
 
     Parameters
     ----------
-    image : PointCloudImage
+    image : PixelRows
     coordinates : Coordinates
 
     Attributes
@@ -70,7 +66,7 @@ class TilePyramid:
         The coarsest, ``levels − 1``, has one tile; 0 is the image itself.
     """
 
-    def __init__(self, image: PointCloudImage, coordinates: Coordinates) -> None:
+    def __init__(self, image: PixelRows, coordinates: Coordinates) -> None:
         self._image = image
         self._shapes = _shapes_of(image.rows, image.width)
         self._bounds = TileBounds(image, coordinates, self._shapes)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import Unsuitable
+from processing.image.images_of_drives import image_of
 from processing.image.point_image import PointCloudImage
 from processing.kernels import kernel
 from processing.points.drive import Drive
@@ -130,7 +131,7 @@ def points_of_segment(drive: Drive, segment: int) -> _Integers:
 
 def _ready_image(drive: Drive) -> PointCloudImage:
     """The image whose tiles are known already, or else that of the first kind."""
-    images = [drive.image(kind) for kind in drive.image_kinds]
+    images = [image_of(drive, kind) for kind in drive.image_kinds]
     return next((image for image in images if image.pyramid.is_ready), images[0])
 
 

@@ -14,6 +14,7 @@ from threading import Lock
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.images_of_drives import image_of
 from processing.monitor import Monitor, PartMonitor
 from processing.noise.beam_origins import beam_origins
 from processing.noise.beams_of_drives import along_rows, beams_of
@@ -90,7 +91,7 @@ class NoiseSearch:
             self._combined_in_space(strictness, monitor)
             return
         drive = self.drive
-        image = drive.image(drive.pixel_kind)
+        image = image_of(drive, drive.pixel_kind)
         starts = image.row_starts
         along = along_rows(origins, starts)
         stretches = list(stretches_of(starts, along, self.points_per_stretch))

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +15,9 @@ from processing.cameras.calibration import CameraOffset, with_offsets
 from processing.cameras.image_list import ImageList
 from processing.cameras.image_store import read_images
 from processing.cameras.offset_store import read_offsets, write_offsets
-from processing.errors import BadFile, Unsuitable, told_as_user_error
+from processing.errors import BadFile, told_as_user_error
 from processing.image.coordinates import Coordinates
 from processing.image.kinds import ImageKind
-from processing.image.nearest import NearestSearch
-from processing.image.point_image import PointCloudImage
 from processing.points.array_files import read_array
 from processing.points.columns import Columns
 from processing.points.drive_info import DriveInfo, SourceFile, read_drive_info
@@ -31,6 +30,8 @@ from processing.points.turns_file import read_turns
 from processing.text import Text
 
 Points = NDArray[np.int64] | slice
+
+_Part = TypeVar("_Part")
 
 SCAN = "scan"
 """What :class:`DriveInfo` says of rows that are the sweeps of a standing scanner."""
@@ -76,7 +77,7 @@ class Drive:
         self._check_columns()
         self.turns: Turns | None = read_turns(folder)
         self._trajectory: Trajectory | None = None
-        self._point_images: dict[ImageKind, PointCloudImage] = {}
+        self._kept: dict[Hashable, Any] = {}  # Any: parts of any type, each known by its key
         self._making = threading.Lock()
 
     @property
@@ -230,64 +231,26 @@ class Drive:
         runs, sources = self.info.source_runs, len(self.info.sources)
         return sources_of(self.columns, runs, start, stop, sources=sources)
 
-    def image(self, kind: ImageKind) -> PointCloudImage:
-        """The recording as an image of one kind; made once, then kept.
+    def kept(self, key: Hashable, make: Callable[[], _Part]) -> _Part:
+        """What is made of the drive once and kept as long as it is open, such as its images.
 
-        Raises
-        ------
-        Unsuitable
-            The drive has no turns and the kind needs them, or the reverse.
+        Parameters
+        ----------
+        key : Hashable
+            Names the part; the same key always stands for a part of the same type.
+        make : callable
+            Makes the part when it is asked for the first time, by one thread only.
         """
-        if kind not in self.image_kinds:
-            raise Unsuitable(
-                Text(
-                    "This drive has no image of the kind “{kind}”.",
-                    "この走行データでは「{kind}」の画像を作成できません。",
-                ).filled(kind=kind.title),
-                Text.same(self.info.name),
-                self.info.rows_reason
-                if self.turns is None
-                else Text("Choose one of the other kinds.", "ほかの種類を選んでください。"),
-            )
-        if kind not in self._point_images:
+        if key not in self._kept:
             with self._making:
-                if kind not in self._point_images:
-                    self._point_images[kind] = PointCloudImage.of_drive(self, kind)
-        return self._point_images[kind]
+                if key not in self._kept:
+                    self._kept[key] = make()
+        part: _Part = self._kept[key]
+        return part
 
-    def nearest_point(self, xyz: NDArray[np.float64], within_m: float) -> int:
-        """The measured point nearest to a place.
-
-        Parameters
-        ----------
-        xyz : (3,) float64
-            m, project CRS.
-
-        Returns
-        -------
-        int
-            Index of the point; −1 where none is within the distance.
-        """
-        if self.count == 0:
-            return -1
-        search = self.nearest_points(np.reshape(xyz, (1, 3)), within_m)
-        while search.step():
-            pass
-        return int(search.points[0])
-
-    def nearest_points(self, xyz: NDArray[np.float64], within_m: float) -> NearestSearch:
-        """Begin to look for the measured points nearest to many places.
-
-        Parameters
-        ----------
-        xyz : (n, 3) float64
-            m, project CRS.
-        """
-        # Any kind will do: to make another one takes seconds where there are many points.
-        made = sorted(self._point_images.values(), key=lambda one: not one.pyramid.is_ready)
-        image = made[0] if made else self.image(self.image_kinds[0])
-        places = np.asarray(xyz, dtype=np.float64)
-        return NearestSearch(image, self.coordinates, places, within_m)
+    def has_kept(self, key: Hashable) -> bool:
+        """Whether a part was made already."""
+        return key in self._kept
 
     def _check_columns(self) -> None:
         for name in ("xyz", "time", "intensity", "pulse"):

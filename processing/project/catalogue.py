@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from pathlib import Path
 from typing import Literal
 
 from processing.text import Text
@@ -149,25 +148,3 @@ class Catalogue:
     def of_key(self, key: str) -> FeatureKind | None:
         """The kind that a number key chooses, or None."""
         return next((kind for kind in self.kinds if key and kind.key == key), None)
-
-
-def read_catalogue(path: Path) -> Catalogue:
-    """Read the kinds that an office draws.
-
-    Parameters
-    ----------
-    path : Path
-        TOML in UTF-8 (or cp932): ``[attribute.NAME]`` tables with ``ja``, ``en``, ``type``,
-        ``unit``, ``choices``, then one ``[[kind]]`` table for each kind.
-
-    Raises
-    ------
-    MissingInput, NoSpace
-        The file can't be read.
-    BadFile
-        It is no text or no catalogue; names the line.
-    """
-    # The reader knows these values; they need not know how they are written down.
-    from processing.project.catalogue_file import read_catalogue_file
-
-    return read_catalogue_file(path)

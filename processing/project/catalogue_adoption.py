@@ -6,8 +6,9 @@ from contextlib import suppress
 from pathlib import Path
 
 from processing.errors import UserError
-from processing.project.catalogue import Catalogue, read_catalogue
+from processing.project.catalogue import Catalogue
 from processing.project.catalogue_change import CatalogueComparison, compare, with_used_kinds
+from processing.project.catalogue_file import read_catalogue
 from processing.project.catalogue_writing import catalogue_replaced
 from processing.project.database import Database
 from processing.project.feature_store import FeatureStore

@@ -36,8 +36,22 @@ _KIND_KEYS = frozenset(
 _ATTRIBUTE_KEYS = frozenset({"id", "ja", "en", "type", "unit", "choices"})
 
 
-def read_catalogue_file(path: Path) -> Catalogue:
-    """See :func:`processing.project.catalogue.read_catalogue`."""
+def read_catalogue(path: Path) -> Catalogue:
+    """Read the kinds that an office draws.
+
+    Parameters
+    ----------
+    path : Path
+        TOML in UTF-8 (or cp932): ``[attribute.NAME]`` tables with ``ja``, ``en``, ``type``,
+        ``unit``, ``choices``, then one ``[[kind]]`` table for each kind.
+
+    Raises
+    ------
+    MissingInput, NoSpace
+        The file can't be read.
+    BadFile
+        It is no text or no catalogue; names the line.
+    """
     text = read_text(path)
     whole = _Table(path, text.replace("\r\n", "\n").split("\n"), {}, 0)
     if len(text) > _LARGEST_BYTES:

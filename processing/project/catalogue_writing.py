@@ -8,7 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from processing.formats.safe_write import written_safely
-from processing.project.catalogue import AttributeField, Catalogue, FeatureKind, read_catalogue
+from processing.project.catalogue import AttributeField, Catalogue, FeatureKind
+from processing.project.catalogue_file import read_catalogue
 from processing.text import Text
 
 _HEAD = """\

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from processing.cameras.image_list import ImageList
 from processing.cameras.image_store import write_images
 from processing.errors import told_as_user_error
+from processing.image.images_of_drives import image_of
 from processing.monitor import Monitor, PartMonitor
 from processing.points.columns import Columns, ColumnWriter
 from processing.points.drive import SCAN, Drive, write_trajectory
@@ -196,7 +197,7 @@ def _find_rows_of_first_image(folder: Path) -> None:
         for unfinished in folder.glob("image_rows_*.part"):
             unfinished.unlink()
     drive = Drive(folder)
-    drive.image(drive.image_kinds[0])
+    image_of(drive, drive.image_kinds[0])
 
 
 def _identity(recording: Recording, plan: BuildPlan) -> str:

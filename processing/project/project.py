@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from processing.errors import MissingInput, told_as_user_error
 from processing.owned_files import remove_folder
 from processing.points.drive import Drive
-from processing.project.catalogue import Catalogue, read_catalogue
+from processing.project.catalogue import Catalogue
 from processing.project.catalogue_adoption import CatalogueFile
 from processing.project.catalogue_change import CatalogueComparison, compare
+from processing.project.catalogue_file import read_catalogue
 from processing.project.catalogue_writing import write_catalogue
 from processing.project.change import ListedDrive
 from processing.project.database import Database

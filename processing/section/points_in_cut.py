@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.images_of_drives import image_of
 from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.image.tiles import TileKey
 from processing.kernels import kernel
@@ -61,7 +62,7 @@ def points_in_cut(
     """
     if drive.count == 0:
         return np.empty(0, np.int64)
-    image = drive.image(drive.image_kinds[-1])
+    image = image_of(drive, drive.image_kinds[-1])
     stretches = image.stretches_in(_tiles_touched(drive, cut))
     found = np.empty(int((stretches[:, 1] - stretches[:, 0]).sum()), np.int64)
     count = _inside_kernel(
@@ -104,7 +105,7 @@ def ground_near(drive: Drive, cut: Cut) -> int:
 
 def _tiles_touched(drive: Drive, cut: Cut) -> _Integers:
     """(k, 4): first and end row, first and end column of the finest tiles that a cut touches."""
-    pyramid = drive.image(drive.image_kinds[-1]).pyramid
+    pyramid = image_of(drive, drive.image_kinds[-1]).pyramid
     rows, columns = pyramid.shape(0)
     table = pyramid.table[: rows * columns]
     filled = np.flatnonzero(table[:, COUNT] > 0)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.drafting.needed_places import needed_places
+from processing.image.nearest import nearest_point
 from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.templates.fit import FitSettings, Walk
@@ -90,7 +91,7 @@ def _line(
     fits = scores >= settings.least_score
     xyz = places[fits]
     xyz = xyz[needed_places(xyz, _SIMPLER_M)]
-    points = [drive.nearest_point(place, _RESTS_WITHIN_M) for place in xyz]
+    points = [nearest_point(drive, place, _RESTS_WITHIN_M) for place in xyz]
     return FittedLine(
         made.kind,
         _edge(walk.template, made),

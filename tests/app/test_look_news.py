@@ -12,6 +12,7 @@ from app.document import Document
 from app.jobs import JobQueue
 from app.look_news import LookNews
 from processing.image.attributes import colours
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TileRequest
 from processing.points.drive import Drive
@@ -72,7 +73,7 @@ def test_tiles_of_a_drive_without_classes_show_its_intensity(qtbot, source: _Sou
     tiles.use(source.drive)
     second = source.drives()[1]
     kind = ImageKind.TRAJECTORY_CENTER
-    key = second.image(kind).pyramid.top
+    key = image_of(second, kind).pyramid.top
     tiles.request(
         TileRequest(second.id, kind, key, "class", 2.0, 98.0), lambda _, pixels: made.append(pixels)
     )

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QPushButton, QToolBar, QToolButton
 from pytestqt.qtbot import QtBot
 
 from app.application import build_window, make_application
+from app.review import Review
 from app.settings import Settings
 from app.window_parts import WindowParts
 from processing.monitor import Monitor
@@ -96,12 +97,12 @@ def test_one_click_finds_lids_and_puts_them_before_the_reviewer(
         qtbot.mouseClick(button_of(parts), Qt.MouseButton.LeftButton)
     qtbot.waitUntil(parts.review_panel.isVisible, timeout=5_000)
     # Nothing has moved yet; the review begins by its own button or key.
-    assert not parts.review.is_open
+    assert not parts.of(Review).is_open
     parts.window.actions_by_id["review-start"].trigger()
     # A step of ten centimetres is large enough to be judged in the section.
     assert {pane.viewport.scale >= 100 for pane in parts.section_view.panes} == {True}
-    assert parts.review.progress.total == 5
-    shown = parts.review.current
+    assert parts.of(Review).progress.total == 5
+    shown = parts.of(Review).current
     assert shown is not None
     assert shown.provenance.confidence == 0.5
     # A second click takes the place of what is undecided, in the queue that is open.
@@ -109,12 +110,12 @@ def test_one_click_finds_lids_and_puts_them_before_the_reviewer(
         parts.window.activateWindow()
     parts.image_view.setFocus()
     qtbot.keyClick(parts.image_view, Qt.Key.Key_Return)
-    assert parts.review.progress.accepted == 1
+    assert parts.of(Review).progress.accepted == 1
     with qtbot.waitSignal(found, timeout=WAIT_MS):
         qtbot.keyClick(parts.image_view, Qt.Key.Key_F9, Qt.KeyboardModifier.ShiftModifier)
-    assert parts.review.progress.total == 5
-    assert (parts.review.progress.accepted, parts.review.progress.left) == (1, 4)
-    now = parts.review.current
+    assert parts.of(Review).progress.total == 5
+    assert (parts.of(Review).progress.accepted, parts.of(Review).progress.left) == (1, 4)
+    now = parts.of(Review).current
     assert now is not None
     assert now.provenance.run != shown.provenance.run
     assert now.provenance.confidence == 0.6
@@ -137,10 +138,10 @@ def test_a_row_of_lids_is_accepted_by_one_key_over_any_view(
         parts.window.activateWindow()
     parts.image_view.setFocus()
     qtbot.keyClick(parts.image_view, Qt.Key.Key_Return, Qt.KeyboardModifier.ShiftModifier)
-    assert parts.review.progress.accepted == 3
+    assert parts.of(Review).progress.accepted == 3
     assert line.text() == "Accept line: 2"
     qtbot.keyClick(parts.image_view, Qt.Key.Key_Delete, Qt.KeyboardModifier.ShiftModifier)
-    assert parts.review.progress.rejected == 2
+    assert parts.of(Review).progress.rejected == 2
     assert not line.isVisible()
 
 

@@ -36,9 +36,10 @@ from tests.widgets.panels.table_hand import menu_of
 from widgets.panels.attribute_panel import AttributePanel
 from widgets.panels.candidate_card import CandidateCard
 from widgets.panels.feature_table import FeatureTable
-from widgets.panels.jobs_panel import JobsPanel, JobView
+from widgets.panels.jobs_panel import JobsPanel
 from widgets.panels.layers_panel import LayersPanel
 from widgets.parts.drawing_bar import DrawingBar
+from widgets.parts.job_view import JobView
 from widgets.parts.message_bar import MessageBar
 from widgets.parts.recent_project import RecentProject
 from widgets.parts.start_page import StartPage

@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
 from pytestqt.qtbot import QtBot
 
 from app.application import build_window, make_application
+from app.class_judging import ClassJudging
 from app.settings import Settings
 from app.window_parts import WindowParts
 from widgets.dialogs.export_map import ExportForm
@@ -164,7 +165,7 @@ def test_a_question_about_a_project_is_answered_with_no_when_it_closes(
     qtbot: QtBot, parts: WindowParts
 ) -> None:
     removed: list[str] = []
-    parts.judging.remove_truth = removed.append
+    parts.of(ClassJudging).remove_truth = removed.append
     parts.class_panel.truths.removal_requested.emit("one")
     (box,) = shown(parts, QMessageBox)
     assert isinstance(box, QMessageBox)

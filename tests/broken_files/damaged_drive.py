@@ -20,7 +20,9 @@ from processing.image import image_rows
 from processing.image.attributes import available, colours
 from processing.image.beam import beam_at
 from processing.image.edges import edge_beside
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
+from processing.image.nearest import nearest_point
 from processing.image.points_around import neighbours
 from processing.image.ray_hits import RayHits, RaySight
 from processing.image.touched_tiles import TouchedTiles
@@ -125,14 +127,14 @@ def _looks(drive: Drive, random: np.random.Generator) -> Iterator[Callable[[], o
     middle = (np.array(drive.info.lowest) + np.array(drive.info.highest)) / 2
     place = (float(middle[0]), float(middle[1]), float(middle[2]))
     yield lambda: points_in_cut(drive, Cut(place, (1.0, 0.0)))
-    yield lambda: drive.nearest_point(middle, 5.0)
+    yield lambda: nearest_point(drive, middle, 5.0)
     yield lambda: _rays(drive, middle)
     for attribute in available(drive):
         yield lambda attribute=attribute: colours(drive, points, attribute, 2.0, 98.0)
 
 
 def _image(drive: Drive, kind: ImageKind, points: np.ndarray) -> None:
-    image = drive.image(kind)
+    image = image_of(drive, kind)
     rows, columns = range(image.rows), range(image.width)
     for step in (1, 3):
         image.raster(rows, columns, step)
@@ -155,7 +157,7 @@ def _image(drive: Drive, kind: ImageKind, points: np.ndarray) -> None:
 
 
 def _rays(drive: Drive, middle: np.ndarray) -> None:
-    image = drive.image(drive.image_kinds[0])
+    image = image_of(drive, drive.image_kinds[0])
     hits = RayHits(RaySight(np.eye(4), middle, -np.inf, (0.0, 0.0)))
     for key in image.pyramid.keys(0):
         hits.search_tile(drive, image, key, None)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from processing.errors import BadFile
 from processing.image import image_rows as rows_module
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.point_image_kernels import (
     PixelLayout,
@@ -73,7 +74,7 @@ def written(path: Path, values: NDArray[np.int64]) -> None:
 
 
 def all_pixels(drive: Drive, kind: ImageKind) -> None:
-    image = drive.image(kind)
+    image = image_of(drive, kind)
     image.raster(range(image.rows), range(image.width))
     image.columns_of(0, drive.count)
 
@@ -95,7 +96,7 @@ def test_pulses_that_changed_since_their_rows_were_found_are_refused(
 ) -> None:
     monkeypatch.setattr(rows_module, "_FEW_POINTS", 0)
     wanted = ImageKind(kind)
-    drive.image(wanted)
+    image_of(drive, wanted)
     rows = drive.folder / f"image_rows_{kind}.npz"
     assert rows.is_file()
     written(drive.folder / "pulse.bin", altered(drive, seed))
@@ -108,7 +109,7 @@ def test_rows_that_were_altered_are_found_anew(
     drive: Drive, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(rows_module, "_FEW_POINTS", 0)
-    whole = drive.image(ImageKind.REVERSIBLE)
+    whole = image_of(drive, ImageKind.REVERSIBLE)
     path = drive.folder / "image_rows_reversible.npz"
     with np.load(path) as stored:
         kept = {name: stored[name] for name in stored.files}
@@ -117,7 +118,7 @@ def test_rows_that_were_altered_are_found_anew(
             changed = np.array(kept[name])
             changed.reshape(-1)[changed.size // 2] += step
             np.savez(path, allow_pickle=False, **{**kept, name: changed})
-            found = Drive(drive.folder).image(ImageKind.REVERSIBLE)
+            found = image_of(Drive(drive.folder), ImageKind.REVERSIBLE)
             np.testing.assert_array_equal(found.row_starts, whole.row_starts)
             np.testing.assert_array_equal(found.row_widths, whole.row_widths)
             if name != "segments":
@@ -143,7 +144,7 @@ def test_cells_that_no_view_has_are_refused(cells: list[int]) -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_kernels_stay_inside_their_arrays_whatever_the_pulses_are(drive: Drive, seed: int) -> None:
-    image = drive.image(ImageKind(("trajectory-center", "reversible")[seed % 2]))
+    image = image_of(drive, ImageKind(("trajectory-center", "reversible")[seed % 2]))
     layout = PixelLayout(altered(drive, seed, 400), *image.layout[1:])
     rows, columns = 12, min(image.width, 80)
     window = np.array([0, 1, 2, columns, image.width])

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from processing.errors import BadFile, UserError
-from processing.project.catalogue import Catalogue, FeatureKind, Geometry, read_catalogue
+from processing.project.catalogue import Catalogue, FeatureKind, Geometry
+from processing.project.catalogue_file import read_catalogue
 from processing.project.feature import Feature, PointReference, Vertex
 from processing.project.feature_clips import Pasted, clip_of, features_of_clip
 from processing.text import Text

@@ -16,7 +16,7 @@ from app.application import build_window, make_application
 from app.cli.parser import read_arguments
 from app.settings import Settings
 from app.shortcuts import FIXED
-from processing.project.catalogue import read_catalogue
+from processing.project.catalogue_file import read_catalogue
 from processing.text import Language
 from processing.tools.registry import TOOLS
 from resources import path_of

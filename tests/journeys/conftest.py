@@ -15,6 +15,7 @@ from pytestqt.qtbot import QtBot
 from app.application import build_window, make_application
 from app.settings import Settings
 from app.window_parts import WindowParts
+from processing.image.images_of_drives import image_of
 from processing.points.drive import Drive
 from processing.project.dropped_files import request_of_files
 from processing.project.feature import PointReference
@@ -48,7 +49,7 @@ class Surveyor:
 
     def shown_point(self, row: int, column: int) -> int:
         """The point in or near a pixel of the image that is shown."""
-        image = self.drive.image(self.document.shared.view_settings.image_kind)
+        image = image_of(self.drive, self.document.shared.view_settings.image_kind)
         point = image.nearest_filled(row, column, 40)
         assert point >= 0
         return point

@@ -9,6 +9,7 @@ import numpy as np
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QAbstractButton, QComboBox, QFileDialog
 
+from app.earthwork import Earthwork
 from processing.errors import UserError
 from processing.project.catalogue import Geometry
 from processing.project.change import Change
@@ -55,7 +56,7 @@ class Builder:
     def __init__(self, surveyor):
         self.surveyor = surveyor
         self.parts, self.bot = surveyor.parts, surveyor.bot
-        self.panel, self.earthwork = self.parts.volume_panel, self.parts.earthwork
+        self.panel, self.earthwork = self.parts.volume_panel, self.parts.of(Earthwork)
         self.volume = self.parts.document.shared.volume
 
     def open(self, folder: Path, clouds: tuple[Path, ...]) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, Qt
 
+from app.review import Review
 from app.window_parts import WindowParts
 from processing.bench.street_candidates import street_candidates
 from processing.project.feature import Feature, Position, Status
@@ -32,7 +33,7 @@ def desk(surveyor, tmp_path, qtbot):
 
 
 def test_a_queue_of_fifty_is_judged_by_keys_alone(desk, qtbot):
-    parts, review = desk.parts, desk.parts.review
+    parts, review = desk.parts, desk.parts.of(Review)
     assert parts.document.store_run(
         found(street_candidates(desk.drive, COUNT), drive=desk.drive.id)
     )
@@ -61,7 +62,7 @@ def test_a_queue_of_fifty_is_judged_by_keys_alone(desk, qtbot):
 
 
 def test_keys_type_in_forms_and_draw_while_something_is_drawn(desk, qtbot):
-    parts, review = desk.parts, desk.parts.review
+    parts, review = desk.parts, desk.parts.of(Review)
     made = found(street_candidates(desk.drive, 6), drive=desk.drive.id)
     assert parts.document.store_run(made)
     parts.window.actions_by_id["review-start"].trigger()

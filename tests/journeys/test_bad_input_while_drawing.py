@@ -18,6 +18,7 @@ from app.application import build_window
 from app.catalogue_wish import adopt_catalogue
 from app.settings import Settings
 from processing.errors import InUse, MissingInput, NoSpace, OutOfRange, Unsuitable
+from processing.image.images_of_drives import image_of
 from processing.project.catalogue import Catalogue, Geometry
 from processing.project.catalogue_writing import write_catalogue
 from processing.project.change import Change, Replacement
@@ -54,7 +55,7 @@ def choose(street: Surveyor, geometry: Geometry) -> None:
 
 
 def points_on_road(street: Surveyor, count: int) -> list[int]:
-    image = street.drive.image(street.document.shared.view_settings.image_kind)
+    image = image_of(street.drive, street.document.shared.view_settings.image_kind)
     return [street.shown_point(100 + 12 * number, image.width // 2) for number in range(count)]
 
 
@@ -125,7 +126,7 @@ def test_a_line_of_one_vertex_is_not_stored_and_goes_on(street, told):
 
 def test_an_area_that_crosses_itself_says_where_and_is_stored_once_it_does_not(street, told):
     choose(street, Geometry.AREA)
-    image = street.drive.image(street.document.shared.view_settings.image_kind)
+    image = image_of(street.drive, street.document.shared.view_settings.image_kind)
     middle = image.width // 2
     pixels = ((100, middle), (130, middle), (100, middle + 60), (130, middle + 60))
     a, b, c, d = (street.shown_point(*pixel) for pixel in pixels)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 
+from processing.image.images_of_drives import image_of
 from processing.project.catalogue import Geometry
 from processing.project.export import ExportRequest
 
@@ -25,7 +26,7 @@ def _kind(surveyor, geometry):
 
 
 def _points_down_the_road(surveyor, count):
-    image = surveyor.drive.image(surveyor.document.shared.view_settings.image_kind)
+    image = image_of(surveyor.drive, surveyor.document.shared.view_settings.image_kind)
     return [surveyor.shown_point(100 + 12 * n, image.width // 2) for n in range(count)]
 
 

@@ -16,8 +16,10 @@ from PySide6.QtWidgets import (
     QTabWidget,
 )
 
+from app.class_judging import ClassJudging
 from app.jobs import JobState
 from processing.image.colour_maps import JUDGEMENT_COLOURS
+from processing.image.images_of_drives import image_of
 from processing.labels.label_column import labels_of
 from processing.monitor import SilentMonitor
 from processing.points.judgement import Judgement
@@ -73,7 +75,7 @@ class Judge:
         self.parts.window.actions_by_id["tool-paint-brush"].trigger()
         self.bot.keyClick(view, key)
         before = self.labels()
-        image = drive.image(self.parts.document.shared.view_settings.image_kind)
+        image = image_of(drive, self.parts.document.shared.view_settings.image_kind)
         point = self.surveyor.shown_point(int(image.rows * row_share), image.width // 2)
         spot = self.surveyor.pixel_of(point)
         QTest.mousePress(view, LEFT, NO_KEYS, spot)
@@ -90,12 +92,12 @@ class Judge:
             one for one in self.panel.truths.findChildren(QPushButton) if one.menu() is not None
         )
         actions = [one for one in button.menu().actions() if not one.isSeparator()]
-        with self.bot.waitSignal(self.parts.judging.truth_made, timeout=WAIT_MS):
+        with self.bot.waitSignal(self.parts.of(ClassJudging).truth_made, timeout=WAIT_MS):
             actions[number].trigger()
 
     def load_truth(self, path):
-        with self.bot.waitSignal(self.parts.judging.truth_made, timeout=WAIT_MS):
-            self.parts.judging.load_truth(path)
+        with self.bot.waitSignal(self.parts.of(ClassJudging).truth_made, timeout=WAIT_MS):
+            self.parts.of(ClassJudging).load_truth(path)
 
     def run_noise(self):
         """The tool's form filled in and its button clicked."""
@@ -126,7 +128,7 @@ def test_painted_truth_judges_a_run_as_one_does_by_hand(judge, tmp_path):
     assert min(noise.size, building.size) > 5
     judge.show_page(judge.panel)
     judge.make_truth(PAINTED)
-    with judge.bot.waitSignal(judge.parts.judging.judged, timeout=WAIT_MS):
+    with judge.bot.waitSignal(judge.parts.of(ClassJudging).judged, timeout=WAIT_MS):
         judge.run_noise()
     judge.bot.waitUntil(lambda: len(judge.rows()) == 3, timeout=WAIT_MS)
     drive = judge.surveyor.drive
@@ -215,7 +217,7 @@ def test_a_study_of_two_values_gives_a_plot_and_its_setting_goes_into_the_form(j
     row.low.setValue(0.2)
     row.high.setValue(0.4)
     row.steps.setValue(2)
-    with judge.bot.waitSignal(judge.parts.judging.study_made, timeout=WAIT_MS):
+    with judge.bot.waitSignal(judge.parts.of(ClassJudging).study_made, timeout=WAIT_MS):
         judge.click("Study", form)
     study = judge.studies.plot.study
     assert [cell.values for cell in study.cells] == [(0.2,), (0.4,)]
@@ -249,14 +251,14 @@ def test_a_cancelled_study_leaves_nothing(judge, tmp_path):
     with judge.bot.waitSignal(jobs.cancelled, timeout=WAIT_MS):
         judge.click("Study", judge.studies.form)
     jobs.changed.disconnect(stop_when_it_runs)
-    assert judge.parts.judging.studies() == ()
+    assert judge.parts.of(ClassJudging).studies() == ()
     left = [one for one in (tmp_path / "p.zuka" / "tmp").iterdir() if any(one.iterdir())]
     assert left == []
 
 
 def test_a_truth_is_forgotten_only_when_that_is_confirmed(judge, tmp_path):
     judge.load_truth(tmp_path / "truth.npz")
-    (truth,) = judge.parts.judging.truths()
+    (truth,) = judge.parts.of(ClassJudging).truths()
     bar, window = judge.panel.truths, judge.parts.window
     judge.show_page(judge.panel)
     for words, is_kept in (("Cancel", True), ("Forget it", False)):
@@ -267,5 +269,5 @@ def test_a_truth_is_forgotten_only_when_that_is_confirmed(judge, tmp_path):
         judge.bot.waitUntil(lambda box=box: not box.isVisible(), timeout=WAIT_MS)
         box.setParent(None)
         assert has_truth(judge.surveyor.drive, truth.id) is is_kept
-    assert judge.parts.judging.truths() == ()
+    assert judge.parts.of(ClassJudging).truths() == ()
     assert bar.findChild(QComboBox).currentText() == "None yet"

@@ -11,7 +11,9 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QTreeWidget
 
+from app.source_watch import SourceWatch
 from processing.errors import InUse
+from processing.image.images_of_drives import image_of
 from processing.project.project import Project
 from tests.journeys.conftest import WAIT_MS, Surveyor
 from tests.journeys.street_twice import make_street_twice
@@ -33,7 +35,7 @@ def job(tmp_path_factory) -> Path:
 def at_street(surveyor: Surveyor, job: Path, tmp_path: Path) -> Iterator[Surveyor]:
     """A window on a copy of the project, whose delivery lies beside it."""
     shutil.copytree(job, tmp_path / "job")
-    with surveyor.bot.waitSignal(surveyor.parts.source_watch.looked, timeout=WAIT_MS):
+    with surveyor.bot.waitSignal(surveyor.parts.of(SourceWatch).looked, timeout=WAIT_MS):
         assert surveyor.document.open(tmp_path / "job" / "street.zuka")
     return surveyor
 
@@ -59,7 +61,7 @@ def test_a_click_in_one_image_is_the_nearest_point_in_the_other_driven_back(at_s
     other = views.show_beside(back.id)
     assert other is not None
     assert other.viewport.lay.is_reversed_along
-    image = there.image(at_street.document.shared.view_settings.image_kind)
+    image = image_of(there, at_street.document.shared.view_settings.image_kind)
     point = at_street.shown_point(image.rows // 2, image.width // 2)
     at_street.click(point)
     place = at_street.document.shared.cursor.place
@@ -123,7 +125,7 @@ def test_a_fourth_drive_beside_takes_the_place_of_the_last_one(at_street):
 
 def test_files_that_are_missing_are_told_marked_and_found_by_one_choice(surveyor, job, tmp_path):
     shutil.copytree(job / "street.zuka", tmp_path / "desk" / "street.zuka")
-    watch, bar = surveyor.parts.source_watch, surveyor.parts.message_bar
+    watch, bar = surveyor.parts.of(SourceWatch), surveyor.parts.message_bar
     hidden = job.with_name("away")
     job.rename(hidden)
     try:

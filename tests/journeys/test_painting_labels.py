@@ -8,6 +8,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
 from processing.image.colour_maps import class_colours
+from processing.image.images_of_drives import image_of
 from processing.labels.label_column import labels_of
 from processing.labels.strokes import points_under_brush
 from tests.journeys.conftest import WAIT_MS
@@ -29,7 +30,7 @@ class Painter:
         self.view.setFocus()
         self.do("tool-paint-brush")
         drive = surveyor.drive
-        image = drive.image(surveyor.document.shared.view_settings.image_kind)
+        image = image_of(drive, surveyor.document.shared.view_settings.image_kind)
         self.point = surveyor.shown_point(image.rows // 2, image.width // 2)
         self.spot = surveyor.pixel_of(self.point)
 

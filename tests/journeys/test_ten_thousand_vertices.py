@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 
+from processing.image.images_of_drives import image_of
 from processing.project.catalogue import Geometry
 from processing.project.export import ExportRequest
 from processing.project.feature import PointReference
@@ -30,7 +31,7 @@ def street(surveyor: Surveyor, tmp_path: Path) -> Iterator[Surveyor]:
 
 def _places(street: Surveyor) -> list[Place]:
     """Measured points along the street, in the order of their rows."""
-    image = street.drive.image(street.document.shared.view_settings.image_kind)
+    image = image_of(street.drive, street.document.shared.view_settings.image_kind)
     per_row = -(-COUNT // (image.rows - 40))
     points: list[int] = []
     for row in range(20, image.rows - 20):

@@ -11,6 +11,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QApplication
 
 from processing.cameras.camera import Camera
+from processing.image.images_of_drives import image_of
 from processing.project.catalogue import Geometry
 from processing.project.change import Change
 from processing.project.export import ExportRequest
@@ -72,7 +73,7 @@ def test_a_vertex_moved_in_any_view_is_exported_alike(street: Surveyor, qtbot, t
 def places_on_a_curb(street: Surveyor) -> tuple[Place, Place]:
     """Two points of the road within one section, a step apart, that a camera image shows."""
     drive = street.drive
-    image = drive.image(street.document.shared.view_settings.image_kind)
+    image = image_of(drive, street.document.shared.view_settings.image_kind)
     images = drive.images
     assert images is not None
     for row in range(image.rows // 5, image.rows - 20, 7):

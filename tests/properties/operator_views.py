@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 
+from app.review import Review
 from processing.bench.street_candidates import street_candidates
 from processing.project.review_state import ReviewOrder
 from tests.processing.project.candidates import found
@@ -29,10 +30,10 @@ def review(operator: Operator, choice: random.Random) -> None:
     """Judge some candidates; find some first where there are none."""
     parts = operator.parts
     document, drive_id = parts.document, parts.document.shared.view_settings.drive_id
-    if not parts.review.is_open or parts.review.current is None:
+    if not parts.of(Review).is_open or parts.of(Review).current is None:
         result = street_candidates(document.drive(drive_id), 4, choice.randrange(100))
         made = found(result, drive=drive_id)
         document.store_run(made)
-        parts.review.open((made.run.id,), choice.choice(list(ReviewOrder)))
+        parts.of(Review).open((made.run.id,), choice.choice(list(ReviewOrder)))
     for _ in range(3):
         operator.trigger(choice.choice(_JUDGEMENTS))

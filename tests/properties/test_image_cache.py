@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from processing.errors import Unsuitable, UserError
 from processing.image.attributes import colours, telling_attribute
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.tiles import TileKey
@@ -76,7 +77,7 @@ REQUESTS = st.builds(
 
 
 def assert_right(drive: Drive, request: TileRequest, pixels: TilePixels) -> None:
-    points = drive.image(request.kind).pyramid.points(request.key)
+    points = image_of(drive, request.kind).pyramid.points(request.key)
     np.testing.assert_array_equal(pixels.points, points)
     shown = telling_attribute(drive, request.attribute)
     wanted = colours(drive, points, shown, request.low_percent, request.high_percent)
@@ -282,7 +283,7 @@ def test_a_machine_without_memory_gives_tiles_back_and_says_so(drives: dict[str,
         return drives[name]
 
     cache.use(drive_of)
-    top = drives["a"].image(KINDS[0]).pyramid.top
+    top = image_of(drives["a"], KINDS[0]).pyramid.top
     first = TileRequest("a", KINDS[0], top, "intensity", 1.0, 99.0)
     cache.request(first, listener.done, listener.refused)
     listener.wait_for(1)

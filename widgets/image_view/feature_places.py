@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.nearest import NearestSearch
+from processing.image.nearest import NearestSearch, nearest_point, nearest_points
 from processing.project.feature import Feature, Vertex
 from widgets.image_view.picture import Picture, Span
 from widgets.image_view.placed_feature import PlacedFeature, placed
@@ -170,7 +170,7 @@ class FeaturePlaces:
             return None
         new = [one for one in vertices if (picture.drive.id, one) not in self._searched]
         xyz = np.array([one.xyz for one in new]).reshape(-1, 3)
-        return _Batch(features, new, picture.drive.nearest_points(xyz, NEAR_M))
+        return _Batch(features, new, nearest_points(picture.drive, xyz, NEAR_M))
 
     def _take(self, picture: Picture, batch: _Batch) -> None:
         """Place the features of a batch; those that have changed meanwhile wait again anyway."""
@@ -194,7 +194,7 @@ class FeaturePlaces:
         if key not in self._searched:
             if len(self._searched) > _MOST_SEARCHED:
                 self._searched.clear()
-            self._searched[key] = picture.drive.nearest_point(np.array(vertex.xyz), NEAR_M)
+            self._searched[key] = nearest_point(picture.drive, np.array(vertex.xyz), NEAR_M)
         return self._searched[key]
 
     def _place(self, features: Iterable[Feature]) -> None:

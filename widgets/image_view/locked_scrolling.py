@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.kinds import ImageKind
+from processing.image.nearest import nearest_point
 from processing.points.drive import Drive
 from widgets.image_view.picture import Picture
 from widgets.image_view.viewport import Viewport
@@ -146,7 +147,7 @@ def _by_point(
     if point < 0:
         return None
     xyz = leader.drive.xyz(np.array([point]))[0]
-    found = picture.drive.nearest_point(xyz, FARTHEST_M)
+    found = nearest_point(picture.drive, xyz, FARTHEST_M)
     if found < 0:
         return None
     rows, columns = picture.image.pixel_of(np.array([found]))

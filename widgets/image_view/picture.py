@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
 from processing.points.drive import Drive
@@ -60,7 +61,7 @@ class Picture:
         Unsuitable
             The drive has no image of this kind.
         """
-        image = drive.image(kind)
+        image = image_of(drive, kind)
         lay = lay_of(drive, image)
         is_top = kind is ImageKind.TOP_VIEW
         return Picture(drive, image, lay, not is_top, not is_top and lay.left_columns_are_high)

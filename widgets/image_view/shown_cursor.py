@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from processing.image.nearest import nearest_point
 from widgets.image_view.picture import Picture
 from widgets.shared.cursor import Place
 
@@ -37,7 +38,7 @@ class ShownCursor:
         if measured is not None and measured.drive == drive.id:
             point = measured.point if 0 <= measured.point < drive.count else -1
         else:
-            point = drive.nearest_point(np.array(place.xyz), NEAR_M)
+            point = nearest_point(drive, np.array(place.xyz), NEAR_M)
         if point < 0:
             return None
         rows, columns = picture.image.pixel_of(np.array([point]))

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.enclosed_points import Sight, points_enclosed
+from processing.image.images_of_drives import image_of
 from processing.image.plan_ground import ceilings_above
 from processing.points.counted_classes import seen_points
 from widgets.map_view.plan_feed import ShownPlan
@@ -40,7 +41,7 @@ def points_below(
     corners = (outline - origin[:2] * (1.0, -1.0)) * px_per_m
     found = {}
     for drive, kind in wish.drives:
-        image = drive.image(kind)
+        image = image_of(drive, kind)
         if not image.pyramid.is_ready:
             continue
         points = points_enclosed(drive, image, Sight(matrix, origin, 0.0), corners)

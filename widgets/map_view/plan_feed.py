@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from processing.errors import UserError
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.plan_ground import ceilings_above, ground_along
 from processing.image.plan_raster import PlanFrame, PlanPicture, PlanRaster, square_middles
@@ -196,7 +197,7 @@ class PlanFeed(QObject):
         pyramids = []
         for number, (drive, kind) in enumerate(wish.drives):
             try:
-                pyramid = drive.image(kind).pyramid
+                pyramid = image_of(drive, kind).pyramid
                 pyramid.sketch()
             except UserError:
                 continue  # the image view says why; here the drive's points are just not there

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import UserError
+from processing.image.images_of_drives import image_of
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.points.drive import Drive
 
@@ -180,7 +181,7 @@ class PlanTiles:
         while self._kept_points > _KEPT_POINTS and len(self._places) > 1:
             _, dropped = self._places.popitem(last=False)
             self._kept_points -= len(dropped.points)
-        spacing_m = tile.drive.image(tile.request.kind).pyramid.spacing_m(tile.request.key)
+        spacing_m = image_of(tile.drive, tile.request.kind).pyramid.spacing_m(tile.request.key)
         colours = pixels.colours.reshape(-1, 3)[is_filled]
         return TilePoints(tile.number, points, placed.local_xyz, colours, spacing_m)
 

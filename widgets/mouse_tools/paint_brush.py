@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject
 from typing_extensions import override
 
+from processing.image.images_of_drives import image_of
 from processing.labels.strokes import points_in_slab, points_under_brush, way_is_short
 from processing.project.feature import PointReference
 from processing.section.cut import Cut
@@ -110,7 +111,7 @@ class PaintBrush(PaintTool):
             for drive in self._source.drives()
             if drive.count
             and drive.id not in hidden
-            and drive.image(drive.image_kinds[-1]).pyramid.is_ready
+            and image_of(drive, drive.image_kinds[-1]).pyramid.is_ready
         )
 
 

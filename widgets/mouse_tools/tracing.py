@@ -9,6 +9,7 @@ from typing import Protocol
 
 import numpy as np
 
+from processing.image.nearest import nearest_point
 from processing.image.trace import Traced, trace
 from processing.points.drive import Drive
 from processing.project.feature import PointReference, Vertex
@@ -97,7 +98,7 @@ _NOT_MEASURED = Text(
 def _point_of(drive: Drive, vertex: Vertex) -> int:
     if vertex.measured is not None and vertex.measured.drive == drive.id:
         return vertex.measured.point
-    return drive.nearest_point(np.array(vertex.xyz), _SAME_EDGE_M)
+    return nearest_point(drive, np.array(vertex.xyz), _SAME_EDGE_M)
 
 
 def _vertices(drive: Drive, traced: Traced) -> list[Vertex]:

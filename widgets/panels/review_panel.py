@@ -28,8 +28,8 @@ from processing.project.review_state import ReviewProgress, ReviewState
 from processing.text import Language
 from widgets.panels.candidate_card import CandidateCard
 from widgets.panels.feature_tally import FeatureTally
-from widgets.panels.jobs_panel import time_left
 from widgets.panels.run_chooser import RunChooser
+from widgets.parts.job_view import time_left
 from widgets.parts.number_field import NumberField
 from widgets.parts.share_bar import ShareBar
 from widgets.shared.map_source import MapSource

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from processing.image.nearest import nearest_point
 from processing.points.drive import Drive
 from processing.project.feature import Position
 from processing.section.cut import Cut
@@ -77,9 +78,9 @@ def start_at(source: MapSource, place: Place, cut: Cut | None, shown: str) -> Te
         return None
     id_ = shown if place.measured is None else place.measured.drive
     drive = drives.get(id_) or next(iter(drives.values()))
-    if drive.nearest_point(np.array(place.xyz), _NEAREST_M) < 0:
+    if nearest_point(drive, np.array(place.xyz), _NEAREST_M) < 0:
         # Another scanner may have seen what this one didn't.
-        near = (one for one in drives.values() if one.nearest_point(np.array(place.xyz), 0.5) >= 0)
+        near = (one for one in drives.values() if nearest_point(one, np.array(place.xyz), 0.5) >= 0)
         drive = next(near, drive)
     holds = cut is not None and bool(cut.holds(cut.to_section([place.xyz]))[0])
     return TemplateStart(drive, place.xyz, cut if holds else None)

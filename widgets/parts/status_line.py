@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QLabel, QStatusBar, QToolButton, QWidget
 
 from processing.earthwork.change_reading import ChangeReading
 from processing.text import Language, Text
-from widgets.panels.jobs_panel import JobView, time_left
 from widgets.parts.change_words import change_words
+from widgets.parts.job_view import JobView, time_left
 from widgets.parts.number_field import coordinate
 from widgets.parts.progress_bar import ProgressBar
 from widgets.shared.cursor import Place

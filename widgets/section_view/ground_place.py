@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from processing.image.nearest import nearest_point
 from processing.points.drive import Drive
 from processing.section.points_in_cut import ground_near
 from widgets.section_view.point_search import can_search, place_of
@@ -28,7 +29,7 @@ def place_of_step(standing: Standing, drives: Sequence[Drive]) -> Place:
         if not can_search(drive):
             continue
         if standing.line.feature:
-            point = drive.nearest_point(np.array(cut.middle), _SAME_M)
+            point = nearest_point(drive, np.array(cut.middle), _SAME_M)
         else:
             point = ground_near(drive, replace(cut, width_m=min(cut.width_m, 1.0)))
         if point >= 0:

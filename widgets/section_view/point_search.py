@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtGui import QPolygonF
 
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.points.drive import Drive
 from processing.project.feature import PointReference
@@ -99,7 +100,7 @@ def points_within(
 def can_search(drive: Drive) -> bool:
     """Whether a drive's points can be looked for without waiting for its tiles."""
     kind: ImageKind = drive.image_kinds[-1]
-    return drive.count == 0 or drive.image(kind).pyramid.is_ready
+    return drive.count == 0 or image_of(drive, kind).pyramid.is_ready
 
 
 def place_of(drive: Drive, point: int) -> Place:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
+from processing.image.images_of_drives import image_of
 from processing.monitor import SilentMonitor
 from processing.noise.beam_origins import beam_origins
 from processing.noise.beams_of_drives import beams_of
@@ -174,7 +175,7 @@ def kept_with_beams(drive: Drive, seed: int) -> Iterator[Case]:
     origins = beam_origins(drive)
     if origins is None:
         return
-    image = drive.image(drive.pixel_kind)
+    image = image_of(drive, drive.pixel_kind)
     parts = max(1, min(_STRETCHES, image.rows // _FEWEST_ROWS))
     cuts = np.linspace(0, image.rows, parts + 1).astype(np.int64)
     for number in range(parts):

@@ -22,7 +22,8 @@ from processing.formats.boundary_files import (
 )
 from processing.formats.dxf import write_dxf
 from processing.formats.dxf_document import DxfVersion
-from processing.project.catalogue import Geometry, read_catalogue
+from processing.project.catalogue import Geometry
+from processing.project.catalogue_file import read_catalogue
 from processing.project.feature import Feature, Vertex
 from resources import path_of
 

@@ -18,8 +18,8 @@ from processing.errors import Cancelled, OutOfRange, Unsuitable
 from processing.formats.dxf import write_dxf
 from processing.formats.dxf_document import APP_ID, DxfVersion
 from processing.monitor import SilentMonitor
-from processing.project.catalogue import LINE_TYPES, Catalogue, Geometry, read_catalogue
-from processing.project.catalogue_file import symbol_names
+from processing.project.catalogue import LINE_TYPES, Catalogue, Geometry
+from processing.project.catalogue_file import read_catalogue, symbol_names
 from processing.project.feature import Feature, Position, Status, Vertex
 from resources import path_of
 from tests.processing.formats.audited_dxf import audited_dxf

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from processing.formats.dxf_document import APP_ID, DxfVersion
-from processing.project.catalogue import Catalogue, Geometry, read_catalogue
+from processing.project.catalogue import Catalogue, Geometry
+from processing.project.catalogue_file import read_catalogue
 from processing.project.feature import Feature, Position, Status, Vertex
 from resources import path_of
 from tests.processing.formats.audited_dxf import audited_dxf

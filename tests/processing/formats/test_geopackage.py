@@ -15,7 +15,8 @@ from hypothesis import strategies as st
 
 from processing.errors import NoSpace, UserError
 from processing.formats.geopackage import write_geopackage
-from processing.project.catalogue import Catalogue, Geometry, read_catalogue
+from processing.project.catalogue import Catalogue, Geometry
+from processing.project.catalogue_file import read_catalogue
 from processing.project.feature import Feature, Position, Vertex
 from resources import path_of
 

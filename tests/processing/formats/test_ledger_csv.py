@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from processing.errors import OutOfRange
 from processing.formats.ledger_columns import TableStyle, guarded
 from processing.formats.ledger_csv import write_features, write_ledger, write_vertices
-from processing.project.catalogue import Catalogue, Geometry, read_catalogue
+from processing.project.catalogue import Catalogue, Geometry
+from processing.project.catalogue_file import read_catalogue
 from processing.project.feature import Feature, PointReference, Position, Vertex
 from resources import path_of
 

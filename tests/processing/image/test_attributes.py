@@ -23,6 +23,7 @@ from processing.image.colour_maps import (
     segment_colours,
     stretched,
 )
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.points.classes import point_classes, read_classes
 from processing.points.drive import Drive
@@ -36,7 +37,7 @@ def drive(tmp_path: Path) -> Drive:
 
 
 def shown(drive: Drive, attribute: str) -> tuple[NDArray[np.int64], NDArray[np.uint8]]:
-    image = drive.image(ImageKind.TRAJECTORY_CENTER)
+    image = image_of(drive, ImageKind.TRAJECTORY_CENTER)
     points = image.raster(range(image.rows), range(image.width))
     return points, colours(drive, points, attribute, 2.0, 98.0)
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from processing.image.beam import beam_at
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
@@ -36,7 +37,7 @@ def test_the_beam_starts_at_the_scanner_and_passes_the_measured_point(
     street: SimulatedDrive, tmp_path: Path, kind: ImageKind
 ) -> None:
     drive = _imported(street, tmp_path / "通り", with_trajectory=True)
-    image = drive.image(kind)
+    image = image_of(drive, kind)
     points = np.random.default_rng(1).integers(500, drive.count - 500, 60)
     rows, columns = image.pixel_of(points)
     for point, row, column in zip(points, rows, columns, strict=True):
@@ -53,7 +54,7 @@ def test_without_a_trajectory_the_row_itself_tells_where_the_scanner_was(
     street: SimulatedDrive, tmp_path: Path
 ) -> None:
     drive = _imported(street, tmp_path / "street", with_trajectory=False)
-    image = drive.image(ImageKind.REVERSIBLE)
+    image = image_of(drive, ImageKind.REVERSIBLE)
     row = image.rows // 2
     found = beam_at(drive, image, row, image.width // 2)
     assert found is not None
@@ -63,6 +64,6 @@ def test_without_a_trajectory_the_row_itself_tells_where_the_scanner_was(
 
 def test_outside_the_image_there_is_no_beam(street: SimulatedDrive, tmp_path: Path) -> None:
     drive = _imported(street, tmp_path / "street", with_trajectory=True)
-    image = drive.image(ImageKind.TRAJECTORY_CENTER)
+    image = image_of(drive, ImageKind.TRAJECTORY_CENTER)
     assert beam_at(drive, image, -1, 0) is None
     assert beam_at(drive, image, 0, image.width) is None

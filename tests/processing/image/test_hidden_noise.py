@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from processing.image.attributes import colours
 from processing.image.colour_maps import class_colours
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.point_image_kernels import noiseless_raster_kernel, raster_kernel
 from processing.image.points_around import neighbours
@@ -76,7 +77,7 @@ def test_a_pixel_shows_its_next_good_point_or_nothing(
 ) -> None:
     if kind not in drive.image_kinds:
         pytest.skip("not a kind of this drive")
-    image, noise = drive.image(kind), noise_of(drive)
+    image, noise = image_of(drive, kind), noise_of(drive)
     rows, columns = range(image.rows), range(image.width)
     classes = class_columns(drive.columns)
     raster = image.raster(rows, columns, step, without_noise=classes)
@@ -101,7 +102,7 @@ def test_a_pixel_shows_its_next_good_point_or_nothing(
 
 def test_without_any_noise_hiding_it_changes_nothing(tmp_path: Path) -> None:
     drive, _ = small_drive(tmp_path / "d")
-    image = drive.image(ImageKind.TRAJECTORY_CENTER)
+    image = image_of(drive, ImageKind.TRAJECTORY_CENTER)
     shape = image.rows, image.width
     one, other = np.empty(shape, np.int64), np.empty(shape, np.int64)
     window = np.array([0, 1, 0, image.width, image.width])
@@ -145,7 +146,7 @@ def test_hidden_noise_is_in_no_section_and_under_no_mouse(drive: Drive) -> None:
     few = points_in_cut(drive, cut, 20, hides_noise=True)
     assert few.size == 20
     assert not noise[few].any()
-    image = drive.image(drive.image_kinds[0])
+    image = image_of(drive, drive.image_kinds[0])
     classes = class_columns(drive.columns)
     found = [image.nearest_filled(9, one, without_noise=classes) for one in range(image.width)]
     found = [one for one in found if one >= 0]

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from processing.errors import Cancelled
 from processing.image.grid import PixelGrid
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.neighbourhood_kernels import RowPoints, Surfaces, neighbourhood_kernel
 from processing.image.normals import RowLayout, oriented_surface_shapes, surface_shapes
@@ -72,7 +73,7 @@ def test_a_plane_is_planar_and_faces_the_scanner_at_any_spacing(
 
 def test_walls_on_both_sides_of_a_street_face_the_street(tmp_path: Path) -> None:
     drive, street = small_drive(tmp_path / "d")
-    image = drive.image(ImageKind.TRAJECTORY_REVERSIBLE)
+    image = image_of(drive, ImageKind.TRAJECTORY_REVERSIBLE)
     grid, points = image.grid(range(image.rows))
     xyz = drive.xyz(points)
     found = oriented_surface_shapes(xyz, grid, RADIUS_M)

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.plan_ground import ceilings_above, ground_along
 from processing.image.plan_points import PlanPoints, Sought
@@ -22,7 +23,7 @@ KIND = ImageKind.TRAJECTORY_CENTER
 def drive(tmp_path_factory: pytest.TempPathFactory) -> Drive:
     """A street of ten metres with curbs, walls and poles."""
     street = imported_drive(tmp_path_factory.mktemp("plan"))
-    street.image(KIND).pyramid.prepare()
+    image_of(street, KIND).pyramid.prepare()
     return street
 
 

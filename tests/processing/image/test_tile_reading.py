@@ -9,6 +9,7 @@ import pytest
 
 from processing.image.attributes import ATTRIBUTES
 from processing.image.coordinates import Coordinates
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
 from processing.image.tile_reading import expect_tile
@@ -32,7 +33,7 @@ class ToldColumns(Columns):
 @pytest.mark.parametrize("attribute", ["intensity", "height", "class"])
 def test_every_point_that_a_tile_shows_was_told_of(tmp_path: Path, attribute: str) -> None:
     drive, _ = small_drive(tmp_path / "d")
-    image = drive.image(ImageKind.TRAJECTORY_REVERSIBLE)
+    image = image_of(drive, ImageKind.TRAJECTORY_REVERSIBLE)
     for level in range(image.pyramid.levels):
         for key in image.pyramid.keys(level):
             columns = ToldColumns(drive.folder, drive.count)

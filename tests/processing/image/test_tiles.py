@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from processing.image.coordinates import Coordinates
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
 from processing.image.tile_choice import Camera3D, tiles_in_view, tiles_in_window
@@ -115,7 +116,7 @@ def test_spacing_is_the_distance_of_neighbours_and_doubles_with_the_level() -> N
 def test_bounds_are_kept_in_the_folder_and_made_again_when_damaged(tmp_path: Path) -> None:
     drive, _ = small_drive(tmp_path / "d")
     path = tmp_path / "d" / "tile_bounds_reversible.npy"
-    first = drive.image(ImageKind.REVERSIBLE).pyramid.table
+    first = image_of(drive, ImageKind.REVERSIBLE).pyramid.table
     assert path.is_file()
 
     def again() -> TilePyramid:
@@ -137,7 +138,7 @@ def test_a_pyramid_in_a_folder_that_takes_no_files_still_works(tmp_path: Path) -
     drive, _ = small_drive(tmp_path / "d")
     # A folder in the way of the temporary file stands for a disk that refuses to write.
     (tmp_path / "d" / "tile_bounds_reversible.npy").mkdir()
-    pyramid = drive.image(ImageKind.REVERSIBLE).pyramid
+    pyramid = image_of(drive, ImageKind.REVERSIBLE).pyramid
     assert pyramid.count(pyramid.top) > 0
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TileRequest
 from processing.image.tiles import TILE
@@ -19,7 +20,7 @@ def drive(tmp_path_factory):
 
 @pytest.mark.parametrize("kind", [one for one in ImageKind if one.follows_way])
 def test_the_tiles_of_points_are_those_that_their_pixels_are_in(drive, kind):
-    image = drive.image(kind)
+    image = image_of(drive, kind)
     random = np.random.default_rng(3)
     for points in (np.array([random.integers(drive.count)]), np.arange(100, 5000, 7)):
         rows, columns = image.pixel_of(points)
@@ -33,7 +34,7 @@ def test_the_tiles_of_points_are_those_that_their_pixels_are_in(drive, kind):
 
 
 def test_the_cache_forgets_only_the_tiles_of_points_that_changed(drive):
-    image = drive.image(ImageKind.REVERSIBLE)
+    image = image_of(drive, ImageKind.REVERSIBLE)
     cache = TileCache()
     cache.use(lambda _: drive)
     try:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from processing.image.images_of_drives import image_of
 from processing.monitor import SilentMonitor
 from processing.noise.beam_origins import beam_origins
 from processing.noise.beams_of_drives import beams_of
@@ -40,7 +41,7 @@ def test_points_that_float_in_a_scanned_room_are_noise(tmp_path: Path) -> None:
     origins = beam_origins(drive)
     assert origins is not None
     np.testing.assert_allclose(origins.of(np.arange(3)), np.tile(scan.place, (3, 1)))
-    image = drive.image(drive.pixel_kind)
+    image = image_of(drive, drive.pixel_kind)
     beams, _ = beams_of(drive, image, range(image.rows), origins)
     step = np.radians(120.0 / 199)
     assert abs(beams.turn - step) < 0.1 * step

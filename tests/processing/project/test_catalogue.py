@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from processing.project.catalogue import LINE_TYPES, Catalogue, Geometry, read_catalogue
+from processing.project.catalogue import LINE_TYPES, Catalogue, Geometry
+from processing.project.catalogue_file import read_catalogue
 from resources import path_of
 
 # Class codes of chapter 2 of the extended DM that were checked against the standard's own list.

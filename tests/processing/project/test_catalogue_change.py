@@ -22,10 +22,9 @@ from processing.project.catalogue import (
     Catalogue,
     FeatureKind,
     Geometry,
-    read_catalogue,
 )
 from processing.project.catalogue_change import compare, with_used_kinds
-from processing.project.catalogue_file import symbol_names
+from processing.project.catalogue_file import read_catalogue, symbol_names
 from processing.project.catalogue_writing import write_catalogue
 from processing.project.change import Change
 from processing.project.project import Project

@@ -17,7 +17,8 @@ import shapely
 
 from processing.errors import Cancelled, InUse, OutOfRange, Unsuitable, UserError
 from processing.monitor import SilentMonitor
-from processing.project.catalogue import Catalogue, Geometry, read_catalogue
+from processing.project.catalogue import Catalogue, Geometry
+from processing.project.catalogue_file import read_catalogue
 from processing.project.export import FORMATS, ExportRequest, export
 from processing.project.feature import (
     Feature,
@@ -271,7 +272,8 @@ _FULL_DISK = """
 import resource, signal, sys
 from pathlib import Path
 from processing.errors import UserError
-from processing.project.catalogue import Geometry, read_catalogue
+from processing.project.catalogue import Geometry
+from processing.project.catalogue_file import read_catalogue
 from processing.project.export import ExportRequest, export
 from processing.project.feature import Feature, Vertex
 from resources import path_of

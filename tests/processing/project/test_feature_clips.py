@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from processing.errors import MissingInput, OutOfRange, Unsuitable
-from processing.project.catalogue import Catalogue, FeatureKind, Geometry, read_catalogue
+from processing.project.catalogue import Catalogue, FeatureKind, Geometry
+from processing.project.catalogue_file import read_catalogue
 from processing.project.feature import Feature, PointReference, Provenance, Status, Vertex
 from processing.project.feature_clips import clip_of, features_of_clip
 from processing.text import Text

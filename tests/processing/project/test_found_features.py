@@ -14,7 +14,8 @@ import pytest
 
 from processing.errors import InUse, OutOfRange
 from processing.monitor import SilentMonitor
-from processing.project.catalogue import Geometry, read_catalogue
+from processing.project.catalogue import Geometry
+from processing.project.catalogue_file import read_catalogue
 from processing.project.feature import PointReference, Status
 from processing.project.feature_files import check_ending, write_feature_file
 from processing.project.project import Project

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from processing.errors import BadFile, Cancelled, MissingInput, OutOfRange, UserError
+from processing.image.images_of_drives import image_of
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
@@ -174,7 +175,7 @@ def test_where_there_are_no_rows_the_top_view_is_made_and_says_why(tmp_path, lef
     assert drive.info.rows_by == "top-view"
     assert drive.info.rows_reason.en
     assert drive.info.rows_reason.ja
-    image = drive.image(drive.image_kinds[0])
+    image = image_of(drive, drive.image_kinds[0])
     assert (image.raster(range(image.rows), range(image.width)) >= 0).sum() > drive.count / 3
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from processing.errors import Unsuitable
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
@@ -17,7 +18,7 @@ def _imported(tmp_path, *paths):
 
 
 def _cells(drive):
-    rows, columns = drive.image(ImageKind.SCAN).pixel_of(np.arange(drive.count))
+    rows, columns = image_of(drive, ImageKind.SCAN).pixel_of(np.arange(drive.count))
     return np.column_stack([rows, columns])
 
 
@@ -29,7 +30,7 @@ def test_a_pixel_of_the_scan_image_is_a_cell_of_the_grid(tmp_path, suffix):
     else:
         write_e57(path, scan)
     (drive,) = _imported(tmp_path, path)
-    image = drive.image(ImageKind.SCAN)
+    image = image_of(drive, ImageKind.SCAN)
     assert drive.image_kinds == (ImageKind.SCAN,)
     assert (image.rows, image.width) == scan.shape
     assert np.array_equal(_cells(drive), scan.cells)
@@ -123,7 +124,7 @@ def test_several_returns_of_a_beam_share_a_pixel_the_first_one_shown(tmp_path):
     lines = [",".join(f"{value:.4f}" for value in row) for row in table.tolist()]
     path.write_text("\n".join(["x,y,z,column,row,return_number", *lines, ""]))
     (drive,) = _imported(tmp_path, path)
-    image = drive.image(ImageKind.SCAN)
+    image = image_of(drive, ImageKind.SCAN)
     row, column = scan.cells[77]
     points = image.points_at(int(row), int(column))
     assert drive.columns["return_number"][points].tolist() == [1, 2]
@@ -135,5 +136,5 @@ def test_other_images_of_a_scan_are_refused_with_the_reason(tmp_path):
     path.write_text(ptx_text(sphere_scan()))
     (drive,) = _imported(tmp_path, path)
     with pytest.raises(Unsuitable) as refused:
-        drive.image(ImageKind.REVERSIBLE)
+        image_of(drive, ImageKind.REVERSIBLE)
     assert "The scanner stood still" in refused.value.remedy.en

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.project.catalogue import Catalogue, Geometry, read_catalogue
+from processing.project.catalogue import Catalogue, Geometry
+from processing.project.catalogue_file import read_catalogue
 from processing.project.catalogue_writing import write_catalogue
 from processing.project.feature import Feature, Vertex
 from processing.project.solids import Solid, solid_of, thickness_of

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from processing.errors import Unsuitable
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
+from processing.image.nearest import nearest_point
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
@@ -101,13 +103,13 @@ def test_odd_clouds_have_a_picture_and_go_through_tools(tmp_path, name):
     drive = _drive(tmp_path, "odd.xyz", _text(xyz))
     good = xyz[np.isfinite(xyz).all(axis=1)]
     assert drive.count == good.shape[0]
-    image = drive.image(ImageKind.TOP_VIEW)
+    image = image_of(drive, ImageKind.TOP_VIEW)
     rows, columns = image.pixel_of(np.arange(drive.count))
     assert rows.max() < image.rows
     assert columns.max() < image.width
     found = [image.points_at(int(r), int(c)) for r, c in zip(rows[:50], columns[:50], strict=True)]
     assert all(point in points for point, points in enumerate(found))
-    assert drive.nearest_point(good[0], 0.01) >= 0
+    assert nearest_point(drive, good[0], 0.01) >= 0
     assert _run(drive, "normals", tmp_path)["normal"].shape == (drive.count, 3)
     assert _run(drive, "segments", tmp_path)["segment"].shape == (drive.count,)
 

@@ -10,6 +10,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from pytestqt.qtbot import QtBot
 
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache
 from processing.points.drive import Drive
@@ -63,7 +64,7 @@ class Hand:
 
     def points_across(self, count: int, row_step: int = 6) -> list[int]:
         """Points in the middle columns of rows some way apart, far enough to be told apart."""
-        image = self.drive.image(ImageKind.TRAJECTORY_CENTER)
+        image = image_of(self.drive, ImageKind.TRAJECTORY_CENTER)
         rows = image.rows // 4 + row_step * np.arange(count)
         columns = image.width // 2 + 12 * np.arange(count)
         return [

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
+from processing.image.nearest import nearest_point
 from processing.points.drive import Drive
 from processing.project.catalogue import Geometry
 from processing.project.feature import Status
@@ -258,13 +260,13 @@ def test_what_is_not_shown_cannot_be_clicked(hand: Hand, is_hidden_by_kind: bool
 def test_a_feature_drawn_on_one_drive_is_clicked_on_the_other(
     hand: Hand, right_drive: Drive
 ) -> None:
-    image = right_drive.image(ImageKind.TRAJECTORY_CENTER)
+    image = image_of(right_drive, ImageKind.TRAJECTORY_CENTER)
     near = [hand.points_across(3)[index] for index in (0, 2)]
-    others = [right_drive.nearest_point(hand.drive.xyz(np.array([p]))[0], 0.3) for p in near]
+    others = [nearest_point(right_drive, hand.drive.xyz(np.array([p]))[0], 0.3) for p in near]
     assert image.drive_count > max(others) >= min(others) >= 0
     feature = hand.map.add(Geometry.LINE, right_drive, *others)
     shown_at = [
-        hand.drive.nearest_point(right_drive.xyz(np.array([point]))[0], 0.3) for point in others
+        nearest_point(hand.drive, right_drive.xyz(np.array([point]))[0], 0.3) for point in others
     ]
     hand.take(Select(hand.map, hand.map.shared))
     with hand.qtbot.waitSignal(hand.view.features_placed, timeout=30_000):

@@ -10,7 +10,9 @@ from PySide6.QtWidgets import QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 
 from processing.image.attributes import colours
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
+from processing.image.nearest import nearest_point
 from processing.image.tile_cache import TileCache
 from processing.points.drive import Drive
 from processing.project.catalogue import Geometry
@@ -187,13 +189,13 @@ def test_a_visible_cursor_does_not_scroll_the_picture(hand: Hand) -> None:
 def test_the_cursor_on_another_drive_is_shown_at_the_nearest_point(
     hand: Hand, right_drive: Drive
 ) -> None:
-    image = right_drive.image(ImageKind.TRAJECTORY_CENTER)
+    image = image_of(right_drive, ImageKind.TRAJECTORY_CENTER)
     other = image.nearest_filled(image.rows // 2, image.width // 2, 20)
     place = place_on(right_drive, other)
     hand.map.shared.cursor.move_to(place)
     position = hand.view.position_of(place)
     assert position is not None
-    nearest = hand.drive.nearest_point(np.array(place.xyz), 1.0)
+    nearest = nearest_point(hand.drive, np.array(place.xyz), 1.0)
     assert hand.spot(nearest) == QPoint(int(position.x()), int(position.y()))
 
 
@@ -232,7 +234,7 @@ def test_f_puts_the_chosen_feature_in_the_middle(hand: Hand) -> None:
 
 
 def test_f_on_a_feature_larger_than_the_window_paints_all_of_it(hand: Hand) -> None:
-    image = hand.drive.image(ImageKind.TRAJECTORY_CENTER)
+    image = image_of(hand.drive, ImageKind.TRAJECTORY_CENTER)
     points = [image.nearest_filled(row, image.width // 2, 40) for row in (2, image.rows - 3)]
     feature = hand.map.add(Geometry.LINE, hand.drive, *points)
     hand.map.shared.selection.choose_features(frozenset({feature.id}))

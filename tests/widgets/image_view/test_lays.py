@@ -11,6 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
 
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.project.catalogue import Geometry
 from tests.widgets.builders import path_tool, place_on
@@ -60,7 +61,7 @@ def test_a_vertex_under_the_mouse_is_hit_in_every_lay(hand: Hand, lay: ImageLay)
 @every_lay
 def test_the_street_runs_as_the_lay_says(hand: Hand, lay: ImageLay) -> None:
     turn(hand, lay)
-    image = hand.drive.image(ImageKind.TRAJECTORY_CENTER)
+    image = image_of(hand.drive, ImageKind.TRAJECTORY_CENTER)
     first, later = hand.points_across(2)
     moved = hand.spot(later) - hand.spot(first)
     along = -moved.y() if lay.is_vertical else moved.x()

@@ -14,7 +14,9 @@ from PySide6.QtCore import SIGNAL, QPoint, Qt
 from PySide6.QtWidgets import QComboBox, QToolButton
 from pytestqt.qtbot import QtBot
 
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
+from processing.image.nearest import nearest_point
 from processing.image.tile_cache import TileCache
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
@@ -139,7 +141,7 @@ def test_a_click_in_one_image_moves_no_other_along(
     other = views.add()
     assert other is not None
     far_in(views.main)
-    image = left_drive.image(ImageKind.TRAJECTORY_CENTER)
+    image = image_of(left_drive, ImageKind.TRAJECTORY_CENTER)
     point = image.nearest_filled(image.rows // 2 + 5, image.width // 2, 5)
     spot = views.main.position_of(place_on(left_drive, point))
     assert spot is not None
@@ -158,7 +160,7 @@ def test_a_line_is_begun_in_one_image_and_ended_in_another(
     far_in(views.main)
     clicked = []
     for view, drive, step in ((views.main, left_drive, 0), (other, right_drive, 4)):
-        image = drive.image(ImageKind.TRAJECTORY_CENTER)
+        image = image_of(drive, ImageKind.TRAJECTORY_CENTER)
         point = image.nearest_filled(image.rows // 2 + step, image.width // 2, 5)
         spot = view.position_of(place_on(drive, point))
         assert spot is not None
@@ -241,7 +243,7 @@ def test_the_mouse_of_any_image_is_told(
     other = views.add()
     assert other is not None
     far_in(views.main)
-    image = right_drive.image(ImageKind.TRAJECTORY_CENTER)
+    image = image_of(right_drive, ImageKind.TRAJECTORY_CENTER)
     point = image.nearest_filled(image.rows // 2, image.width // 2, 5)
     spot = other.position_of(place_on(right_drive, point))
     assert spot is not None
@@ -289,7 +291,7 @@ def test_a_view_from_above_follows_and_leads(left_drive: Drive, surveyed: Drive)
     rows, columns = image.pixel_of(np.array([point]))
     place = street.places(rows, columns.astype(np.int64))[0]
     found = place_along(street, (float(place[0]), float(place[1])), above)
-    near = surveyed.nearest_point(xyz, 2.0)
+    near = nearest_point(surveyed, xyz, 2.0)
     rows, columns = above.image.pixel_of(np.array([near]))
     centre = tuple(above.places(rows, columns.astype(np.int64))[0].tolist())
     assert found == centre

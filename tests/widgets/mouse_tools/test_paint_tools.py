@@ -7,6 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from processing.image.images_of_drives import image_of
 from processing.labels.label_column import labels_of, make_column, write_labels
 from processing.labels.rules import PaintOver
 from processing.labels.strokes import points_under_brush
@@ -357,7 +358,7 @@ def test_in_a_section_the_brush_is_a_circle_through_the_slab_of_every_drive(ease
     cut = Cut(tuple(xyz.tolist()), (1.0, 0.0), width_m=0.6)
     lay = SectionLay(cut)
     for drive in easel.map.drives():
-        drive.image(drive.image_kinds[-1]).pyramid.prepare()
+        image_of(drive, drive.image_kinds[-1]).pyramid.prepare()
 
     def hit(offset: float) -> Hit:
         return Hit(None, ray=lay.ray((offset, 0.0)))

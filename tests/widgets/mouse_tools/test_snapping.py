@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.points.drive import Drive
 from processing.project.catalogue import Geometry
@@ -120,7 +121,7 @@ def test_a_pointer_snaps_to_nothing() -> None:
 def test_a_curb_is_met_from_beside_it(left_drive: Drive) -> None:
     desk = Desk(left_drive)
     desk.snap.choose_modes(frozenset({SnapMode.EDGE}))
-    image = left_drive.image(ImageKind.TRAJECTORY_REVERSIBLE)
+    image = image_of(left_drive, ImageKind.TRAJECTORY_REVERSIBLE)
     xyz = left_drive.xyz(slice(0, left_drive.count))
     found = 0
     for point in np.random.default_rng(5).integers(0, left_drive.count, 400):

@@ -7,7 +7,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel, QProgressBar, QToolButton
 from pytestqt.qtbot import QtBot
 
-from widgets.panels.jobs_panel import JobsPanel, JobView, time_left
+from widgets.panels.jobs_panel import JobsPanel
+from widgets.parts.job_view import JobView, time_left
 
 RUNNING = JobView("a", "Curbs", 0.62, "Block 3 of 7", 4.2, "running")
 

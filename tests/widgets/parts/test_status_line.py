@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 from processing.points.drive import Drive
 from processing.text import Text
 from tests.widgets.builders import OpenMap
-from widgets.panels.jobs_panel import JobView
+from widgets.parts.job_view import JobView
 from widgets.parts.number_field import NumberField, coordinate, decimals_for
 from widgets.parts.status_line import StatusLine
 from widgets.shared.cursor import Place

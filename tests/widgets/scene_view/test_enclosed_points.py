@@ -8,6 +8,7 @@ import shapely
 from numpy.typing import NDArray
 
 from processing.image.enclosed_points import Sight, enclosed_kernel, points_enclosed
+from processing.image.images_of_drives import image_of
 from processing.points.drive import Drive
 from widgets.scene_view.camera import Camera
 from widgets.scene_view.projection import NEAR_M, Projection
@@ -32,7 +33,9 @@ def test_exactly_the_points_seen_inside_are_found(
 ) -> None:
     projection, origin = projection_on(left_drive, away_m)
     sight = Sight(projection.matrix, origin, NEAR_M)
-    found = points_enclosed(left_drive, left_drive.image(left_drive.image_kinds[0]), sight, outline)
+    found = points_enclosed(
+        left_drive, image_of(left_drive, left_drive.image_kinds[0]), sight, outline
+    )
     pixels, depth = projection.to_screen(left_drive.xyz(slice(None)) - origin)
     area = shapely.make_valid(shapely.Polygon(outline))
     wanted = shapely.intersects_xy(area, pixels[:, 0], pixels[:, 1]) & (depth > NEAR_M)
@@ -43,7 +46,7 @@ def test_exactly_the_points_seen_inside_are_found(
 def test_an_outline_of_two_corners_holds_nothing(left_drive: Drive) -> None:
     projection, origin = projection_on(left_drive, 40.0)
     sight = Sight(projection.matrix, origin, NEAR_M)
-    image = left_drive.image(left_drive.image_kinds[0])
+    image = image_of(left_drive, left_drive.image_kinds[0])
     assert points_enclosed(left_drive, image, sight, LASSO[:2]).size == 0
 
 

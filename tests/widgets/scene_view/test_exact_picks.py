@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from processing.image.clip import Clip
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.ray_hits import hits_kernel, merge_kernel
 from processing.image.tile_cache import TileRequest
@@ -125,7 +126,7 @@ def test_a_pick_is_what_looking_at_every_point_gives(
 
 def test_a_point_that_no_pixel_of_the_image_shows_is_found(drives: tuple[DriveImage, ...]) -> None:
     drive, kind = drives[0]
-    image = drive.image(kind)
+    image = image_of(drive, kind)
     shown = image.raster(range(image.rows), range(image.width))
     hidden = np.setdiff1d(np.arange(drive.count), shown)
     assert hidden.size

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from processing.image.clip import Clip
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache
 from processing.image.tile_choice import Camera3D
@@ -219,7 +220,7 @@ class Cloud(QObject):
     ) -> TouchedTiles | tuple[TileKey, ...]:
         for drive, kind in self._drives:
             if drive.id == drive_id:
-                return TouchedTiles(drive.image(kind), points)
+                return TouchedTiles(image_of(drive, kind), points)
         return ()
 
     def _wish_again(self) -> None:

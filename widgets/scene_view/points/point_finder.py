@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from processing.image.clip import Clip
 from processing.image.enclosed_points import Sight, points_enclosed
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.ray_hits import RayHit, RayHits
 from processing.image.tile_descent import ray_kernel
@@ -89,7 +90,7 @@ class PointFinder:
 
         def search(number: int, hits: RayHits) -> None:
             drive, kind = self._drives[near[number][0]]
-            image, key = drive.image(kind), near[number][1]
+            image, key = image_of(drive, kind), near[number][1]
             hits.search_tile(drive, image, key, self._clip, hides_noise=self._hides_noise)
 
         sight = sight_at(projection, self._origin, x, y)
@@ -130,7 +131,7 @@ class PointFinder:
         sight = Sight(projection.matrix, self._origin, NEAR_M)
         found = {}
         for drive, kind in self._drives.values():
-            image = drive.image(kind)
+            image = image_of(drive, kind)
             if image.pyramid.is_ready:
                 points = points_enclosed(drive, image, sight, outline)
                 points = seen_points(drive.columns, points, hides_noise=self._hides_noise)
@@ -147,7 +148,7 @@ class PointFinder:
     def _tiles_on(self, drive_id: str, ray: Floats) -> tuple[list[TileKey], Floats]:
         """The finest tiles of a drive that a cone meets, and where it enters them."""
         drive, kind = self._drives[drive_id]
-        pyramid = drive.image(kind).pyramid
+        pyramid = image_of(drive, kind).pyramid
         rows, columns = pyramid.shape(0)
         met = np.empty((rows * columns, 3))
         met = met[: ray_kernel(pyramid.facts, pyramid.shapes, ray, met)]
@@ -166,7 +167,7 @@ class PointFinder:
         if reference is None:
             return []
         drive, kind = self._drives[reference.drive]
-        image = drive.image(kind)
+        image = image_of(drive, kind)
         if image.pyramid.is_ready:
             return []
         rows, columns = image.pixel_of(np.array([reference.point]))

@@ -13,6 +13,7 @@ from PySide6.QtCore import QObject, Signal
 
 from processing.errors import UserError
 from processing.image.attributes import colours, telling_attribute
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.tile_choice import Camera3D, tiles_in_view
@@ -224,7 +225,7 @@ class TileFeed(QObject):
             points=filled,
             local_xyz=drive.local_xyz(filled, wish.origin),
             colours=pixels.colours.reshape(-1, 3)[is_filled],
-            spacing_m=drive.image(request.kind).pyramid.spacing_m(request.key),
+            spacing_m=image_of(drive, request.kind).pyramid.spacing_m(request.key),
             age=wish.age,
         )
         self._emit_arrived((tile.clipped(wish.showing.clip, wish.origin),))

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import UserError
+from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.tile_choice import Camera3D
 from processing.image.tiles import TilePyramid
@@ -91,7 +92,7 @@ class TileSurvey:
 
 def _opened(drive: Drive, kind: ImageKind) -> TilePyramid | None:
     try:
-        pyramid = drive.image(kind).pyramid
+        pyramid = image_of(drive, kind).pyramid
         pyramid.sketch()
     except UserError:
         return None  # the image view says why; here the drive's points are just not there
