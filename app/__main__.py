@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 
-from app.cli.terminal import ended, run_in_terminal
+from app.cli.terminal import end_with_status, run_in_terminal
 from app.error_log import start_log
 from processing.output_streams import write_every_character
 
@@ -14,16 +14,16 @@ def main() -> int:
     write_every_character()
     start_log()
     arguments = sys.argv[1:]
-    wish = run_in_terminal(arguments)
-    if isinstance(wish, int):
-        return wish
+    request = run_in_terminal(arguments)
+    if isinstance(request, int):
+        return request
 
     def show() -> int:
         from app.application import run_window
 
-        return run_window(wish)
+        return run_window(request)
 
-    return ended(show)
+    return end_with_status(show)
 
 
 if __name__ == "__main__":

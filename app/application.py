@@ -22,13 +22,12 @@ from app.actions.review import review_actions
 from app.actions.sight import sight_actions
 from app.actions.tool_entries import TOOL_ENTRIES
 from app.actions.view import view_actions
-from app.class_judging import ClassJudging
-from app.cli.window_wish import WindowWish
+from app.cli.window_request import WindowRequest
 from app.document import Document
 from app.earthwork import Earthwork
-from app.hand import make_toolbox
 from app.jobs import JobQueue
 from app.main_window import MainWindow
+from app.mouse_tool_factory import make_toolbox
 from app.panel_places import panels_of
 from app.review import Review
 from app.settings import Settings
@@ -36,11 +35,12 @@ from app.shortcut_editing import give_keys
 from app.source_watch import SourceWatch
 from app.theme import Theme
 from app.translation import Translation
+from app.truth_evaluations import TruthEvaluations
 from app.view_area import ViewArea
-from app.view_docks import View, ViewDocks
+from app.view_docks import DockedView, ViewDocks
 from app.volume_exports import VOLUME_EXPORTS
 from app.window_change import WindowChange
-from app.window_contents import Contents
+from app.window_contents import WindowContents
 from app.window_parts import LastingParts, WindowParts
 from app.wiring import connect_lasting, connect_parts
 from processing.text import Language, Text
@@ -66,7 +66,7 @@ from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
 from widgets.parts.start_page import StartPage
 from widgets.parts.status_line import StatusLine
-from widgets.scene_view.stage_loader import prepare_graphics
+from widgets.scene_view.renderer_loader import prepare_graphics
 from widgets.scene_view.view import SceneView
 from widgets.section_view.view import SectionView
 from widgets.shared.shared_state import SharedState
@@ -74,15 +74,15 @@ from widgets.shared.shared_state import SharedState
 _SIGNALS_SEEN_MS = 250
 
 
-def run_window(wish: WindowWish) -> int:
+def run_window(request: WindowRequest) -> int:
     """Show the window with what is wished; gives the exit status when it is closed."""
     application = make_application()
-    if wish.headless_out is not None:
-        return _do_demo_job(wish.headless_out)
+    if request.headless_out is not None:
+        return _do_demo_job(request.headless_out)
     parts = build_window(Settings(), user_documents_path() / "Zuka")
     parts.window.show()
     _close_on_signals(parts.window)
-    QTimer.singleShot(0, lambda: _fulfil(wish, parts))
+    QTimer.singleShot(0, lambda: _fulfil(request, parts))
     QTimer.singleShot(0, parts.document.tiles.get_ready)
     return int(application.exec())
 
@@ -153,11 +153,11 @@ def _make_lasting(settings: Settings) -> LastingParts:
     theme.choose(settings.theme)
     jobs = JobQueue()
     document = Document(jobs)
-    document.shared.view_settings.lay_image(settings.image_lay)
+    document.shared.view_settings.orient_image(settings.image_orientation)
     owners: tuple[object, ...] = (
         Review(document, document),
         SourceWatch(document, document),
-        ClassJudging(document, jobs, document),
+        TruthEvaluations(document, jobs, document),
         Earthwork(document, jobs, document),
     )
     return LastingParts(
@@ -182,10 +182,10 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
     camera_panel = CameraPanel(document, shared, language=language)
     map_view = MapView(document, shared, tiles, language=language)
     views = (
-        View("scene", Text.same("3D"), scene_view),
-        View("section", Text("Section", "断面"), section_view),
-        View("camera", Text("Camera", "カメラ"), camera_panel),
-        View("map", Text("Map", "地図"), map_view),
+        DockedView("scene", Text.same("3D"), scene_view),
+        DockedView("section", Text("Section", "断面"), section_view),
+        DockedView("camera", Text("Camera", "カメラ"), camera_panel),
+        DockedView("map", Text("Map", "地図"), map_view),
     )
     image_bar = ImageBar(document, shared, language)
     hints = {entry.name: entry.hint for entry in TOOL_ENTRIES}
@@ -220,7 +220,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         study_panel=StudyPanel(language),
         label_panel=LabelPanel(document, shared, language),
         template_panel=TemplatePanel(
-            document, shared, document.templates, document.do_at_hand, language=language
+            document, shared, document.templates, document.run_in_background, language=language
         ),
         volume_panel=_make_volume_panel(shared, language),
         feature_table=FeatureTable(document, shared, language),
@@ -238,7 +238,7 @@ def _make_volume_panel(shared: SharedState, language: Language) -> VolumePanel:
 def _furnish(parts: WindowParts, files: FileActions, change: WindowChange) -> None:
     """Put the widgets into the window, with all that one can do with them."""
     parts.toolbox.use_views(parts.views)
-    contents = Contents(
+    contents = WindowContents(
         language=parts.language,
         start_page=parts.start_page,
         views=ViewArea(parts.image_views, parts.view_docks),
@@ -284,9 +284,9 @@ def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -
         view.import_requested.connect(files.choose_import)
 
 
-def _fulfil(wish: WindowWish, parts: WindowParts) -> None:
+def _fulfil(request: WindowRequest, parts: WindowParts) -> None:
     actions = parts.window.actions_by_id
-    if wish.demo:
+    if request.demo:
         actions["demo"].trigger()
-    elif wish.paths:
-        parts.window.files_dropped.emit(wish.paths)
+    elif request.paths:
+        parts.window.files_dropped.emit(request.paths)

@@ -9,20 +9,20 @@ from PySide6.QtCore import QCoreApplication, QObject
 from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import QFileDialog, QMessageBox
 
-from app.class_judging import ClassJudging
 from app.evaluation_files import write_classes_file, write_study_file
-from app.truth_work import StudyWish
+from app.truth_evaluations import TruthEvaluations
+from app.truth_work import StudyOptions
 from app.window_parts import WindowParts
 from processing.errors import UserError
 from processing.project.class_evaluation import ClassEvaluation
 from processing.project.found_features import parameter_values
 from processing.project.study_store import KeptStudy
-from processing.project.truth_making import Checked
+from processing.project.truth_making import CheckedPoints
 from processing.project.truth_store import Truth
 from processing.runner import tool_of
 from processing.score.parameter_study import can_vary
 from processing.text import Text
-from processing.tools.parameters import Value
+from processing.tools.parameters import ParameterValue
 
 _WROTE = Text("Wrote {path}.", "{path} を書き出しました。")
 
@@ -30,14 +30,14 @@ _WROTE = Text("Wrote {path}.", "{path} を書き出しました。")
 def connect_classes(parts: WindowParts) -> None:
     """Connect the pages of the evaluation with the document; again for new ones."""
     wiring = _ClassWiring(parts)
-    panel, studies, judging = parts.class_panel, parts.study_panel, parts.of(ClassJudging)
-    judging.truths_changed.connect(wiring.show_truths)
-    judging.studies_changed.connect(wiring.show_studies)
-    judging.judged.connect(panel.show_evaluations)
-    judging.truth_made.connect(wiring.on_judging_truth_made)
-    judging.study_made.connect(wiring.on_judging_study_made)
-    parts.document.told.connect(panel.refresh)
-    panel.judgement_wanted.connect(judging.judge)
+    panel, studies, evaluations = parts.class_panel, parts.study_panel, parts.of(TruthEvaluations)
+    evaluations.truths_changed.connect(wiring.show_truths)
+    evaluations.studies_changed.connect(wiring.show_studies)
+    evaluations.judged.connect(panel.show_evaluations)
+    evaluations.truth_made.connect(wiring.on_evaluations_truth_made)
+    evaluations.study_made.connect(wiring.on_evaluations_study_made)
+    parts.document.reported.connect(panel.refresh)
+    panel.error_map_requested.connect(evaluations.judge)
     panel.points_requested.connect(wiring.on_panel_points_requested)
     panel.export_requested.connect(wiring.on_panel_export_requested)
     panel.truths.making_requested.connect(wiring.on_truths_making_requested)
@@ -47,7 +47,7 @@ def connect_classes(parts: WindowParts) -> None:
     studies.study_requested.connect(wiring.on_studies_study_requested)
     studies.values_wanted.connect(wiring.on_studies_values_wanted)
     studies.export_requested.connect(wiring.on_studies_export_requested)
-    studies.removal_requested.connect(judging.remove_study)
+    studies.removal_requested.connect(evaluations.remove_study)
     studies.ask_values_from(wiring.values_of)
     parts.processing_panel.values_changed.connect(studies.refresh)
     wiring.show_truths()
@@ -60,26 +60,26 @@ class _ClassWiring(QObject):
     def __init__(self, parts: WindowParts) -> None:
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
-        self._judging = parts.of(ClassJudging)
+        self._evaluations = parts.of(TruthEvaluations)
 
     def show_truths(self) -> None:
-        self._parts.class_panel.truths.show_truths(self._judging.truths())
+        self._parts.class_panel.truths.show_truths(self._evaluations.truths())
         self.on_truths_truth_chosen()
 
     def show_studies(self) -> None:
-        self._parts.study_panel.show_studies(self._judging.studies())
+        self._parts.study_panel.show_studies(self._evaluations.studies())
 
-    def values_of(self, tool: str) -> Mapping[str, Value]:
+    def values_of(self, tool: str) -> Mapping[str, ParameterValue]:
         """A tool's parameters as its form has them."""
         parameters = self._parts.processing_panel.parameters_of(tool)
         values = parameter_values(tool_of(tool), parameters)
         return {one.id: value for one in can_vary(tool) if (value := values[one.id]) is not None}
 
-    def on_judging_truth_made(self, truth: Truth) -> None:
+    def on_evaluations_truth_made(self, truth: Truth) -> None:
         self._parts.class_panel.truths.choose(truth.id)
 
-    def on_judging_study_made(self, kept: KeptStudy) -> None:
-        self._parts.study_panel.show_studies(self._judging.studies(), chosen=kept.id)
+    def on_evaluations_study_made(self, kept: KeptStudy) -> None:
+        self._parts.study_panel.show_studies(self._evaluations.studies(), chosen=kept.id)
 
     def on_truths_truth_chosen(self) -> None:
         why_not = ""
@@ -89,8 +89,8 @@ class _ClassWiring(QObject):
             )
         self._parts.study_panel.form.refuse(why_not)
 
-    def on_truths_making_requested(self, checked: Checked) -> None:
-        self._judging.make_truth(checked, self._parts.scene_view.clipping.clip)
+    def on_truths_making_requested(self, checked: CheckedPoints) -> None:
+        self._evaluations.make_truth(checked, self._parts.scene_view.clipping.clip)
 
     def on_truths_loading_requested(self) -> None:
         project = self._parts.document.project
@@ -105,7 +105,7 @@ class _ClassWiring(QObject):
             ),
         )
         if path:
-            self._judging.load_truth(Path(path))
+            self._evaluations.load_truth(Path(path))
 
     def on_truths_removal_requested(self, truth: str) -> None:
         """Forgotten for good, so it is asked for."""
@@ -125,29 +125,29 @@ class _ClassWiring(QObject):
 
         def decide() -> None:
             if box.clickedButton() is forget:
-                self._judging.remove_truth(truth)
+                self._evaluations.remove_truth(truth)
             box.deleteLater()
 
         box.finished.connect(decide)
         box.open()
 
     def on_panel_points_requested(self, truth: str, evaluation: ClassEvaluation) -> None:
-        self._judging.show_points(truth, evaluation)
+        self._evaluations.show_points(truth, evaluation)
 
     def on_panel_export_requested(self) -> None:
         panel = self._parts.class_panel
         truth = panel.truth
         path = self._asked_path("classes.csv")
         if path is not None and truth is not None:
-            name = truth.name.spoken(self._parts.language)
+            name = truth.name.in_language(self._parts.language)
             self._write(
                 path, lambda: write_classes_file(path, panel.evaluations, name, never=self._never())
             )
 
     def on_studies_study_requested(self) -> None:
         form = self._parts.study_panel.form
-        self._judging.study(
-            StudyWish(
+        self._evaluations.study(
+            StudyOptions(
                 tool=form.tool,
                 truth=self._parts.class_panel.truths.truth,
                 fixed=tuple(self.values_of(form.tool).items()),
@@ -156,7 +156,7 @@ class _ClassWiring(QObject):
             )
         )
 
-    def on_studies_values_wanted(self, tool: str, values: Mapping[str, Value]) -> None:
+    def on_studies_values_wanted(self, tool: str, values: Mapping[str, ParameterValue]) -> None:
         self._parts.processing_panel.use_values(tool, values)
         self._parts.window.show_panel("processing")
 
@@ -189,4 +189,4 @@ class _ClassWiring(QObject):
         except UserError as error:
             self._parts.document.refused.emit(error)
             return
-        self._parts.document.told.emit(_WROTE.filled(path=path.name))
+        self._parts.document.reported.emit(_WROTE.filled(path=path.name))

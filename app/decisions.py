@@ -27,7 +27,7 @@ _ACCEPT_ABOVE = Text(
 )
 
 
-class Lines:
+class FeatureLines:
     """Which features a tool gave as one line.
 
     Parameters
@@ -51,7 +51,7 @@ class Lines:
         return () if line is None else tuple(self._members[line])
 
 
-def judged(features: Iterable[Feature], status: Status) -> Change:
+def change_status(features: Iterable[Feature], status: Status) -> Change:
     """The change by which features get a status."""
     return Change(replaced=tuple(Replacement(one, replace(one, status=status)) for one in features))
 

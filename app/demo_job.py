@@ -15,7 +15,7 @@ from app.cli.import_drives import describe_drive
 from app.cli.output import print_lines
 from app.sample_drawing import read_sample_drawing
 from app.window_parts import WindowParts
-from processing.errors import InUse, MissingInput, UserError, told_as_user_error
+from processing.errors import InUse, MissingInput, UserError, report_as_user_error
 from processing.image.attributes import available
 from processing.image.kinds import ImageKind
 from processing.image.nearest import nearest_point
@@ -28,7 +28,7 @@ from processing.project.project import is_project
 from processing.text import Text
 from processing.tools.registry import POINT_TOOLS
 from resources import path_of
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 _LONGEST_WAIT_MS = 300_000
 _SETTLE_MS = 1_500
@@ -55,7 +55,7 @@ def do_demo_job(parts: WindowParts, out: Path) -> int:
         The folder can't be written, or a step was refused.
     """
     out = out.resolve()
-    with told_as_user_error(out):
+    with report_as_user_error(out):
         out.mkdir(parents=True, exist_ok=True)
     job = _DemoJob(parts, out)
     try:
@@ -87,7 +87,7 @@ class _DemoJob:
             raise _no_demo(folder)
         self._document.create(folder, "")
         self._raise_refusal()
-        with told_as_user_error(folder):
+        with report_as_user_error(folder):
             mark(folder)
         request = request_of_files((path_of("sample_street"),), "")
         self._wait_for_job(lambda: self._document.import_files(request))
@@ -102,14 +102,16 @@ class _DemoJob:
             settings.show_image(drive.id, ImageKind.TRAJECTORY_CENTER)
             self._parts.image_view.show_one_to_one()
             self._parts.toolbox.choose_kind(self._document.catalogue()[wanted.kind])
-            for xyz in wanted.places:
+            for xyz in wanted.positions:
                 self._click_nearest(drive, xyz)
             self._parts.toolbox.complete()
         self._parts.toolbox.choose("select")
         self._raise_refusal()
         drawn = sum(1 for _ in self._document.features())
-        told = Text("{count} features drawn on the image", "画像上に{count}個の地物を作図しました")
-        self.made.append(told.filled(count=drawn).spoken(self._parts.language))
+        reported = Text(
+            "{count} features drawn on the image", "画像上に{count}個の地物を作図しました"
+        )
+        self.made.append(reported.filled(count=drawn).in_language(self._parts.language))
 
     def step_back_and_forth(self) -> None:
         before = self._by_id()
@@ -138,10 +140,10 @@ class _DemoJob:
         self._parts.image_view.show_one_to_one()
         feature = next(f for f in self._document.features() if len(f.vertices) > 2)
         vertex = feature.vertices[len(feature.vertices) // 2]
-        place = Place(vertex.xyz, vertex.measured)
-        self._parts.image_view.center_on(place)
+        position = PickedPosition(vertex.xyz, vertex.measured)
+        self._parts.image_view.center_on(position)
         self._parts.scene_view.show_everything()
-        self._document.shared.cursor.move_to(place)
+        self._document.shared.cursor.move_to(position)
         self._document.shared.selection.choose_features(frozenset({feature.id}))
         self._shoot("window.png")
         settings.change_look(attribute="height")
@@ -183,15 +185,15 @@ class _DemoJob:
                 Text("Install the program again.", "プログラムを再インストールしてください。"),
             )
         exact = drive.xyz(np.array([point]))[0]
-        place = Place(
+        position = PickedPosition(
             (float(exact[0]), float(exact[1]), float(exact[2])), PointReference(drive.id, point)
         )
-        self._parts.image_view.center_on(place)
-        position = self._parts.image_view.position_of(place)
-        if position is None:
+        self._parts.image_view.center_on(position)
+        pixel = self._parts.image_view.position_of(position)
+        if pixel is None:
             message = f"point {point} of {drive.id} is in no pixel"
             raise RuntimeError(message)
-        _click(self._parts.image_view, position)
+        _click(self._parts.image_view, pixel)
 
     def _run(self, tool: str, drive_id: str, parameters: object) -> None:
         self._wait_for_job(lambda: self._document.start_run(tool, drive_id, parameters))
@@ -221,7 +223,7 @@ class _DemoJob:
         path = self._out / name
         picture = QGuiApplication.primaryScreen().grabWindow(self._parts.window.winId())
         if not picture.save(str(path)):
-            with told_as_user_error(path):
+            with report_as_user_error(path):
                 path.touch()
         self.made.append(str(path))
 

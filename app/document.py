@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
-from app.adoption import Adoption
-from app.drive_taking import DriveTaking
-from app.jobs import JobQueue, Lane
-from app.label_news import tell_labels
+from app.drive_results import DriveResults
+from app.job_results import JobResultApplier
+from app.jobs import JobLane, JobQueue
+from app.label_news import report_labels
 from app.label_steps import LabelSteps
 from app.long_work import export_work, exported_words
 from app.preparation import Preparation
-from app.refusals import changed_meanwhile
-from app.run_taking import RunTaking
+from app.refusals import refuse_changed
+from app.run_results import RunResultApplier
 from app.undo import UndoStack
 from processing.errors import UserError
 from processing.image.tile_cache import TileCache
@@ -27,12 +27,12 @@ from processing.project.catalogue_file import read_catalogue
 from processing.project.change import Change
 from processing.project.export import ExportRequest
 from processing.project.feature import Feature
-from processing.project.found_again import found_again
 from processing.project.found_classes import classes_now
 from processing.project.found_features import FoundFeatures
 from processing.project.importing import ImportRequest
 from processing.project.label_filing import are_many
 from processing.project.project import Project
+from processing.project.repeated_runs import with_earlier_decisions
 from processing.project.runs import Run
 from processing.project.template_store import TemplateStore
 from processing.runner import RunRequest
@@ -59,7 +59,7 @@ class Document(QObject):
         Another catalogue counts in the open project.
     refused(error: UserError)
         Something the user wanted can't be done; everything is as it was.
-    told(text: Text)
+    reported(text: Text)
         Something was done that is worth a line.
     """
 
@@ -68,7 +68,7 @@ class Document(QObject):
     closed = Signal()
     catalogue_changed = Signal()
     refused = Signal(object)
-    told = Signal(object)
+    reported = Signal(object)
 
     def __init__(self, jobs: JobQueue, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -85,19 +85,19 @@ class Document(QObject):
         self.tiles.use(self.drive)
         self._project: Project | None = None
         self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
-        self._adoption = Adoption(jobs, self)
-        self._adoption.refused.connect(self.refused)
-        self._label_steps = LabelSteps(self._adoption, self.undo_stack, self._changed, self)
-        self._runs = RunTaking(self._adoption, self._label_steps, self.store_run)
-        self._label_steps.told.connect(self.told)
+        self._job_results = JobResultApplier(jobs, self)
+        self._job_results.refused.connect(self.refused)
+        self._label_steps = LabelSteps(self._job_results, self.undo_stack, self._changed, self)
+        self._runs = RunResultApplier(self._job_results, self._label_steps, self.store_run)
+        self._label_steps.reported.connect(self.reported)
         self._label_steps.refused.connect(self.refused)
         self._label_steps.cancelled.connect(jobs.cancel)
-        self.drive_taking = DriveTaking(
-            self._adoption, self._label_steps, self.tiles, self.shared, self
+        self.drive_results = DriveResults(
+            self._job_results, self._label_steps, self.tiles, self.shared, self
         )
-        self.drive_taking.told.connect(self.told)
-        self.drive_taking.refused.connect(self.refused)
-        self.drive_taking.taken.connect(self._on_drives_taken)
+        self.drive_results.reported.connect(self.reported)
+        self.drive_results.refused.connect(self.refused)
+        self.drive_results.taken.connect(self._on_drives_taken)
         self._preparation = Preparation(self._prepare, jobs, self)
 
     # Reading: what views ask (MapSource).
@@ -166,7 +166,7 @@ class Document(QObject):
         self.about_to_close.emit()
         self._label_steps.finish()
         self._preparation.give_up()
-        self._adoption.give_up()
+        self._job_results.give_up()
         self.shared.sketch.show(None)
         self.shared.snap.work_on(None)
         self.shared.selection.clear()
@@ -193,7 +193,7 @@ class Document(QObject):
             self._label_steps.paint(self._project, label, change)
             return True
         if self._project is not None and not self._project.features.fits(change):
-            self.refused.emit(changed_meanwhile())
+            self.refused.emit(refuse_changed())
             return False
 
         def push() -> Change:
@@ -229,8 +229,10 @@ class Document(QObject):
             return False
         self.catalogue_changed.emit()
         self.shared.map_changes.features_changed.emit(tuple(f.id for f in self.features()))
-        told = Text("The catalogue has {count} kinds now.", "カタログは{count}種別になりました。")
-        self.told.emit(told.filled(count=len(self.catalogue())))
+        reported = Text(
+            "The catalogue has {count} kinds now.", "カタログは{count}種別になりました。"
+        )
+        self.reported.emit(reported.filled(count=len(self.catalogue())))
         return True
 
     def export_catalogue(self, path: Path) -> None:
@@ -240,7 +242,9 @@ class Document(QObject):
         except UserError as error:
             self.refused.emit(error)
             return
-        self.told.emit(Text("Wrote {path}.", "{path} を書き出しました。").filled(path=path.name))
+        self.reported.emit(
+            Text("Wrote {path}.", "{path} を書き出しました。").filled(path=path.name)
+        )
 
     # Long work.
 
@@ -255,7 +259,7 @@ class Document(QObject):
         if not self.create(folder, request.crs):
             return ""
         project = self._needed()
-        return self.drive_taking.start(project, request, lambda: self._drop_if_empty(project), ())
+        return self.drive_results.start(project, request, lambda: self._drop_if_empty(project), ())
 
     def import_files(self, request: ImportRequest, only: Collection[str] = ()) -> str:
         """Import delivered files, or complete drives with them, in the background; gives the job.
@@ -265,14 +269,14 @@ class Document(QObject):
         only : collection of str
             Ids of drives that trajectories and images without points are for.
         """
-        return self.drive_taking.start(self._needed(), request, lambda: None, only)
+        return self.drive_results.start(self._needed(), request, lambda: None, only)
 
     def remove_drives(self, ids: Iterable[str]) -> bool:
         """Take drives out of the project as one undoable step; says whether it could."""
-        return self.drive_taking.remove(self._needed(), ids, self.apply)
+        return self.drive_results.remove(self._needed(), ids, self.apply)
 
     def start_run(
-        self, tool: str, drive_id: str, parameters: object, *, lane: Lane = Lane.ASKED
+        self, tool: str, drive_id: str, parameters: object, *, lane: JobLane = JobLane.ASKED
     ) -> str:
         """Run a tool on a drive in the background; gives the job's id."""
         drive = self.drive(drive_id)
@@ -281,7 +285,7 @@ class Document(QObject):
         request = RunRequest(tool, drive, parameters, beside)
 
         def store_columns(found: FinishedColumns) -> None:
-            self._store_columns(self.drive(drive_id), found, replaces=lane is not Lane.PREPARED)
+            self._store_columns(self.drive(drive_id), found, replaces=lane is not JobLane.PREPARED)
 
         return self._runs.start(project, request, store_columns, lane)
 
@@ -294,7 +298,7 @@ class Document(QObject):
         stored: list[FoundFeatures] = []
 
         def push() -> Change:
-            new = found_again(found, project)
+            new = with_earlier_decisions(found, project)
             if new.change.is_empty:
                 project.runs.add(new.run)
             self.undo_stack.push(new.run.summary, new.change, run=new.run)
@@ -304,16 +308,18 @@ class Document(QObject):
         is_stored = self._changed(push)
         # Told last: the review says what it loses by this step, which is the lesser news.
         for one in stored:
-            self.told.emit(one.run.summary)
+            self.reported.emit(one.run.summary)
             if one.change.added:
                 self.shared.map_changes.candidates_found.emit(one.run.tool, one.run.id)
         if found.change.labels or found.change.filed:
-            self.drive_taking.first_look.show_classes()
+            self.drive_results.first_look.show_classes()
         return is_stored
 
-    def do_at_hand(self, work: Callable[[], object], take: Callable[[object | None], None]) -> None:
+    def run_in_background(
+        self, work: Callable[[], object], take: Callable[[object | None], None]
+    ) -> None:
         """Do a moment's work for the tool in the hand; it gets None where that failed."""
-        self._adoption.start_at_hand(self._needed(), work, take)
+        self._job_results.start_at_hand(self._needed(), work, take)
 
     def export(self, request: ExportRequest) -> str:
         """Write the map to files in the background; gives the job's id."""
@@ -321,9 +327,9 @@ class Document(QObject):
         title, work = export_work(project, request)
 
         def take(paths: tuple[Path, ...]) -> None:
-            self.told.emit(exported_words(paths, request.folder))
+            self.reported.emit(exported_words(paths, request.folder))
 
-        return self._adoption.start(project, title, work, take)
+        return self._job_results.start(project, title, work, take)
 
     def _needed(self) -> Project:
         if self._project is None:
@@ -346,7 +352,7 @@ class Document(QObject):
         self._preparation.begin(self.drives())
 
     def _prepare(self, tool: Tool, drive: Drive) -> str:
-        return self.start_run(tool.id, drive.id, tool.parameters(), lane=Lane.PREPARED)
+        return self.start_run(tool.id, drive.id, tool.parameters(), lane=JobLane.PREPARED)
 
     def _store_columns(self, drive: Drive, found: FinishedColumns, *, replaces: bool) -> None:
         if not replaces and all(map(drive.columns.has, found.names)):
@@ -372,9 +378,9 @@ class Document(QObject):
             self.shared.map_changes.features_changed.emit(change.feature_ids)
         labels = tuple((self.drive(one.drive), one) for one in change.labels)
         filed = () if change.filed is None else change.filed.counts
-        tell_labels(labels, filed, self.tiles, self.shared.map_changes)
+        report_labels(labels, filed, self.tiles, self.shared.map_changes)
         self._label_steps.note(change)
-        self.drive_taking.follow_step(self._needed(), change)
+        self.drive_results.follow_step(self._needed(), change)
         return True
 
     def _replace_by(self, make: Callable[[], Project]) -> bool:
@@ -386,7 +392,7 @@ class Document(QObject):
         self.close()
         self._project = project
         self.undo_stack.use(project)
-        self.drive_taking.first_look.show(self.drives())
+        self.drive_results.first_look.show(self.drives())
         self.opened.emit()
         self.shared.map_changes.drives_changed.emit()
         self.shared.map_changes.features_changed.emit(tuple(f.id for f in self.features()))

@@ -13,7 +13,7 @@ from processing.project.catalogue import Geometry
 from widgets.mouse_tools.draw_parallel import DrawParallel
 from widgets.mouse_tools.gesture import REACH_PX
 from widgets.mouse_tools.measure import MeasureTool
-from widgets.mouse_tools.menu_wish import MenuWish
+from widgets.mouse_tools.menu_request import MenuRequest
 from widgets.parts.literal_text import literal
 from widgets.shared.mouse_shape import drawing_cursor
 from widgets.shared.snap_state import SnapMode
@@ -81,7 +81,7 @@ class _DrawingWiring(QObject):
         actions = self._parts.window.actions_by_id
         for key in NUMBER_KEYS:
             title = kind_title(self._parts, key)
-            actions[f"kind-key-{key}"].setText(literal(title.spoken(self._parts.language)))
+            actions[f"kind-key-{key}"].setText(literal(title.in_language(self._parts.language)))
 
     def on_bar_kind_wanted(self) -> None:
         show_kind_palette(self._parts)
@@ -109,9 +109,9 @@ class _DrawingWiring(QObject):
         if picture is not None:
             picture.setCursor(drawing_cursor(modes, REACH_PX))
 
-    def on_view_menu_requested(self, wish: MenuWish) -> None:
+    def on_view_menu_requested(self, request: MenuRequest) -> None:
         document = self._parts.document
-        feature = document.feature(wish.hit.feature) if wish.hit.feature else None
+        feature = document.feature(request.hit.feature) if request.hit.feature else None
         selection = document.shared.selection
         if feature is not None and feature.id not in selection.features:
             selection.choose_features(frozenset({feature.id}))
@@ -122,11 +122,11 @@ class _DrawingWiring(QObject):
             *(_OF_ANY if chosen else _OF_NONE),
             *_ALWAYS,
         )
-        if wish.hit.place is not None:
-            document.shared.cursor.move_to(wish.hit.place)
-        own = wish.menu.actions()
+        if request.hit.position is not None:
+            document.shared.cursor.move_to(request.hit.position)
+        own = request.menu.actions()
         actions = self._parts.window.actions_by_id
         for group in groups:
-            wish.menu.insertActions(own[0], [actions[name] for name in group])
-            wish.menu.insertSeparator(own[0])
-        wish.menu.popup(wish.where)
+            request.menu.insertActions(own[0], [actions[name] for name in group])
+            request.menu.insertSeparator(own[0])
+        request.menu.popup(request.where)

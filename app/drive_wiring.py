@@ -6,9 +6,9 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject
 
-from app.look_news import LookNews
+from app.attribute_notices import AttributeNotices
 from app.source_watch import SourceWatch
-from app.source_words import told_found, told_troubles, words_by_drive
+from app.source_words import describe_file_problems, describe_found_files, words_by_drive
 from app.view_memory import ViewMemory
 from app.window_parts import WindowParts
 
@@ -17,7 +17,7 @@ def connect_drives(parts: WindowParts) -> None:
     """Connect tree, images and the watch over delivered files; again for new widgets."""
     wiring = DriveWiring(parts)
     ViewMemory(parts.document, parts.image_views, wiring)
-    LookNews(parts.document, wiring).told.connect(parts.status_line.show_message)
+    AttributeNotices(parts.document, wiring).reported.connect(parts.status_line.show_message)
     tree, watch = parts.project_tree, parts.of(SourceWatch)
     tree.beside_requested.connect(parts.image_views.show_beside)
     tree.find_requested.connect(wiring.on_tree_find_requested)
@@ -60,11 +60,11 @@ class DriveWiring(QObject):
         troubles = self._parts.of(SourceWatch).troubles
         self.show_troubles()
         before, self._missed_before = self._missed_before, None
-        found = None if before is None else told_found(before, troubles)
-        error = told_troubles(troubles)
+        found = None if before is None else describe_found_files(before, troubles)
+        error = describe_file_problems(troubles)
         if error is not None and (self._is_to_be_told or before is not None):
             find = self._parts.window.actions_by_id["find-files"]
             self._parts.message_bar.show_error(error, remedy=find)
         if found is not None:
-            self._parts.document.told.emit(found)
+            self._parts.document.reported.emit(found)
         self._is_to_be_told = False

@@ -9,11 +9,11 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from app.adoption import Adoption
 from app.document import Document
-from app.jobs import JobQueue, Lane
+from app.job_results import JobResultApplier
+from app.jobs import JobLane, JobQueue
 from app.volume_exports import VolumeExport
-from app.volume_papers import GivenVolume
+from app.volume_reports import ExportedVolume
 from app.volume_work import (
     LoadedMap,
     MadeVolume,
@@ -30,7 +30,7 @@ from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.project.epochs import Epoch, epochs_of, has_ground
 from processing.project.project import Project
-from processing.project.volume import ChosenSide, KeptVolume, SideKind, VolumeWish
+from processing.project.volume import ChosenSide, KeptVolume, SideKind, VolumeRequest
 from processing.project.volume_store import VolumeStore
 from processing.project.work_store import WorkStore
 from processing.text import Language, Text
@@ -76,15 +76,15 @@ class Earthwork(QObject):
     def __init__(self, document: Document, jobs: JobQueue, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._document = document
-        self._adoption = Adoption(jobs, self)
-        self._adoption.refused.connect(document.refused)
+        self._job_results = JobResultApplier(jobs, self)
+        self._job_results.refused.connect(document.refused)
         self._volumes: tuple[KeptVolume, ...] = ()
         self._shown = ""
         self._result: VolumeResult | None = None
         self._epochs: tuple[Epoch, ...] = ()
         self._with_ground: dict[str, bool] = {}
         self._contoured: tuple[ChangeGrid | None, tuple[ContourOf, float] | None] = None, None
-        document.about_to_close.connect(self._adoption.give_up)
+        document.about_to_close.connect(self._job_results.give_up)
         document.opened.connect(self._on_document_opened)
         document.closed.connect(self._on_document_closed)
         changes = document.shared.map_changes
@@ -126,27 +126,27 @@ class Earthwork(QObject):
                 # It takes all that was recorded together.
                 self._document.start_run(GROUND_TOOL.id, side.drives[0], GROUND_TOOL.parameters())
 
-    def compute(self, wish: VolumeWish) -> str:
+    def compute(self, request: VolumeRequest) -> str:
         """Compare two grounds in the background and show what comes of it; the job's id."""
         project = self._document.project
         if project is None:
             return ""
         into = project.temporary_folder()
-        title, work = volume_work(wish, project.drives, project.crs, into)
+        title, work = volume_work(request, project.drives, project.crs, into)
 
         def take(made: MadeVolume) -> None:
             VolumeStore(project.folder).add(made.kept, made.folder)
             self._volumes = (*self._volumes, made.kept)
             self.show(made.kept.id)
             volumes = made.kept.volumes
-            told = _TOLD.filled(
+            reported = _TOLD.filled(
                 cut=f"{volumes.cut_m3:,.1f}",
                 fill=f"{volumes.fill_m3:,.1f}",
                 sure=f"{volumes.uncertainty_m3:,.1f}",
             )
-            self._document.told.emit(told)
+            self._document.reported.emit(reported)
 
-        return self._adoption.start(project, title, work, take)
+        return self._job_results.start(project, title, work, take)
 
     def show(self, id_: str) -> None:
         """Show the map of a volume in all views; empty: of none."""
@@ -168,7 +168,7 @@ class Earthwork(QObject):
             if self._shown == id_:
                 self.show("")
 
-        self._at_hand(project, map_work(VolumeStore(project.folder), kept), take, fail)
+        self._in_background(project, map_work(VolumeStore(project.folder), kept), take, fail)
 
     def remove(self, id_: str) -> None:
         """Forget a volume for good; the newest of the others is shown."""
@@ -196,7 +196,7 @@ class Earthwork(QObject):
         except UserError as error:
             self._document.refused.emit(error)
             return ""
-        given = GivenVolume(
+        given = ExportedVolume(
             details=replace(details, work=details.work or project.name),
             kept=kept,
             result=result,
@@ -205,7 +205,7 @@ class Earthwork(QObject):
             contours=shown.contours,
             language=language,
             limits=limits,
-            sides=sides_reader(kept.wish, project.drives, project.crs),
+            sides=sides_reader(kept.request, project.drives, project.crs),
             never=(*_given_files(kept), *_delivered_files(project)),
         )
 
@@ -214,35 +214,35 @@ class Earthwork(QObject):
             return path
 
         def take(written: Path) -> None:
-            self._document.told.emit(_WROTE.filled(path=written.name))
+            self._document.reported.emit(_WROTE.filled(path=written.name))
 
-        return self._adoption.start(project, kind.name, work, take)
+        return self._job_results.start(project, kind.name, work, take)
 
     def _draw_contours(self) -> None:
         """Find beside the window the contours that are wished now, unless they are there."""
         project, volume = self._document.project, self._document.shared.volume
         change, look = volume.drawn, volume.look
-        wish = None if change is None else (look.contours, look.interval_m)
-        if project is None or (change is self._contoured[0] and wish == self._contoured[1]):
+        request = None if change is None else (look.contours, look.interval_m)
+        if project is None or (change is self._contoured[0] and request == self._contoured[1]):
             return
-        self._contoured = change, wish
+        self._contoured = change, request
         if change is None:
             return
 
         def take(lines: tuple[LevelLine, ...]) -> None:
-            if self._contoured[0] is change and self._contoured[1] == wish:
+            if self._contoured[0] is change and self._contoured[1] == request:
                 volume.take_contours(change, lines)
 
         def work(monitor: Monitor) -> tuple[LevelLine, ...]:
             return contours_of(change, look, monitor)
 
-        self._adoption.start(
-            project, _CONTOURS, work, take, lane=Lane.AT_HAND, otherwise=lambda: take(())
+        self._job_results.start(
+            project, _CONTOURS, work, take, lane=JobLane.INTERACTIVE, otherwise=lambda: take(())
         )
 
     # What is done in more than one place.
 
-    def _at_hand(
+    def _in_background(
         self,
         project: Project,
         work: Callable[[], object],
@@ -252,8 +252,8 @@ class Earthwork(QObject):
         def watched(_monitor: Monitor) -> object:
             return work()
 
-        self._adoption.start(
-            project, _LOADING, watched, take, lane=Lane.AT_HAND, otherwise=otherwise
+        self._job_results.start(
+            project, _LOADING, watched, take, lane=JobLane.INTERACTIVE, otherwise=otherwise
         )
 
     def _read(self, project: Project) -> None:
@@ -278,7 +278,7 @@ class Earthwork(QObject):
         project, drives = self._document.project, self._document.drives()
         self._take_site(_Site((), {}))
         if project is not None and drives:
-            self._at_hand(project, lambda: _site_of(drives), self._take_site, lambda: None)
+            self._in_background(project, lambda: _site_of(drives), self._take_site, lambda: None)
 
     def _take_site(self, site: _Site) -> None:
         self._epochs, self._with_ground = site.epochs, dict(site.with_ground)
@@ -292,7 +292,7 @@ class Earthwork(QObject):
 
 def _given_files(kept: KeptVolume) -> tuple[Path, ...]:
     """The designs that a volume was had from; no export overwrites what was delivered."""
-    return tuple(Path(side.path) for side in (kept.wish.before, kept.wish.after) if side.path)
+    return tuple(Path(side.path) for side in (kept.request.before, kept.request.after) if side.path)
 
 
 def _delivered_files(project: Project) -> tuple[Path, ...]:

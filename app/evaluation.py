@@ -7,8 +7,8 @@ from collections.abc import Callable, Mapping
 from app.document import Document
 from processing.errors import UserError
 from processing.project.feature import Feature, Status
-from processing.project.found_again import runs_before
 from processing.project.mapped_map import mapped_of
+from processing.project.repeated_runs import runs_before
 from processing.project.run_evaluation import RunEvaluation, evaluate_runs, within_drives
 from processing.score.file_scores import FeatureScorer, FileScore
 from processing.score.mapped_features import MappedFile
@@ -78,7 +78,7 @@ class Evaluation:
             return {one[0]: score for one in asked if (score := _scored(*one[1:])) is not None}
 
         if asked:
-            self._document.do_at_hand(work, lambda scores: take(_as_scores(scores)))
+            self._document.run_in_background(work, lambda scores: take(_as_scores(scores)))
 
 
 def _scored(scorer: FeatureScorer, found: MappedFile, true: MappedFile) -> FileScore | None:

@@ -10,7 +10,7 @@ from PySide6.QtCore import QMarginsF, QRectF, QSizeF, Qt
 from PySide6.QtGui import QFont, QGuiApplication, QImage, QPageSize, QPainter, QPdfWriter
 
 from processing.errors import NoSpace, Unsuitable
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.project.class_evaluation import ClassEvaluation
 from processing.project.class_tables import write_class_evaluations, write_study
 from processing.project.evaluation_table import write_evaluation
@@ -103,7 +103,7 @@ def _write_plot(path: Path, plot: _Plot | None, title: str) -> None:
             Text.same(str(path)),
             Text("Judge some candidates first.", "先に候補を判定してください。"),
         )
-    with written_safely(path) as temporary:
+    with write_safely(path) as temporary:
         is_pdf = path.suffix.lower() == ".pdf"
         is_whole = _write_pdf(temporary, plot, title) if is_pdf else _write_png(temporary, plot)
         if not is_whole:

@@ -36,7 +36,7 @@ class ImportOffer(QObject):
         self._offer: tuple[ImportRequest, tuple[str, ...]] | None = None
         parts.document.opened.connect(self._on_document_opened)
         parts.document.closed.connect(self._on_document_closed)
-        parts.document.drive_taking.beside_found.connect(self._on_beside_found)
+        parts.document.drive_results.beside_found.connect(self._on_beside_found)
 
     def _on_document_opened(self) -> None:
         project = self._parts.document.project
@@ -62,8 +62,8 @@ class ImportOffer(QObject):
 
     def _show_next(self) -> None:
         if self._waiting:
-            told = told_offer(self._waiting[0])
-            self._parts.message_bar.show_error(told, self._go_on, self._discard)
+            reported = describe_import_offer(self._waiting[0])
+            self._parts.message_bar.show_error(reported, self._go_on, self._discard)
         else:
             self._parts.message_bar.hide()
 
@@ -76,7 +76,7 @@ class ImportOffer(QObject):
         self._show_next()
 
 
-def told_offer(unfinished: UnfinishedImport) -> UserError:
+def describe_import_offer(unfinished: UnfinishedImport) -> UserError:
     """What is said of an import that can go on."""
     inputs = unfinished.request.inputs
     names = ", ".join(path.name for path in inputs[:_MOST_NAMES])

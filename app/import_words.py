@@ -29,26 +29,26 @@ def imported_words(drives: Sequence[Drive], brought: Additions, crs: str) -> Tex
         return Text("Added to {names}.", "{names} に追加しました。").filled(
             names=_names([drive.info.name for drive in drives])
         )
-    told = Text("Imported {points:,} points", "{points:,}点をインポートしました")
+    reported = Text("Imported {points:,} points", "{points:,}点をインポートしました")
     if not crs:
-        told = Text(
+        reported = Text(
             "Imported {points:,} points; no file names their reference system (Ctrl+R)",
             "{points:,}点をインポートしました。座標参照系の記載がありません（Ctrl+R）",
         )
     elif any(map(lacks_trajectory, new)):
-        told = Text(
+        reported = Text(
             "Imported {points:,} points without a trajectory: curbs and covered gutters need one "
             "(File ▸ Add a trajectory)",
             "{points:,}点を走行軌跡なしでインポートしました。縁石と蓋付き側溝の抽出には"
             "走行軌跡が必要です（ファイル ▸ 走行軌跡を追加）",
         )
-    told = told.filled(points=sum(drive.count for drive in new))
-    for line in told_columns(new):
-        told = Text("{told}; {line}", "{told} {line}").filled(told=told, line=line)
-    return told
+    reported = reported.filled(points=sum(drive.count for drive in new))
+    for line in column_remarks(new):
+        reported = Text("{told}; {line}", "{told} {line}").filled(told=reported, line=line)
+    return reported
 
 
-def told_columns(drives: Sequence[Drive]) -> tuple[Text, ...]:
+def column_remarks(drives: Sequence[Drive]) -> tuple[Text, ...]:
     """A line for each delivered text file that doesn't say what its columns are."""
     sources = {
         one.path: one.columns
@@ -56,9 +56,11 @@ def told_columns(drives: Sequence[Drive]) -> tuple[Text, ...]:
         for one in drive.info.sources
         if one.points and one.columns
     }
-    told = Text("{name}: columns taken as {columns}", "{name}の列を {columns} として読み込みました")
+    reported = Text(
+        "{name}: columns taken as {columns}", "{name}の列を {columns} として読み込みました"
+    )
     return tuple(
-        told.filled(name=Path(path).name, columns=" ".join(columns))
+        reported.filled(name=Path(path).name, columns=" ".join(columns))
         for path, columns in sources.items()
     )
 
@@ -95,17 +97,17 @@ def lacking_words(drives: Sequence[Drive], brought: Additions, shown: Sequence[s
     files = [Path(source.path).name for drive in lacking for source in drive.info.sources]
     names = _names(list(dict.fromkeys(files)))
     if shown:
-        told = Text(
+        reported = Text(
             "{names} has no trajectory; {files} beside it covers it: add {options}",
             "{names} には走行軌跡がありません。同じ場所の {files} が計測時刻を含んでいます。"
             "{options} を付けてください",
         )
         if len(set(files)) > 1:
-            told = Text(
+            reported = Text(
                 "{names} have no trajectory; {files} beside them covers them: add {options}",
-                told.ja,
+                reported.ja,
             )
-        return told.filled(
+        return reported.filled(
             names=names,
             files=_names(shown),
             options=" ".join(f"--trajectory {path}" for path in shown),
@@ -151,5 +153,5 @@ def adding_words(request: ImportRequest) -> Text:
 
 
 def _names(names: Sequence[str]) -> str:
-    told = ", ".join(names[:_MOST_NAMES])
-    return told if len(names) <= _MOST_NAMES else f"{told} …"
+    reported = ", ".join(names[:_MOST_NAMES])
+    return reported if len(names) <= _MOST_NAMES else f"{reported} …"

@@ -17,10 +17,10 @@ from processing.errors import Cancelled, Interrupted, UserError
 from processing.monitor import Monitor
 from processing.text import Text
 
-Work = Callable[[Monitor], object]
+JobFunction = Callable[[Monitor], object]
 
 
-class Lane(Enum):
+class JobLane(Enum):
     """Which thread a job waits for."""
 
     ASKED = "asked"
@@ -29,11 +29,11 @@ class Lane(Enum):
     """What nobody waits for: it pauses while there is something to do in the other lanes."""
     STEPS = "steps"
     """What takes its time of what the user did to the map: labels of many points, and undo."""
-    AT_HAND = "at hand"
+    INTERACTIVE = "at hand"
     """What the mouse waits for: a moment's work, told to nobody unless it fails."""
 
 
-_GO_FIRST = Lane.ASKED, Lane.STEPS, Lane.AT_HAND
+_GO_FIRST = JobLane.ASKED, JobLane.STEPS, JobLane.INTERACTIVE
 _PAUSE_S = 0.05
 
 
@@ -96,7 +96,7 @@ class _Stop:
 @dataclass(frozen=True)
 class _Task:
     id: str
-    work: Work
+    work: JobFunction
     stop: _Stop
 
 
@@ -121,16 +121,18 @@ class JobQueue(QObject):
         self._statuses: dict[str, JobStatus] = {}
         self._stops: dict[str, _Stop] = {}
         self._started_at: dict[str, float] = {}
-        self._lanes: dict[Lane, SimpleQueue[_Task | None]] = {lane: SimpleQueue() for lane in Lane}
+        self._lanes: dict[JobLane, SimpleQueue[_Task | None]] = {
+            lane: SimpleQueue() for lane in JobLane
+        }
         self._quiet: set[str] = set()
         queued = Qt.ConnectionType.QueuedConnection
         self._progressed.connect(self._on_worker_progressed, queued)
         self._started.connect(self._on_worker_started, queued)
         self._ended.connect(self._on_worker_ended, queued)
-        self._at_work = {lane: threading.Event() for lane in Lane}
+        self._at_work = {lane: threading.Event() for lane in JobLane}
         self._threads = [
             threading.Thread(target=self._run_tasks, args=(lane,), name="jobs", daemon=True)
-            for lane in Lane
+            for lane in JobLane
         ]
         for thread in self._threads:
             thread.start()
@@ -145,7 +147,7 @@ class JobQueue(QObject):
         """Whether a job is running or waiting."""
         return bool(self._stops)
 
-    def start(self, title: Text, work: Work, *, lane: Lane = Lane.ASKED) -> str:
+    def start(self, title: Text, work: JobFunction, *, lane: JobLane = JobLane.ASKED) -> str:
         """Queue a job; gives its id.
 
         Parameters
@@ -156,9 +158,9 @@ class JobQueue(QObject):
         """
         task = _Task(uuid4().hex, work, _Stop())
         self._stops[task.id] = task.stop
-        if lane is Lane.AT_HAND:
+        if lane is JobLane.INTERACTIVE:
             self._quiet.add(task.id)
-        self._tell(JobStatus(task.id, title))
+        self._report(JobStatus(task.id, title))
         self._lanes[lane].put(task)
         return task.id
 
@@ -181,8 +183,8 @@ class JobQueue(QObject):
         for thread in self._threads:
             thread.join()
 
-    def _run_tasks(self, lane: Lane) -> None:
-        goes_first = () if lane is not Lane.PREPARED else _GO_FIRST
+    def _run_tasks(self, lane: JobLane) -> None:
+        goes_first = () if lane is not JobLane.PREPARED else _GO_FIRST
         before = tuple(self._at_work[other] for other in goes_first)
         while (task := self._lanes[lane].get()) is not None:
             self._started.emit(task.id)
@@ -202,14 +204,16 @@ class JobQueue(QObject):
 
     def _on_worker_started(self, job: str) -> None:
         self._started_at[job] = time.monotonic()
-        self._tell(replace(self._statuses[job], state=JobState.RUNNING))
+        self._report(replace(self._statuses[job], state=JobState.RUNNING))
 
     def _on_worker_progressed(self, job: str, fraction: float, text: Text | None) -> None:
         status = self._statuses[job]
         passed = time.monotonic() - self._started_at.get(job, time.monotonic())
         # The first second says little about the rest.
         left = passed * (1 - fraction) / fraction if fraction > 0.02 and passed > 1.0 else None
-        self._tell(replace(status, fraction=fraction, text=text or status.text, seconds_left=left))
+        self._report(
+            replace(status, fraction=fraction, text=text or status.text, seconds_left=left)
+        )
 
     def _on_worker_ended(self, job: str, result: object, error: BaseException | None) -> None:
         del self._stops[job]
@@ -217,20 +221,20 @@ class JobQueue(QObject):
             self._quiet.discard(job)
         status = replace(self._statuses[job], seconds_left=None)
         if error is None:
-            self._tell(replace(status, state=JobState.FINISHED, fraction=1.0))
+            self._report(replace(status, state=JobState.FINISHED, fraction=1.0))
             self.finished.emit(job, result)
         elif isinstance(error, UserError):
             log_user_error(error)
-            self._tell(replace(status, state=JobState.FAILED, error=error))
+            self._report(replace(status, state=JobState.FAILED, error=error))
             self.failed.emit(job, error)
         else:
-            self._tell(replace(status, state=JobState.CANCELLED))
+            self._report(replace(status, state=JobState.CANCELLED))
             self.cancelled.emit(job)
         if job in self._quiet:
             self._quiet.discard(job)
             del self._statuses[job]
 
-    def _tell(self, status: JobStatus) -> None:
+    def _report(self, status: JobStatus) -> None:
         self._statuses[status.id] = status
         if status.id not in self._quiet:
             self.changed.emit(status)
@@ -251,11 +255,11 @@ class _JobMonitor:
         self._progressed = progressed
         self._task = task
         self._before = before
-        self._told = -1.0
+        self._reported = -1.0
 
     def report(self, fraction: float, text: Text | None = None) -> None:
-        if text is not None or fraction >= self._told + 0.001 or fraction < self._told:
-            self._told = fraction
+        if text is not None or fraction >= self._reported + 0.001 or fraction < self._reported:
+            self._reported = fraction
             self._progressed.emit(self._task.id, fraction, text)
 
     def check(self) -> None:

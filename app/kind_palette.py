@@ -28,7 +28,7 @@ def named_kinds(parts: WindowParts) -> list[NamedAction]:
 
 
 def _named(parts: WindowParts, kind: FeatureKind) -> NamedAction:
-    action = QAction(literal(kind.name.spoken(parts.language)), parts.window.centralWidget())
+    action = QAction(literal(kind.name.in_language(parts.language)), parts.window.centralWidget())
     action.setIcon(swatch_of(kind.colour))
     action.setShortcut(QKeySequence(kind.key))
     action.triggered.connect(lambda: parts.toolbox.choose_kind(kind))

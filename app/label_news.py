@@ -15,7 +15,7 @@ _MANY_POINTS = 4_000_000
 """More than so many of a drive are most of its tiles: all are made anew, without looking which."""
 
 
-def tell_labels(
+def report_labels(
     labels: tuple[tuple[Drive, LabelChange], ...],
     filed: Iterable[str],
     tiles: TileCache,

@@ -13,8 +13,8 @@ from functools import partial
 
 from PySide6.QtCore import QObject, Signal
 
-from app.adoption import Adoption
-from app.jobs import Lane
+from app.job_results import JobResultApplier
+from app.jobs import JobLane
 from app.undo import UndoStack
 from processing.errors import InUse, UserError
 from processing.monitor import Monitor
@@ -25,10 +25,10 @@ from processing.project.filed_labels import FiledLabels
 from processing.project.label_change import LabelChange
 from processing.project.label_filing import (
     Relabel,
-    caught_up,
+    drop_repainted,
     labels_as_change,
     make_columns,
-    rebased,
+    rebase_labels,
     relabelled_by_hand,
 )
 from processing.project.project import Project
@@ -46,7 +46,7 @@ _GIVEN_UP = Text(
 )
 _TAKEN_BACK = Text("Taken back: {label}", "取り消しました: {label}")
 
-Changed = Callable[[Callable[[], Change | None]], bool]
+ChangeListener = Callable[[Callable[[], Change | None]], bool]
 
 
 @dataclass
@@ -57,7 +57,7 @@ class LabelStep:
     ----------
     relabel : callable
         What its codes change where other labels of many points came first.
-    wish : Change or None
+    request : Change or None
         What was painted; None for a run.
     missed : list of Change
         What became of the map since its columns were begun.
@@ -66,7 +66,7 @@ class LabelStep:
     project: Project
     label: Text
     relabel: Relabel = relabelled_by_hand
-    wish: Change | None = None
+    request: Change | None = None
     missed: list[Change] = field(default_factory=list)
     job: str = ""
 
@@ -87,15 +87,19 @@ class LabelSteps(QObject):
         As the document's; a job is to be cancelled.
     """
 
-    told = Signal(object)
+    reported = Signal(object)
     refused = Signal(object)
     cancelled = Signal(str)
 
     def __init__(
-        self, adoption: Adoption, undo_stack: UndoStack, changed: Changed, parent: QObject
+        self,
+        adoption: JobResultApplier,
+        undo_stack: UndoStack,
+        changed: ChangeListener,
+        parent: QObject,
     ) -> None:
         super().__init__(parent)
-        self._adoption = adoption
+        self._job_results = adoption
         self._undo_stack = undo_stack
         self._changed = changed
         self._steps: list[LabelStep] = []
@@ -149,21 +153,21 @@ class LabelSteps(QObject):
         relabel = step.relabel if any(each.filed for each in missed) else None
 
         def work(monitor: Monitor) -> Change:
-            found = caught_up(filed, painted, drives.__getitem__, monitor, relabel=relabel)
+            found = drop_repainted(filed, painted, drives.__getitem__, monitor, relabel=relabel)
             return replace(change, filed=found)
 
-        step.job = self._adoption.start(
+        step.job = self._job_results.start(
             step.project,
             _STORING.filled(label=step.label),
             work,
             lambda found: self.arrive(step, found, take),
-            lane=Lane.STEPS,
+            lane=JobLane.STEPS,
             otherwise=lambda: self.drop(step, change),
         )
 
     def paint(self, project: Project, label: Text, change: Change) -> None:
         """Do what somebody painted on many points."""
-        step = LabelStep(project, label, wish=change)
+        step = LabelStep(project, label, request=change)
         self._steps.append(step)
         folder, drives = project.label_folder(), {drive.id: drive for drive in project.drives}
 
@@ -174,25 +178,25 @@ class LabelSteps(QObject):
         def take(found: Change) -> None:
             self._changed(lambda: self._pushed(label, found))
 
-        step.job = self._adoption.start(
+        step.job = self._job_results.start(
             project,
             label,
             work,
             lambda found: self.arrive(step, found, take),
-            lane=Lane.STEPS,
+            lane=JobLane.STEPS,
             otherwise=lambda: self.drop(step),
         )
 
     def move(self, project: Project, by: int) -> bool:
         """Undo (−1) or redo (1); says whether there is something."""
-        painted = [one for one in self._steps if one.wish is not None]
+        painted = [one for one in self._steps if one.request is not None]
         if by < 0 and painted:
             self.drop(painted[-1])
             self.cancelled.emit(painted[-1].job)
-            self.told.emit(_TAKEN_BACK.filled(label=painted[-1].label))
+            self.reported.emit(_TAKEN_BACK.filled(label=painted[-1].label))
             return True
         if self._move is not None:
-            self.told.emit(_BUSY.filled(label=self._move.label))
+            self.reported.emit(_BUSY.filled(label=self._move.label))
             return False
         try:
             filed = project.features.coming_labels(by)
@@ -216,11 +220,11 @@ class LabelSteps(QObject):
 
     def finish(self) -> None:
         """The project is closed: what was painted is stored now, what is moved stays as it is."""
-        for step in [one for one in self._steps if one.wish is not None]:
+        for step in [one for one in self._steps if one.request is not None]:
             self.drop(step)
-            wish = step.wish or Change()
-            labels = rebased(wish.labels, _labels_in(step.missed), step.project.drive)
-            rest = replace(wish, labels=labels)
+            request = step.request or Change()
+            labels = rebase_labels(request.labels, _labels_in(step.missed), step.project.drive)
+            rest = replace(request, labels=labels)
             self._changed(partial(self._pushed, step.label, rest))
         self._steps.clear()
         self._move = None
@@ -246,12 +250,12 @@ class LabelSteps(QObject):
             self._changed(lambda: act(are_columns_made=True))
 
         self._move = step
-        step.job = self._adoption.start(
+        step.job = self._job_results.start(
             project,
             step.label,
             work,
             take,
-            lane=Lane.STEPS,
+            lane=JobLane.STEPS,
             otherwise=lambda: self._end_move(step, filed),
         )
 
@@ -262,7 +266,7 @@ class LabelSteps(QObject):
             with suppress(OSError):
                 filed.column_file(id_).unlink(missing_ok=True)
         if step.missed:
-            self.told.emit(_GIVEN_UP.filled(label=step.label))
+            self.reported.emit(_GIVEN_UP.filled(label=step.label))
 
     def _pushed(self, label: Text, change: Change) -> Change:
         self._undo_stack.push(label, change)

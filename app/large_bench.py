@@ -16,13 +16,13 @@ from tempfile import TemporaryDirectory
 
 from app.application import build_window, make_application
 from app.large_steps import drawing, image, project, scene
-from app.large_steps.bench_window import BenchWindow, Found
+from app.large_steps.bench_window import BenchWindow, StepTimings
 from app.settings import Settings
 from processing.output_streams import write_every_character
 
 _SIZE = (1600, 1000)
 
-STEPS: dict[str, Callable[[BenchWindow], Found]] = {
+STEPS: dict[str, Callable[[BenchWindow], StepTimings]] = {
     "baseline": project.start,
     "open": project.open_project,
     "open again": project.open_again,
@@ -66,23 +66,23 @@ def main(folder: Path, out: Path, share: float) -> None:
             parts.document.create(Path(scratch) / "empty.zuka", "")
             window = BenchWindow(parts, folder, out, share)
             for name, step in STEPS.items():
-                _tell(name, step, window)
+                _report(name, step, window)
         finally:
             parts.window.close()
 
 
-def _tell(name: str, step: Callable[[BenchWindow], Found], window: BenchWindow) -> None:
+def _report(name: str, step: Callable[[BenchWindow], StepTimings], window: BenchWindow) -> None:
     window.pulse.take()
     began = time.monotonic()
     found = step(window)
-    told = {
+    reported = {
         "step": name,
         "began": began,
         "ended": time.monotonic(),
         "longest_pause_s": window.pulse.take(),
         "times_s": found,
     }
-    sys.stdout.write(json.dumps(told) + "\n")
+    sys.stdout.write(json.dumps(reported) + "\n")
     sys.stdout.flush()
 
 

@@ -89,7 +89,7 @@ class _LimitsWiring(QObject):
         except UserError as error:
             self._parts.document.refused.emit(error)
             return
-        self._parts.document.told.emit(_WROTE.filled(path=Path(chosen).name))
+        self._parts.document.reported.emit(_WROTE.filled(path=Path(chosen).name))
 
     def _keep(self, change: Callable[[WorkStore], None]) -> None:
         """Store a change; the box shows what counts, whether it could be stored or not."""

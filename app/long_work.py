@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from app.import_words import adding_words
-from app.run_storing import FinishedRun, finished_run
+from app.run_storing import FinishedRun, finish_run
 from processing.image.images_of_drives import image_of
 from processing.monitor import Monitor
 from processing.points.drive import Drive
@@ -55,12 +55,12 @@ def run_work(
     Parameters
     ----------
     labels_into, begin
-        As of :func:`app.run_storing.finished_run`.
+        As of :func:`app.run_storing.finish_run`.
     """
     title = Text("{tool}: {name}", "{tool}: {name}").filled(
         tool=tool_of(request.tool).name, name=request.drive.info.name
     )
-    return title, lambda monitor: finished_run(
+    return title, lambda monitor: finish_run(
         request, into, monitor, labels_into=labels_into, begin=begin
     )
 
@@ -82,10 +82,10 @@ def export_work(
 
 def exported_words(paths: Sequence[Path], folder: Path) -> Text:
     """What is said after an export."""
-    told = Text(
+    reported = Text(
         "Exported {count} files to {folder}", "{folder} に{count}個のファイルを書き出しました"
     )
-    return told.filled(count=len(paths), folder=folder)
+    return reported.filled(count=len(paths), folder=folder)
 
 
 def prepare_images(drive: Drive, monitor: Monitor) -> None:

@@ -24,7 +24,7 @@ from app.screen_room import bring_onto_screen
 from app.settings import WindowLayout
 from app.view_area import ViewArea
 from app.window_actions import WindowActions
-from app.window_contents import Contents, Panel, PlainToolBar, stacked
+from app.window_contents import DockPanel, PlainToolBar, WindowContents, stack_widgets
 from processing.text import Language, Text
 
 _ICON_PX = 20
@@ -55,7 +55,7 @@ class MainWindow(QMainWindow):
         self._docks: dict[str, QDockWidget] = {}
         self._in_front: list[QDockWidget] = []
         self._waiting: list[QDockWidget] = []
-        self._panels: tuple[Panel, ...] = ()
+        self._panels: tuple[DockPanel, ...] = ()
         self._toolbar: QToolBar | None = None
         self._tools: QAction | None = None
         self._area: ViewArea | None = None
@@ -102,7 +102,7 @@ class MainWindow(QMainWindow):
             raise ValueError(_HOLDS_NOTHING)
         return self._area
 
-    def hold(self, contents: Contents) -> None:
+    def hold(self, contents: WindowContents) -> None:
         """Hold this in place of what there was, which is deleted, and stand as before.
 
         Actions, panels and :meth:`show_work` follow.
@@ -118,9 +118,9 @@ class MainWindow(QMainWindow):
         self._area = contents.views
         self._pages = QStackedWidget()
         self._pages.addWidget(contents.start_page)
-        self._pages.addWidget(stacked(contents.header, contents.views))
+        self._pages.addWidget(stack_widgets(contents.header, contents.views))
         # The old widget is deleted by Qt in each of these.
-        self.setCentralWidget(stacked(contents.message, self._pages))
+        self.setCentralWidget(stack_widgets(contents.message, self._pages))
         self.setMenuBar(QMenuBar(self))
         self.setStatusBar(contents.status)
         self._toolbar = PlainToolBar(self.tr("Tools"), self)
@@ -148,12 +148,12 @@ class MainWindow(QMainWindow):
         button.setDefaultAction(self.actions_made[id_])
         self.menuBar().setCornerWidget(button)
 
-    def add_panels(self, panels: Sequence[Panel], language: Language) -> None:
+    def add_panels(self, panels: Sequence[DockPanel], language: Language) -> None:
         """Put panels into docks; docks of one area stand above each other."""
         self.actions_made.divide("view")
         self._panels = tuple(panels)
         for panel in panels:
-            dock = QDockWidget(panel.title.spoken(language), self)
+            dock = QDockWidget(panel.title.in_language(language), self)
             dock.setObjectName(panel.id)
             dock.setWidget(panel.widget)
             self.addDockWidget(panel.area, dock)
@@ -248,7 +248,7 @@ class MainWindow(QMainWindow):
         if self._actions is not None:
             self._actions.deleteLater()
 
-    def _adopt_toggle(self, panel: Panel, dock: QDockWidget) -> None:
+    def _adopt_toggle(self, panel: DockPanel, dock: QDockWidget) -> None:
         toggle = dock.toggleViewAction()
         toggle.triggered.connect(dock.raise_)
         action = Action(
@@ -265,7 +265,7 @@ class MainWindow(QMainWindow):
         """Put the docks where they belong at first, in a window as wide as this."""
         is_narrow = self.width() < _NARROW_PX
         self._in_front.clear()
-        placed: list[Panel] = []
+        placed: list[DockPanel] = []
         for panel in self._panels:
             dock, behind = self._docks[panel.id], panel.narrow_behind if is_narrow else panel.behind
             is_beside = panel.area is not _BELOW

@@ -12,12 +12,12 @@ from resources import path_of
 from widgets.dialogs.manual import ManualWindow
 
 
-def show_manual(parts: WindowParts, place: str = "") -> None:
+def show_manual(parts: WindowParts, position: str = "") -> None:
     """Show the manual in the user's language; the window that is open is raised.
 
     Parameters
     ----------
-    place : str
+    position : str
         Where to open it, such as ``"simulate.html#making"``; empty: where it is open already, or
         else at its contents.
     """
@@ -31,8 +31,8 @@ def show_manual(parts: WindowParts, place: str = "") -> None:
     if made is None:
         made = ManualWindow(folder, parts.window)
         made.browser_requested.connect(lambda page: open_outside(parts, page))
-    if place:
-        made.show_page(place)
+    if position:
+        made.show_page(position)
     made.show()
     made.raise_()
     made.activateWindow()
@@ -43,11 +43,11 @@ def open_outside(parts: WindowParts, what: QUrl) -> None:
 
     Some systems say that they do and then find no program, so the place is told in any case.
     """
-    place = Text.same(what.toLocalFile())
+    position = Text.same(what.toLocalFile())
     if QDesktopServices.openUrl(what):
-        parts.document.told.emit(
+        parts.document.reported.emit(
             Text("Handed to the system: {place}", "システムに渡しました: {place}").filled(
-                place=place
+                place=position
             )
         )
         return
@@ -57,7 +57,7 @@ def open_outside(parts: WindowParts, what: QUrl) -> None:
                 "The system has no program that shows this.",
                 "表示できるプログラムがシステムに見つかりません。",
             ),
-            place,
+            position,
             Text("Open it with a program of your own.", "別のプログラムで開いてください。"),
         )
     )

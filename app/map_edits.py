@@ -9,7 +9,7 @@ from dataclasses import replace
 from PySide6.QtGui import QGuiApplication
 
 from app.document import Document
-from processing.drafting.line_edits import reversed_line, simplified
+from processing.drafting.line_edits import reverse_line, simplify_line
 from processing.drafting.line_joins import join
 from processing.drafting.measuring import Width, width_between
 from processing.errors import UserError
@@ -62,7 +62,7 @@ class MapEdits:
     def reverse(self) -> None:
         """Turn lines round."""
         self._each(
-            Text("Reverse {count} lines", "{count}本の線の向きを反転"), reversed_line, Geometry.LINE
+            Text("Reverse {count} lines", "{count}本の線の向きを反転"), reverse_line, Geometry.LINE
         )
 
     def simplify(self, tolerance_m: float) -> None:
@@ -71,7 +71,7 @@ class MapEdits:
             tolerance=tolerance_m
         )
         self._each(
-            label, lambda feature: simplified(feature, tolerance_m), Geometry.LINE, Geometry.AREA
+            label, lambda feature: simplify_line(feature, tolerance_m), Geometry.LINE, Geometry.AREA
         )
 
     def close(self) -> None:
@@ -86,7 +86,7 @@ class MapEdits:
         """Make one line of the chosen ones."""
         lines = [feature for feature in self.chosen if feature.geometry is Geometry.LINE]
         if len(lines) < 2:
-            self._document.told.emit(
+            self._document.reported.emit(
                 Text("Choose at least two lines.", "線を2本以上選択してください。")
             )
             return
@@ -117,7 +117,7 @@ class MapEdits:
         if chosen:
             text = clip_of(chosen, self._document.crs(), self._document.catalogue())
             QGuiApplication.clipboard().setText(text)
-            self._document.told.emit(COPIED.filled(count=len(chosen)))
+            self._document.reported.emit(COPIED.filled(count=len(chosen)))
 
     def cut(self) -> None:
         """Copy what is chosen, then remove it."""
@@ -129,7 +129,7 @@ class MapEdits:
         """Add what is on the clipboard; it is chosen then."""
         text = QGuiApplication.clipboard().text()
         if not text.strip():
-            self._document.told.emit(_NO_PASTE)
+            self._document.reported.emit(_NO_PASTE)
             return
         document = self._document
         drives = [drive.id for drive in document.drives()]
@@ -144,13 +144,13 @@ class MapEdits:
         if document.apply(label, Change(added=pasted.features)):
             self._selection.choose_features(frozenset(one.id for one in pasted.features))
             for note in pasted.notes:
-                document.told.emit(note)
+                document.reported.emit(note)
 
-    def tell_width(self) -> tuple[list[Feature], Width] | None:
+    def report_width(self) -> tuple[list[Feature], Width] | None:
         """Say how wide it is between the two chosen lines; gives both, None where it can't."""
         lines = [feature for feature in self.chosen if feature.geometry is Geometry.LINE]
         if len(lines) != 2:
-            self._document.told.emit(TWO_LINES)
+            self._document.reported.emit(TWO_LINES)
             return None
         one, other = ([vertex.xyz for vertex in line.vertices] for line in lines)
         try:
@@ -159,17 +159,17 @@ class MapEdits:
             self._document.refused.emit(refusal)
             return None
         said = WIDTH.filled(least=width.least_m, mean=width.mean_m, greatest=width.greatest_m)
-        self._document.told.emit(said)
+        self._document.reported.emit(said)
         return lines, width
 
     def keep_width(self) -> None:
         """Keep the mean width between the two chosen lines as a measurement across them."""
-        found = self.tell_width()
+        found = self.report_width()
         catalogue = self._document.catalogue()
         if found is None:
             return
         if MEASUREMENT not in catalogue:
-            self._document.told.emit(NO_SUCH_KIND.filled(name=MEASUREMENT))
+            self._document.reported.emit(NO_SUCH_KIND.filled(name=MEASUREMENT))
             return
         (one, other), width = found
         across = _nearest_vertices(one, other)
@@ -218,14 +218,14 @@ class MapEdits:
     def _needed(self) -> tuple[Feature, ...]:
         chosen = self.chosen
         if not chosen:
-            self._document.told.emit(NOTHING_CHOSEN)
+            self._document.reported.emit(NOTHING_CHOSEN)
         return chosen
 
     def _each(self, label: Text, edit: Callable[[Feature], Feature], *geometries: Geometry) -> None:
         """Do the same with all chosen features of some shapes, as one step."""
         chosen = [feature for feature in self.chosen if feature.geometry in geometries]
         if not chosen:
-            self._document.told.emit(NO_LINES if self.chosen else NOTHING_CHOSEN)
+            self._document.reported.emit(NO_LINES if self.chosen else NOTHING_CHOSEN)
             return
         try:
             pairs = [Replacement(feature, edit(feature)) for feature in chosen]
@@ -234,7 +234,7 @@ class MapEdits:
             return
         changed = tuple(pair for pair in pairs if pair.before != pair.after)
         if not changed:
-            self._document.told.emit(Text("Nothing changes.", "変更はありません。"))
+            self._document.reported.emit(Text("Nothing changes.", "変更はありません。"))
             return
         self._document.apply(label.filled(count=len(changed)), Change(replaced=changed))
 

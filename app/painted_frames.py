@@ -21,7 +21,7 @@ from typing_extensions import override
 LONGEST_MS = 300_000
 _PULSE_MS = 5
 
-Act = Callable[[], object]
+PaintedStep = Callable[[], object]
 _SEEN = QEvent.Type(QEvent.registerEventType())
 
 
@@ -48,7 +48,7 @@ class PaintedFrames(QObject):
 
     def seconds_to_paint(
         self,
-        act: Act,
+        act: PaintedStep,
         when: Callable[[], bool] = lambda: True,
         *,
         follows: Callable[[], bool] = lambda: True,

@@ -5,35 +5,35 @@ from __future__ import annotations
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QTabWidget, QWidget
 
-from app.window_contents import Panel
+from app.window_contents import DockPanel
 from app.window_parts import WindowParts
 from processing.text import Text
-from widgets.parts.scrolled import scrolled
+from widgets.parts.scrolled import make_scrollable
 
 _LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
 _RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
 _BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
 
 
-def panels_of(parts: WindowParts) -> tuple[Panel, ...]:
+def panels_of(parts: WindowParts) -> tuple[DockPanel, ...]:
     """All panels; each shares its place with those that are behind it."""
     project, layers = Text("Project", "プロジェクト"), Text("Layers", "レイヤ")
     return (
-        Panel("layers", layers, parts.layers_panel, _LEFT, 212, 600),
-        Panel("project", project, parts.project_tree, _LEFT, 212, 200, narrow_behind="layers"),
+        DockPanel("layers", layers, parts.layers_panel, _LEFT, 212, 600),
+        DockPanel("project", project, parts.project_tree, _LEFT, 212, 200, narrow_behind="layers"),
         *_right_panels(parts),
         *_lower_panels(parts),
     )
 
 
-def _right_panels(parts: WindowParts) -> tuple[Panel, ...]:
+def _right_panels(parts: WindowParts) -> tuple[DockPanel, ...]:
     """At the right of a wide window; in a narrow one with the layers or below them.
 
     There each place has as many tabs as can be read.
     """
     attributes = Text("Attributes", "属性")
     return (
-        Panel("attributes", attributes, parts.attribute_panel, _RIGHT, 248, 420),
+        DockPanel("attributes", attributes, parts.attribute_panel, _RIGHT, 248, 420),
         _right("processing", Text("Processing", "処理"), parts.processing_panel, behind=""),
         _right("jobs", Text("Jobs", "ジョブ"), parts.jobs_panel, narrow_behind="layers"),
         _right("review", Text("Review", "確認"), parts.review_panel, behind="attributes"),
@@ -47,7 +47,7 @@ def _right_panels(parts: WindowParts) -> tuple[Panel, ...]:
         _right(
             "templates",
             Text("Templates", "テンプレート"),
-            scrolled(parts.template_panel),
+            make_scrollable(parts.template_panel),
             narrow_behind="layers",
             is_hidden=True,
         ),
@@ -69,8 +69,8 @@ def _right(
     behind: str = "processing",
     narrow_behind: str = "attributes",
     is_hidden: bool = False,
-) -> Panel:
-    return Panel(
+) -> DockPanel:
+    return DockPanel(
         id_,
         title,
         widget,
@@ -89,17 +89,21 @@ def _evaluation_pages(parts: WindowParts) -> QTabWidget:
     pages.setDocumentMode(True)
     for title, page in (
         (Text("Candidates", "候補"), parts.evaluation_panel),
-        (Text("Point classes", "点のクラス"), scrolled(parts.class_panel)),
-        (Text("Parameter study", "パラメータ検討"), scrolled(parts.study_panel)),
+        (Text("Point classes", "点のクラス"), make_scrollable(parts.class_panel)),
+        (Text("Parameter study", "パラメータ検討"), make_scrollable(parts.study_panel)),
     ):
-        pages.addTab(page, title.spoken(parts.language))
+        pages.addTab(page, title.in_language(parts.language))
     return pages
 
 
-def _lower_panels(parts: WindowParts) -> tuple[Panel, ...]:
+def _lower_panels(parts: WindowParts) -> tuple[DockPanel, ...]:
     """Tables, which wait to be called."""
     evaluation, table = Text("Evaluation", "評価"), Text("Table of features", "地物一覧")
     return (
-        Panel("evaluation", evaluation, _evaluation_pages(parts), _BELOW, 900, 280, is_hidden=True),
-        Panel("features", table, parts.feature_table, _BELOW, 900, 230, is_hidden=True, key="F6"),
+        DockPanel(
+            "evaluation", evaluation, _evaluation_pages(parts), _BELOW, 900, 280, is_hidden=True
+        ),
+        DockPanel(
+            "features", table, parts.feature_table, _BELOW, 900, 230, is_hidden=True, key="F6"
+        ),
     )

@@ -6,7 +6,7 @@ from processing.errors import OutOfRange, UserError
 from processing.text import Text
 
 
-def changed_meanwhile() -> UserError:
+def refuse_changed() -> UserError:
     """What a change is about has become something else."""
     return OutOfRange(
         Text(

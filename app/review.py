@@ -9,7 +9,7 @@ from itertools import islice
 
 from PySide6.QtCore import QObject, Signal
 
-from app.decisions import Lines, judged, label_of_line, label_of_many, label_of_one
+from app.decisions import FeatureLines, change_status, label_of_line, label_of_many, label_of_one
 from app.document import Document
 from app.review_queue import ReviewQueue
 from processing.errors import UserError
@@ -25,7 +25,7 @@ from processing.project.review_state import (
     write_review_state,
 )
 from processing.text import Text
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 _PREPARED = 3
 _GONE = Text(
@@ -76,7 +76,7 @@ class Review(QObject):
         self._clock = clock
         self._state = ReviewState()
         self._queue = ReviewQueue()
-        self._lines = Lines()
+        self._lines = FeatureLines()
         self._trail: list[str] = []
         self._shown_at = 0.0
         self._is_deciding = False
@@ -103,7 +103,7 @@ class Review(QObject):
             accepted=self._queue.count(Status.ACCEPTED),
             rejected=self._queue.count(Status.REJECTED),
             left=self._queue.count(Status.CANDIDATE),
-            place=self._queue.place(self._state.feature),
+            position=self._queue.position(self._state.feature),
         )
 
     def open(self, runs: Iterable[str], order: ReviewOrder) -> None:
@@ -179,7 +179,7 @@ class Review(QObject):
         if not features:
             return False
         label = label_of_many(len(features), least)
-        if not self._applied(label, judged(features, Status.ACCEPTED)):
+        if not self._applied(label, change_status(features, Status.ACCEPTED)):
             return False
         if self._queue.status(self._state.feature) is Status.CANDIDATE:
             self.changed.emit()
@@ -194,7 +194,7 @@ class Review(QObject):
         if feature.status is not status:
             seconds = self._clock() - self._shown_at
             label = label_of_one(self._document.catalogue(), feature, status)
-            if not self._applied(label, judged((feature,), status)):
+            if not self._applied(label, change_status((feature,), status)):
                 return False
             self._state = self._state.decided(seconds)
         self._go_on()
@@ -211,7 +211,7 @@ class Review(QObject):
         if shown is None or not features:
             return False
         label = label_of_line(self._document.catalogue(), shown, len(features), status)
-        if not self._applied(label, judged(features, status)):
+        if not self._applied(label, change_status(features, status)):
             return False
         self._go_on()
         return True
@@ -233,11 +233,11 @@ class Review(QObject):
 
     def _queue_of(self, state: ReviewState) -> ReviewQueue:
         if not state.is_open:
-            self._lines = Lines()
+            self._lines = FeatureLines()
             return ReviewQueue()
         runs = set(state.runs)
         members = {one.id: one for one in self._document.features() if one.provenance.run in runs}
-        self._lines = Lines(members.values())
+        self._lines = FeatureLines(members.values())
         ids = review_order(members.values(), state.order, self._document.drives())
         return ReviewQueue(
             ids,
@@ -250,7 +250,7 @@ class Review(QObject):
         id_ = next(self._queue.undecided(after=self._state.feature), "")
         self._go_to(id_)
         if not id_:
-            self._document.told.emit(_DONE)
+            self._document.reported.emit(_DONE)
 
     def _go_to(self, id_: str, *, leaves_trail: bool = True) -> None:
         if leaves_trail and self._state.feature and id_ != self._state.feature:
@@ -262,18 +262,18 @@ class Review(QObject):
         self._remember()
         feature = self.current
         if feature is not None:
-            place = _place_of(feature)
+            position = _position_of(feature)
             self._document.shared.selection.choose_features(frozenset({id_}))
-            self._document.shared.cursor.move_to(place)
+            self._document.shared.cursor.move_to(position)
             self._shown_at = self._clock()
-            self.shown.emit(feature, place)
-            self.coming.emit(self._coming_places(id_))
+            self.shown.emit(feature, position)
+            self.coming.emit(self._coming_positions(id_))
         self.changed.emit()
 
-    def _coming_places(self, id_: str) -> tuple[Place, ...]:
+    def _coming_positions(self, id_: str) -> tuple[PickedPosition, ...]:
         ids = islice(self._queue.undecided(after=id_), _PREPARED)
         found = (self._document.feature(one) for one in ids if one != id_)
-        return tuple(_place_of(one) for one in found if one is not None)
+        return tuple(_position_of(one) for one in found if one is not None)
 
     def _remember(self) -> None:
         project = self._document.project
@@ -362,7 +362,7 @@ class Review(QObject):
 
     def _first_undecided(self, ids: Iterable[str]) -> str:
         found = [id_ for id_ in ids if self._queue.status(id_) is Status.CANDIDATE]
-        return min(found, key=self._queue.place, default="")
+        return min(found, key=self._queue.position, default="")
 
     def _go_on_with_others(self, gone: set[str], new: list[str]) -> None:
         """Features came or went: a run was undone, deleted or done again, a line was cut."""
@@ -372,8 +372,8 @@ class Review(QObject):
         self._queue = self._queue_of(self._state) if new else self._queue.without(gone)
         if gone and not new:
             left = self._queue.count(Status.CANDIDATE)
-            told = _GONE.filled(count=f"{len(gone):,}", left=f"{left:,}")
-            self._document.told.emit(told)
+            reported = _GONE.filled(count=f"{len(gone):,}", left=f"{left:,}")
+            self._document.reported.emit(reported)
         if current in gone or not current:
             self._state = replace(self._state, feature="")
             self._go_to(self._first_undecided(new) or following)
@@ -381,6 +381,6 @@ class Review(QObject):
             self.changed.emit()
 
 
-def _place_of(feature: Feature) -> Place:
+def _position_of(feature: Feature) -> PickedPosition:
     middle = middle_of(feature)
-    return Place(middle.xyz, middle.measured, middle.is_occluded)
+    return PickedPosition(middle.xyz, middle.measured, middle.is_occluded)

@@ -118,7 +118,7 @@ class _Painted(QObject):
 
 def _is_camera_sharp(parts: WindowParts) -> bool:
     camera = parts.camera_view
-    return camera.is_sharp or camera.lay() is None
+    return camera.is_sharp or camera.projection() is None
 
 
 def _wait(is_done: Callable[[], bool]) -> None:

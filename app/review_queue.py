@@ -28,7 +28,7 @@ class ReviewQueue:
         confidences: Sequence[float] = (),
     ) -> None:
         self._ids = list(ids)
-        self._places = {id_: place for place, id_ in enumerate(self._ids)}
+        self._positions = {id_: position for position, id_ in enumerate(self._ids)}
         self._statuses = dict(zip(self._ids, statuses, strict=True))
         self._confidences = dict(zip(self._ids, confidences, strict=True))
         self._counts = Counter(self._statuses.values())
@@ -48,9 +48,9 @@ class ReviewQueue:
         """What a feature was when it was last told of; None for one that isn't in the queue."""
         return self._statuses.get(id_)
 
-    def place(self, id_: str) -> int:
+    def position(self, id_: str) -> int:
         """A feature's place, counted from 1; 0 for one that isn't in the queue."""
-        return self._places.get(id_, -1) + 1
+        return self._positions.get(id_, -1) + 1
 
     def took(self, id_: str, status: Status) -> None:
         """A feature of the queue has this status now."""
@@ -85,12 +85,12 @@ class ReviewQueue:
 
         The feature itself comes at the very end.
         """
-        start = self.place(after)
+        start = self.position(after)
         for id_ in (*self._ids[start:], *self._ids[:start]):
             if self._statuses[id_] is Status.CANDIDATE:
                 yield id_
 
     def before(self, id_: str) -> str:
         """The feature in the place before, judged or not; empty at the beginning."""
-        place = self.place(id_)
-        return self._ids[place - 2] if place > 1 else ""
+        position = self.position(id_)
+        return self._ids[position - 2] if position > 1 else ""

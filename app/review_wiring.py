@@ -10,7 +10,7 @@ from app.review import Review
 from app.window_parts import WindowParts
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature, Status
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 QUEUE_ACTIONS = (*QUEUE_KEYS, "review-worst", "review-along", "review-end")
 """Actions that can be done only while a queue is open."""
@@ -76,26 +76,26 @@ class _ReviewWiring(QObject):
             for widget in (*parts.views, parts.review_panel):
                 widget.addAction(action)
 
-    def on_review_shown(self, feature: Feature, place: Place) -> None:
+    def on_review_shown(self, feature: Feature, position: PickedPosition) -> None:
         """Every view has the candidate in its middle; the section cuts through it."""
         if not self._is_near:
             self._is_near = True
             self._come_near(feature)
-        self._show_its_image(place)
+        self._show_its_image(position)
         for view in self._parts.views:
             if view is not self._parts.camera_view:
-                view.center_on(place)
-        self._parts.camera_view.show_place(place)
+                view.center_on(position)
+        self._parts.camera_view.show_position(position)
 
-    def _show_its_image(self, place: Place) -> None:
+    def _show_its_image(self, position: PickedPosition) -> None:
         """A candidate that the shown scanner didn't see is shown in the image of its own."""
         settings = self._parts.document.shared.view_settings
-        if place.measured is None or place.measured.drive == settings.drive_id:
+        if position.measured is None or position.measured.drive == settings.drive_id:
             return
-        if self._parts.image_view.position_of(place) is None:
-            kinds = self._parts.document.drive(place.measured.drive).image_kinds
+        if self._parts.image_view.position_of(position) is None:
+            kinds = self._parts.document.drive(position.measured.drive).image_kinds
             kind = settings.image_kind if settings.image_kind in kinds else kinds[0]
-            settings.show_image(place.measured.drive, kind)
+            settings.show_image(position.measured.drive, kind)
 
     def on_review_changed(self) -> None:
         review = self._parts.of(Review)
@@ -158,7 +158,7 @@ class _ReviewWiring(QObject):
     def _allow_keys(self) -> None:
         """While something is drawn, Enter and Delete belong to what is drawn."""
         parts = self._parts
-        is_judging = parts.of(Review).is_open and not parts.toolbox.hand.is_busy
+        is_judging = parts.of(Review).is_open and not parts.toolbox.current_tool.is_busy
         for name in QUEUE_ACTIONS:
             is_key = name in QUEUE_KEYS
             allowed = is_judging if is_key else parts.of(Review).is_open

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.formats.safe_write import refuse_inputs
 from processing.ground.stored_surface import FILE_NAME as SURFACE
 from processing.ground.stored_surface import StoredSurface, keep_surface
@@ -73,7 +73,7 @@ class FinishedRun:
             remove_folder(folder)
 
 
-def finished_run(
+def finish_run(
     request: RunRequest,
     into: Path,
     monitor: Monitor,
@@ -126,7 +126,7 @@ def _classes(
     together = run_together(request, monitor, into=into)
     kept = into.with_name(f"{into.name}-kept")
     try:
-        with told_as_user_error(kept):
+        with report_as_user_error(kept):
             make_marked(kept)
             for file in together.kept:
                 file.replace(kept / file.name)

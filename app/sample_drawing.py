@@ -17,7 +17,7 @@ class SampleFeature:
 
     kind: str
     drive: str
-    places: tuple[Position, ...]
+    positions: tuple[Position, ...]
 
 
 def read_sample_drawing() -> tuple[SampleFeature, ...]:

@@ -15,11 +15,11 @@ from PySide6.QtCore import QByteArray, QSettings
 from app.language import system_language
 from app.theme import ThemeChoice
 from app.view_area import AreaLayout
-from processing.image.corridor import Slab
+from processing.image.corridor import CorridorExtent
 from processing.text import Language
 from widgets.parts.recent_project import RecentProject
 from widgets.section_view.settings import SectionSettings
-from widgets.shared.image_lay import ImageLay
+from widgets.shared.image_orientation import ImageOrientation
 
 _Kept = TypeVar("_Kept")
 
@@ -140,20 +140,20 @@ class Settings:
         self._store.setValue("section", json.dumps(asdict(section)))
 
     @property
-    def image_lay(self) -> ImageLay:
+    def image_orientation(self) -> ImageOrientation:
         """Which way images ran last."""
-        return self._value("image_lay", ImageLay)
+        return self._value("image_orientation", ImageOrientation)
 
-    def remember_image_lay(self, lay: ImageLay) -> None:
+    def remember_image_orientation(self, orientation: ImageOrientation) -> None:
         """Let images run like this the next time."""
-        self._store.setValue("image_lay", json.dumps(asdict(lay)))
+        self._store.setValue("image_orientation", json.dumps(asdict(orientation)))
 
     @property
-    def slab(self) -> Slab:
+    def slab(self) -> CorridorExtent:
         """How far the 3D view showed points around the drive last."""
-        return self._value("slab", Slab)
+        return self._value("slab", CorridorExtent)
 
-    def remember_slab(self, slab: Slab) -> None:
+    def remember_slab(self, slab: CorridorExtent) -> None:
         """Show points so far around the drive the next time."""
         self._store.setValue("slab", json.dumps(asdict(slab)))
 

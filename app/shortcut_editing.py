@@ -9,12 +9,12 @@ from PySide6.QtCore import QObject
 from PySide6.QtGui import QKeySequence
 
 from app.shortcuts import FIXED, Shortcuts
-from app.window_actions import Entry
+from app.window_actions import ActionEntry
 from app.window_parts import WindowParts
-from processing.errors import UserError, told_as_user_error
-from processing.formats.safe_write import written_safely
+from processing.errors import UserError, report_as_user_error
+from processing.formats.safe_write import write_safely
 from processing.text import Language, Text
-from widgets.dialogs.shortcuts import KeyTrouble, ShortcutRow, ShortcutsForm
+from widgets.dialogs.shortcuts import KeyProblem, ShortcutRow, ShortcutsForm
 
 _NATIVE = QKeySequence.SequenceFormat.NativeText
 
@@ -89,30 +89,30 @@ class ShortcutEditing(QObject):
         fixed = tuple(
             ShortcutRow(
                 id="",
-                name=fixed.name.spoken(self._language),
+                name=fixed.name.in_language(self._language),
                 other_name=_other(fixed.name, self._language),
-                menu=_VIEWS.spoken(self._language),
-                keys=fixed.gesture.spoken(self._language),
+                menu=_VIEWS.in_language(self._language),
+                keys=fixed.gesture.in_language(self._language),
             )
             for fixed in FIXED
         )
         return actions + fixed
 
-    def _row(self, entry: Entry) -> ShortcutRow:
+    def _row(self, entry: ActionEntry) -> ShortcutRow:
         action = entry.action
         keys = self._shortcuts.keys_of(action.id)
         menu = action.menu_name if action.menu else _PALETTE_ONLY
         return ShortcutRow(
             id=action.id,
-            name=action.name.spoken(self._language),
+            name=action.name.in_language(self._language),
             other_name=_other(action.name, self._language),
-            menu=menu.spoken(self._language),
+            menu=menu.in_language(self._language),
             keys=", ".join(QKeySequence(key).toString(_NATIVE) for key in keys),
             key=keys[0] if keys else "",
             is_changed=self._shortcuts.is_changed(action.id),
         )
 
-    def _trouble_with(self, action: str, key: str) -> KeyTrouble | None:
+    def _trouble_with(self, action: str, key: str) -> KeyProblem | None:
         conflict = self._shortcuts.conflict(action, key)
         if conflict is None:
             return None
@@ -121,7 +121,7 @@ class ShortcutEditing(QObject):
             text = _FIXED.filled(key=shown, name=conflict.fixed.name)
         else:
             text = _TAKEN.filled(key=shown, name=self._names[conflict.owner])
-        return KeyTrouble(text.spoken(self._language), may_be_taken=conflict.fixed is None)
+        return KeyProblem(text.in_language(self._language), may_be_taken=conflict.fixed is None)
 
     def _use(self, shortcuts: Shortcuts) -> None:
         self._shortcuts = shortcuts
@@ -153,10 +153,10 @@ def write_list(path: Path, rows: tuple[ShortcutRow, ...], language: Language) ->
     UserError
         The file can't be written; what was there before stays.
     """
-    header = [text.spoken(language) for text in _HEADER]
+    header = [text.in_language(language) for text in _HEADER]
     with (
-        told_as_user_error(path),
-        written_safely(path) as temporary,
+        report_as_user_error(path),
+        write_safely(path) as temporary,
         temporary.open("w", encoding="utf-8-sig", newline="") as file,
     ):
         lines = csv.writer(file)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 
 from processing.text import Text
 
-Keys = tuple[str, ...]
+ShortcutKeys = tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class FixedKey:
 
     gesture: Text
     name: Text
-    keys: Keys = ()
+    keys: ShortcutKeys = ()
     action: str = ""
     in_review: str = ""
 
@@ -142,10 +142,10 @@ class Shortcuts:
         What the user wants instead.
     """
 
-    defaults: Mapping[str, Keys]
-    chosen: Mapping[str, Keys] = field(default_factory=dict)
+    defaults: Mapping[str, ShortcutKeys]
+    chosen: Mapping[str, ShortcutKeys] = field(default_factory=dict)
 
-    def keys_of(self, action: str) -> Keys:
+    def keys_of(self, action: str) -> ShortcutKeys:
         """The keys of an action; a default one that was given away is not among them."""
         if action in self.chosen:
             return self.chosen[action]
@@ -154,7 +154,7 @@ class Shortcuts:
         }
         return tuple(key for key in self.defaults[action] if key not in given_away)
 
-    def all_keys(self) -> dict[str, Keys]:
+    def all_keys(self) -> dict[str, ShortcutKeys]:
         """The keys of every action."""
         return {action: self.keys_of(action) for action in self.defaults}
 

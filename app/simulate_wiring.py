@@ -8,17 +8,17 @@ from pathlib import Path
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction
 
-from app.jobs import Lane
+from app.jobs import JobLane
 from app.manual import show_manual
 from app.window_parts import WindowParts
 from processing.errors import UserError
 from processing.monitor import Monitor
 from processing.project.import_request import ImportRequest
 from processing.simulate.forecast import Forecast
-from processing.simulate.orders import ORDERS
 from processing.simulate.simulated import Simulated
+from processing.simulate.simulations import SIMULATIONS
 from processing.text import Text
-from widgets.dialogs.simulate import SimulateForm, SimulationWish
+from widgets.dialogs.simulate import SimulateForm, SimulationRequest
 
 
 class Simulations(QObject):
@@ -65,20 +65,20 @@ class Simulations(QObject):
     def _on_form_help_requested(self) -> None:
         show_manual(self._parts, "simulate.html")
 
-    def _on_form_forecast_wanted(self, asked: SimulationWish) -> None:
+    def _on_form_forecast_wanted(self, asked: SimulationRequest) -> None:
         def work(_monitor: Monitor) -> tuple[Forecast, int]:
-            forecast = ORDERS[asked.order].forecast(asked.wish)
+            forecast = SIMULATIONS[asked.order].forecast(asked.request)
             return forecast, shutil.disk_usage(_there(asked.folder)).free
 
         title = Text("Forecast", "見積もり")
         # The last one counts; the others are worked out in a moment.
-        self._forecast = self._parts.jobs.start(title, work, lane=Lane.AT_HAND)
+        self._forecast = self._parts.jobs.start(title, work, lane=JobLane.INTERACTIVE)
 
-    def _on_form_simulation_requested(self, asked: SimulationWish) -> None:
-        order = ORDERS[asked.order]
+    def _on_form_simulation_requested(self, asked: SimulationRequest) -> None:
+        order = SIMULATIONS[asked.order]
 
         def work(monitor: Monitor) -> Simulated:
-            return order.fulfil(asked.wish, asked.folder, monitor)
+            return order.fulfil(asked.request, asked.folder, monitor)
 
         title = Text("Simulation: {name}", "模擬計測: {name}").filled(name=asked.folder.name)
         self._making.add(self._parts.jobs.start(title, work))
@@ -112,7 +112,7 @@ class Simulations(QObject):
         parts = self._parts
         is_wanted = QAction(self.tr("Open"), parts.message_bar)
         is_wanted.triggered.connect(self._on_open_triggered)
-        parts.message_bar.show_error(told_offer(made), is_wanted)
+        parts.message_bar.show_error(describe_simulation_offer(made), is_wanted)
 
     def _on_open_triggered(self) -> None:
         made, self._waiting = self._waiting, None
@@ -127,15 +127,15 @@ class Simulations(QObject):
             self._importing[job] = made
 
     def _tell_truth(self, made: Simulated) -> None:
-        told = Text(
+        reported = Text(
             "{points:,} points imported; their truth is in {folder}: see “zuka score”.",
             "{points:,}点をインポートしました。正解データは {folder} にあります"
             "（評価は zuka score）。",
         )
-        self._parts.document.told.emit(told.filled(points=made.count, folder=made.truth))
+        self._parts.document.reported.emit(reported.filled(points=made.count, folder=made.truth))
 
 
-def told_offer(made: Simulated) -> UserError:
+def describe_simulation_offer(made: Simulated) -> UserError:
     """What is said of a simulation that is ready while a project is open."""
     return UserError(
         Text("The simulated recording is ready.", "模擬計測データができました。"),

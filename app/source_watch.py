@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, Qt, QTimer, Signal
 from app.document import Document
 from processing.errors import BadFile, Cancelled, MissingInput, UserError
 from processing.project.project import Project
-from processing.project.source_survey import SourceSurvey, SurveyResult, Trouble
+from processing.project.source_survey import FileProblem, SourceSurvey, SurveyResult
 
 
 class SourceWatch(QObject):
@@ -53,7 +53,7 @@ class SourceWatch(QObject):
         document.shared.map_changes.drives_changed.connect(self._soon.start)
 
     @property
-    def troubles(self) -> tuple[Trouble, ...]:
+    def troubles(self) -> tuple[FileProblem, ...]:
         """What wasn't there, or was another file, when it was looked for last."""
         project = self._document.project
         return () if project is None else project.sources.troubles

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from processing.errors import BadFile, MissingInput, UserError
 from processing.project.source_check import FileState
-from processing.project.source_survey import Trouble
+from processing.project.source_survey import FileProblem
 from processing.text import Language, Text
 
 _MISSING = Text("{path} is missing.", "{path} が見つかりません。")
@@ -28,7 +28,7 @@ _ALL_FOUND = Text(
 )
 
 
-def told_troubles(troubles: Sequence[Trouble]) -> UserError | None:
+def describe_file_problems(troubles: Sequence[FileProblem]) -> UserError | None:
     """The one sentence for all of them; None when there is nothing to say."""
     if not troubles:
         return None
@@ -47,7 +47,7 @@ def told_troubles(troubles: Sequence[Trouble]) -> UserError | None:
     return BadFile(what, where, _GOES_ON)
 
 
-def told_found(before: int, troubles: Sequence[Trouble]) -> Text | None:
+def describe_found_files(before: int, troubles: Sequence[FileProblem]) -> Text | None:
     """What is said where the user has chosen a folder; None where much is still missing."""
     if not troubles:
         return _ALL_FOUND
@@ -59,18 +59,20 @@ def told_found(before: int, troubles: Sequence[Trouble]) -> Text | None:
     return None
 
 
-def words_by_drive(troubles: Sequence[Trouble], language: Language) -> dict[str, tuple[str, ...]]:
+def words_by_drive(
+    troubles: Sequence[FileProblem], language: Language
+) -> dict[str, tuple[str, ...]]:
     """Lines for tooltips, by drive; images are counted, there are thousands of them."""
     lines: dict[str, list[str]] = {}
-    images: dict[str, list[Trouble]] = {}
+    images: dict[str, list[FileProblem]] = {}
     for one in troubles:
         for drive in one.drives:
             if one.is_image:
                 images.setdefault(drive, []).append(one)
                 continue
             words = _MISSING if one.state is FileState.MISSING else _CHANGED
-            lines.setdefault(drive, []).append(words.filled(path=one.path).spoken(language))
+            lines.setdefault(drive, []).append(words.filled(path=one.path).in_language(language))
     for drive, gone in images.items():
         words = _IMAGES.filled(count=f"{len(gone):,}", path=gone[0].path.parent)
-        lines.setdefault(drive, []).append(words.spoken(language))
+        lines.setdefault(drive, []).append(words.in_language(language))
     return {drive: tuple(said) for drive, said in lines.items()}

@@ -25,7 +25,7 @@ def connect_templates(parts: WindowParts) -> None:
     panel.draw_requested.connect(wiring.on_panel_draw_requested)
     panel.fit_requested.connect(wiring.on_panel_fit_requested)
     panel.refused.connect(document.refused)
-    panel.told.connect(parts.status_line.show_message)
+    panel.reported.connect(parts.status_line.show_message)
     parts.toolbox.kind_chosen.connect(panel.use_kind)
     for changed in (document.opened, document.closed, document.catalogue_changed):
         changed.connect(panel.read_project)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject
 
-from app.jobs import JobQueue, Lane
+from app.jobs import JobLane, JobQueue
 from processing.errors import UserError
 from processing.monitor import Monitor
 from processing.project.dropped_files import additions_of_files
@@ -47,7 +47,7 @@ class TrajectoryOffer(QObject):
                 return (), False
             return trajectories_beside(request.inputs, crs), True
 
-        self._job = self._jobs.start(_LOOKING, work, lane=Lane.AT_HAND)
+        self._job = self._jobs.start(_LOOKING, work, lane=JobLane.INTERACTIVE)
 
     def _on_jobs_finished(self, job: str, found: object) -> None:
         if job == self._job and isinstance(found, tuple):

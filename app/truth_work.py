@@ -9,19 +9,19 @@ from pathlib import Path
 from processing.image.clip import Clip
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
-from processing.project.class_evaluation import ClassEvaluation, judged_columns
+from processing.project.class_evaluation import ClassEvaluation, error_map_columns
 from processing.project.truth_making import MadeTruth, truth_as_it_stands
 from processing.project.truth_of_file import coded_truth, truth_of_file
 from processing.project.truth_study import study_by_truth
 from processing.runner import tool_of
-from processing.score.parameter_study import ParameterStudy, StudyRequest, Varied
+from processing.score.parameter_study import ParameterStudy, StudyRequest, VariedParameter
 from processing.text import Text
-from processing.tools.parameters import Value
+from processing.tools.parameters import ParameterValue
 from processing.tools.tool import FinishedColumns
 
 
 @dataclass(frozen=True)
-class StudyWish:
+class StudyOptions:
     """A parameter study as somebody asks for it.
 
     Attributes
@@ -38,8 +38,8 @@ class StudyWish:
 
     tool: str
     truth: str
-    fixed: tuple[tuple[str, Value], ...]
-    varied: tuple[Varied, ...]
+    fixed: tuple[tuple[str, ParameterValue], ...]
+    varied: tuple[VariedParameter, ...]
     is_part: bool
 
 
@@ -65,7 +65,7 @@ def truth_file_work(
     return work
 
 
-def judged_work(
+def error_map_work(
     drives: Sequence[Drive], truth: str, evaluation: ClassEvaluation, into: Path
 ) -> Callable[[Monitor], tuple[tuple[Drive, FinishedColumns], ...]]:
     """A column of what was right and wrong for each drive."""
@@ -74,7 +74,7 @@ def judged_work(
         found = []
         for number, drive in enumerate(drives):
             part = PartMonitor(monitor, number / len(drives), (number + 1) / len(drives))
-            columns = judged_columns(
+            columns = error_map_columns(
                 drive, truth, evaluation, into.with_name(f"{into.name}-{number}"), part
             )
             found.append((drive, columns))
@@ -84,15 +84,15 @@ def judged_work(
 
 
 def study_work(
-    wish: StudyWish, drives: tuple[Drive, ...], beside: tuple[Drive, ...], into: Path
+    request: StudyOptions, drives: tuple[Drive, ...], beside: tuple[Drive, ...], into: Path
 ) -> tuple[Text, Callable[[Monitor], ParameterStudy]]:
     """A tool is tried with many settings."""
-    request = StudyRequest(wish.tool, drives, dict(wish.fixed), wish.varied, beside)
+    study = StudyRequest(request.tool, drives, dict(request.fixed), request.varied, beside)
     title = Text("Parameter study: {tool}", "パラメータ検討: {tool}").filled(
-        tool=tool_of(wish.tool).name
+        tool=tool_of(request.tool).name
     )
 
     def work(monitor: Monitor) -> ParameterStudy:
-        return study_by_truth(request, wish.truth, into, monitor, is_part=wish.is_part)
+        return study_by_truth(study, request.truth, into, monitor, is_part=request.is_part)
 
     return title, work

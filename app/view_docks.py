@@ -25,7 +25,7 @@ _SECOND_SCREEN_SHARE = 0.9
 
 
 class ViewLayout(Enum):
-    """Which views stand where; ids as in `View`."""
+    """Which views stand where; ids as in `DockedView`."""
 
     DRAWING = "drawing"
     CHECKING = "checking"
@@ -42,7 +42,7 @@ LAYOUT_NAMES: Mapping[ViewLayout, Text] = {
 
 
 @dataclass(frozen=True)
-class View:
+class DockedView:
     """A view in a dock of its own."""
 
     id: str
@@ -105,7 +105,7 @@ class ViewDocks(QMainWindow):
 
     came_back = Signal()
 
-    def __init__(self, views: Sequence[View], language: Language) -> None:
+    def __init__(self, views: Sequence[DockedView], language: Language) -> None:
         super().__init__(None, Qt.WindowType.Widget)
         self._views = tuple(views)
         self._standing: _Standing | None = None
@@ -120,7 +120,7 @@ class ViewDocks(QMainWindow):
         self._when_stacked = QTimer(self, singleShot=True)
         self._when_stacked.timeout.connect(self._show_titles)
         for view in views:
-            dock = QDockWidget(view.title.spoken(language), self)
+            dock = QDockWidget(view.title.in_language(language), self)
             dock.setObjectName(f"view-{view.id}")
             dock.setWidget(view.widget)
             self._docks[view.id] = dock

@@ -13,12 +13,12 @@ from processing.image.kinds import ImageKind
 from processing.project.project_settings import JsonValue
 from widgets.image_view.panes import ShownImage
 from widgets.image_view.side_by_side import ImageViews
-from widgets.shared.image_lay import ImageLay
+from widgets.shared.image_orientation import ImageOrientation
 
 _NAME = "views"
 _HIDES_NOISE = "hides_noise"
 _AFTER_MS = 2_000
-_LAYS = ("is_vertical", "is_mirrored_across", "is_reversed_along")
+_ORIENTATIONS = ("is_vertical", "is_mirrored_across", "is_reversed_along")
 
 
 class ViewMemory(QObject):
@@ -53,18 +53,18 @@ class ViewMemory(QObject):
     def _on_document_opened(self) -> None:
         project = self._document.project
         stored = None if project is None else project.settings.get(_NAME)
-        told: dict[str, JsonValue] = stored if isinstance(stored, dict) else {}
+        reported: dict[str, JsonValue] = stored if isinstance(stored, dict) else {}
         settings, drives = self._document.shared.view_settings, self._document.drives()
         kinds = {drive.id: drive.image_kinds for drive in drives}
-        hidden = told.get("hidden")
+        hidden = reported.get("hidden")
         settings.hide_drives(
             frozenset(map(str, hidden if isinstance(hidden, list) else [])) & set(kinds)
         )
-        settings.change_look(hides_noise=told.get(_HIDES_NOISE) is True)
-        shown = _shown(told)
+        settings.change_look(hides_noise=reported.get(_HIDES_NOISE) is True)
+        shown = _shown(reported)
         if shown is not None and shown.kind in kinds.get(shown.drive_id, ()):
             settings.show_image(shown.drive_id, shown.kind)
-        beside = told.get("beside")
+        beside = reported.get("beside")
         images = [_shown(one) for one in (beside if isinstance(beside, list) else [])]
         self._images.arrange(
             tuple(one for one in images if one and one.kind in kinds.get(one.drive_id, ()))
@@ -82,36 +82,38 @@ class ViewMemory(QObject):
         project, settings = self._document.project, self._document.shared.view_settings
         if project is None or not settings.drive_id:
             return
-        lay = settings.image_lay
-        main = ShownImage(settings.drive_id, settings.image_kind, settings.look.attribute, lay)
+        orientation = settings.image_orientation
+        main = ShownImage(
+            settings.drive_id, settings.image_kind, settings.look.attribute, orientation
+        )
         hidden: Sequence[JsonValue] = sorted(settings.hidden_drives)
-        told: dict[str, JsonValue] = {
-            **_told(main),
+        reported: dict[str, JsonValue] = {
+            **_reported(main),
             "hidden": list(hidden),
             _HIDES_NOISE: settings.look.hides_noise,
-            "beside": [_told(one) for one in self._images.images],
+            "beside": [_reported(one) for one in self._images.images],
         }
-        if told != project.settings.get(_NAME):
+        if reported != project.settings.get(_NAME):
             # What is looked at is no work: a full disk keeps nobody from closing.
             with suppress(UserError):
-                project.settings.put(_NAME, told)
+                project.settings.put(_NAME, reported)
 
 
-def _told(shown: ShownImage) -> dict[str, JsonValue]:
+def _reported(shown: ShownImage) -> dict[str, JsonValue]:
     return {
         "drive": shown.drive_id,
         "kind": shown.kind.value,
         "attribute": shown.attribute,
-        **{name: bool(getattr(shown.lay, name)) for name in _LAYS},
+        **{name: bool(getattr(shown.orientation, name)) for name in _ORIENTATIONS},
     }
 
 
-def _shown(told: JsonValue) -> ShownImage | None:
-    if not isinstance(told, dict):
+def _shown(reported: JsonValue) -> ShownImage | None:
+    if not isinstance(reported, dict):
         return None
     kinds = {kind.value: kind for kind in ImageKind}
-    kind = kinds.get(str(told.get("kind")))
+    kind = kinds.get(str(reported.get("kind")))
     if kind is None:
         return None
-    lay = ImageLay(*(told.get(name) is True for name in _LAYS))
-    return ShownImage(str(told.get("drive")), kind, str(told.get("attribute")), lay)
+    orientation = ImageOrientation(*(reported.get(name) is True for name in _ORIENTATIONS))
+    return ShownImage(str(reported.get("drive")), kind, str(reported.get("attribute")), orientation)

@@ -13,12 +13,12 @@ from app.evaluation_files import write_evaluation_file
 from app.window_parts import WindowParts
 from processing.cameras.calibration import CameraOffset
 from processing.errors import UserError
-from processing.formats.profile_dxf import ProfileLook, write_profile_dxf
+from processing.formats.profile_dxf import ProfileStyle, write_profile_dxf
 from processing.section.cut import Cut
 from processing.text import Text
+from processing.tools.diagnostic_makers import DIAGNOSTIC_MAKERS
 from processing.tools.registry import TOOLS
-from processing.tools.trial_makers import TRIAL_MAKERS
-from widgets.shared.view_settings import PointLook
+from widgets.shared.view_settings import PointStyle
 
 _KEPT = Text("The camera offsets are kept.", "カメラの補正値を保存しました。")
 _WROTE = Text("Wrote {path}.", "{path} を書き出しました。")
@@ -36,16 +36,18 @@ def connect_views(parts: WindowParts) -> None:
     bar.another_requested.connect(wiring.on_bar_another_requested)
     images.images_changed.connect(wiring.on_images_changed)
     parts.scene_view.clipping.changed.connect(wiring.on_clipping_changed)
-    parts.document.shared.view_settings.image_lay_changed.connect(wiring.on_settings_lay_changed)
+    parts.document.shared.view_settings.image_orientation_changed.connect(
+        wiring.on_settings_orientation_changed
+    )
     parts.document.shared.view_settings.look_changed.connect(wiring.on_settings_look_changed)
-    section.told.connect(parts.status_line.show_message)
+    section.reported.connect(parts.status_line.show_message)
     section.settings_changed.connect(parts.settings.remember_section)
     section.profile_export_requested.connect(wiring.on_section_profile_export_requested)
     section.cut_changed.connect(wiring.on_section_cut_changed)
     wiring.on_section_cut_changed(section.cut)
     parts.processing_panel.values_changed.connect(wiring.on_processing_values_changed)
     wiring.on_processing_values_changed()
-    camera.told.connect(parts.status_line.show_message)
+    camera.reported.connect(parts.status_line.show_message)
     camera.fields_of_view_changed.connect(map_view.show_fields_of_view)
     parts.camera_panel.offsets_save_requested.connect(wiring.on_camera_offsets_save_requested)
     parts.evaluation_panel.evaluation_wanted.connect(wiring.on_evaluation_wanted)
@@ -67,7 +69,7 @@ class _ViewWiring(QObject):
 
     def on_processing_values_changed(self) -> None:
         panel = self._parts.processing_panel
-        known = [tool for tool in TRIAL_MAKERS if tool in TOOLS]
+        known = [tool for tool in DIAGNOSTIC_MAKERS if tool in TOOLS]
         self._parts.section_view.use_tool_parameters(
             {tool: panel.parameters_of(tool) for tool in known}
         )
@@ -84,22 +86,22 @@ class _ViewWiring(QObject):
         actions = self._parts.window.actions_by_id
         actions[f"clip-{clipping.choice.value}"].setChecked(True)
 
-    def on_settings_lay_changed(self) -> None:
-        lay = self._parts.document.shared.view_settings.image_lay
-        self._parts.settings.remember_image_lay(lay)
+    def on_settings_orientation_changed(self) -> None:
+        orientation = self._parts.document.shared.view_settings.image_orientation
+        self._parts.settings.remember_image_orientation(orientation)
         actions = self._parts.window.actions_by_id
-        actions["image-upwards"].setChecked(lay.is_vertical)
-        actions["image-mirrored"].setChecked(lay.is_mirrored_across)
-        actions["image-reversed"].setChecked(lay.is_reversed_along)
+        actions["image-upwards"].setChecked(orientation.is_vertical)
+        actions["image-mirrored"].setChecked(orientation.is_mirrored_across)
+        actions["image-reversed"].setChecked(orientation.is_reversed_along)
 
-    def on_settings_look_changed(self, look: PointLook) -> None:
+    def on_settings_look_changed(self, look: PointStyle) -> None:
         self._parts.window.actions_by_id["hide-noise"].setChecked(look.hides_noise)
 
     def on_section_profile_export_requested(self) -> None:
         document, section = self._parts.document, self._parts.section_view
-        wish = section.profile_wish()
-        if wish is None:
-            document.told.emit(_NO_SECTION)
+        request = section.profile_request()
+        if request is None:
+            document.reported.emit(_NO_SECTION)
             return
         path = self._asked_path(
             QCoreApplication.translate("ViewWiring", "Write the profile"),
@@ -108,16 +110,16 @@ class _ViewWiring(QObject):
         )
         if path is None:
             return
-        look = ProfileLook(
+        look = ProfileStyle(
             exaggeration=section.settings.exaggeration, language=self._parts.language
         )
         never = tuple(file for drive in document.drives() for file in drive.delivered_files)
 
         def write() -> Path:
-            write_profile_dxf(path, wish(), look, never=never)
+            write_profile_dxf(path, request(), look, never=never)
             return path
 
-        document.do_at_hand(write, self._tell_written)
+        document.run_in_background(write, self._tell_written)
 
     def on_camera_offsets_save_requested(self, offsets: Mapping[str, CameraOffset]) -> None:
         document = self._parts.document
@@ -132,7 +134,7 @@ class _ViewWiring(QObject):
             document.tiles.drop(drive.id)
             document.shared.map_changes.drive_columns_changed.emit(drive.id)
         self._parts.camera_panel.show_kept_offsets()
-        document.told.emit(_KEPT)
+        document.reported.emit(_KEPT)
 
     def on_evaluation_wanted(self) -> None:
         panel = self._parts.evaluation_panel
@@ -165,4 +167,4 @@ class _ViewWiring(QObject):
 
     def _tell_written(self, path: object) -> None:
         if isinstance(path, Path):
-            self._parts.document.told.emit(_WROTE.filled(path=path.name))
+            self._parts.document.reported.emit(_WROTE.filled(path=path.name))

@@ -11,8 +11,8 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from app.volume_papers import (
-    GivenVolume,
+from app.volume_reports import (
+    ExportedVolume,
     is_judged,
     write_form,
     write_form_csv,
@@ -25,14 +25,14 @@ from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.heat_map import change_classes
 from processing.earthwork.sides import EpochGround
 from processing.earthwork.triangle_surface import TriangleSurface
-from processing.earthwork.triangulation import triangulated_ground
+from processing.earthwork.triangulation import triangulate_ground
 from processing.earthwork.volume_parameters import END_AREA, PRISMOIDAL
 from processing.errors import Unsuitable
 from processing.formats.change_geotiff import write_change_geotiff
-from processing.formats.earthwork_dxf import EarthworkPlan, PlanLook, write_earthwork_dxf
+from processing.formats.earthwork_dxf import EarthworkPlan, PlanStyle, write_earthwork_dxf
 from processing.formats.ground_las import write_ground_las
 from processing.formats.landxml_writing import LandXmlFacts, WrittenSurface, write_landxml
-from processing.formats.section_sheet_dxf import SectionLook, write_section_sheet_dxf
+from processing.formats.section_sheet_dxf import SectionStyle, write_section_sheet_dxf
 from processing.monitor import Monitor
 from processing.project.volume import KeptVolume, SideKind
 from processing.text import Text
@@ -42,11 +42,11 @@ _AFTER = Text("Ground after", "変化後の地盤")
 _MOST_CORNERS = 200_000
 _LONGEST_CELLS = 3.0
 
-Write = Callable[[Path, GivenVolume, Monitor], None]
+Write = Callable[[Path, ExportedVolume, Monitor], None]
 
 
 def _has_epoch(kept: KeptVolume) -> bool:
-    return SideKind.EPOCH in (kept.wish.before.kind, kept.wish.after.kind)
+    return SideKind.EPOCH in (kept.request.before.kind, kept.request.after.kind)
 
 
 def _has_sections(kept: KeptVolume) -> bool:
@@ -76,13 +76,13 @@ class VolumeExport:
     is_for: Callable[[KeptVolume], bool] = _always
 
 
-def _write_geotiff(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+def _write_geotiff(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
     write_change_geotiff(
         path, given.result.change, crs=given.kept.crs, monitor=monitor, never=given.never
     )
 
 
-def _write_plan(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+def _write_plan(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
     volumes = given.kept.volumes
     amounts = _TITLE.filled(cut=f"{volumes.cut_m3:,.1f}", fill=f"{volumes.fill_m3:,.1f}")
     plan = EarthworkPlan(
@@ -90,14 +90,14 @@ def _write_plan(path: Path, given: GivenVolume, monitor: Monitor) -> None:
         change=given.result.change,
         classes=change_classes(given.limit_m),
         contours=given.contours,
-        boundary=_rings_of(given.kept.wish.boundary),
+        boundary=_rings_of(given.kept.request.boundary),
         crs=given.kept.crs,
     )
-    look = PlanLook(language=given.language)
+    look = PlanStyle(language=given.language)
     write_earthwork_dxf(path, plan, look, monitor=monitor, never=given.never)
 
 
-def _write_sections(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+def _write_sections(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
     line = given.result.line
     if line is None:
         raise Unsuitable(
@@ -108,22 +108,22 @@ def _write_sections(path: Path, given: GivenVolume, monitor: Monitor) -> None:
                 "平均断面法またはプリズモイダル公式で計算してください。",
             ),
         )
-    look = SectionLook(language=given.language)
+    look = SectionStyle(language=given.language)
     write_section_sheet_dxf(
         path, line.sections, Text.same(given.details.work), look, monitor=monitor, never=given.never
     )
 
 
-def _write_surface(path: Path, given: GivenVolume, monitor: Monitor) -> None:
-    surface = _later_ground(given.result.change, given.kept.wish.boundary, monitor)
-    named = TriangleSurface(surface.xyz, surface.corners, _AFTER.spoken(given.language))
+def _write_surface(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
+    surface = _later_ground(given.result.change, given.kept.request.boundary, monitor)
+    named = TriangleSurface(surface.xyz, surface.corners, _AFTER.in_language(given.language))
     facts = LandXmlFacts(given.details.work, given.kept.crs, given.details.height_datum)
     written = (WrittenSurface(named),)
     line = given.result.line
     write_landxml(path, written, facts, line=line, monitor=monitor, never=given.never)
 
 
-def _write_ground(path: Path, given: GivenVolume, monitor: Monitor) -> None:
+def _write_ground(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
     """The points of the later epoch, or of the only one."""
     epochs = [side for side in given.sides(monitor) if isinstance(side, EpochGround)]
     write_ground_las(path, epochs[-1], monitor, never=given.never)
@@ -147,7 +147,7 @@ def _later_ground(
     plan = np.column_stack([columns, rows]) + 0.5
     xyz = grid.origin + np.column_stack([plan * grid.size_m, heights])
     longest_m = _LONGEST_CELLS * step * grid.size_m
-    return triangulated_ground(xyz, (), monitor, longest_m=longest_m, boundary=boundary)
+    return triangulate_ground(xyz, (), monitor, longest_m=longest_m, boundary=boundary)
 
 
 VOLUME_EXPORTS: tuple[VolumeExport, ...] = (

@@ -13,8 +13,8 @@ from shapely.geometry.base import BaseGeometry
 from app.earthwork import Earthwork
 from app.limits_wiring import connect_limits
 from app.volume_exports import VOLUME_EXPORTS
-from app.volume_papers import is_judged
-from app.volume_wishes import (
+from app.volume_reports import is_judged
+from app.volume_requests import (
     boundary_of_features,
     boundary_of_file,
     lines_of_features,
@@ -26,12 +26,12 @@ from processing.formats.boundary_files import boundary_layers
 from processing.formats.landxml import read_landxml
 from processing.project.feature import Feature
 from processing.project.found_features import parameter_values
-from processing.project.volume import VolumeWish
+from processing.project.volume import VolumeRequest
 from processing.text import Text
 from processing.tools.volume import VOLUME
 from widgets.panels.volume.side_box import SideBox
-from widgets.panels.volume.volume_form import Within
-from widgets.shared.shown_volume import VolumeLook
+from widgets.panels.volume.volume_form import AreaChoice
+from widgets.shared.shown_volume import VolumeStyle
 
 _SEVERAL = Text(
     "{name} has areas on several layers: choose the one that is meant as “Within”.",
@@ -71,7 +71,7 @@ class _VolumeWiring(QObject):
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
 
-    def on_volume_look_changed(self, look: VolumeLook) -> None:
+    def on_volume_look_changed(self, look: VolumeStyle) -> None:
         self._parts.window.actions_by_id["heat-map"].setChecked(look.is_shown)
 
     def show_epochs(self) -> None:
@@ -102,19 +102,19 @@ class _VolumeWiring(QObject):
 
     def on_form_run_requested(self) -> None:
         try:
-            wish = self._wish()
+            request = self._request()
         except UserError as error:
             self._parts.document.refused.emit(error)
             return
-        if wish is not None:
-            self._parts.of(Earthwork).compute(wish)
+        if request is not None:
+            self._parts.of(Earthwork).compute(request)
 
     def on_table_correction_requested(self) -> None:
         """The same again, with the later epoch moved back."""
         shown = self._parts.of(Earthwork).shown
         if shown is not None:
-            parameters = {**shown.wish.parameters, "correct_shift": True}
-            self._parts.of(Earthwork).compute(replace(shown.wish, parameters=parameters))
+            parameters = {**shown.request.parameters, "correct_shift": True}
+            self._parts.of(Earthwork).compute(replace(shown.request, parameters=parameters))
 
     def on_panel_export_requested(self, id_: str) -> None:
         """What is there already is asked for by the dialog."""
@@ -146,9 +146,9 @@ class _VolumeWiring(QObject):
             if isinstance(found, tuple):
                 self._parts.volume_panel.form.take_boundaries(path, found)
                 if len(found) > 1:
-                    self._parts.document.told.emit(_SEVERAL.filled(name=path.name))
+                    self._parts.document.reported.emit(_SEVERAL.filled(name=path.name))
 
-        self._parts.document.do_at_hand(lambda: boundary_layers(path), take)
+        self._parts.document.run_in_background(lambda: boundary_layers(path), take)
 
     def on_box_design_wanted(self, box: SideBox) -> None:
         """The file is read beside the window: a large design takes seconds."""
@@ -166,23 +166,23 @@ class _VolumeWiring(QObject):
             if isinstance(found, tuple):
                 box.take_designs(path, found)
 
-        self._parts.document.do_at_hand(names, take)
+        self._parts.document.run_in_background(names, take)
 
-    def _wish(self) -> VolumeWish | None:
+    def _request(self) -> VolumeRequest | None:
         form = self._parts.volume_panel.form
         before, after = form.sides
         if before is None or after is None:
             return None
         boundary: BaseGeometry | None = None
         lines: tuple[BaseGeometry, ...] = ()
-        if form.within is Within.SELECTED:
+        if form.within is AreaChoice.SELECTED:
             boundary = boundary_of_features(self._selected())
         elif (area := form.boundary) is not None:
             boundary = boundary_of_file(area.path, area.layer, self._parts.document.crs())
         if form.uses_lines:
             lines = lines_of_features(self._selected())
         values = parameter_values(VOLUME, form.parameters.value())
-        return VolumeWish(
+        return VolumeRequest(
             before,
             after,
             {name: value for name, value in values.items() if value is not None},

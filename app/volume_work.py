@@ -14,12 +14,12 @@ from shapely.geometry.base import BaseGeometry
 
 from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.comparison import compare
-from processing.earthwork.contours import LevelLine, LineWish, change_lines, contour_lines
+from processing.earthwork.contours import ContourOptions, LevelLine, change_lines, contour_lines
 from processing.earthwork.epoch_ground import ground_of_drives
 from processing.earthwork.heat_map import change_limit
 from processing.earthwork.sides import Level, Side
 from processing.earthwork.volume_result import VolumeResult
-from processing.earthwork.within import Within
+from processing.earthwork.volume_scope import VolumeScope
 from processing.errors import Unsuitable
 from processing.formats.design import read_design
 from processing.monitor import Monitor, PartMonitor, parts_of
@@ -28,14 +28,14 @@ from processing.project.volume import (
     ChosenSide,
     KeptVolume,
     SideKind,
-    VolumeWish,
+    VolumeRequest,
     new_volume,
 )
 from processing.project.volume_store import VolumeStore, write_volume
 from processing.text import Text
-from processing.tools.parameters import filled_in
+from processing.tools.parameters import fill_parameters
 from processing.tools.volume import VOLUME
-from widgets.shared.shown_volume import ContourOf, VolumeLook
+from widgets.shared.shown_volume import ContourOf, VolumeStyle
 
 _READ_SHARE = 0.3
 _SIMPLER_SHARE, _SHORTEST_CELLS = 0.2, 8.0
@@ -59,7 +59,7 @@ class LoadedMap:
 
 
 def volume_work(
-    wish: VolumeWish, drives: Sequence[Drive], crs: str, into: Path
+    request: VolumeRequest, drives: Sequence[Drive], crs: str, into: Path
 ) -> tuple[Text, Callable[[Monitor], MadeVolume]]:
     """Two grounds are compared; what came of it is written into a new folder.
 
@@ -72,39 +72,39 @@ def volume_work(
     into : Path
         On the project's disk.
     """
-    read = sides_reader(wish, drives, crs)
+    read = sides_reader(request, drives, crs)
 
     def work(monitor: Monitor) -> MadeVolume:
-        parameters = filled_in(VOLUME.parameters, wish.parameters)
+        parameters = fill_parameters(VOLUME.parameters, request.parameters)
         before, after = read(PartMonitor(monitor, 0.0, _READ_SHARE))
         result = compare(
             before,
             after,
             parameters,
             PartMonitor(monitor, _READ_SHARE, 1.0),
-            _within(wish),
+            _within(request),
         )
-        kept = new_volume(wish, result, crs=crs, version=VOLUME.version, made=datetime.now(UTC))
+        kept = new_volume(request, result, crs=crs, version=VOLUME.version, made=datetime.now(UTC))
         monitor.check()
         write_volume(kept, result, into)
         return MadeVolume(kept, into)
 
     title = Text("{tool}: {before} → {after}", "{tool}: {before} → {after}").filled(
-        tool=VOLUME.name, before=_name_of(wish.before), after=_name_of(wish.after)
+        tool=VOLUME.name, before=_name_of(request.before), after=_name_of(request.after)
     )
     return title, work
 
 
 def sides_reader(
-    wish: VolumeWish, drives: Sequence[Drive], crs: str
+    request: VolumeRequest, drives: Sequence[Drive], crs: str
 ) -> Callable[[Monitor], tuple[Side, Side]]:
-    """What reads both grounds of a wish, before and after, in any thread."""
+    """What reads both grounds of a request, before and after, in any thread."""
     by_id = {drive.id: drive for drive in drives}
 
     def read(monitor: Monitor) -> tuple[Side, Side]:
         first, second = parts_of(monitor, (0.5, 0.5))
-        before = _side_of(wish.before, by_id, crs, first)
-        return before, _side_of(wish.after, by_id, crs, second)
+        before = _side_of(request.before, by_id, crs, first)
+        return before, _side_of(request.after, by_id, crs, second)
 
     return read
 
@@ -121,7 +121,7 @@ def map_work(store: VolumeStore, kept: KeptVolume) -> Callable[[], LoadedMap]:
     return work
 
 
-def contours_of(change: ChangeGrid, look: VolumeLook, monitor: Monitor) -> tuple[LevelLine, ...]:
+def contours_of(change: ChangeGrid, look: VolumeStyle, monitor: Monitor) -> tuple[LevelLine, ...]:
     """The contours that are wished over a map; none where none are.
 
     Raises
@@ -129,7 +129,7 @@ def contours_of(change: ChangeGrid, look: VolumeLook, monitor: Monitor) -> tuple
     OutOfRange
         The interval gives too many of them.
     """
-    wish = LineWish(
+    request = ContourOptions(
         look.interval_m,
         simplify_m=_SIMPLER_SHARE * change.grid.size_m,
         shortest_m=_SHORTEST_CELLS * change.grid.size_m,
@@ -138,10 +138,10 @@ def contours_of(change: ChangeGrid, look: VolumeLook, monitor: Monitor) -> tuple
         case ContourOf.NOTHING:
             return ()
         case ContourOf.CHANGE:
-            return change_lines(change, wish, monitor)
+            return change_lines(change, request, monitor)
     ground = change.before if look.contours is ContourOf.BEFORE else change.after
     within = np.where(change.inside > 0, ground, np.float32(np.nan))
-    return contour_lines(change.grid, within, wish, monitor)
+    return contour_lines(change.grid, within, request, monitor)
 
 
 def _side_of(side: ChosenSide, drives: Mapping[str, Drive], crs: str, monitor: Monitor) -> Side:
@@ -167,9 +167,9 @@ def _side_of(side: ChosenSide, drives: Mapping[str, Drive], crs: str, monitor: M
     return design.surface
 
 
-def _within(wish: VolumeWish) -> Within:
-    line = None if wish.line is None else shapely.get_coordinates(wish.line)
-    return Within(wish.boundary, line, tuple(map(_in_space, wish.break_lines)))
+def _within(request: VolumeRequest) -> VolumeScope:
+    line = None if request.line is None else shapely.get_coordinates(request.line)
+    return VolumeScope(request.boundary, line, tuple(map(_in_space, request.break_lines)))
 
 
 def _name_of(side: ChosenSide) -> Text:
@@ -177,5 +177,5 @@ def _name_of(side: ChosenSide) -> Text:
 
 
 def _in_space(line: BaseGeometry) -> NDArray[np.float64]:
-    places: NDArray[np.float64] = shapely.get_coordinates(line, include_z=True)
-    return places
+    positions: NDArray[np.float64] = shapely.get_coordinates(line, include_z=True)
+    return positions

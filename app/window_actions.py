@@ -18,7 +18,7 @@ _NATIVE = QKeySequence.SequenceFormat.NativeText
 
 
 @dataclass(frozen=True)
-class Entry:
+class ActionEntry:
     """An action and the ``QAction`` that was made of it."""
 
     action: Action
@@ -41,17 +41,17 @@ class WindowActions(QObject):
         self._window = window
         self._toolbar = toolbar
         self._language = language
-        self._entries: dict[str, Entry] = {}
+        self._entries: dict[str, ActionEntry] = {}
         self._groups: dict[str, QActionGroup] = {}
         self._toolbar_group = 0
         self._has_project = False
         self._forbidden: dict[str, Text] = {}  # and why
         self._menus: dict[str, QMenu] = {
-            id_: window.menuBar().addMenu(title.spoken(language)) for id_, title in MENUS
+            id_: window.menuBar().addMenu(title.in_language(language)) for id_, title in MENUS
         }
 
     @property
-    def entries(self) -> tuple[Entry, ...]:
+    def entries(self) -> tuple[ActionEntry, ...]:
         """All actions, in the order in which they were added."""
         return tuple(self._entries.values())
 
@@ -61,7 +61,7 @@ class WindowActions(QObject):
     def __contains__(self, id_: str) -> bool:
         return id_ in self._entries
 
-    def why_disabled(self, entry: Entry) -> Text:
+    def why_disabled(self, entry: ActionEntry) -> Text:
         """Why an action can't be done now; empty when it can, or when that isn't known."""
         if entry.made.isEnabled():
             return NOTHING
@@ -73,7 +73,7 @@ class WindowActions(QObject):
     def add(self, actions: Sequence[Action]) -> None:
         """Put actions into menus and toolbar, in their order."""
         for action in actions:
-            made = QAction(literal(action.text.spoken(self._language)), self)
+            made = QAction(literal(action.text.in_language(self._language)), self)
             made.setObjectName(action.id)
             made.setCheckable(action.is_checkable)
             made.setChecked(action.is_checked)
@@ -89,7 +89,7 @@ class WindowActions(QObject):
 
     def adopt(self, action: Action, made: QAction) -> None:
         """Take in an action that a widget has made itself."""
-        self._entries[action.id] = Entry(action, made)
+        self._entries[action.id] = ActionEntry(action, made)
         if action.menu:
             self._menu(action.menu).addAction(made)
         self._window.addAction(made)  # its key works though no menu may show it
@@ -137,31 +137,31 @@ class WindowActions(QObject):
     def _menu(self, id_: str) -> QMenu:
         if id_ not in self._menus:
             above = self._menus[id_.partition("/")[0]]
-            self._menus[id_] = above.addMenu(SUBMENUS[id_].spoken(self._language))
+            self._menus[id_] = above.addMenu(SUBMENUS[id_].in_language(self._language))
         return self._menus[id_]
 
     def _give_keys(self, id_: str, keys: tuple[str, ...]) -> None:
         self._entries[id_].made.setShortcuts([QKeySequence(key) for key in keys])
         self._explain(self._entries[id_])
 
-    def _explain(self, entry: Entry) -> None:
+    def _explain(self, entry: ActionEntry) -> None:
         """Tell name, key, what it does and why it can't be done, as far as there is any."""
         keys = [key.toString(_NATIVE) for key in entry.made.shortcuts()]
-        name = entry.action.name.spoken(self._language)
+        name = entry.action.name.in_language(self._language)
         why_not = self._forbidden.get(entry.action.id, NOTHING)
-        told = (
+        reported = (
             f"{name} ({keys[0]})" if keys else name,
-            entry.action.hint.spoken(self._language),
-            why_not.spoken(self._language),
+            entry.action.hint.in_language(self._language),
+            why_not.in_language(self._language),
         )
-        entry.made.setToolTip("\n".join(line for line in told if line))
+        entry.made.setToolTip("\n".join(line for line in reported if line))
 
-    def _enable(self, entry: Entry) -> None:
+    def _enable(self, entry: ActionEntry) -> None:
         action = entry.action
         is_possible = self._has_project or not action.needs_project
         entry.made.setEnabled(is_possible and action.id not in self._forbidden)
 
-    def _colour(self, entry: Entry) -> None:
+    def _colour(self, entry: ActionEntry) -> None:
         if entry.action.icon:
             entry.made.setIcon(icon_of(entry.action.icon, self._window.palette()))
 

@@ -21,7 +21,7 @@ from processing.text import Language
 from widgets.image_view.panes import ShownImage
 from widgets.image_view.viewport import Viewport
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.scene_view.camera import Camera
+from widgets.scene_view.camera import SceneCamera
 from widgets.scene_view.clipping import ClipChoice
 from widgets.scene_view.view import SceneView
 
@@ -33,7 +33,7 @@ class _Seen:
     """What a window shows that its document doesn't know."""
 
     viewport: Viewport | None
-    camera: Camera
+    camera: SceneCamera
     is_shaded: bool
     clip: ClipChoice
     images: tuple[ShownImage, ...]
@@ -59,7 +59,7 @@ class _Seen:
             clip=parts.scene_view.clipping.choice,
             images=tuple(parts.image_views.images),
             are_locked=parts.image_views.is_locked,
-            map_part=None if parts.map_view.lay() is None else parts.map_view.viewport,
+            map_part=None if parts.map_view.projection() is None else parts.map_view.viewport,
             tool=panel.tool,
             parameters=None if form is None else form.value(),
             compared=volume.sides,

@@ -14,7 +14,7 @@ from processing.text import Language, Text
 
 
 @dataclass(frozen=True)
-class Panel:
+class DockPanel:
     """A widget in a dock.
 
     Attributes
@@ -46,7 +46,7 @@ class Panel:
 
 
 @dataclass(frozen=True)
-class Contents:
+class WindowContents:
     """What a window holds, in one language.
 
     Attributes
@@ -86,7 +86,7 @@ class PlainToolBar(QToolBar):
         """Paint nothing: the window's ground is there already."""
 
 
-def stacked(*widgets: QWidget) -> QWidget:
+def stack_widgets(*widgets: QWidget) -> QWidget:
     """Lines above the last widget, which fills the rest."""
     whole = QWidget()
     column = QVBoxLayout(whole)

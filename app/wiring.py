@@ -35,7 +35,7 @@ def connect_lasting(parts: WindowParts) -> None:
 
     toolbox.change_requested.connect(apply)
     document.about_to_close.connect(toolbox.put_away)
-    document.drive_taking.points_leaving.connect(toolbox.put_away)
+    document.drive_results.points_leaving.connect(toolbox.put_away)
 
 
 def connect_parts(parts: WindowParts) -> None:
@@ -66,8 +66,8 @@ def _connect_document(parts: WindowParts, wiring: _Wiring) -> None:
     document.opened.connect(wiring.on_document_opened)
     document.closed.connect(wiring.on_document_closed)
     document.refused.connect(parts.message_bar.show_error)
-    document.told.connect(parts.status_line.show_message)
-    document.told.connect(parts.message_bar.hide)
+    document.reported.connect(parts.status_line.show_message)
+    document.reported.connect(parts.message_bar.hide)
     document.undo_stack.changed.connect(parts.message_bar.hide)
     document.undo_stack.changed.connect(wiring.on_undo_stack_changed)
     document.shared.sketch.changed.connect(wiring.on_sketch_changed)
@@ -83,7 +83,7 @@ def _connect_document(parts: WindowParts, wiring: _Wiring) -> None:
 
 def _connect_intentions(parts: WindowParts, wiring: _Wiring) -> None:
     document, toolbox = parts.document, parts.toolbox
-    toolbox.told.connect(parts.status_line.show_message)
+    toolbox.reported.connect(parts.status_line.show_message)
     toolbox.tool_chosen.connect(wiring.on_toolbox_tool_chosen)
     toolbox.kind_chosen.connect(parts.layers_panel.mark_kind)
     parts.layers_panel.kind_chosen.connect(wiring.on_layers_kind_chosen)
@@ -106,7 +106,7 @@ class _Wiring(QObject):
     def __init__(self, parts: WindowParts) -> None:
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
-        self._was_drawing = parts.toolbox.hand.is_busy
+        self._was_drawing = parts.toolbox.current_tool.is_busy
 
     def reason_against_tool(self, tool: str) -> Text | None:
         """Why a tool can't run on the drive shown; None when it can."""
@@ -160,14 +160,14 @@ class _Wiring(QObject):
         plain = {"undo": Text("Undo", "元に戻す"), "redo": Text("Redo", "やり直す")}
         for name, label in labels.items():
             text = plain[name] if label is None else verbs[name].filled(label=label)
-            actions[name].setText(literal(text.spoken(language)))
+            actions[name].setText(literal(text.in_language(language)))
             # While something is drawn, undo takes its last vertex back.
             is_drawing = name == "undo" and self._was_drawing
             is_allowed = label is not None or is_drawing
             self._parts.window.actions_made.allow(name, is_allowed=is_allowed)
 
     def on_sketch_changed(self) -> None:
-        is_drawing = self._parts.toolbox.hand.is_busy
+        is_drawing = self._parts.toolbox.current_tool.is_busy
         if is_drawing is not self._was_drawing:
             self._was_drawing = is_drawing
             self.on_undo_stack_changed()
@@ -193,9 +193,9 @@ class _Wiring(QObject):
         language = self._parts.language
         view = JobView(
             id=status.id,
-            title=status.title.spoken(language),
+            title=status.title.in_language(language),
             fraction=status.fraction,
-            text=status.text.spoken(language),
+            text=status.text.in_language(language),
             seconds_left=status.seconds_left,
             state=status.state.value,
             error="" if status.error is None else status.error.line(language),

@@ -20,8 +20,8 @@ _STEEPEST_UP = 0.05
 
 def level_plane(shared: SharedState) -> WorkingPlane | None:
     """A level plane at the cursor's height; None before anything was clicked."""
-    place = shared.cursor.place
-    return None if place is None else WorkingPlane(place.xyz)
+    position = shared.cursor.position
+    return None if position is None else WorkingPlane(position.xyz)
 
 
 def plane_of_points(source: MapSource, shared: SharedState) -> WorkingPlane | None:
@@ -36,9 +36,9 @@ def plane_of_points(source: MapSource, shared: SharedState) -> WorkingPlane | No
         source.drive(drive).xyz(points[:: max(1, points.size // _MOST_POINTS)])
         for drive, points in shared.selection.points.items()
     ]
-    place = shared.cursor.place
-    if not parts and place is not None and place.measured is not None:
-        parts = [_points_near(source.drive(place.measured.drive), place.measured)]
+    position = shared.cursor.position
+    if not parts and position is not None and position.measured is not None:
+        parts = [_points_near(source.drive(position.measured.drive), position.measured)]
     return _fitted(np.concatenate(parts)) if parts else None
 
 

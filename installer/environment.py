@@ -9,7 +9,7 @@ import venv
 from collections.abc import Mapping
 from pathlib import Path
 
-from installer.steps import Stamp, fingerprint, run, tell
+from installer.steps import InputStamp, fingerprint, run, tell
 
 
 class Environment:
@@ -33,9 +33,9 @@ class Environment:
         """Give the path of a program that is installed in the environment."""
         return self._programs / (f"{name}.exe" if sys.platform == "win32" else name)
 
-    def stamp(self, name: str) -> Stamp:
+    def stamp(self, name: str) -> InputStamp:
         """Give the stamp of a set-up step; it is gone with the environment."""
-        return Stamp(self.folder / f"{name}.stamp")
+        return InputStamp(self.folder / f"{name}.stamp")
 
     def run(self, program: str, *arguments: str | Path) -> None:
         """Run a program of the environment in the checkout; `Stop` when it fails."""
@@ -92,5 +92,5 @@ def was_moved(folder: Path, note: str) -> bool:
     Its programs hold the path of their interpreter, so a moved one must be made anew.
     """
     made = [line for line in note.splitlines() if line.startswith("command = ")]
-    place = os.path.normcase(str(folder))
-    return any(not os.path.normcase(line.rstrip()).endswith(f" {place}") for line in made)
+    position = os.path.normcase(str(folder))
+    return any(not os.path.normcase(line.rstrip()).endswith(f" {position}") for line in made)

@@ -66,7 +66,7 @@ def fingerprint(files: Iterable[Path], *more: str) -> str:
     return digest.hexdigest()
 
 
-class Stamp:
+class InputStamp:
     """Remembers for what inputs a step was done, so that it is done again only for others."""
 
     def __init__(self, path: Path) -> None:

@@ -35,7 +35,7 @@ class UserError(Exception):
     def line(self, language: Language) -> str:
         """The whole message on one line, its three parts divided by bars."""
         parts = (self.what, self.where, self.remedy)
-        return " | ".join(" ".join(part.spoken(language).split()) for part in parts)
+        return " | ".join(" ".join(part.in_language(language).split()) for part in parts)
 
 
 class BadFile(UserError):
@@ -80,7 +80,7 @@ def use_one_of(names: Iterable[str]) -> Text:
     )
 
 
-def named(known: Mapping[str, ValueT], name: str, what: Text) -> ValueT:
+def name_with_type(known: Mapping[str, ValueT], name: str, what: Text) -> ValueT:
     """What has a name.
 
     Parameters
@@ -99,7 +99,7 @@ def named(known: Mapping[str, ValueT], name: str, what: Text) -> ValueT:
 
 
 @contextmanager
-def told_as_user_error(path: Path) -> Iterator[None]:
+def report_as_user_error(path: Path) -> Iterator[None]:
     """Turn what the operating system says about a file into the sentence a user can act on.
 
     Raises

@@ -81,7 +81,7 @@ class TerminalMonitor:
         if not changed and (percent < self._last_percent + step or now < self._last_time + 0.1):
             return
         self._last_percent, self._last_time = percent, now
-        words = f"{percent:3d} % {self._text.spoken(self._language)}"
+        words = f"{percent:3d} % {self._text.in_language(self._language)}"
         end = "\r" if self._in_place and percent < 100 else "\n"
         self._stream.write(f"{words:<78}{end}" if self._in_place else words + end)
         self._stream.flush()

@@ -11,14 +11,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import Unsuitable, named, told_as_user_error
+from processing.errors import Unsuitable, name_with_type, report_as_user_error
 from processing.image.images_of_drives import image_of
 from processing.image.point_image import PointCloudImage
 from processing.monitor import Monitor, parts_of
 from processing.owned_files import make_marked, remove_folder
 from processing.points.columns import Columns
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 from processing.points.recorded_together import recorded_together, surveyed_together
 from processing.text import Text
 from processing.tools.blocks import POINTS_PER_BLOCK, JoinedResults, blocks_of
@@ -200,7 +200,7 @@ def any_tool(name: str) -> Tool:
     OutOfRange
         There is none.
     """
-    return named({**TOOLS, **COMPARISONS}, name, _NO_SUCH_TOOL)
+    return name_with_type({**TOOLS, **COMPARISONS}, name, _NO_SUCH_TOOL)
 
 
 def tool_of(name: str) -> Tool:
@@ -211,7 +211,7 @@ def tool_of(name: str) -> Tool:
     OutOfRange
         There is none.
     """
-    return named(TOOLS, name, _NO_SUCH_TOOL)
+    return name_with_type(TOOLS, name, _NO_SUCH_TOOL)
 
 
 def check_needs(tool: Tool, drive: Drive) -> None:
@@ -224,7 +224,7 @@ def check_needs(tool: Tool, drive: Drive) -> None:
     is_met, what, remedy = _NEEDS[tool.needs]
     if is_met(drive):
         return
-    if tool.needs is Needs.TURNS and drive.info.rows_reason.en:
+    if tool.needs is Needs.REVOLUTIONS and drive.info.rows_reason.en:
         remedy = drive.info.rows_reason
     raise Unsuitable(what.filled(tool=tool.name), Text.same(drive.info.name), remedy)
 
@@ -235,8 +235,8 @@ _Need = tuple[Callable[[Drive], bool], Text, Text]
 _NEEDS: Mapping[Needs, _Need] = {
     Needs.POINTS: (lambda _: True, Text("", ""), Text("", "")),
     Needs.PIXELS: (lambda _: True, Text("", ""), Text("", "")),
-    Needs.TURNS: (
-        lambda drive: drive.turns is not None,
+    Needs.REVOLUTIONS: (
+        lambda drive: drive.revolutions is not None,
         Text(
             "“{tool}” needs the revolutions of the scanner, which this drive doesn't have.",
             "「{tool}」にはスキャナの回転情報が必要ですが、この走行データにはありません。",
@@ -320,7 +320,7 @@ def _marked_together(
 
 @contextmanager
 def _removed_on_failure(folder: Path) -> Iterator[None]:
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         make_marked(folder)
     try:
         yield
@@ -335,7 +335,7 @@ def _block_of(drive: Drive, image: PointCloudImage, rows: range) -> PointBlock:
     # The type of a column's values is the column's own.
     def read(name: str) -> NDArray[Any]:
         # Read, not mapped: what was read doesn't stay in memory with the next block.
-        return read_stretch(drive.folder, name, points.start, points.stop)
+        return read_chunk(drive.folder, name, points.start, points.stop)
 
     has_classes = drive.columns.has("classification")
     return PointBlock(
@@ -348,5 +348,7 @@ def _block_of(drive: Drive, image: PointCloudImage, rows: range) -> PointBlock:
             else np.zeros(points.stop - points.start, np.uint8)
         ),
         grid=grid,
-        seen_from=None if drive.info.scanner_place is None else np.array(drive.info.scanner_place),
+        seen_from=None
+        if drive.info.scanner_position is None
+        else np.array(drive.info.scanner_position),
     )

@@ -33,10 +33,10 @@ class Text:
             self.ja.format(**{key: _in(value, "ja") for key, value in values.items()}),
         )
 
-    def spoken(self, language: Language) -> str:
+    def in_language(self, language: Language) -> str:
         """The words in one language."""
         return self.ja if language == "ja" else self.en
 
 
 def _in(value: object, language: Language) -> object:
-    return value.spoken(language) if isinstance(value, Text) else value
+    return value.in_language(language) if isinstance(value, Text) else value

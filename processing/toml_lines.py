@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile, report_as_user_error
 from processing.text import Text
 
 _LARGEST_BYTES = 1 << 20
@@ -23,7 +23,7 @@ def toml_content(path: Path) -> bytes:
     MissingInput, NoSpace, BadFile
         It can't be read.
     """
-    with told_as_user_error(path), path.open("rb") as file:
+    with report_as_user_error(path), path.open("rb") as file:
         return file.read(_LARGEST_BYTES + 1)
 
 
@@ -46,14 +46,14 @@ def toml_of(content: bytes, path: Path, remedy: Text) -> tuple[list[str], dict[s
     lines = text.replace("\r\n", "\n").split("\n")
     if len(content) > _LARGEST_BYTES:
         what = Text("The file is too long.", "ファイルが大きすぎます。")
-        raise refused_line(what, path, 1, remedy)
+        raise line_error(what, path, 1, remedy)
     try:
         return lines, tomllib.loads(content.decode("utf-8-sig").replace("\r\n", "\n"))
     except (ValueError, RecursionError) as error:
         raise _not_toml(error, path, lines, remedy) from error
 
 
-def refused_line(what: Text, path: Path, line: int, remedy: Text) -> BadFile:
+def line_error(what: Text, path: Path, line: int, remedy: Text) -> BadFile:
     """The error that names a line of a file."""
     where = Text(f"{path}, line {line:,}", f"{path}、{line:,}行目")
     return BadFile(what, where, remedy)
@@ -68,12 +68,12 @@ def short(value: object) -> str:
 def _not_toml(
     error: ValueError | RecursionError, path: Path, lines: Sequence[str], remedy: Text
 ) -> BadFile:
-    place = re.search(r"\(at line (\d+), column \d+\)", str(error))
+    position = re.search(r"\(at line (\d+), column \d+\)", str(error))
     at_end = len(lines) if "end of document" in str(error) else 1
     reason = short(re.sub(r"\s*\(at .*\)$", "", str(error)))
     what = Text("The file is not TOML: {reason}.", "TOMLとして読めません（{reason}）。")
     if isinstance(error, UnicodeDecodeError):
         at_end = error.object.count(b"\n", 0, error.start) + 1
         what = Text("The file is not text in UTF-8.", "UTF-8のテキストではありません。")
-    line = int(place[1]) if place else at_end
-    return refused_line(what.filled(reason=reason), path, line, remedy)
+    line = int(position[1]) if position else at_end
+    return line_error(what.filled(reason=reason), path, line, remedy)

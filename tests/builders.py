@@ -4,7 +4,7 @@ A vehicle drives along a road of constant curvature between two walls while one 
 on it. Every beam is intersected with the scene exactly, so each point's pulse, turn and column are
 known by construction.
 
-`simulated_drive` knows: ``pulses_per_turn`` may be fractional, as real clocks are not locked to the
+`simulated_drive` knows: ``pulses_per_revolution`` may be fractional, as real clocks are not locked to the
 mirror; ``mount`` is the angle of the scan plane to the drive in plan; ``lost_share`` of the pulses
 that hit something don't return, half of them in bursts; ``multi_return_share`` touch an edge and
 return twice; ``rate_drift`` is the relative amplitude of a slow wander of the turn rate;
@@ -57,7 +57,7 @@ class SimulatedDrive:
         0 road, 1 curb face, 2 sidewalk, 3 wall, 4 pole.
     fold_times : (turns + 1,) float64
         When each revolution passed below the trajectory.
-    turn_rate_hz, pulse_rate_hz, pulses_per_turn : float
+    revolution_rate_hz, pulse_rate_hz, pulses_per_revolution : float
         Nominal.
     """
 
@@ -72,9 +72,9 @@ class SimulatedDrive:
     column: NDArray[np.int64]
     surface: NDArray[np.uint8]
     fold_times: Floats
-    turn_rate_hz: float
+    revolution_rate_hz: float
     pulse_rate_hz: float
-    pulses_per_turn: float
+    pulses_per_revolution: float
 
     @property
     def count(self) -> int:
@@ -85,15 +85,15 @@ class SimulatedDrive:
     def xyz(self) -> Floats:
         """(n, 3) coordinates as delivered, m."""
         integers: NDArray[np.int32] = self.columns["xyz"]
-        places: Floats = integers * np.array(self.scale) + np.array(self.offset)
-        return places
+        positions: Floats = integers * np.array(self.scale) + np.array(self.offset)
+        return positions
 
 
 def simulated_drive(
     seed: int = 0,
     *,
-    turn_rate_hz: float = 100.0,
-    pulses_per_turn: float = 400.0,
+    revolution_rate_hz: float = 100.0,
+    pulses_per_revolution: float = 400.0,
     mount: Literal["45", "90"] = "45",
     head: Literal["left", "right"] = "left",
     length_m: float = 10.0,
@@ -111,7 +111,7 @@ def simulated_drive(
 ) -> SimulatedDrive:
     """A recording of a street; the default has some 28,000 points."""
     random = np.random.default_rng(seed)
-    pulse_rate_hz = turn_rate_hz * pulses_per_turn
+    pulse_rate_hz = revolution_rate_hz * pulses_per_revolution
     pause_s = stop_s if stop_at is not None else 0.0
     pause_from = np.inf if stop_at is None else stop_at / speed_m_s
     pulse = np.arange(int((length_m / speed_m_s + pause_s) * pulse_rate_hz), dtype=np.int64)
@@ -120,7 +120,7 @@ def simulated_drive(
         pulse = pulse[(time < pause_from) | (time >= pause_from + pause_s)]
         time = pulse / pulse_rate_hz
     road = _Road(curve, speed_m_s, pause_from, pause_s)
-    phase = _phase_at(time, turn_rate_hz, rate_drift, float(random.uniform(0, 2 * np.pi)))
+    phase = _phase_at(time, revolution_rate_hz, rate_drift, float(random.uniform(0, 2 * np.pi)))
     mounting = _Mounting(mount, head)
     rays = mounting.rays(phase, *road.pose_at(time))
     ranges, surface, intensity = StreetScene(curve, length_m).ranges(rays, random)
@@ -128,7 +128,7 @@ def simulated_drive(
     hit = np.isfinite(ranges) & ~_lost(random, ranges.size, lost_share)
     returns = _returned(random, np.flatnonzero(hit), ranges, multi_return_share)
     shot = returns.shot
-    turns = _turns_of(phase, time, mounting.fold_phase)
+    revolutions = _revolutions_of(phase, time, mounting.fold_phase)
     local = rays.origin[shot] + returns.distance[:, None] * rays.direction[shot]
     delivered = _cut_off(start_time_s + time[shot], time_quantum_s)
     columns = _delivered_columns(local, delivered, returns, 1 if head == "left" else 2)
@@ -141,13 +141,13 @@ def simulated_drive(
         scan_angle_deg=np.degrees(np.mod(phase[shot], 2 * np.pi)).astype(np.float32),
         trajectory=road.trajectory(float(time[-1]), start_time_s),
         pulse=pulse[shot],
-        turn=turns.turn[shot],
-        column=shot - turns.first_shot[turns.turn[shot]],
+        turn=revolutions.turn[shot],
+        column=shot - revolutions.first_shot[revolutions.turn[shot]],
         surface=surface[shot],
-        fold_times=start_time_s + turns.fold_times,
-        turn_rate_hz=turn_rate_hz,
+        fold_times=start_time_s + revolutions.fold_times,
+        revolution_rate_hz=revolution_rate_hz,
         pulse_rate_hz=pulse_rate_hz,
-        pulses_per_turn=pulses_per_turn,
+        pulses_per_revolution=pulses_per_revolution,
     )
 
 
@@ -260,9 +260,9 @@ def _rotations(angles: Floats) -> Floats:
     return np.stack([forward, left, np.cross(forward, left)], axis=2)
 
 
-def _phase_at(time: Floats, turn_rate_hz: float, drift: float, start: float) -> Floats:
+def _phase_at(time: Floats, revolution_rate_hz: float, drift: float, start: float) -> Floats:
     wander = drift * _WANDER_S / (2 * np.pi) * (1 - np.cos(2 * np.pi * time / _WANDER_S))
-    return start + 2 * np.pi * turn_rate_hz * (time + wander)
+    return start + 2 * np.pi * revolution_rate_hz * (time + wander)
 
 
 def _cut_off(time: Floats, quantum_s: float) -> Floats:
@@ -306,7 +306,7 @@ class _Turns:
     fold_times: Floats
 
 
-def _turns_of(phase: Floats, time: Floats, fold_phase: float) -> _Turns:
+def _revolutions_of(phase: Floats, time: Floats, fold_phase: float) -> _Turns:
     turn = np.floor((phase - fold_phase) / (2 * np.pi)).astype(np.int64)
     fold_phases = fold_phase + 2 * np.pi * np.arange(turn[0], turn[-1] + 2)
     return _Turns(

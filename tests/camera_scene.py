@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from processing.cameras.calibration import angles_of
 from processing.cameras.camera import Camera
-from processing.cameras.image_list import CameraImage, Projection
+from processing.cameras.image_list import CameraImage, ProjectionName
 from tests.builders import START
 from tests.street_scene import Rays, StreetScene
 
@@ -32,7 +32,7 @@ def looking(
     size: tuple[int, int] = (400, 300),
     time_s: float = 205_000.5,
     distortion: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0),
-    projection: Projection = "perspective",
+    projection: ProjectionName = "perspective",
 ) -> CameraImage:
     """A camera at a place, m from the street's start, that looks along a direction, upright."""
     backwards = -np.array(ahead) / np.linalg.norm(ahead)

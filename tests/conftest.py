@@ -105,7 +105,7 @@ def qapp_cls() -> type[QApplication]:
     """Give the class of the one application; its windows share graphics, as in the program."""
     from PySide6.QtWidgets import QApplication
 
-    from widgets.scene_view.stage_loader import prepare_graphics
+    from widgets.scene_view.renderer_loader import prepare_graphics
 
     prepare_graphics()
     return QApplication

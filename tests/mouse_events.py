@@ -18,8 +18,8 @@ def move_mouse(
     keys: Qt.KeyboardModifier = NO_KEYS,
 ) -> None:
     """Move the mouse over a widget, with a button held or without."""
-    place, where = QPointF(spot), QPointF(widget.mapToGlobal(spot))
-    event = QMouseEvent(QEvent.Type.MouseMove, place, where, NO_BUTTON, button, keys)
+    position, where = QPointF(spot), QPointF(widget.mapToGlobal(spot))
+    event = QMouseEvent(QEvent.Type.MouseMove, position, where, NO_BUTTON, button, keys)
     QApplication.sendEvent(widget, event)
 
 
@@ -27,7 +27,7 @@ def turn_wheel(
     widget: QWidget, spot: QPoint, notches: int, keys: Qt.KeyboardModifier = NO_KEYS
 ) -> None:
     """Turn the wheel over a widget, away from the hand."""
-    place, where = QPointF(spot), QPointF(widget.mapToGlobal(spot))
+    position, where = QPointF(spot), QPointF(widget.mapToGlobal(spot))
     turned, phase = QPoint(0, NOTCH * notches), Qt.ScrollPhase.NoScrollPhase
-    event = QWheelEvent(place, where, QPoint(), turned, NO_BUTTON, keys, phase, False)
+    event = QWheelEvent(position, where, QPoint(), turned, NO_BUTTON, keys, phase, False)
     QApplication.sendEvent(widget, event)

@@ -51,10 +51,10 @@ def noisy_street(seed: int = 0, **changes: float) -> NoisyStreet:
     met[arc] = 4.0 + random.normal(0, 0.01, int(arc.sum()))
     met[single] *= random.uniform(0.2, 0.8, int(single.sum()))
     met[under] += random.uniform(0.4, 0.8, int(under.sum())) / -ways[under, 2]
-    places = simulated.origin + ways * met[:, None]
+    positions = simulated.origin + ways * met[:, None]
     columns = dict(simulated.columns)
     columns["xyz"] = np.rint(
-        (places - np.array(simulated.offset)) / np.array(simulated.scale)
+        (positions - np.array(simulated.offset)) / np.array(simulated.scale)
     ).astype(np.int32)
     noise = np.zeros(ranges.size, np.uint8)
     noise[arc | single] = 18

@@ -57,9 +57,9 @@ class StreetScene:
         grey[(surface == 3) & (along % 4.0 < 0.5)] = 34_000.0
         return best, surface, (grey + random.uniform(0, 1_500, grey.size)).astype(np.uint16)
 
-    def along_across(self, places: Floats) -> tuple[Floats, Floats]:
+    def along_across(self, positions: Floats) -> tuple[Floats, Floats]:
         """Distance along the road's middle line and to the left of it."""
-        east, north = places[:, 0], places[:, 1]
+        east, north = positions[:, 0], positions[:, 1]
         if self._curve == 0.0:
             return north, -east
         radius = 1.0 / self._curve

@@ -19,7 +19,7 @@ class SphereScan:
 
     Attributes
     ----------
-    place, centre : (3,) float64
+    position, centre : (3,) float64
         Of the scanner and of the sphere, m.
     cells : (n, 2) int64
         Sweep and place in it of every return; sweeps go clockwise, places upwards.
@@ -28,7 +28,7 @@ class SphereScan:
         Sweeps, places in a sweep.
     """
 
-    place: Floats
+    position: Floats
     centre: Floats
     cells: NDArray[np.int64]
     xyz: Floats
@@ -36,7 +36,10 @@ class SphereScan:
 
 
 def sphere_scan(
-    sweeps: int = 60, length: int = 40, *, place: tuple[float, float, float] = (100.0, 200.0, 10.0)
+    sweeps: int = 60,
+    length: int = 40,
+    *,
+    position: tuple[float, float, float] = (100.0, 200.0, 10.0),
 ) -> SphereScan:
     """A sphere of 5 m; every seventh beam has no return."""
     cells = np.stack(np.divmod(np.arange(sweeps * length), length), axis=1)
@@ -53,7 +56,7 @@ def sphere_scan(
     away = np.array([1.0, 0.5, 0.0])  # from the scanner to the sphere's centre
     along = beams @ away
     distance = along + np.sqrt(along**2 - away @ away + 25.0)
-    stand = np.array(place)
+    stand = np.array(position)
     return SphereScan(
         stand, stand + away, cells, stand + beams * distance[:, None], (sweeps, length)
     )
@@ -63,13 +66,13 @@ def ptx_text(*scans: SphereScan) -> str:
     """A PTX of scans, each in its scanner's own frame with a pose that only shifts."""
     lines: list[str] = []
     for scan in scans:
-        east, north, up = scan.place.tolist()
+        east, north, up = scan.position.tolist()
         lines += [f"{scan.shape[0]}", f"{scan.shape[1]}", f"{east} {north} {up}"]
         lines += ["1 0 0", "0 1 0", "0 0 1", "1 0 0 0", "0 1 0 0", "0 0 1 0"]
         lines.append(f"{east} {north} {up} 1")
         rows = np.zeros((scan.shape[0] * scan.shape[1], 4))
         at = scan.cells[:, 0] * scan.shape[1] + scan.cells[:, 1]
-        rows[at, :3], rows[at, 3] = scan.xyz - scan.place, 0.25 + 0.5 * (at % 2)
+        rows[at, :3], rows[at, 3] = scan.xyz - scan.position, 0.25 + 0.5 * (at % 2)
         lines += [" ".join(f"{value:.5f}" for value in row) for row in rows.tolist()]
     return "\n".join([*lines, ""])
 
@@ -86,10 +89,10 @@ def write_e57(path: Path, *scans: SphereScan, by: str = "columnIndex") -> None:
     file = pye57.E57(str(path), mode="w")
     names = ("columnIndex", "rowIndex") if by == "columnIndex" else ("rowIndex", "columnIndex")
     for scan in scans:
-        east, north, up = (scan.xyz - scan.place)[::-1].T
+        east, north, up = (scan.xyz - scan.position)[::-1].T
         data = {"cartesianX": east, "cartesianY": north, "cartesianZ": up}
         data |= {name: scan.cells[::-1, axis] for axis, name in enumerate(names)}
-        file.write_scan_raw(data, translation=scan.place)
+        file.write_scan_raw(data, translation=scan.position)
         if by == "rowIndex":
             _say_sweeps(file, len(file.data3d) - 1)
     file.close()

@@ -85,7 +85,7 @@ def _at_hand_actions(parts: WindowParts) -> tuple[Action, ...]:
         _draw(
             "measure-width",
             Text("Width between two chosen lines", "選択した2本の線の幅"),
-            MapEdits(document).tell_width,
+            MapEdits(document).report_width,
             "Ctrl+Shift+W",
             Text(
                 "Least, mean and greatest width in plan, square to the first line.",

@@ -10,8 +10,8 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.actions.action import Action
 from app.actions.drives import DriveActions
-from app.catalogue_wish import adopt_catalogue
-from app.column_wish import with_columns
+from app.catalogue_update import adopt_catalogue
+from app.column_request import with_columns
 from app.project_dialogs import ProjectDialogs
 from app.simulate_wiring import Simulations
 from app.source_watch import SourceWatch
@@ -26,8 +26,8 @@ from processing.project.work_details import WorkDetails
 from processing.project.work_store import WorkStore
 from processing.text import Text
 from resources import path_of
-from widgets.dialogs.export_map import ExportForm, ExportWish
-from widgets.dialogs.import_drive import ImportForm, ImportWish
+from widgets.dialogs.export_map import ExportForm, ExportOptions
+from widgets.dialogs.import_drive import ImportForm, ImportOptions
 from widgets.dialogs.reference_systems import ReferenceSystemForm
 from widgets.dialogs.work_details import WorkDetailsForm
 
@@ -217,7 +217,9 @@ class FileActions:
         project = self._parts.document.project
         if project is None:
             return
-        formats = tuple((id_, f.title.spoken(self._parts.language)) for id_, f in FORMATS.items())
+        formats = tuple(
+            (id_, f.title.in_language(self._parts.language)) for id_, f in FORMATS.items()
+        )
         folder = project.folder.parent / f"{project.name}-export"
 
         def make() -> ExportForm:
@@ -345,18 +347,24 @@ class FileActions:
             number += 1
         return folder
 
-    def _on_form_import_requested(self, wish: ImportWish) -> None:
+    def _on_form_import_requested(self, request: ImportOptions) -> None:
         document = self._parts.document
-        is_open = document.project is not None and document.project.folder == wish.project.resolve()
-        sort_out = additions_of_files if is_open or is_project(wish.project) else request_of_files
+        is_open = (
+            document.project is not None and document.project.folder == request.project.resolve()
+        )
+        sort_out = (
+            additions_of_files if is_open or is_project(request.project) else request_of_files
+        )
         try:
-            request = sort_out(wish.files, wish.crs)
-            if wish.classes_as_labels:
-                request = replace(request, labels="classification")
+            files_request = sort_out(request.files, request.crs)
+            if request.classes_as_labels:
+                files_request = replace(files_request, labels="classification")
         except UserError as error:
             self._parts.message_bar.show_error(error)
             return
-        with_columns(self._parts, request, lambda clear: self._import_into(wish.project, clear))
+        with_columns(
+            self._parts, files_request, lambda clear: self._import_into(request.project, clear)
+        )
 
     def _import_into(self, folder: Path, request: ImportRequest) -> None:
         document = self._parts.document
@@ -366,14 +374,14 @@ class FileActions:
         elif is_open or document.open(folder):
             document.import_files(request)
 
-    def _on_form_export_requested(self, wish: ExportWish) -> None:
+    def _on_form_export_requested(self, request: ExportOptions) -> None:
         self._parts.document.export(
             ExportRequest(
-                formats=wish.formats,
-                folder=wish.folder,
+                formats=request.formats,
+                folder=request.folder,
                 language=self._parts.language,
-                dxf_version=wish.dxf_version,
-                encoding=wish.encoding,
-                candidates=wish.candidates,
+                dxf_version=request.dxf_version,
+                encoding=request.encoding,
+                candidates=request.candidates,
             )
         )

@@ -48,7 +48,7 @@ def _start(parts: WindowParts) -> Action:
         features = document.features()
         runs = {one.provenance.run for one in features if one.status is Status.CANDIDATE} - {""}
         if not runs:
-            document.told.emit(_NOTHING_TO_REVIEW)
+            document.reported.emit(_NOTHING_TO_REVIEW)
             return
         parts.window.show_panel("review")
         if not review.is_open:

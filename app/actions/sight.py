@@ -43,8 +43,8 @@ def _lays(parts: WindowParts) -> tuple[Action, ...]:
         field, text = fields[id_]
 
         def turn() -> None:
-            lay = settings.image_lay
-            settings.lay_image(replace(lay, **{field: not getattr(lay, field)}))
+            orientation = settings.image_orientation
+            settings.orient_image(replace(orientation, **{field: not getattr(orientation, field)}))
 
         return Action(
             id_,
@@ -52,7 +52,7 @@ def _lays(parts: WindowParts) -> tuple[Action, ...]:
             turn,
             "view/image",
             is_checkable=True,
-            is_checked=getattr(settings.image_lay, field),
+            is_checked=getattr(settings.image_orientation, field),
             needs_project=True,
         )
 

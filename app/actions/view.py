@@ -28,7 +28,7 @@ def view_actions(parts: WindowParts, speak: Callable[[Language], None]) -> tuple
         Changes the language of the window.
     """
     return (
-        *_places(parts),
+        *_positions(parts),
         *_standings(parts),
         *_sections(parts),
         *_themes(parts),
@@ -37,7 +37,7 @@ def view_actions(parts: WindowParts, speak: Callable[[Language], None]) -> tuple
     )
 
 
-def _places(parts: WindowParts) -> tuple[Action, ...]:
+def _positions(parts: WindowParts) -> tuple[Action, ...]:
     def show_everything() -> None:
         for view in parts.views:
             view.show_everything()

@@ -6,7 +6,7 @@ import unicodedata
 from collections.abc import Sequence
 
 
-def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
+def align_lines(rows: Sequence[Sequence[str]]) -> list[str]:
     """Lines of a table: the first column to the left, all others to the right.
 
     Parameters
@@ -17,8 +17,8 @@ def aligned(rows: Sequence[Sequence[str]]) -> list[str]:
     widths = [max(_width(cell) for cell in column) for column in zip(*rows, strict=True)]
     return [
         "  ".join(
-            _padded(cell, width, is_left=place == 0)
-            for place, (cell, width) in enumerate(zip(row, widths, strict=True))
+            _padded(cell, width, is_left=position == 0)
+            for position, (cell, width) in enumerate(zip(row, widths, strict=True))
         ).rstrip()
         for row in rows
     ]

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from app.cli.output import print_json, print_lines
 from app.language import system_language
-from processing.bench.case import BenchWish, Case, Measurement
+from processing.bench.case import BenchmarkCase, BenchmarkOptions, Measurement
 from processing.bench.ground_cases import measure_ground
 from processing.bench.growth import measure_growth
 from processing.bench.image_cases import measure_image, measure_switch
@@ -20,12 +20,12 @@ from processing.bench.review_case import measure_review
 from processing.bench.road_case import measure_road
 from processing.bench.simulate_case import measure_simulate
 from processing.bench.start_case import measure_start
-from processing.bench.table import Circumstances, described, load_now, number, write_table
+from processing.bench.table import Circumstances, describe_row, load_now, number, write_table
 from processing.bench.volume_cases import measure_volume, measure_volume_tin, measure_volume_view
 from processing.errors import OutOfRange, use_one_of
 from processing.text import Text
 
-CASES: Mapping[str, Case] = {
+CASES: Mapping[str, BenchmarkCase] = {
     "import": measure_import,
     "searchable": measure_searchable,
     "image": measure_image,
@@ -68,16 +68,16 @@ def command(arguments: argparse.Namespace) -> int:
                     least=_LEAST_POINTS
                 ),
             )
-    wish = BenchWish(arguments.points, arguments.most_points, arguments.project)
+    request = BenchmarkOptions(arguments.points, arguments.most_points, arguments.project)
     load = load_now()
     found: list[Measurement] = []
     for name in arguments.names or CASES:
-        rows = CASES[name](wish)
+        rows = CASES[name](request)
         found += rows
         if not arguments.json:
             print_lines(*map(_line, rows))
     if arguments.json:
-        print_json([described(measurement) for measurement in found])
+        print_json([describe_row(measurement) for measurement in found])
     if arguments.markdown is not None:
         write_table(arguments.markdown, Circumstances.of(_typed(arguments), load), found)
     return 0
@@ -96,13 +96,13 @@ def _typed(arguments: argparse.Namespace) -> str:
 
 
 def _line(measurement: Measurement) -> str:
-    what = measurement.what.spoken(system_language())
-    told = [f"{measurement.name}: {what}:"]
+    what = measurement.what.in_language(system_language())
+    reported = [f"{measurement.name}: {what}:"]
     if measurement.value is not None:
-        told.append(f"{number(measurement.value)} {measurement.unit}")
+        reported.append(f"{number(measurement.value)} {measurement.unit}")
     if measurement.target is not None:
         sign = "<=" if measurement.is_at_most else ">="
-        told.append(f"({sign} {measurement.target:g})")
+        reported.append(f"({sign} {measurement.target:g})")
     if measurement.is_met is not None:
-        told.append("ok;" if measurement.is_met else "NOT REACHED;")
-    return " ".join([*told, measurement.detail])
+        reported.append("ok;" if measurement.is_met else "NOT REACHED;")
+    return " ".join([*reported, measurement.detail])

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 
-from app.cli.window_wish import WindowWish
+from app.cli.window_request import WindowRequest
 
 
-def command(arguments: argparse.Namespace) -> WindowWish:
+def command(arguments: argparse.Namespace) -> WindowRequest:
     """Ask for the window with the sample street, or for the whole job done by itself."""
-    return WindowWish(demo=True, headless_out=arguments.out if arguments.headless else None)
+    return WindowRequest(demo=True, headless_out=arguments.out if arguments.headless else None)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.cli.aligned import aligned
+from app.cli.aligned import align_lines
 from app.cli.score_cells import (
     COUNTS_HEAD,
     count_cells,
@@ -12,7 +12,7 @@ from app.cli.score_cells import (
     percent,
     so_many_of,
 )
-from processing.score.file_scores import Errors, FileScore
+from processing.score.file_scores import ErrorStatistics, FileScore
 from processing.text import Language, Text
 
 _COUNTS_HEAD = (Text("counted", "評価対象"), *COUNTS_HEAD)
@@ -66,7 +66,7 @@ def file_score_json(score: FileScore) -> dict[str, object]:
     }
 
 
-def _errors_json(errors: Errors) -> dict[str, object]:
+def _errors_json(errors: ErrorStatistics) -> dict[str, object]:
     return {
         "unit": errors.unit,
         "count": errors.count,
@@ -80,37 +80,38 @@ def _errors_json(errors: Errors) -> dict[str, object]:
 
 def file_score_lines(score: FileScore, tool: Text, language: Language) -> list[str]:
     """Lines for people."""
-    lines = [tool.spoken(language)]
+    lines = [tool.in_language(language)]
     if score.counts:
-        rows = [[word.spoken(language) for word in _COUNTS_HEAD]]
+        rows = [[word.in_language(language) for word in _COUNTS_HEAD]]
         rows += [
             [
-                one.name.spoken(language),
+                one.name.in_language(language),
                 *count_cells(one.counts, has_rejections=one.has_rejections),
             ]
             for one in score.counts
         ]
-        lines += ["", *aligned(rows)]
+        lines += ["", *align_lines(rows)]
     shares = [
-        [one.name.spoken(language), percent(one.share.value), so_many_of(one.share)]
+        [one.name.in_language(language), percent(one.share.value), so_many_of(one.share)]
         for one in score.shares
     ]
-    shares += [[one.name.spoken(language), percent(one.value), ""] for one in score.figures]
+    shares += [[one.name.in_language(language), percent(one.value), ""] for one in score.figures]
     if shares:
-        lines += ["", *aligned(shares)]
+        lines += ["", *align_lines(shares)]
     if score.errors:
-        rows = [[word.spoken(language) for word in _ERRORS_HEAD]]
+        rows = [[word.in_language(language) for word in _ERRORS_HEAD]]
         rows += [_error_cells(one, language) for one in score.errors]
-        lines += ["", *aligned(rows)]
+        lines += ["", *align_lines(rows)]
     left_out = [
-        [_LEFT_OUT[name].spoken(language), f"{count:,}"] for name, count in score.left_out.items()
+        [_LEFT_OUT[name].in_language(language), f"{count:,}"]
+        for name, count in score.left_out.items()
     ]
     if left_out:
-        lines += ["", *aligned(left_out)]
+        lines += ["", *align_lines(left_out)]
     return lines
 
 
-def _error_cells(errors: Errors, language: Language) -> list[str]:
+def _error_cells(errors: ErrorStatistics, language: Language) -> list[str]:
     values = (
         errors.mean,
         errors.mean_size,
@@ -118,5 +119,5 @@ def _error_cells(errors: Errors, language: Language) -> list[str]:
         errors.within_95,
         errors.largest,
     )
-    name = f"{errors.name.spoken(language)} [{errors.unit}]"
+    name = f"{errors.name.in_language(language)} [{errors.unit}]"
     return [name, f"{errors.count:,}", *map(figure, values)]

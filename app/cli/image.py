@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from app.cli.opened import opened_input, terminal_monitor
 from app.cli.output import print_lines
-from processing.errors import named
+from processing.errors import name_with_type
 from processing.formats.png import MOST_PIXELS, MOST_ROWS, write_png
 from processing.image.attributes import ATTRIBUTES, colours
 from processing.image.images_of_drives import image_of
@@ -97,4 +97,6 @@ def _path_of(output: Path, number: int, drive: Drive) -> Path:
 
 
 def _word(word: str, known: dict[str, WordT]) -> WordT:
-    return named(known, word, Text("There is no such image.", "そのような画像はありません。"))
+    return name_with_type(
+        known, word, Text("There is no such image.", "そのような画像はありません。")
+    )

@@ -9,7 +9,7 @@ from pathlib import Path
 from app.cli.opened import request_of, terminal_monitor
 from app.cli.output import print_lines
 from app.cli.terminal import say
-from app.import_words import has_already, known_words, lacking_words, told_columns
+from app.import_words import column_remarks, has_already, known_words, lacking_words
 from app.language import system_language
 from app.long_work import prepare_images
 from processing.points.drive import Drive
@@ -45,7 +45,7 @@ def command(arguments: argparse.Namespace) -> int:
         finished = True
         for drive in drives:
             prepare_images(drive, terminal_monitor())
-        _tell(drives, brought, request)
+        _report(drives, brought, request)
     finally:
         project.close()
         if is_new and not finished and not unfinished_imports(project.folder):
@@ -53,17 +53,17 @@ def command(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _tell(drives: tuple[Drive, ...], brought: Additions, request: ImportRequest) -> None:
+def _report(drives: tuple[Drive, ...], brought: Additions, request: ImportRequest) -> None:
     language = system_language()
     for drive in drives:
         print_lines(describe_drive(drive))
-    print_lines(*(told.spoken(language) for told in told_columns(drives)))
+    print_lines(*(reported.in_language(language) for reported in column_remarks(drives)))
     if brought.known:
-        print_lines(known_words(brought.known).spoken(language))
+        print_lines(known_words(brought.known).in_language(language))
     elif brought.are_none and request.files:
-        print_lines(has_already().spoken(language))
+        print_lines(has_already().in_language(language))
     shown = [_shown(path) for path in brought.beside]
-    lacking = lacking_words(drives, brought, shown).spoken(language)
+    lacking = lacking_words(drives, brought, shown).in_language(language)
     if lacking:
         say(lacking)
 
@@ -77,16 +77,16 @@ def _shown(path: Path) -> str:
 def describe_drive(drive: Drive) -> str:
     """One line on a drive: points, rows, rates; or why there are no rows."""
     language = system_language()
-    info, turns = drive.info, drive.turns
+    info, revolutions = drive.info, drive.revolutions
     points = f"{info.count:,} 点" if language == "ja" else f"{info.count:,} points"
-    if turns is None:
-        return f"{info.name}: {points}, {info.rows_reason.spoken(language)}"
-    rows = turns.segments.size
-    told = _ROWS.filled(
+    if revolutions is None:
+        return f"{info.name}: {points}, {info.rows_reason.in_language(language)}"
+    rows = revolutions.segments.size
+    reported = _ROWS.filled(
         rows=f"{rows:,}",
-        turn=f"{turns.turn_rate_hz:.3f}",
-        pulse=f"{turns.pulse_rate_hz:,.0f}",
-        each=f"{turns.pulses_per_turn:.2f}",
-        by=turns.method,
+        turn=f"{revolutions.revolution_rate_hz:.3f}",
+        pulse=f"{revolutions.pulse_rate_hz:,.0f}",
+        each=f"{revolutions.pulses_per_revolution:.2f}",
+        by=revolutions.method,
     )
-    return f"{info.name}: {points}, {told.spoken(language)}"
+    return f"{info.name}: {points}, {reported.in_language(language)}"

@@ -20,15 +20,15 @@ _SAMPLE_POINTS = 2_000
 
 def command(arguments: argparse.Namespace) -> int:
     """Tell about a project or a point file."""
-    told = (
+    reported = (
         _of_project(arguments.input)
         if is_project(arguments.input)
         else _of_file(arguments.input, columns_of(arguments))
     )
     if arguments.json:
-        print_json(told)
+        print_json(reported)
     else:
-        print_lines(*_lines(told, ""))
+        print_lines(*_lines(reported, ""))
     return 0
 
 
@@ -47,7 +47,7 @@ def _of_project(folder: Path) -> dict[str, object]:
 
 
 def _of_drive(drive: Drive) -> dict[str, object]:
-    info, turns = drive.info, drive.turns
+    info, revolutions = drive.info, drive.revolutions
     return {
         "id": info.id,
         "name": info.name,
@@ -56,11 +56,11 @@ def _of_drive(drive: Drive) -> dict[str, object]:
         "crs": info.crs,
         "extent": _extent(info.lowest, info.highest),
         "rows_by": info.rows_by,
-        "rows_reason": info.rows_reason.spoken(system_language()),
-        "revolutions": None if turns is None else int(turns.segments.size),
-        "turns_per_s": None if turns is None else turns.turn_rate_hz,
-        "pulses_per_s": None if turns is None else turns.pulse_rate_hz,
-        "pulses_per_turn": None if turns is None else turns.pulses_per_turn,
+        "rows_reason": info.rows_reason.in_language(system_language()),
+        "revolutions": None if revolutions is None else int(revolutions.segments.size),
+        "turns_per_s": None if revolutions is None else revolutions.revolution_rate_hz,
+        "pulses_per_s": None if revolutions is None else revolutions.pulse_rate_hz,
+        "pulses_per_turn": None if revolutions is None else revolutions.pulses_per_revolution,
         "has_trajectory": drive.trajectory is not None,
         "sources": [source.path for source in info.sources if source.points],
         "summary": describe_drive(drive),
@@ -96,9 +96,9 @@ def _extent(
     return {"lowest": list(lowest), "highest": list(highest)}
 
 
-def _lines(told: dict[str, object], indent: str) -> list[str]:
+def _lines(reported: dict[str, object], indent: str) -> list[str]:
     lines: list[str] = []
-    for name, value in told.items():
+    for name, value in reported.items():
         if isinstance(value, dict):
             lines += [f"{indent}{name}:", *_lines(value, indent + "  ")]
         elif isinstance(value, list) and value and isinstance(value[0], dict):

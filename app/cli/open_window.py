@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import argparse
 
-from app.cli.window_wish import WindowWish
+from app.cli.window_request import WindowRequest
 from processing.errors import MissingInput
 from processing.text import Text
 
 
-def command(arguments: argparse.Namespace) -> WindowWish:
+def command(arguments: argparse.Namespace) -> WindowRequest:
     """Ask for the window with the named project or files."""
     for path in arguments.paths:
         if not path.exists():
@@ -20,4 +20,4 @@ def command(arguments: argparse.Namespace) -> WindowWish:
                 Text.same(str(path)),
                 Text("Check the name.", "名前を確認してください。"),
             )
-    return WindowWish(paths=tuple(arguments.paths))
+    return WindowRequest(paths=tuple(arguments.paths))

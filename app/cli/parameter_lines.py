@@ -13,6 +13,6 @@ def parameter_lines(parameters: type[object], language: Language) -> list[str]:
         limits = f" ({parameter.low:.10g} … {parameter.high:.10g})" if parameter.high else ""
         words = " | ".join(option.value for option in parameter.choices)
         unit = f" {parameter.unit}" if parameter.unit else ""
-        name = parameter.name.spoken(language)
+        name = parameter.name.in_language(language)
         lines.append(f"  --set {parameter.id}={parameter.default}{unit}{limits} {words} {name}")
     return lines

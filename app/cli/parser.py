@@ -9,11 +9,11 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import NoReturn, cast
 
-from app.cli.window_wish import WindowWish
+from app.cli.window_request import WindowRequest
 from processing.errors import OutOfRange
 from processing.text import Text
 
-Command = Callable[[argparse.Namespace], int | WindowWish]
+Command = Callable[[argparse.Namespace], int | WindowRequest]
 
 
 class _Parser(argparse.ArgumentParser):
@@ -40,9 +40,9 @@ class _OrderParser(_Parser):
             return super().format_help()
         from app.cli.parameter_lines import parameter_lines
         from app.language import system_language
-        from processing.simulate.orders import ORDERS
+        from processing.simulate.simulations import SIMULATIONS
 
-        lines = parameter_lines(ORDERS[self.what].wish, system_language())
+        lines = parameter_lines(SIMULATIONS[self.what].request, system_language())
         return "\n".join([super().format_help(), "settings:", *lines, ""])
 
 
@@ -162,11 +162,11 @@ def _add_simulate(commands: _Commands[_Parser]) -> None:
     whats = simulating.add_subparsers(
         metavar="street|site|density", required=True, parser_class=_OrderParser
     )
-    for what, told in (
+    for what, reported in (
         ("street", "a street, recorded by a vehicle"),
         ("site", "an earthwork site of two dates, scanned from tripods"),
     ):
-        making = whats.add_parser(what, help=told)
+        making = whats.add_parser(what, help=reported)
         making.what = what
         making.add_argument("--seed", metavar="N", help="the same number gives the same")
         making.add_argument("--length", metavar="M")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.cli.aligned import aligned
+from app.cli.aligned import align_lines
 from app.cli.score_cells import (
     COUNTS_HEAD,
     count_cells,
@@ -13,7 +13,7 @@ from app.cli.score_cells import (
     so_many_of,
 )
 from processing.score.point_scores import PointScore
-from processing.score.reliability import Share
+from processing.score.reliability import ShareInterval
 from processing.text import Language, Text
 
 _HEAD = (Text("positive class", "正例とするクラス"), *COUNTS_HEAD)
@@ -37,28 +37,28 @@ def point_score_json(score: PointScore) -> dict[str, object]:
 def point_score_lines(score: PointScore, tool: Text, language: Language) -> list[str]:
     """Lines for people."""
     points = Text("{name}: {points} points", "{name}：{points}点")
-    lines = [points.filled(name=tool, points=f"{score.points:,}").spoken(language), ""]
-    rows = [[word.spoken(language) for word in _HEAD]]
-    rows += [[one.name.spoken(language), *count_cells(one.counts)] for one in score.classes]
-    lines += [*aligned(rows), ""]
-    lines += aligned(
+    lines = [points.filled(name=tool, points=f"{score.points:,}").in_language(language), ""]
+    rows = [[word.in_language(language) for word in _HEAD]]
+    rows += [[one.name.in_language(language), *count_cells(one.counts)] for one in score.classes]
+    lines += [*align_lines(rows), ""]
+    lines += align_lines(
         [
             *(
-                [one.name.spoken(language), percent(one.share.value), so_many_of(one.share)]
+                [one.name.in_language(language), percent(one.share.value), so_many_of(one.share)]
                 for one in score.shares
             ),
-            *([one.name.spoken(language), figure(one.value), ""] for one in score.figures),
+            *([one.name.in_language(language), figure(one.value), ""] for one in score.figures),
         ]
     )
     if score.kinds:
-        kinds = [[word.spoken(language) for word in _KINDS_HEAD]]
+        kinds = [[word.in_language(language) for word in _KINDS_HEAD]]
         kinds += [
             [f"{one.group} {one.kind}", f"{int(one.right.of):,}", percent(one.right.value)]
             for one in score.kinds
         ]
-        lines += ["", *aligned(kinds)]
+        lines += ["", *align_lines(kinds)]
     return lines
 
 
-def _share_json(share: Share) -> dict[str, object]:
+def _share_json(share: ShareInterval) -> dict[str, object]:
     return {"points": int(share.hits), "of": int(share.of), "share": or_null(share.value)}

@@ -13,7 +13,7 @@ from app.cli.opened import OpenedInput, opened_input, terminal_monitor
 from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
 from processing.errors import MissingInput, OutOfRange
-from processing.formats.safe_write import refuse_inputs, written_safely
+from processing.formats.safe_write import refuse_inputs, write_safely
 from processing.ground.stored_surface import StoredSurface
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
@@ -32,7 +32,7 @@ from processing.runner import (
     tool_of,
 )
 from processing.text import Text
-from processing.tools.parameters import filled_in
+from processing.tools.parameters import fill_parameters
 from processing.tools.registry import COMPARISONS
 from processing.tools.tool import CandidateResult, FinishedColumns, Tool
 
@@ -50,7 +50,7 @@ def command(arguments: argparse.Namespace) -> int:
         return volume.command(arguments)
     tool = tool_of(arguments.tool)
     _check_inputs(arguments)
-    parameters = filled_in(tool.parameters, settings_of_words(arguments.set))
+    parameters = fill_parameters(tool.parameters, settings_of_words(arguments.set))
     _check_output(tool, arguments.output)
     monitor = terminal_monitor()
     with (
@@ -58,8 +58,8 @@ def command(arguments: argparse.Namespace) -> int:
         scratch_folder(arguments.output.parent) as scratch,
     ):
         _check_first(tool, opened, arguments.output, monitor)
-        wish = _Wish(tool, parameters, opened, arguments.output)
-        paths = (_found if tool.gives_candidates else _points)(wish, scratch, monitor)
+        request = _Wish(tool, parameters, opened, arguments.output)
+        paths = (_found if tool.gives_candidates else _points)(request, scratch, monitor)
     print_lines(*(str(path) for path in paths))
     return 0
 
@@ -79,26 +79,26 @@ class _Wish:
         return RunRequest(self.tool.id, drive, self.parameters, beside)
 
 
-def _found(wish: _Wish, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
+def _found(request: _Wish, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
     """What a tool finds on each drive, as one file."""
-    drives, done = wish.opened.drives, set[str]()
+    drives, done = request.opened.drives, set[str]()
     features: list[Feature] = []
     while left := [drive for drive in drives if drive.id not in done]:
-        request = wish.request(left[0])
-        together = [drive.id for drive in drives_of(request)]
+        run_request = request.request(left[0])
+        together = [drive.id for drive in drives_of(run_request)]
         ends = (len(done) / len(drives), len(done | set(together)) / len(drives))
         part = PartMonitor(monitor, _RUNNING * ends[0], _RUNNING * ends[1])
         started = datetime.now(UTC)
-        result = run(request, part, into=scratch / str(len(done)))
+        result = run(run_request, part, into=scratch / str(len(done)))
         done |= set(together)
         if isinstance(result, CandidateResult):
-            _tell(wish.tool, result.note, monitor, _RUNNING * ends[1])
-            result = _for_file(result, wish.output)
+            _report(request.tool, result.note, monitor, _RUNNING * ends[1])
+            result = _for_file(result, request.output)
             times = {"started": started, "finished": datetime.now(UTC)}
-            found = found_features(result, wish.tool, wish.parameters, together, **times)
+            found = found_features(result, request.tool, request.parameters, together, **times)
             features.extend(found.change.added)
     writing = PartMonitor(monitor, _RUNNING, 1.0)
-    return _write_features(features, wish.opened, wish.output, writing)
+    return _write_features(features, request.opened, request.output, writing)
 
 
 def _for_file(result: CandidateResult, output: Path) -> CandidateResult:
@@ -109,35 +109,35 @@ def _for_file(result: CandidateResult, output: Path) -> CandidateResult:
     return replace(result, candidates=kept)
 
 
-def _tell(tool: Tool, note: Text, monitor: Monitor, at: float) -> None:
+def _report(tool: Tool, note: Text, monitor: Monitor, at: float) -> None:
     if note.en:
         monitor.report(at, _NOTE.filled(tool=tool.name, note=note))
 
 
-def _points(wish: _Wish, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
+def _points(request: _Wish, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
     """What a tool says about points, beside the points of each file; surfaces where wanted."""
-    drives = wish.opened.drives
-    wanted = surface_file_of(wish.parameters)
+    drives = request.opened.drives
+    wanted = surface_file_of(request.parameters)
     if wanted is not None:
-        refuse_inputs(wanted, _delivered(wish.opened))
+        refuse_inputs(wanted, _delivered(request.opened))
     columns: dict[str, FinishedColumns] = {}
     surfaces: list[tuple[str, Path]] = []
     while left := [drive for drive in drives if drive.id not in columns]:
-        request = wish.request(left[0])
-        together = drives_of(request)
+        run_request = request.request(left[0])
+        together = drives_of(run_request)
         ends = (len(columns) / len(drives), (len(columns) + len(together)) / len(drives))
         part = PartMonitor(monitor, _RUNNING * ends[0], _RUNNING * ends[1])
-        result = run_together(request, part, into=scratch / str(len(columns)))
-        _tell(wish.tool, result.note, monitor, _RUNNING * ends[1])
+        result = run_together(run_request, part, into=scratch / str(len(columns)))
+        _report(request.tool, result.note, monitor, _RUNNING * ends[1])
         columns |= {one.id: found for one, found in zip(together, result.columns, strict=True)}
         surfaces.extend((left[0].info.name, path) for path in result.kept)
     with ExitStack() as whole:
         for path, surface in _surface_files(wanted, surfaces):
-            never = _delivered(wish.opened)
-            temporary = whole.enter_context(written_safely(path, never=never))
+            never = _delivered(request.opened)
+            temporary = whole.enter_context(write_safely(path, never=never))
             write_surface_content(StoredSurface(surface), temporary, monitor)
         pairs = [(drive, columns[drive.id]) for drive in drives]
-        return write_point_results(pairs, wish.output, PartMonitor(monitor, _RUNNING, 1.0))
+        return write_point_results(pairs, request.output, PartMonitor(monitor, _RUNNING, 1.0))
 
 
 def _surface_files(

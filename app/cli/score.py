@@ -22,12 +22,12 @@ from processing.project.project import Project, is_project
 from processing.score.coded_points import CodedFile, pairs_by_order
 from processing.score.file_scores import FeatureScorer, FileScore, VolumeScorer
 from processing.score.mapped_features import MappedFile, check_same_system
-from processing.score.pairs_by_place import pairs_by_place
+from processing.score.pairs_by_position import pairs_by_position
 from processing.score.point_scores import PointScore, PointScorer
 from processing.score.scorers import scorer_of
 from processing.score.volumes import MEASURES
 
-_ORDER, _PLACE = "order", "place"
+_ORDER, _POSITION = "order", "place"
 
 
 def command(arguments: argparse.Namespace) -> int:
@@ -89,7 +89,7 @@ def _paired_and_scored(
     try:
         return scorer.score(pairs_by_order(truth, result, monitor)), _ORDER
     except Unsuitable:
-        if not (truth.has_places and result.has_places):
+        if not (truth.has_positions and result.has_positions):
             raise
     with tempfile.TemporaryDirectory(prefix="zuka-") as folder:
-        return scorer.score(pairs_by_place(truth, result, Path(folder), monitor)), _PLACE
+        return scorer.score(pairs_by_position(truth, result, Path(folder), monitor)), _POSITION

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from processing.score.point_classes import TwoByTwo
-from processing.score.reliability import Share
+from processing.score.confusion_matrix import ConfusionMatrix
+from processing.score.reliability import ShareInterval
 from processing.text import Text
 
 COUNTS_HEAD = (
@@ -19,7 +19,7 @@ COUNTS_HEAD = (
 )
 
 
-def count_cells(counts: TwoByTwo, *, has_rejections: bool = True) -> list[str]:
+def count_cells(counts: ConfusionMatrix, *, has_rejections: bool = True) -> list[str]:
     """The cells under `COUNTS_HEAD`."""
     shares = (counts.precision, counts.recall, counts.f_measure)
     found = (counts.hits, counts.false_alarms, counts.misses)
@@ -27,7 +27,7 @@ def count_cells(counts: TwoByTwo, *, has_rejections: bool = True) -> list[str]:
     return [*map(percent, shares), *(f"{count:,}" for count in found), rejected]
 
 
-def counts_json(counts: TwoByTwo, *, has_rejections: bool = True) -> dict[str, object]:
+def counts_json(counts: ConfusionMatrix, *, has_rejections: bool = True) -> dict[str, object]:
     """Counts and what is computed from them."""
     return {
         "precision": or_null(counts.precision),
@@ -51,7 +51,7 @@ def figure(value: float) -> str:
     return "–" if math.isnan(value) else words.removeprefix("-") if float(words) == 0 else words
 
 
-def so_many_of(share: Share) -> str:
+def so_many_of(share: ShareInterval) -> str:
     """The two counts of a share."""
     return f"{int(share.hits):,} / {int(share.of):,}"
 

@@ -8,13 +8,13 @@ from app.cli.opened import terminal_monitor
 from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
 from app.language import system_language
-from processing.simulate.orders import ORDERS
 from processing.simulate.scanning.density import density_map, survey_of
 from processing.simulate.scanning.density_files import write_density
 from processing.simulate.scanning.sensors import sensor_of
 from processing.simulate.simulated import Simulated
+from processing.simulate.simulations import SIMULATIONS
 from processing.text import Language, Text
-from processing.tools.parameters import filled_in
+from processing.tools.parameters import fill_parameters
 
 _MADE = Text("{folder}: {points:,} points, {crs}", "{folder}: {points:,}点, {crs}")
 _TRUTH = Text("truth: {folder}", "正解データ: {folder}")
@@ -25,13 +25,13 @@ def command(arguments: argparse.Namespace) -> int:
     """Make what is ordered."""
     if arguments.what == "density":
         return _write_density(arguments)
-    order = ORDERS[arguments.what]
+    order = SIMULATIONS[arguments.what]
     values = settings_of_words(arguments.set)
     for option, field in _OWN_OPTIONS.items():
         if (given := getattr(arguments, option)) is not None:
             values[field] = given
-    wish = filled_in(order.wish, values)
-    made = order.fulfil(wish, arguments.out, terminal_monitor())
+    request = fill_parameters(order.request, values)
+    made = order.fulfil(request, arguments.out, terminal_monitor())
     print_lines(*_lines(made, system_language()))
     return 0
 
@@ -41,7 +41,7 @@ def _write_density(arguments: argparse.Namespace) -> int:
     sensor = sensor_of(arguments.sensor, "mobile", own)
     survey = survey_of(sensor, arguments.speed)
     title = sensor.name.en.replace("×", "x")
-    title += f", {arguments.speed:g} km/h, {survey.between_turns_m:.3g} m from line to line"
+    title += f", {arguments.speed:g} km/h, {survey.between_revolutions_m:.3g} m from line to line"
     write_density(arguments.out, density_map(survey), title)
     print_lines(str(arguments.out))
     return 0
@@ -49,7 +49,11 @@ def _write_density(arguments: argparse.Namespace) -> int:
 
 def _lines(made: Simulated, language: Language) -> list[str]:
     """What was made in one line, then its files, as ``zuka import`` takes them."""
-    told = _MADE.filled(folder=made.folder, points=made.count, crs=made.crs)
+    reported = _MADE.filled(folder=made.folder, points=made.count, crs=made.crs)
     files = (*made.points, *made.trajectories, *made.images)
     truth = _TRUTH.filled(folder=made.truth)
-    return [told.spoken(language), *(str(path) for path in files), truth.spoken(language)]
+    return [
+        reported.in_language(language),
+        *(str(path) for path in files),
+        truth.in_language(language),
+    ]

@@ -6,7 +6,7 @@ import argparse
 import math
 from pathlib import Path
 
-from app.cli.aligned import aligned
+from app.cli.aligned import align_lines
 from app.cli.opened import OpenedInput, opened_input, terminal_monitor
 from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
@@ -15,7 +15,7 @@ from processing.errors import OutOfRange
 from processing.formats.safe_write import refuse_inputs
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 from processing.project.class_tables import write_study
 from processing.project.scratch_folder import scratch_folder
 from processing.project.truth_of_file import coded_truth, truth_of_file
@@ -30,7 +30,7 @@ from processing.score.parameter_study import (
     varied_of,
 )
 from processing.text import Language, Text
-from processing.tools.parameters import filled_in
+from processing.tools.parameters import fill_parameters
 
 _READING = 0.1
 _HEAD = (Text("precision", "適合率"), Text("recall", "再現率"), Text.same("F"))
@@ -40,7 +40,7 @@ def command(arguments: argparse.Namespace) -> int:
     """Study a tool on every drive of the input that has a truth, and write the table."""
     tool = tool_of(arguments.tool)
     fixed = settings_of_words(arguments.set)
-    filled_in(tool.parameters, fixed)
+    fill_parameters(tool.parameters, fixed)
     varied = varied_of(tool.id, arguments.vary)
     _check_output(arguments.output)
     monitor = terminal_monitor()
@@ -71,7 +71,7 @@ def _truth_of(
         part = PartMonitor(monitor, number / len(files), (number + 1) / len(files))
         folders |= truth_of_file(opened.drives, coded_truth(path), into, part).folders
     drives = tuple(drive for drive in opened.drives if drive.id in folders)
-    return drives, lambda drive, start, stop: read_stretch(folders[drive.id], TRUTH, start, stop)
+    return drives, lambda drive, start, stop: read_chunk(folders[drive.id], TRUTH, start, stop)
 
 
 def _lines(found: ParameterStudy, language: Language) -> list[str]:
@@ -82,7 +82,7 @@ def _lines(found: ParameterStudy, language: Language) -> list[str]:
         [
             *names,
             *(
-                f"{ASKED[found.tool].found.spoken(language)}:{one.spoken(language)}"
+                f"{ASKED[found.tool].found.in_language(language)}:{one.in_language(language)}"
                 for one in _HEAD
             ),
             "",
@@ -92,7 +92,7 @@ def _lines(found: ParameterStudy, language: Language) -> list[str]:
         scores = cell.counts.precision, cell.counts.recall, cell.counts.f_measure
         words = [f"{100 * one:.3f} %" if not math.isnan(one) else "-" for one in scores]
         rows.append([*(str(one) for one in cell.values), *words, "*" if cell is best else ""])
-    return aligned(rows)
+    return align_lines(rows)
 
 
 def _delivered(opened: OpenedInput) -> list[Path]:

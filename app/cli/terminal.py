@@ -9,7 +9,7 @@ from types import FrameType
 from typing import TypeVar
 
 from app.cli.parser import read_arguments
-from app.cli.window_wish import WindowWish
+from app.cli.window_request import WindowRequest
 from app.error_log import defect_of, log_user_error
 from app.language import system_language
 from processing.errors import Cancelled, UserError
@@ -18,25 +18,25 @@ StatusT = TypeVar("StatusT")
 DONE, DEFECT, BAD_INPUT, CANCELLED = 0, 1, 2, 3
 
 
-def run_in_terminal(arguments: Sequence[str]) -> int | WindowWish:
+def run_in_terminal(arguments: Sequence[str]) -> int | WindowRequest:
     """Run a command.
 
     Returns
     -------
-    int or WindowWish
+    int or WindowRequest
         The exit status: 0 done, 1 a defect, 2 bad input, 3 cancelled; or what the window is to
         show.
     """
     signal.signal(signal.SIGTERM, _stop)
 
-    def act() -> int | WindowWish:
+    def act() -> int | WindowRequest:
         command, namespace = read_arguments(arguments)
         return command(namespace)
 
-    return ended(act)
+    return end_with_status(act)
 
 
-def ended(act: Callable[[], StatusT]) -> StatusT | int:
+def end_with_status(act: Callable[[], StatusT]) -> StatusT | int:
     """Do something; whatever goes wrong ends here, as one line and an exit status."""
     try:
         return act()

@@ -66,8 +66,8 @@ def _lines(tool: Tool) -> list[str]:
     language = system_language()
     outputs = ", ".join(column.name for column in tool.outputs) or _gives(tool)
     lines = [
-        f"{tool.id}  {tool.name.spoken(language)}",
-        f"  {tool.explanation.spoken(language)}",
+        f"{tool.id}  {tool.name.in_language(language)}",
+        f"  {tool.explanation.in_language(language)}",
         f"  {tool.needs.value} -> {outputs}",
     ]
     return [*lines, *parameter_lines(tool.parameters, language)]

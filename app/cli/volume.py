@@ -14,7 +14,7 @@ import shapely
 from app.cli.opened import terminal_monitor
 from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
-from app.cli.volume_papers import check_ending, check_papers, papers_of
+from app.cli.volume_reports import check_ending, check_report_options, volume_reports_of
 from app.cli.volume_sides import NamedSide, named_side
 from processing.earthwork.as_built import AsBuiltResult
 from processing.earthwork.boundary import boundary_polygon
@@ -22,22 +22,22 @@ from processing.earthwork.comparison import compare
 from processing.earthwork.sides import EpochGround
 from processing.earthwork.volume_parameters import VolumeParameters
 from processing.earthwork.volume_result import VolumeResult
-from processing.earthwork.within import Within
+from processing.earthwork.volume_scope import VolumeScope
 from processing.errors import MissingInput, Unsuitable
 from processing.formats.boundary_files import file_and_layer, read_boundary
 from processing.formats.line_files import read_lines
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import parts_of
 from processing.project.scratch_folder import scratch_folder
 from processing.text import Text
-from processing.tools.parameters import filled_in
+from processing.tools.parameters import fill_parameters
 
 _JSON = ".json"
 
 
 def command(arguments: argparse.Namespace) -> int:
     """Compare two sides and write what lies between them."""
-    parameters = filled_in(VolumeParameters, settings_of_words(arguments.set))
+    parameters = fill_parameters(VolumeParameters, settings_of_words(arguments.set))
     if not isinstance(parameters, VolumeParameters):
         raise TypeError(parameters)
     _check(arguments, parameters)
@@ -50,17 +50,17 @@ def command(arguments: argparse.Namespace) -> int:
         )
         crs = _one_system(before, after)
         within = _within(parameters, crs)
-        papers = papers_of(parameters, (before, after), crs)
+        papers = volume_reports_of(parameters, (before, after), crs)
         # All of them before the first is written: nothing half done is left.
         papers.refuse_inputs(arguments.output)
         result = compare(before.side, after.side, parameters, comparing, within)
-        judging, writing = parts_of(writing, (0.5, 0.5))
-        judged = papers.judged(judging, within)
-        told = _told(result, before, after, crs) | _told_of_form(judged)
+        evaluations, writing = parts_of(writing, (0.5, 0.5))
+        judged = papers.judged(evaluations, within)
+        reported = _reported(result, before, after, crs) | _told_of_form(judged)
         written = [*papers.write(result, judged, writing)]
         # The numbers last: where they are, all of it is.
-        with written_safely(arguments.output, never=papers.never) as temporary:
-            text = json.dumps(told, ensure_ascii=False, indent=1)
+        with write_safely(arguments.output, never=papers.never) as temporary:
+            text = json.dumps(reported, ensure_ascii=False, indent=1)
             temporary.write_text(text + "\n", encoding="utf-8")
     print_lines(*(str(path) for path in (arguments.output, *written)))
     return 0
@@ -78,7 +78,7 @@ def _check(arguments: argparse.Namespace, parameters: VolumeParameters) -> None:
             ),
         )
     check_ending(arguments.output, (_JSON,))
-    check_papers(parameters, (arguments.before, arguments.after))
+    check_report_options(parameters, (arguments.before, arguments.after))
 
 
 def _one_system(before: NamedSide, after: NamedSide) -> str:
@@ -96,7 +96,7 @@ def _one_system(before: NamedSide, after: NamedSide) -> str:
     return next(iter(systems), "")
 
 
-def _within(parameters: VolumeParameters, crs: str) -> Within:
+def _within(parameters: VolumeParameters, crs: str) -> VolumeScope:
     boundary = line = None
     if parameters.boundary:
         path, layer = file_and_layer(parameters.boundary)
@@ -106,14 +106,16 @@ def _within(parameters: VolumeParameters, crs: str) -> Within:
     break_lines = (
         read_lines(Path(parameters.break_lines), crs=crs) if parameters.break_lines else ()
     )
-    return Within(boundary, line, break_lines)
+    return VolumeScope(boundary, line, break_lines)
 
 
 def _length(line: object) -> float:
     return float(shapely.LineString(line).length)
 
 
-def _told(result: VolumeResult, before: NamedSide, after: NamedSide, crs: str) -> dict[str, object]:
+def _reported(
+    result: VolumeResult, before: NamedSide, after: NamedSide, crs: str
+) -> dict[str, object]:
     """What the file says: the contract's names first."""
     volumes, registration = result.volumes, result.registration
     return {

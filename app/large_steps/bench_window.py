@@ -10,12 +10,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 
 from app.painted_frames import PaintedFrames, Pulse, wait_until
-from app.screenshots.hand import Hand
+from app.screenshots.simulated_mouse import SimulatedMouse
 from app.window_parts import WindowParts
 from widgets.image_view.minimap import Minimap
 from widgets.image_view.tile_images import TileImages
 
-Found = dict[str, list[float]]
+StepTimings = dict[str, list[float]]
 """Seconds by what took them."""
 
 
@@ -50,7 +50,7 @@ class BenchWindow:
         self.project = project
         self.out = out
         self._share = share
-        self.hand = Hand()
+        self.mouse = SimulatedMouse()
         self.pulse = Pulse(parts.window)
         self.image: QWidget = parts.image_view
         self.image_frames = PaintedFrames(self.image)

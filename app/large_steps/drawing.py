@@ -9,9 +9,9 @@ from functools import partial
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.large_steps.bench_window import BenchWindow, Found
+from app.large_steps.bench_window import BenchWindow, StepTimings
 from app.large_steps.image import drag_to, go_to, nearer
-from app.screenshots.hand import LEFT, NO_BUTTON, PLAIN
+from app.screenshots.simulated_mouse import LEFT, NO_BUTTON, PLAIN
 from processing.project.catalogue import Geometry
 
 _HOVERS = 200
@@ -21,7 +21,7 @@ _LEAST_VERTICES = 8
 _MARGIN_PX = 40
 
 
-def hover(window: BenchWindow) -> Found:
+def hover(window: BenchWindow) -> StepTimings:
     """The mouse over the image with a line begun: what it snaps to, and the line to it."""
     go_to(window, 0.5)
     nearer(window)
@@ -35,11 +35,11 @@ def hover(window: BenchWindow) -> Found:
     for number in range(window.some(_HOVERS)):
         spot = _spot(window, number / _HOVERS) + QPoint(number % 5, number % 3)
         answers.take(partial(drag_to, window.image, spot, NO_BUTTON))
-    window.hand.key(window.image, Qt.Key.Key_Escape)
+    window.mouse.key(window.image, Qt.Key.Key_Escape)
     return {"frame": answers.end()}
 
 
-def draw(window: BenchWindow) -> Found:
+def draw(window: BenchWindow) -> StepTimings:
     """Lines of fifty vertices, each a click."""
     frames, answers, done = window.image_frames, _Answers(window), []
     before = _drawn(window)
@@ -49,7 +49,7 @@ def draw(window: BenchWindow) -> Found:
             spot = _spot(window, (vertex + 0.5) / vertices) + QPoint(0, 9 * number)
             answers.take(partial(_click, window, spot))
         done.append(
-            frames.seconds_to_paint(lambda: window.hand.key(window.image, Qt.Key.Key_Return))
+            frames.seconds_to_paint(lambda: window.mouse.key(window.image, Qt.Key.Key_Return))
         )
     if len(_drawn(window) - before) != lines:
         message = "the lines that were clicked are not on the map"
@@ -57,7 +57,7 @@ def draw(window: BenchWindow) -> Found:
     return {"vertex": answers.end(), "line done": done}
 
 
-def undo(window: BenchWindow) -> Found:
+def undo(window: BenchWindow) -> StepTimings:
     """Each line taken back, and drawn again by redo."""
     frames, lines = window.image_frames, window.some(_LINES)
     undone = [frames.seconds_to_paint(lambda: window.act("undo")) for _ in range(lines)]

@@ -11,8 +11,8 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 
-from app.large_steps.bench_window import BenchWindow, Found
-from app.screenshots.hand import MIDDLE, PLAIN, move
+from app.large_steps.bench_window import BenchWindow, StepTimings
+from app.screenshots.simulated_mouse import MIDDLE, PLAIN, move
 
 _JUMPS = 40
 _DRAGS, _MOVES, _STEP_PX = 8, 40, 24
@@ -22,10 +22,10 @@ _SEED = 5
 _ATTRIBUTES = ("height", "class", "intensity", "height", "intensity")
 
 
-def jump(window: BenchWindow) -> Found:
+def jump(window: BenchWindow) -> StepTimings:
     """Clicks on the strip with the whole drive, here and there: the first tile, and all of them."""
     nearer(window)
-    found: Found = {"first tile": [], "window sharp": []}
+    found: StepTimings = {"first tile": [], "window sharp": []}
     random = np.random.default_rng(_SEED)
     for share in random.uniform(0.02, 0.98, window.some(_JUMPS)).tolist():
         first, sharp = _time_sharp(window, partial(go_to, window, share))
@@ -34,7 +34,7 @@ def jump(window: BenchWindow) -> Found:
     return found
 
 
-def pan(window: BenchWindow) -> Found:
+def pan(window: BenchWindow) -> StepTimings:
     """Drags along the street where a pulse is a pixel or more."""
     go_to(window, 0.3)
     nearer(window)
@@ -42,20 +42,20 @@ def pan(window: BenchWindow) -> Found:
     return {"frame": _drag_along(window)}
 
 
-def pan_far(window: BenchWindow) -> Found:
+def pan_far(window: BenchWindow) -> StepTimings:
     """Drags along the street seen from far, where a tile is some thousand revolutions long."""
-    window.hand.key(window.image, Qt.Key.Key_Home)
-    window.hand.wheel(window.image, window.middle, _FAR_NOTCHES)
+    window.mouse.key(window.image, Qt.Key.Key_Home)
+    window.mouse.wheel(window.image, window.middle, _FAR_NOTCHES)
     window.rest()
     return {"frame": _drag_along(window)}
 
 
-def zoom(window: BenchWindow) -> Found:
+def zoom(window: BenchWindow) -> StepTimings:
     """The wheel, from the whole drive to where a pulse is a pixel, and back; at several places."""
-    view, found = window.parts.image_view, Found(frame=[])
+    view, found = window.parts.image_view, StepTimings(frame=[])
     shares = np.linspace(0.2, 0.8, window.some(_ROUNDS))
     for share in shares.tolist():
-        window.hand.key(window.image, Qt.Key.Key_Home)
+        window.mouse.key(window.image, Qt.Key.Key_Home)
         window.rest()
         spot = QPoint(round(share * view.width()), window.middle.y())
         notches = 0
@@ -66,7 +66,7 @@ def zoom(window: BenchWindow) -> Found:
     return found
 
 
-def switch_attribute(window: BenchWindow) -> Found:
+def switch_attribute(window: BenchWindow) -> StepTimings:
     """Another attribute on all that is seen, until it is sharp."""
     go_to(window, 0.6)
     nearer(window)
@@ -116,8 +116,8 @@ def _time_sharp(window: BenchWindow, act: Callable[[], object]) -> tuple[float, 
 
 
 def _wheel(window: BenchWindow, spot: QPoint, notches: int) -> float:
-    hand, image = window.hand, window.image
-    return window.image_frames.seconds_to_paint(lambda: hand.wheel(image, spot, notches))
+    mouse, image = window.mouse, window.image
+    return window.image_frames.seconds_to_paint(lambda: mouse.wheel(image, spot, notches))
 
 
 def _drag_along(window: BenchWindow) -> list[float]:

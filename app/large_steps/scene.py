@@ -8,18 +8,18 @@ from functools import partial
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from app.large_steps.bench_window import BenchWindow, Found
+from app.large_steps.bench_window import BenchWindow, StepTimings
 from app.large_steps.image import drag_to
-from app.screenshots.hand import PLAIN, RIGHT, SHIFT
+from app.screenshots.simulated_mouse import PLAIN, RIGHT, SHIFT
 
 _MOVES, _STEP_PX = 60, 5
 _NOTCHES_NEARER = 4
 _FLIGHT = 120
 
 
-def orbit(window: BenchWindow) -> Found:
+def orbit(window: BenchWindow) -> StepTimings:
     """Turned by the right button: over the whole, and near what is in the middle."""
-    window.hand.key(window.picture, Qt.Key.Key_Home)
+    window.mouse.key(window.picture, Qt.Key.Key_Home)
     window.rest()
     times = _turn(window)
     for _ in range(_NOTCHES_NEARER):
@@ -28,10 +28,10 @@ def orbit(window: BenchWindow) -> Found:
     return {"frame": times + _turn(window)}
 
 
-def fly(window: BenchWindow) -> Found:
+def fly(window: BenchWindow) -> StepTimings:
     """Along the drive by the wheel with Shift, forwards and back."""
     window.act("show-intensity")
-    window.hand.key(window.picture, Qt.Key.Key_Home)
+    window.mouse.key(window.picture, Qt.Key.Key_Home)
     window.rest()
     times = [_frame(window, lambda: _wheel(window, 1, SHIFT)) for _ in range(window.some(_FLIGHT))]
     return {"frame": times + [_frame(window, lambda: _wheel(window, -1, SHIFT)) for _ in times]}
@@ -52,7 +52,7 @@ def _turn(window: BenchWindow) -> list[float]:
 
 
 def _wheel(window: BenchWindow, notches: int, modifiers: Qt.KeyboardModifier) -> None:
-    window.hand.wheel(window.picture, window.picture.rect().center(), notches, modifiers)
+    window.mouse.wheel(window.picture, window.picture.rect().center(), notches, modifiers)
 
 
 def _frame(window: BenchWindow, act: Callable[[], object]) -> float:

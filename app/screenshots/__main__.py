@@ -17,17 +17,17 @@ from app.screenshots.drawing import DRAWING
 from app.screenshots.editing import EDITING
 from app.screenshots.forms import FORMS, WITHOUT_STREET
 from app.screenshots.frame import FRAME
-from app.screenshots.hand import Hand
 from app.screenshots.painting import PAINTING
+from app.screenshots.screenshot_window import ScreenshotWindow
+from app.screenshots.simulated_mouse import SimulatedMouse
 from app.screenshots.street import draw_street, open_street
-from app.screenshots.studio import Studio
 from app.screenshots.views import VIEWS
 from app.settings import Settings
 from app.theme import ThemeChoice
 from processing.output_streams import write_every_character
 from processing.text import Language
 
-ON_STREET: Mapping[str, Callable[[Studio], None]] = {
+ON_STREET: Mapping[str, Callable[[ScreenshotWindow], None]] = {
     **FRAME,
     **VIEWS,
     **CHECKING,
@@ -36,7 +36,7 @@ ON_STREET: Mapping[str, Callable[[Studio], None]] = {
     **EDITING,
     **FORMS,
 }
-NOTHING_OPEN: Mapping[str, Callable[[Studio], None]] = WITHOUT_STREET
+NOTHING_OPEN: Mapping[str, Callable[[ScreenshotWindow], None]] = WITHOUT_STREET
 _LANGUAGES: Mapping[str, tuple[Language, ...]] = {
     "en": ("en",),
     "ja": ("ja",),
@@ -66,7 +66,7 @@ def main(arguments: Sequence[str]) -> int:
     return 0
 
 
-def take_pictures(studio: Studio, names: Sequence[str]) -> None:
+def take_pictures(studio: ScreenshotWindow, names: Sequence[str]) -> None:
     """Make the scenes of these names, and a picture of each; nothing is open before and after."""
     if any(name in ON_STREET for name in names):
         open_street(studio)
@@ -86,7 +86,9 @@ def take_pictures(studio: Studio, names: Sequence[str]) -> None:
     studio.parts.document.close()
 
 
-def _studio(settings: Settings, out: Path, scratch: Path, size: tuple[int, int]) -> Studio:
+def _studio(
+    settings: Settings, out: Path, scratch: Path, size: tuple[int, int]
+) -> ScreenshotWindow:
     """A window of this size in the corner of the screen."""
     make_application().setCursorFlashTime(0)  # a caret that comes and goes never rests
     parts = build_window(settings, scratch / "projects")
@@ -94,7 +96,7 @@ def _studio(settings: Settings, out: Path, scratch: Path, size: tuple[int, int])
     parts.window.move(0, 0)
     parts.window.show()
     QTest.qWaitForWindowActive(parts.window)
-    return Studio(parts, out, scratch, Hand())
+    return ScreenshotWindow(parts, out, scratch, SimulatedMouse())
 
 
 def _size(words: str) -> tuple[int, int]:

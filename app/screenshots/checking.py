@@ -11,8 +11,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QTreeWidget
 
 from app.review import Review
+from app.screenshots.screenshot_window import ScreenshotWindow
 from app.screenshots.street import LEFT, RIGHT
-from app.screenshots.studio import Studio
 from processing.project.change import Change
 from processing.project.feature import Feature, Vertex
 from processing.project.found_features import found_features
@@ -27,38 +27,38 @@ _SAW_TEETH = 17
 _EMPTY_MAP = Text("Empty map", "図面を空にする")
 
 
-def waiting(studio: Studio) -> None:
+def waiting(studio: ScreenshotWindow) -> None:
     """Two runs that wait to be reviewed."""
     _found(studio)
     studio.bring("review")
 
 
-def candidate(studio: Studio) -> None:
+def candidate(studio: ScreenshotWindow) -> None:
     """A candidate in all views, and what can be done with it."""
     _open(studio)
     _judge(studio, 5)
 
 
-def worst(studio: Studio) -> None:
+def worst(studio: ScreenshotWindow) -> None:
     """The first candidate: the one of which its tool was least sure."""
     _open(studio)
 
 
-def correcting(studio: Studio) -> None:
+def correcting(studio: ScreenshotWindow) -> None:
     """A candidate that is being corrected."""
     _open(studio)
     _judge(studio, 2)
     studio.act("review-edit")
 
 
-def with_rejected(studio: Studio) -> None:
+def with_rejected(studio: ScreenshotWindow) -> None:
     """Rejected candidates are drawn as well."""
     _open(studio)
     _judge(studio, 9)
     studio.act("show-rejected")
 
 
-def done(studio: Studio) -> None:
+def done(studio: ScreenshotWindow) -> None:
     """All candidates were judged."""
     _open(studio)
     review = studio.parts.of(Review)
@@ -66,7 +66,7 @@ def done(studio: Studio) -> None:
     review.accept_from(0.0)
 
 
-def evaluation(studio: Studio) -> None:
+def evaluation(studio: ScreenshotWindow) -> None:
     """What became of the candidates, by tool, with the curve of reliability."""
     _found(studio)
     studio.parts.of(Review).open(_runs(studio), ReviewOrder.CONFIDENCE)
@@ -74,12 +74,12 @@ def evaluation(studio: Studio) -> None:
     studio.act("evaluation")
 
 
-def evaluation_empty(studio: Studio) -> None:
+def evaluation_empty(studio: ScreenshotWindow) -> None:
     """Nothing was judged yet."""
     studio.act("evaluation")
 
 
-def runs(studio: Studio) -> None:
+def runs(studio: ScreenshotWindow) -> None:
     """The runs in the project's tree, with what can be done to one."""
     _found(studio)
     studio.parts.of(Review).open(_runs(studio), ReviewOrder.CONFIDENCE)
@@ -92,11 +92,11 @@ def runs(studio: Studio) -> None:
     run = next(item for item in items if item.data(0, RUN))
     tree.scrollToItem(run)
     spot = tree.visualItemRect(run).center()
-    studio.hand.click(tree.viewport(), spot)
+    studio.mouse.click(tree.viewport(), spot)
     tree.customContextMenuRequested.emit(spot)
 
 
-def _open(studio: Studio) -> None:
+def _open(studio: ScreenshotWindow) -> None:
     """Candidates in the layout for checking; the queue is begun by its key."""
     _found(studio)
     studio.act("layout-checking")
@@ -105,7 +105,7 @@ def _open(studio: Studio) -> None:
     studio.settle()
 
 
-def _judge(studio: Studio, count: int) -> None:
+def _judge(studio: ScreenshotWindow, count: int) -> None:
     """Decide as somebody does who finds that unsure candidates are often wrong."""
     review = studio.parts.of(Review)
     for number in range(count):
@@ -117,7 +117,7 @@ def _judge(studio: Studio, count: int) -> None:
         studio.act("review-accept" if is_right else "review-reject")
 
 
-def _found(studio: Studio) -> None:
+def _found(studio: ScreenshotWindow) -> None:
     """Let a tool have found the curbs of the drawing piece by piece, instead of somebody."""
     document = studio.parts.document
     drawn = tuple(document.features())
@@ -158,11 +158,11 @@ def _candidate(feature: Feature, vertices: tuple[Vertex, ...], confidence: float
     return Candidate(feature.kind, geometry, xyz, np.array(points), confidence)
 
 
-def _runs(studio: Studio) -> tuple[str, ...]:
+def _runs(studio: ScreenshotWindow) -> tuple[str, ...]:
     return tuple(run.id for run in studio.parts.document.runs())
 
 
-CHECKING: Mapping[str, Callable[[Studio], None]] = {
+CHECKING: Mapping[str, Callable[[ScreenshotWindow], None]] = {
     "evaluation": evaluation,
     "evaluation-empty": evaluation_empty,
     "review-candidate": candidate,

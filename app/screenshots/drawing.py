@@ -6,16 +6,16 @@ from collections.abc import Callable, Mapping
 
 from PySide6.QtCore import QPoint, Qt
 
-from app.screenshots.hand import CONTROL, SHIFT
+from app.screenshots.screenshot_window import ScreenshotWindow
+from app.screenshots.simulated_mouse import CONTROL, SHIFT
 from app.screenshots.street import CARRIAGEWAY_M, LEFT, MARKING_M, RIGHT, SIDEWALK_M, at
-from app.screenshots.studio import Studio
 from processing.project.feature import Position
-from widgets.mouse_tools.draw_path import DrawPath
+from widgets.mouse_tools.draw_line import DrawLine
 
 _FOLLOWED_MS = 20_000
 
 
-def line(studio: Studio) -> None:
+def line(studio: ScreenshotWindow) -> None:
     """A white line being drawn, the mouse drawn to its edge."""
     studio.look(RIGHT, at(9.0, MARKING_M), 8)
     studio.letter("0")
@@ -23,7 +23,7 @@ def line(studio: Studio) -> None:
     studio.hover(studio.spot(RIGHT, at(11.5, 0.03)))
 
 
-def line_to_vertex(studio: Studio) -> None:
+def line_to_vertex(studio: ScreenshotWindow) -> None:
     """A gutter that is to end at a vertex of the curb."""
     studio.look(RIGHT, at(7.5, 0.0), 9)
     studio.letter("4")
@@ -31,45 +31,45 @@ def line_to_vertex(studio: Studio) -> None:
     studio.hover(_vertex_of_curb(studio, 4))
 
 
-def line_in_3d(studio: Studio) -> None:
+def line_in_3d(studio: ScreenshotWindow) -> None:
     """The same tool in 3D."""
     studio.look(RIGHT, at(9.0, MARKING_M), 6)
-    studio.hand.click(studio.view, studio.spot(RIGHT, at(9.0, MARKING_M)), CONTROL)
+    studio.mouse.click(studio.view, studio.spot(RIGHT, at(9.0, MARKING_M)), CONTROL)
     studio.letter("F")
     picture = studio.parts.scene_view.picture
     if picture is not None:
-        studio.hand.wheel(picture, picture.rect().center(), 8)
+        studio.mouse.wheel(picture, picture.rect().center(), 8)
     studio.settle()
     studio.letter("0")
     studio.draw(RIGHT, [at(5.0, MARKING_M), at(7.0, MARKING_M), at(9.0, MARKING_M)])
     if picture is not None:
         spot = studio.spot_3d(RIGHT, at(11.0, MARKING_M))
-        studio.hand.move(picture, spot - QPoint(7, 3))
-        studio.hand.move(picture, spot)
+        studio.mouse.move(picture, spot - QPoint(7, 3))
+        studio.mouse.move(picture, spot)
 
 
-def point(studio: Studio) -> None:
+def point(studio: ScreenshotWindow) -> None:
     """A sign and where it faces."""
     sign = (-11396.84, -35134.68, 127.94)
     studio.look(RIGHT, sign, 8)
     studio.letter("6")
     spot = studio.spot(RIGHT, sign)
-    studio.hand.drag(studio.view, [spot, spot + QPoint(60, 46)], CONTROL)
+    studio.mouse.drag(studio.view, [spot, spot + QPoint(60, 46)], CONTROL)
 
 
-def trace(studio: Studio) -> None:
+def trace(studio: ScreenshotWindow) -> None:
     """A curb that is followed."""
     _traced(studio, LEFT, (-11385.871, -35121.449, 125.696), (-11389.463, -35126.003, 125.712), 6)
     studio.hover(studio.spot(LEFT, (-11389.85, -35126.5, 125.62)))
 
 
-def trace_stopped(studio: Studio) -> None:
+def trace_stopped(studio: ScreenshotWindow) -> None:
     """A curb that ends before the second click."""
     begin, end = (-11393.104, -35130.616, 125.726), (-11404.609, -35145.199, 125.646)
     _traced(studio, LEFT, begin, end, 4)
 
 
-def arc(studio: Studio) -> None:
+def arc(studio: ScreenshotWindow) -> None:
     """An arc over a click."""
     studio.look(RIGHT, at(9.0, SIDEWALK_M), 8)
     studio.letter("3")
@@ -78,7 +78,7 @@ def arc(studio: Studio) -> None:
     studio.hover(studio.spot(RIGHT, at(11.5, 0.6)), CONTROL)
 
 
-def spline(studio: Studio) -> None:
+def spline(studio: ScreenshotWindow) -> None:
     """A smooth curve through clicks."""
     studio.look(RIGHT, at(9.0, SIDEWALK_M), 8)
     studio.letter("3")
@@ -87,7 +87,7 @@ def spline(studio: Studio) -> None:
     studio.hover(studio.spot(RIGHT, at(11.5, 1.6)), CONTROL)
 
 
-def area(studio: Studio) -> None:
+def area(studio: ScreenshotWindow) -> None:
     """An area, corner by corner."""
     studio.look(RIGHT, at(9.0, CARRIAGEWAY_M), 6)
     studio.choose_kind("Road marking")
@@ -96,7 +96,7 @@ def area(studio: Studio) -> None:
     studio.hover(studio.spot(RIGHT, at(6.3, -2.8)), CONTROL)
 
 
-def rectangle(studio: Studio) -> None:
+def rectangle(studio: ScreenshotWindow) -> None:
     """A rectangle by three points, with its size."""
     studio.look(RIGHT, at(9.0, -0.6), 10)
     studio.choose_kind("Grating")
@@ -105,7 +105,7 @@ def rectangle(studio: Studio) -> None:
     studio.hover(studio.spot(RIGHT, at(9.0, -0.6)), CONTROL)
 
 
-def circle(studio: Studio) -> None:
+def circle(studio: ScreenshotWindow) -> None:
     """A circle by three points, with its diameter."""
     studio.look(RIGHT, at(9.0, CARRIAGEWAY_M), 10)
     studio.letter("9")
@@ -114,26 +114,26 @@ def circle(studio: Studio) -> None:
     studio.hover(studio.spot(RIGHT, at(9.3, -2.0)), CONTROL)
 
 
-def parallel(studio: Studio) -> None:
+def parallel(studio: ScreenshotWindow) -> None:
     """A copy beside a curb, at a distance."""
     studio.look(RIGHT, at(9.0, 0.3), 7)
     studio.letter("O")
-    studio.hand.click(studio.view, _middle_of_curb(studio, 4))
+    studio.mouse.click(studio.view, _middle_of_curb(studio, 4))
     studio.hover(studio.spot(RIGHT, at(9.0, 0.6)), CONTROL)
 
 
-def plane(studio: Studio) -> None:
+def plane(studio: ScreenshotWindow) -> None:
     """Vertices on a working plane, where no point was measured."""
     studio.look(RIGHT, at(9.0, SIDEWALK_M), 6)
-    studio.hand.click(studio.view, studio.spot(RIGHT, at(9.0, SIDEWALK_M)))
+    studio.mouse.click(studio.view, studio.spot(RIGHT, at(9.0, SIDEWALK_M)))
     studio.letter("H")
     studio.letter("4")
     for along_m in (6.0, 8.0, 10.0):
-        studio.hand.click(studio.view, studio.spot(RIGHT, at(along_m, 1.7)), CONTROL)
+        studio.mouse.click(studio.view, studio.spot(RIGHT, at(along_m, 1.7)), CONTROL)
     studio.hover(studio.spot(RIGHT, at(12.0, 1.7)), CONTROL)
 
 
-def measure(studio: Studio) -> None:
+def measure(studio: ScreenshotWindow) -> None:
     """A distance with its read-out."""
     studio.look(RIGHT, at(9.0, 0.0), 7)
     studio.letter("M")
@@ -141,7 +141,7 @@ def measure(studio: Studio) -> None:
     studio.hover(studio.spot(RIGHT, at(11.0, 1.5)), CONTROL)
 
 
-def measure_area(studio: Studio) -> None:
+def measure_area(studio: ScreenshotWindow) -> None:
     """An area with its read-out, ended."""
     studio.look(RIGHT, at(9.0, CARRIAGEWAY_M), 6)
     studio.letter("M", SHIFT)
@@ -149,30 +149,32 @@ def measure_area(studio: Studio) -> None:
     studio.key(Qt.Key.Key_Return)
 
 
-def _traced(studio: Studio, drive: str, begin: Position, end: Position, notches: int) -> None:
+def _traced(
+    studio: ScreenshotWindow, drive: str, begin: Position, end: Position, notches: int
+) -> None:
     studio.look(drive, begin, notches)
     studio.letter("1")
     studio.letter("T")
-    studio.hand.click(studio.view, studio.spot(drive, begin))
-    studio.hand.click(studio.view, studio.spot(drive, end))
+    studio.mouse.click(studio.view, studio.spot(drive, begin))
+    studio.mouse.click(studio.view, studio.spot(drive, end))
     tool = studio.parts.toolbox.tool
-    if isinstance(tool, DrawPath):
+    if isinstance(tool, DrawLine):
         studio.wait(lambda: not tool.is_following, _FOLLOWED_MS)
 
 
-def _vertex_of_curb(studio: Studio, number: int) -> QPoint:
+def _vertex_of_curb(studio: ScreenshotWindow, number: int) -> QPoint:
     """Where a vertex of the drawn lower edge is."""
     curb = studio.feature("curb_lower", RIGHT)
     return studio.spot(RIGHT, curb.vertices[number].xyz)
 
 
-def _middle_of_curb(studio: Studio, number: int) -> QPoint:
+def _middle_of_curb(studio: ScreenshotWindow, number: int) -> QPoint:
     """The middle of a segment of the drawn lower edge."""
     one, other = _vertex_of_curb(studio, number), _vertex_of_curb(studio, number + 1)
     return (one + other) / 2
 
 
-DRAWING: Mapping[str, Callable[[Studio], None]] = {
+DRAWING: Mapping[str, Callable[[ScreenshotWindow], None]] = {
     "draw-arc": arc,
     "draw-area": area,
     "draw-circle": circle,

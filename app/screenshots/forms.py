@@ -8,10 +8,10 @@ from collections.abc import Callable, Mapping
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QCheckBox, QLineEdit, QTreeWidget
 
-from app.catalogue_wish import adopt_catalogue
-from app.screenshots.hand import CONTROL
+from app.catalogue_update import adopt_catalogue
+from app.screenshots.screenshot_window import ScreenshotWindow
+from app.screenshots.simulated_mouse import CONTROL
 from app.screenshots.street import RIGHT, at
-from app.screenshots.studio import Studio
 from processing.project.dropped_files import request_of_files
 from resources import path_of
 from widgets.dialogs.export_map import ExportForm
@@ -20,14 +20,14 @@ from widgets.dialogs.shortcuts import ShortcutsForm
 from widgets.dialogs.simulate import SimulateForm
 
 
-def import_form(studio: Studio) -> None:
+def import_form(studio: ScreenshotWindow) -> None:
     """What is to be imported."""
     studio.letter("I", CONTROL)
     form = studio.dialog(ImportForm)
     form.add_files(tuple(sorted(path_of("sample_street").glob("*.[lc][as][zv]"))))
 
 
-def export_form(studio: Studio) -> None:
+def export_form(studio: ScreenshotWindow) -> None:
     """What is to be written: the drawing, and points with their labels."""
     studio.letter("E", CONTROL)
     form = studio.dialog(ExportForm)
@@ -35,22 +35,22 @@ def export_form(studio: Studio) -> None:
     labelled.setChecked(True)
 
 
-def reference_system(studio: Studio) -> None:
+def reference_system(studio: ScreenshotWindow) -> None:
     """What the coordinates refer to."""
     studio.letter("R", CONTROL)
 
 
-def simulate_form(studio: Studio) -> None:
+def simulate_form(studio: ScreenshotWindow) -> None:
     """A street to be made, and how densely it would be measured."""
     studio.act("simulate")
     studio.dialog(SimulateForm)
 
 
-def shortcuts(studio: Studio) -> None:
+def shortcuts(studio: ScreenshotWindow) -> None:
     """All keys; a new one for the line belongs to something else."""
     studio.key(Qt.Key.Key_F1, CONTROL)
     form = studio.dialog(ShortcutsForm)
-    studio.hand.type(form.findChildren(QLineEdit)[0], "line")
+    studio.mouse.type(form.findChildren(QLineEdit)[0], "line")
     studio.settle()
     form.choose("tool-line")
     studio.settle()
@@ -59,7 +59,7 @@ def shortcuts(studio: Studio) -> None:
     studio.key_in_focus(Qt.Key.Key_P)
 
 
-def catalogue_question(studio: Studio) -> None:
+def catalogue_question(studio: ScreenshotWindow) -> None:
     """An office's catalogue that lacks kinds which the map uses."""
     whole = path_of("catalogue/level500.toml").read_text(encoding="utf-8")
     head, *kinds = whole.split("[[kind]]")
@@ -69,7 +69,7 @@ def catalogue_question(studio: Studio) -> None:
     adopt_catalogue(studio.parts, path)
 
 
-def images_missing(studio: Studio) -> None:
+def images_missing(studio: ScreenshotWindow) -> None:
     """A delivery whose images were not delivered: what the camera view says."""
     delivery = studio.scratch / "without images"
     shutil.copytree(path_of("sample_street"), delivery, ignore=shutil.ignore_patterns("*.jpg"))
@@ -78,10 +78,10 @@ def images_missing(studio: Studio) -> None:
     document.import_files(request_of_files((delivery,), ""))
     studio.wait(lambda: bool(document.drives()) and not studio.parts.jobs.is_busy)
     studio.bring("view-camera")
-    studio.parts.document.shared.cursor.move_to(studio.place(RIGHT, at(9.0, 0.5)))
+    studio.parts.document.shared.cursor.move_to(studio.position(RIGHT, at(9.0, 0.5)))
 
 
-def start_recent(studio: Studio) -> None:
+def start_recent(studio: ScreenshotWindow) -> None:
     """Recent projects, one of them gone."""
     settings, document = studio.parts.settings, studio.parts.document
     gone = studio.scratch / "県道12号 富士見町.zuka"
@@ -95,18 +95,18 @@ def start_recent(studio: Studio) -> None:
     studio.parts.start_page.show_recent(settings.recent_projects)
 
 
-def start_empty(studio: Studio) -> None:
+def start_empty(studio: ScreenshotWindow) -> None:
     """The first start."""
     for project in studio.parts.settings.recent_projects:
         studio.parts.start_page.forget_requested.emit(project.folder)
 
 
-def empty_project(studio: Studio) -> None:
+def empty_project(studio: ScreenshotWindow) -> None:
     """A project without a drive."""
     studio.parts.document.create(studio.scratch / "empty.zuka", "")
 
 
-FORMS: Mapping[str, Callable[[Studio], None]] = {
+FORMS: Mapping[str, Callable[[ScreenshotWindow], None]] = {
     "catalogue-question": catalogue_question,
     "form-export": export_form,
     "form-import": import_form,
@@ -114,7 +114,7 @@ FORMS: Mapping[str, Callable[[Studio], None]] = {
     "form-shortcuts": shortcuts,
     "form-simulate": simulate_form,
 }
-WITHOUT_STREET: Mapping[str, Callable[[Studio], None]] = {
+WITHOUT_STREET: Mapping[str, Callable[[ScreenshotWindow], None]] = {
     "start-recent": start_recent,
     "start-empty": start_empty,
     "empty-project": empty_project,

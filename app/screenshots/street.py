@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.sample_drawing import read_sample_drawing
-from app.screenshots.studio import Studio
+from app.screenshots.screenshot_window import ScreenshotWindow
 from processing.project.feature import Position
 
 RIGHT, LEFT = "right", "left"
@@ -24,7 +24,7 @@ def at(along_m: float, aside_m: float) -> Position:
     )
 
 
-def open_street(studio: Studio) -> None:
+def open_street(studio: ScreenshotWindow) -> None:
     """Import the street as a new project."""
     parts = studio.parts
     parts.start_page.demo_requested.emit()
@@ -33,15 +33,15 @@ def open_street(studio: Studio) -> None:
     studio.settle()
 
 
-def draw_street(studio: Studio) -> None:
+def draw_street(studio: ScreenshotWindow) -> None:
     """Draw what is on the street by clicks, as ``zuka demo`` does."""
     parts = studio.parts
     for wanted in read_sample_drawing():
         studio.show_drive(wanted.drive)
         parts.toolbox.choose_kind(parts.document.catalogue()[wanted.kind])
-        for xyz in wanted.places:
+        for xyz in wanted.positions:
             parts.image_view.show_one_to_one()
-            parts.image_view.center_on(studio.place(wanted.drive, xyz))
+            parts.image_view.center_on(studio.position(wanted.drive, xyz))
             studio.draw(wanted.drive, [xyz])
         parts.toolbox.complete()
     studio.tidy()

@@ -10,7 +10,7 @@ from processing.text import Text
 
 
 @dataclass(frozen=True)
-class BenchWish:
+class BenchmarkOptions:
     """How benchmarks are wanted.
 
     Attributes
@@ -80,5 +80,5 @@ class Measurement:
         return self.value <= self.target if self.is_at_most else self.value >= self.target
 
 
-Case = Callable[[BenchWish], tuple[Measurement, ...]]
+BenchmarkCase = Callable[[BenchmarkOptions], tuple[Measurement, ...]]
 """Measures, and gives the rows of its benchmark."""

@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.large_street import write_large_street
-from processing.bench.peers import told_seconds, written_pcd
+from processing.bench.peers import read_reported_seconds, write_pcd
 from processing.bench.timing import median_seconds, seconds_of
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
@@ -36,13 +36,13 @@ _WHAT = Text(
 )
 
 
-def measure_ground(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_ground(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """The adaptive method as the tool runs; the cloth simulation and PCL's filter where installed.
 
     The peers get coordinates in memory or in a file and give indices; reading and writing is not
     counted for them.
     """
-    points = wish.limited(_POINTS)
+    points = options.limited(_POINTS)
     with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
         folder = Path(name)
         cloud, trajectory = write_large_street(folder, points)
@@ -52,9 +52,9 @@ def measure_ground(wish: BenchWish) -> tuple[Measurement, ...]:
         local_xyz = drive.xyz(slice(0, drive.count))
         local_xyz -= local_xyz[0].copy()
         _tool_s(drive, folder / "ground")
-        ours = median_seconds(lambda: _tool_s(drive, folder / "ground"), wish.repeats(_REPEATS))
+        ours = median_seconds(lambda: _tool_s(drive, folder / "ground"), options.repeats(_REPEATS))
         peers = {"csf": _csf_s(local_xyz), "pcl": _pcl_s(local_xyz, folder)}
-    told = [
+    reported = [
         f"{name} {'not installed' if seconds is None else f'{seconds:.2f} s'}"
         for name, seconds in peers.items()
     ]
@@ -68,7 +68,7 @@ def measure_ground(wish: BenchWish) -> tuple[Measurement, ...]:
             "s",
             _MOST_S,
             is_at_most=True,
-            detail=f"{ours:.2f} s from the drive's columns to new ones; {', '.join(told)}",
+            detail=f"{ours:.2f} s from the drive's columns to new ones; {', '.join(reported)}",
             figures=figures,
         ),
     )
@@ -99,6 +99,6 @@ def _pcl_s(local_xyz: NDArray[np.float64], folder: Path) -> float | None:
     program = shutil.which(_PCL)
     if program is None:
         return None
-    cloud = written_pcd(folder / "cloud.pcd", local_xyz)
+    cloud = write_pcd(folder / "cloud.pcd", local_xyz)
     command = [program, str(cloud), str(folder / "ground.pcd"), "-approximate", "1"]
-    return told_seconds(command, _PCL_SAYS) / 1000.0
+    return read_reported_seconds(command, _PCL_SAYS) / 1000.0

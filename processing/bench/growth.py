@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.large_street import LongDelivery, write_long_delivery
 from processing.bench.timing import median_seconds, seconds_of
 from processing.image.attributes import colours
@@ -52,9 +52,9 @@ _WORKS: Mapping[str, Text] = {
 }
 
 
-def measure_growth(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_growth(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """The exponent with which the time of each work grows with the points, and its times."""
-    sizes = _sizes_within(wish)
+    sizes = _sizes_within(options)
     times: dict[str, list[float]] = {name: [] for name in _WORKS}
     for size in _rehearsed(sizes):
         with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
@@ -70,10 +70,10 @@ def exponent_of(sizes: Sequence[int], seconds: Sequence[float]) -> float:
     return float(slope)
 
 
-def _sizes_within(wish: BenchWish) -> list[int]:
+def _sizes_within(options: BenchmarkOptions) -> list[int]:
     """At least two of the sizes, or smaller ones where fewer points are wanted."""
-    sizes = [size for size in SIZES if size == wish.limited(size)]
-    most = wish.limited(SIZES[-1])
+    sizes = [size for size in SIZES if size == options.limited(size)]
+    most = options.limited(SIZES[-1])
     return sizes if len(sizes) > 1 else [max(1, most // 3), most]
 
 
@@ -85,26 +85,26 @@ def _rehearsed(sizes: list[int]) -> Iterator[int]:
 
 def _times_of(folder: Path, points: int) -> Iterator[tuple[str, float]]:
     delivery = write_long_delivery(folder, points, scanners=("left",), files=_FILES)
-    place = folder / "street.zuka"
-    yield "import", seconds_of(partial(_import, delivery, place))
-    yield "open", median_seconds(partial(_open, place), _REPEATS)
-    with closing(Project.open(place)) as project:
+    position = folder / "street.zuka"
+    yield "import", seconds_of(partial(_import, delivery, position))
+    yield "open", median_seconds(partial(_open, position), _REPEATS)
+    with closing(Project.open(position)) as project:
         (drive,) = project.drives
         yield from _image_times(drive)
         yield from _tool_times(drive, folder / "columns")
         yield from _label_times(project, drive, folder)
 
 
-def _import(delivery: LongDelivery, place: Path) -> None:
-    with closing(Project.create(place, "EPSG:6677")) as project:
+def _import(delivery: LongDelivery, position: Path) -> None:
+    with closing(Project.create(position, "EPSG:6677")) as project:
         request = ImportRequest(delivery.clouds, (delivery.trajectory,))
         made = import_drives(request, project.temporary_folder(), SilentMonitor())
         project.adopt_drives(made)
 
 
-def _open(place: Path) -> None:
+def _open(position: Path) -> None:
     """To the first tile that can be drawn of the drive's beginning."""
-    with closing(Project.open(place)) as project:
+    with closing(Project.open(position)) as project:
         (drive,) = project.drives
         image = image_of(drive, drive.image_kinds[0])
         image.raster(range(min(image.rows, 256)), range(min(image.width, 256)))
@@ -141,15 +141,15 @@ def _label_times(project: Project, drive: Drive, folder: Path) -> Iterator[tuple
     project.features.redo()
     out = folder / "labelled"
     out.mkdir()
-    place: Callable[[str], Path] = out.joinpath
+    position: Callable[[str], Path] = out.joinpath
     yield (
         "label-export",
-        seconds_of(partial(write_labelled_points, [drive], place, SilentMonitor())),
+        seconds_of(partial(write_labelled_points, [drive], position, SilentMonitor())),
     )
 
 
 def _row(name: str, sizes: list[int], seconds: list[float]) -> Measurement:
-    told = ", ".join(
+    reported = ", ".join(
         f"{size / 1e6:g} M {_short(one)}" for size, one in zip(sizes, seconds, strict=True)
     )
     return Measurement(
@@ -159,7 +159,7 @@ def _row(name: str, sizes: list[int], seconds: list[float]) -> Measurement:
         "exponent",
         MOST_EXPONENT,
         is_at_most=True,
-        detail=told,
+        detail=reported,
         figures={f"{size}_s": one for size, one in zip(sizes, seconds, strict=True)},
     )
 

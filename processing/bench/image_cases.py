@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.large_street import write_large_street
 from processing.bench.timing import median_seconds
 from processing.image.attributes import available, colours
@@ -28,9 +28,9 @@ _REPEATS = 5
 _SCREEN = (768, 1366)
 
 
-def measure_image(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_image(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """Points per second put into the raster of a whole drive, the slowest of the four kinds."""
-    with _large_drive(wish.limited(_POINTS)) as drive:
+    with _large_drive(options.limited(_POINTS)) as drive:
         speeds = {}
         for kind in drive.image_kinds:
             image = image_of(drive, kind)
@@ -53,13 +53,13 @@ def measure_image(wish: BenchWish) -> tuple[Measurement, ...]:
     return (row,)
 
 
-def measure_switch(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_switch(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """Time to colour a full screen of pixels by another attribute, the slowest of those at hand.
 
     The columns that the window prepares in the background are there, as they are for a surveyor
     some seconds after the import.
     """
-    with _large_drive(wish.limited(_POINTS)) as drive:
+    with _large_drive(options.limited(_POINTS)) as drive:
         for tool in (NORMALS, SEGMENTS):
             request = RunRequest(tool.id, drive, tool.parameters())
             found = run(request, SilentMonitor(), into=drive.folder.parent / tool.id)

@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.import_run import decode
 from processing.bench.large_import import import_watched, memory_row
 from processing.bench.large_street import write_large_street, write_long_delivery
@@ -22,19 +22,19 @@ _FILES = 4
 _REPEATS = 5
 
 
-def measure_import(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_import(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """Import of 3 M points to a drive, against decoding the same LAZ by laspy and lazrs alone.
 
     The two take turns; the ratio of their medians is judged. Kernels are compiled before.
     """
-    points = wish.limited(_TIMED_POINTS)
+    points = options.limited(_TIMED_POINTS)
     with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
         folder = Path(name)
         cloud, trajectory = write_large_street(folder, points)
         request = ImportRequest((cloud,), (trajectory,))
         ours, theirs = alternating(
             [importing(request, folder / "import"), lambda: decode([cloud])],
-            wish.repeats(_REPEATS),
+            options.repeats(_REPEATS),
         )
     row = Measurement(
         "import",
@@ -52,13 +52,13 @@ def measure_import(wish: BenchWish) -> tuple[Measurement, ...]:
     return (row,)
 
 
-def measure_import_memory(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_import_memory(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """Peak memory over the baseline while 100 M points of two scanners are imported.
 
     The baseline is the same process with its modules loaded, before it opens a file; processes
     that it starts are counted with it.
     """
-    points = wish.limited(_LARGE_POINTS)
+    points = options.limited(_LARGE_POINTS)
     with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
         folder = Path(name)
         delivery = write_long_delivery(folder, points, files=_FILES)

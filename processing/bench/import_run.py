@@ -40,21 +40,21 @@ def decode(clouds: Sequence[Path]) -> None:
                 pass
 
 
-def _tell(word: str) -> None:
+def _report(word: str) -> None:
     sys.stdout.write(f"{word} {time.monotonic()}\n")
     sys.stdout.flush()
 
 
 def main(what: str, names: Sequence[str]) -> None:
     """Do one of the two, and tell when."""
-    _tell("ready")
+    _report("ready")
     if what == "decode":
         decode([Path(name) for name in names])
     else:
         project, trajectory, *clouds = names
         trajectories = () if trajectory == "-" else (Path(trajectory),)
         import_into(Path(project), trajectories, tuple(map(Path, clouds)))
-    _tell("done")
+    _report("done")
 
 
 if __name__ == "__main__":

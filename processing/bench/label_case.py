@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.large_street import write_large_street
 from processing.bench.timing import seconds_of
 from processing.labels.label_column import labels_of
@@ -26,11 +26,11 @@ _REPEATS = 5
 _CLASS = 2
 
 
-def measure_labels(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_labels(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """Undo of a lasso over a million points of three; every third one, the worst case on disk."""
     with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
         folder = Path(name)
-        cloud, trajectory = write_large_street(folder, wish.limited(_POINTS))
+        cloud, trajectory = write_large_street(folder, options.limited(_POINTS))
         with closing(Project.create(folder / "street.zuka", "EPSG:6677")) as project:
             request = ImportRequest((cloud,), (trajectory,))
             made = import_drives(request, project.temporary_folder(), SilentMonitor())

@@ -6,7 +6,7 @@ import json
 import tempfile
 from pathlib import Path
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.large_import import import_watched, measure_large_import
 from processing.bench.large_street import write_long_delivery
 from processing.bench.large_window import window_rows
@@ -20,7 +20,7 @@ _REHEARSED = 100_000
 _DISPLAY = "display"
 
 
-def measure_large(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_large(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """A project of 300 M points from the delivered files to the drawing that is handed in.
 
     Raises
@@ -33,17 +33,17 @@ def measure_large(wish: BenchWish) -> tuple[Measurement, ...]:
         project, out = folder / "street.zuka", folder / "out"
         out.mkdir()
         rows: tuple[Measurement, ...] = ()
-        if wish.project is not None:
-            link_project(wish.project, project)
+        if options.project is not None:
+            link_project(options.project, project)
         else:
-            points = wish.points or wish.limited(_POINTS)
+            points = options.points or options.limited(_POINTS)
             files = max(2, points // _POINTS_PER_FILE)
             delivery = write_long_delivery(folder, points, scanners=("left",), files=files)
-            if wish.share == 1.0:  # what isn't judged needs no rehearsal
+            if options.share == 1.0:  # what isn't judged needs no rehearsal
                 rehearsal = write_long_delivery(folder, _REHEARSED, scanners=("left",))
                 import_watched(rehearsal, folder / "rehearsal.zuka")
             rows = measure_large_import(delivery, project, points)
-        run = run_watched("app.large_bench", [str(project), str(out), str(wish.share)])
+        run = run_watched("app.large_bench", [str(project), str(out), str(options.share)])
         if run.status != 0:
             if _DISPLAY in run.complaints:
                 raise no_window(run.complaints)

@@ -39,7 +39,7 @@ def measure_large_import(
         "Import of {points} points in {files} files, times decoding them by laspy and lazrs",
         "{files}ファイル・{points}点のインポート（laspyとlazrsによる復号時間に対する比）",
     )
-    told = f"import {importing.seconds:.1f} s, decoding {decoding_s:.1f} s"
+    reported = f"import {importing.seconds:.1f} s, decoding {decoding_s:.1f} s"
     return (
         Measurement(
             "large-import",
@@ -48,7 +48,7 @@ def measure_large_import(
             "x",
             2.0,
             is_at_most=True,
-            detail=told,
+            detail=reported,
             figures={"points": points, "import_s": importing.seconds, "decoding_s": decoding_s},
         ),
         memory_row("large-import-memory", _MEMORY, importing.resident_gib, importing.anonymous_gib),
@@ -70,7 +70,7 @@ def import_watched(delivery: LongDelivery, project: Path) -> WatchedImport:
 
 
 def memory_row(
-    name: str, what: Text, resident: float | None, anonymous: float | None, told: str = ""
+    name: str, what: Text, resident: float | None, anonymous: float | None, reported: str = ""
 ) -> Measurement:
     """GiB over the baseline: all that is resident is judged, mapped pages of files included."""
     figures: dict[str, float] = {}
@@ -85,7 +85,7 @@ def memory_row(
         "GiB",
         1.5,
         is_at_most=True,
-        detail="; ".join(words + [told] * bool(told)),
+        detail="; ".join(words + [reported] * bool(reported)),
         figures=figures,
     )
 

@@ -42,7 +42,7 @@ class _Repetition:
     Attributes
     ----------
     start_s, duration_s : float
-        A whole number of turns and pulses, which keeps the clock's rhythm across the seam.
+        A whole number of revolutions and pulses, which keeps the clock's rhythm across the seam.
     shift_m : (3,) float64
     """
 
@@ -163,7 +163,7 @@ def _write_scanner(
 def _write_trajectory(
     path: Path, trajectory: Trajectory, repetition: _Repetition, repeats: int
 ) -> None:
-    """The way of the vehicle, before the first point, again and again, and a little beyond."""
+    """The vehicle's path, before the first point, again and again, and a little beyond."""
     table = np.column_stack([trajectory.time, trajectory.xyz, trajectory.roll_pitch_heading_deg])
     start, duration = repetition.start_s, repetition.duration_s
     inside = table[(trajectory.time >= start) & (trajectory.time < start + duration)]

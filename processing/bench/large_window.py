@@ -12,7 +12,7 @@ from processing.bench.timing import percentile
 from processing.bench.watched_run import WatchedRun
 from processing.text import Text
 
-Step = Mapping[str, Any]  # as JSON gives it
+StepRecord = Mapping[str, Any]  # as JSON gives it
 """``step``, ``began``, ``ended``, ``longest_pause_s``, all s; ``times_s`` by what took them."""
 
 
@@ -135,13 +135,13 @@ _ROWS = (
 )
 
 
-def window_rows(run: WatchedRun, steps: Sequence[Step]) -> tuple[Measurement, ...]:
+def window_rows(run: WatchedRun, steps: Sequence[StepRecord]) -> tuple[Measurement, ...]:
     """A row for each that is judged, and the memory."""
     by_name = {step["step"]: step for step in steps}
     return tuple(_row(row, by_name[row.step]) for row in _ROWS) + _memory_rows(run, by_name)
 
 
-def _row(row: _Judged, step: Step) -> Measurement:
+def _row(row: _Judged, step: StepRecord) -> Measurement:
     milliseconds = [1000 * seconds for seconds in step["times_s"][row.times]]
     median, most = percentile(milliseconds, 50), percentile(milliseconds, 99)
     figures = {
@@ -173,7 +173,7 @@ def _row(row: _Judged, step: Step) -> Measurement:
     )
 
 
-def _memory_rows(run: WatchedRun, steps: Mapping[str, Step]) -> tuple[Measurement, ...]:
+def _memory_rows(run: WatchedRun, steps: Mapping[str, StepRecord]) -> tuple[Measurement, ...]:
     baseline, first, end = (steps[name] for name in ("baseline", "open", "end"))
     peak = run.over_baseline(baseline["ended"], first["began"], end["ended"])
     left = run.over_baseline(baseline["ended"], end["began"], end["ended"])

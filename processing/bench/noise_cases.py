@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.large_street import write_large_street
 from processing.bench.peers import (
     OUTLIER_DEVIATIONS,
@@ -61,9 +61,9 @@ _COMBINED = Text(
 )
 
 
-def measure_noise(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_noise(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """Both methods on coordinates in memory, as the peer's; the combined as the tool runs."""
-    points = wish.limited(_POINTS)
+    points = options.limited(_POINTS)
     with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
         folder = Path(name)
         cloud, trajectory = write_large_street(folder, points)
@@ -72,7 +72,7 @@ def measure_noise(wish: BenchWish) -> tuple[Measurement, ...]:
         drive = Drive(drive_folder)
         local_xyz = drive.xyz(slice(0, drive.count))
         local_xyz -= local_xyz[0].copy()
-        repeats = wish.repeats(_REPEATS)
+        repeats = options.repeats(_REPEATS)
         into = folder / "noise"
         rows = [
             _beside_the_peer(method, local_xyz, _tool_s(drive, method, into), repeats)

@@ -12,7 +12,7 @@ import laspy
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.import_cases import importing
 from processing.bench.large_street import write_large_street
 from processing.bench.peers import (
@@ -42,13 +42,13 @@ _PEERS = {
 }
 
 
-def measure_normals(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_normals(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """The tool "normals" on a drive, from its columns to new ones, and those of peers, in turns.
 
     Ours looks at neighbours in the image within 0.2 m, turns normals to the scanner and finds
     shapes as well; reading and writing its columns is counted.
     """
-    points = wish.limited(_POINTS)
+    points = options.limited(_POINTS)
     with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
         folder = Path(name)
         cloud, trajectory = write_large_street(folder, points)
@@ -64,19 +64,19 @@ def measure_normals(wish: BenchWish) -> tuple[Measurement, ...]:
                 "pcl": lambda: pcl_normals_s(local_xyz, folder),
                 "cloudcompare": lambda: cloudcompare_normals_s(local_xyz, folder),
             },
-            wish.repeats(_REPEATS),
+            options.repeats(_REPEATS),
         )
     ours = times["zuka"] or 0.0
     return tuple(_normals_row(peer, points, ours, times[peer]) for peer in _PEERS)
 
 
-def measure_searchable(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_searchable(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """From a LAZ file to a cloud that can be asked for neighbours.
 
     Ours is the import: a drive on disk, whose rows and columns are its index. The peer's is
     decoding by laspy, and Open3D's cloud and tree, in memory and gone with the process.
     """
-    points = wish.limited(_POINTS)
+    points = options.limited(_POINTS)
     with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
         folder = Path(name)
         cloud, trajectory = write_large_street(folder, points)
@@ -86,7 +86,7 @@ def measure_searchable(wish: BenchWish) -> tuple[Measurement, ...]:
                 importing(request, folder / "import"),
                 lambda: open3d_searchable(_decoded(cloud)),
             ],
-            wish.repeats(_REPEATS),
+            options.repeats(_REPEATS),
         )
     row = Measurement(
         "searchable",
@@ -116,8 +116,8 @@ def _in_turns(acts: dict[str, Callable[[], float | None]], repeats: int) -> dict
 
 
 def _median(seconds: list[float | None]) -> float | None:
-    told = [one for one in seconds if one is not None]
-    return statistics.median(told) if told else None
+    reported = [one for one in seconds if one is not None]
+    return statistics.median(reported) if reported else None
 
 
 def _our_normals_s(drive: Drive, into: Path) -> float:

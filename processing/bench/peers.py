@@ -80,7 +80,7 @@ def pcl_normals_s(local_xyz: NDArray[np.float64], folder: Path) -> float | None:
         return None
     source = _written(folder / "peer.pcd", _PCD, local_xyz)
     command = [_PCL, str(source), str(folder / "peer-normals.pcd"), "-k", str(MOST_NEIGHBOURS)]
-    return told_seconds(command, _PCL_SAYS) / 1000
+    return read_reported_seconds(command, _PCL_SAYS) / 1000
 
 
 def cloudcompare_normals_s(local_xyz: NDArray[np.float64], folder: Path) -> float | None:
@@ -90,10 +90,12 @@ def cloudcompare_normals_s(local_xyz: NDArray[np.float64], folder: Path) -> floa
     source = _written(folder / "peer.ply", _PLY, local_xyz)
     quiet = [_CLOUDCOMPARE, "-SILENT", "-AUTO_SAVE", "OFF", "-O", str(source)]
     hidden = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
-    return told_seconds([*quiet, "-OCTREE_NORMALS", str(RADIUS_M)], _CLOUDCOMPARE_SAYS, hidden)
+    return read_reported_seconds(
+        [*quiet, "-OCTREE_NORMALS", str(RADIUS_M)], _CLOUDCOMPARE_SAYS, hidden
+    )
 
 
-def written_pcd(path: Path, local_xyz: NDArray[np.float64]) -> Path:
+def write_pcd(path: Path, local_xyz: NDArray[np.float64]) -> Path:
     """The points as a binary PCD file, written if it isn't there."""
     return _written(path, _PCD, local_xyz)
 
@@ -105,7 +107,7 @@ def _written(path: Path, header: str, local_xyz: NDArray[np.float64]) -> Path:
     return path
 
 
-def told_seconds(
+def read_reported_seconds(
     command: list[str], says: re.Pattern[str], environment: Mapping[str, str] | None = None
 ) -> float:
     """The time that a program says it needed.

@@ -7,14 +7,14 @@ import statistics
 import subprocess
 import sys
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.start_case import no_window
 from processing.text import Text
 
 _COUNT = 50
 
 
-def measure_review(wish: BenchWish) -> tuple[Measurement, ...]:  # noqa: ARG001 - it takes no points
+def measure_review(options: BenchmarkOptions) -> tuple[Measurement, ...]:  # noqa: ARG001 - it takes no points
     """Milliseconds until five views have the next of 50 candidates in their middle, painted.
 
     Raises

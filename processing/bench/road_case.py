@@ -7,15 +7,15 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.growth import MOST_EXPONENT, exponent_of
 from processing.bench.road_run import ROAD_TOOLS, StageWatch, run_tools
 from processing.bench.watched_run import run_watched
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
+from processing.simulate.requests import StreetRequest
 from processing.simulate.streets import simulate_street
-from processing.simulate.wishes import StreetWish
 from processing.text import Text
 
 _POINTS, _LENGTH_M, _SPEED_KM_H = 3_000_000, 174.0, 61.2
@@ -26,14 +26,14 @@ _LEAST_PULSES = 300
 _REPEATS = 3
 
 
-def measure_road(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_road(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """Both tools, as for 3 M points: seconds, growth with length, memory, how soon they stop."""
-    share = wish.limited(_POINTS) / _POINTS
+    share = options.limited(_POINTS) / _POINTS
     with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
         folder = Path(name)
         roads = [_drives(folder / f"{n}", _street(part, share)) for n, part in enumerate(_LENGTHS)]
         _seconds(roads[0], folder / "first", 1)  # kernels are compiled
-        repeats = wish.repeats(_REPEATS)
+        repeats = options.repeats(_REPEATS)
         times = [_seconds(road, folder / f"run{n}", repeats) for n, road in enumerate(roads)]
         watches = run_tools(roads[1], folder / "stages")
         held = _held_gib(roads, folder / "watched")
@@ -42,9 +42,9 @@ def measure_road(wish: BenchWish) -> tuple[Measurement, ...]:
     return (*rows, _memory_row(points, held), _stop_row(watches))
 
 
-def _street(part: float, share: float) -> StreetWish:
+def _street(part: float, share: float) -> StreetRequest:
     """A country road with gutters, recorded by two heads at 17 m/s."""
-    return StreetWish(
+    return StreetRequest(
         seed=_SEED,
         length_m=max(10.0, _LENGTH_M * part * min(1.0, 10 * share)),
         style="rural",
@@ -54,8 +54,8 @@ def _street(part: float, share: float) -> StreetWish:
     )
 
 
-def _drives(folder: Path, wish: StreetWish) -> tuple[Drive, ...]:
-    made = simulate_street(wish, folder / "street", SilentMonitor())
+def _drives(folder: Path, options: StreetRequest) -> tuple[Drive, ...]:
+    made = simulate_street(options, folder / "street", SilentMonitor())
     request = ImportRequest(made.points, made.trajectories)
     folders = import_drives(request, folder / "drives", SilentMonitor())
     return tuple(Drive(one) for one in folders)
@@ -92,7 +92,7 @@ def _road_row(
         for stage, part in watch.seconds.items()
         if part >= 0.01 * sum(seconds.values())
     )
-    told = ", ".join(f"{tool} {one:.2f} s" for tool, one in seconds.items())
+    reported = ", ".join(f"{tool} {one:.2f} s" for tool, one in seconds.items())
     return Measurement(
         "road",
         Text(
@@ -103,14 +103,16 @@ def _road_row(
         "s",
         _MOST_S,
         is_at_most=True,
-        detail=f"{points:,} points of two heads: {told}; {stages}",
+        detail=f"{points:,} points of two heads: {reported}; {stages}",
         figures={"points": points, **{f"{tool}_s": one for tool, one in seconds.items()}},
     )
 
 
 def _growth_row(points: Sequence[int], times: Sequence[dict[str, float]]) -> Measurement:
     whole = [sum(one.values()) for one in times]
-    told = ", ".join(f"{n / 1e6:.1f} M {one:.2f} s" for n, one in zip(points, whole, strict=True))
+    reported = ", ".join(
+        f"{n / 1e6:.1f} M {one:.2f} s" for n, one in zip(points, whole, strict=True)
+    )
     return Measurement(
         "road-growth",
         Text("Growth: curbs and gutters with length", "増え方: 延長に対する縁石・側溝の処理時間"),
@@ -118,14 +120,14 @@ def _growth_row(points: Sequence[int], times: Sequence[dict[str, float]]) -> Mea
         "exponent",
         MOST_EXPONENT,
         is_at_most=True,
-        detail=told,
+        detail=reported,
         figures={f"{n}_s": one for n, one in zip(points, whole, strict=True)},
     )
 
 
 def _memory_row(points: Sequence[int], held: Sequence[float | None]) -> Measurement:
     known = [one for one in held if one is not None]
-    told = ", ".join(
+    reported = ", ".join(
         f"{n / 1e6:.1f} M {'–' if one is None else f'{one:.2f} GiB'}"
         for n, one in zip(points, held, strict=True)
     )
@@ -139,20 +141,20 @@ def _memory_row(points: Sequence[int], held: Sequence[float | None]) -> Measurem
         "GiB",
         _MOST_GIB,
         is_at_most=True,
-        detail=told,
+        detail=reported,
         figures={f"{n}_gib": one for n, one in zip(points, held, strict=True) if one is not None},
     )
 
 
 def _stop_row(watches: dict[str, StageWatch]) -> Measurement:
-    told = {tool: 1000 * watch.longest_s for tool, watch in watches.items()}
+    reported = {tool: 1000 * watch.longest_s for tool, watch in watches.items()}
     return Measurement(
         "road-stop",
         Text("Longest time until a cancelled run stops", "中止してから止まるまでの最長時間"),
-        max(told.values()),
+        max(reported.values()),
         "ms",
         _MOST_STOP_MS,
         is_at_most=True,
-        detail=", ".join(f"{tool} {one:.0f} ms" for tool, one in told.items()),
-        figures={f"{tool}_ms": one for tool, one in told.items()},
+        detail=", ".join(f"{tool} {one:.0f} ms" for tool, one in reported.items()),
+        figures={f"{tool}_ms": one for tool, one in reported.items()},
     )

@@ -8,19 +8,19 @@ from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.timing import seconds_of
 from processing.monitor import SilentMonitor
 from processing.simulate.forecast import forecast_street
 from processing.simulate.mesh import Mesh
-from processing.simulate.scanning.beams import Beams, Spin, beams_of
-from processing.simulate.scanning.casting import Scene
-from processing.simulate.scanning.passes import Driving, pass_of
+from processing.simulate.requests import StreetRequest
+from processing.simulate.scanning.beams import Beams, ScanPattern, beams_of
+from processing.simulate.scanning.casting import RaycastScene
 from processing.simulate.scanning.sensors import sensor_of
+from processing.simulate.scanning.simulated_passes import Driving, pass_of
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import style_of
 from processing.simulate.streets import simulate_street
-from processing.simulate.wishes import StreetWish
 from processing.text import Text
 
 _POINTS = 5_000_000
@@ -30,13 +30,13 @@ _LEAST_M, _LEAST_PULSES = 10.0, 50
 _RAYS_AT_ONCE = 100_000
 
 
-def measure_simulate(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_simulate(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """Points per second of a whole simulation: building, recording, truth and files.
 
     Beside it, in the same run, Open3D casts as many rays from the same places at the same
     triangles, all in one tree that is built before.
     """
-    order = _street_of(wish.limited(_POINTS))
+    order = _street_of(options.limited(_POINTS))
     with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
         # Kernels are compiled, libraries loaded.
         simulate_street(_street_of(0), Path(name) / "first", SilentMonitor())
@@ -73,16 +73,16 @@ def measure_simulate(wish: BenchWish) -> tuple[Measurement, ...]:
     return (row,)
 
 
-def _street_of(points: int) -> StreetWish:
+def _street_of(points: int) -> StreetRequest:
     """A street in a town that gives about so many points."""
-    short = StreetWish(
+    short = StreetRequest(
         seed=_SEED, length_m=_LEAST_M, speed_km_h=_SPEED_KM_H, pulses=_LEAST_PULSES, images=False
     )
     usual = sensor_of(short.sensor, "mobile").pulses
     least = forecast_street(short).points * usual / _LEAST_PULSES
     length_m = max(_LEAST_M, _LEAST_M * points / least)
     pulses = round(usual * min(1.0, points / least))
-    return StreetWish(
+    return StreetRequest(
         seed=_SEED,
         length_m=length_m,
         speed_km_h=_SPEED_KM_H,
@@ -91,23 +91,25 @@ def _street_of(points: int) -> StreetWish:
     )
 
 
-def _bare_casting(order: StreetWish) -> tuple[float, int]:
+def _bare_casting(order: StreetRequest) -> tuple[float, int]:
     """Seconds for casting all rays of a street at all its triangles, and how many they are."""
     street = Street(order.seed, style_of(order.style), order.length_m)
     mesh = Mesh.joined(street.section(row).mesh for row in range(len(street.plans)))
-    scene = Scene(mesh, street.alignment.at(order.length_m / 2, 0.0, 0.0))
+    scene = RaycastScene(mesh, street.alignment.at(order.length_m / 2, 0.0, 0.0))
     seconds, rays = 0.0, 0
     for beams in _rays(street, order):
-        seconds += seconds_of(partial(scene.cast, beams.origins, beams.ways))
+        seconds += seconds_of(partial(scene.cast, beams.origins, beams.directions))
         rays += beams.time_s.size
     return seconds, rays
 
 
-def _rays(street: Street, order: StreetWish) -> Iterator[Beams]:
+def _rays(street: Street, order: StreetRequest) -> Iterator[Beams]:
     sensor = sensor_of(order.sensor, "mobile")
     driven = pass_of(street, 0, Driving(order.speed_km_h / 3.6, order.stops, order.drift_m))
-    spin = Spin(order.pulses, sensor.turns_per_s, 0.0)
-    pulses = int(driven.duration_s * spin.rate_hz)
+    scan_pattern = ScanPattern(order.pulses, sensor.turns_per_s, 0.0)
+    pulses = int(driven.duration_s * scan_pattern.rate_hz)
     for head in sensor.heads:
         for first in range(0, pulses, _RAYS_AT_ONCE):
-            yield beams_of(driven, head, spin, range(first, min(pulses, first + _RAYS_AT_ONCE)))
+            yield beams_of(
+                driven, head, scan_pattern, range(first, min(pulses, first + _RAYS_AT_ONCE))
+            )

@@ -6,7 +6,7 @@ import subprocess
 import sys
 import time
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.errors import MissingInput
 from processing.text import Text
 
@@ -32,7 +32,7 @@ with tempfile.TemporaryDirectory() as folder:
 """
 
 
-def measure_start(wish: BenchWish) -> tuple[Measurement, ...]:  # noqa: ARG001 - it takes no points
+def measure_start(options: BenchmarkOptions) -> tuple[Measurement, ...]:  # noqa: ARG001 - it takes no points
     """Seconds from starting the process to a painted window that takes events.
 
     Raises
@@ -66,9 +66,9 @@ def measure_start(wish: BenchWish) -> tuple[Measurement, ...]:  # noqa: ARG001 -
     return (row,)
 
 
-def no_window(told: str) -> MissingInput:
+def no_window(reported: str) -> MissingInput:
     """The refusal when a process of the window ended, with its last words."""
-    last = told.strip().splitlines()[-1:] or [""]
+    last = reported.strip().splitlines()[-1:] or [""]
     return MissingInput(
         Text("The window could not be shown.", "ウィンドウを表示できません。"),
         Text.same(last[0]),

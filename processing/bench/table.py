@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from processing.bench.case import Measurement
-from processing.errors import told_as_user_error
-from processing.formats.safe_write import written_safely
+from processing.errors import report_as_user_error
+from processing.formats.safe_write import write_safely
 
 KEPT = "## What the figures mean"
 """From this heading on, the page is written by people, and stays."""
@@ -77,7 +77,7 @@ def write_table(page: Path, circumstances: Circumstances, rows: Sequence[Measure
     NoSpace
     """
     data = page.with_suffix(".json")
-    with told_as_user_error(page):
+    with report_as_user_error(page):
         before = json.loads(data.read_text("utf-8")) if data.exists() else []
         text = page.read_text("utf-8") if page.exists() else ""
     new = {row.name for row in rows}
@@ -87,13 +87,13 @@ def write_table(page: Path, circumstances: Circumstances, rows: Sequence[Measure
     runs = [run for run in runs if run["rows"]]
     runs.append(_described(circumstances, rows))
     kept = KEPT + text.partition(KEPT)[2] if KEPT in text else f"{KEPT}\n"
-    with written_safely(data) as path:
+    with write_safely(data) as path:
         path.write_text(json.dumps(runs, ensure_ascii=False, indent=1) + "\n", "utf-8")
-    with written_safely(page) as path:
+    with write_safely(page) as path:
         path.write_text(_page_of(runs) + kept, "utf-8")
 
 
-def described(row: Measurement) -> dict[str, object]:
+def describe_row(row: Measurement) -> dict[str, object]:
     """A row as JSON has it."""
     return {
         "name": row.name,
@@ -121,7 +121,7 @@ def _described(circumstances: Circumstances, rows: Sequence[Measurement]) -> dic
         "date": circumstances.date,
         "machine": circumstances.machine,
         "load": list(circumstances.load),
-        "rows": [described(row) for row in rows],
+        "rows": [describe_row(row) for row in rows],
     }
 
 
@@ -135,13 +135,13 @@ def _page_of(runs: Sequence[_Json]) -> str:
 
 def _section(run: _Json) -> str:
     load = " to ".join(f"{one:g}" for one in run["load"])
-    told = f"{run['date']}; {run['machine']}."
+    reported = f"{run['date']}; {run['machine']}."
     if load:
-        told += f" Processes that wanted a core, before and after: {load}."
+        reported += f" Processes that wanted a core, before and after: {load}."
         if run["load"][0] > _QUIET:
-            told += " **The machine was busy with other work.**"
+            reported += " **The machine was busy with other work.**"
     lines = "".join(map(_line, run["rows"]))
-    return f"## `{run['command']}`\n\n{told}\n\n{_HEAD}{lines}"
+    return f"## `{run['command']}`\n\n{reported}\n\n{_HEAD}{lines}"
 
 
 def _line(row: _Json) -> str:

@@ -8,22 +8,22 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-Act = Callable[[], object]
+TimedCall = Callable[[], object]
 
 
-def seconds_of(act: Act) -> float:
+def seconds_of(act: TimedCall) -> float:
     """How long a call takes."""
     start = time.perf_counter()
     act()
     return time.perf_counter() - start
 
 
-def median_seconds(act: Act, repeats: int) -> float:
+def median_seconds(act: TimedCall, repeats: int) -> float:
     """The median of so many calls."""
     return statistics.median(seconds_of(act) for _ in range(repeats))
 
 
-def alternating(acts: Sequence[Act], repeats: int) -> list[float]:
+def alternating(acts: Sequence[TimedCall], repeats: int) -> list[float]:
     """The median seconds of each of several acts that take turns, so that all meet the same day.
 
     Each is done once before, unmeasured: kernels are compiled, files are in memory.

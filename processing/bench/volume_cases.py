@@ -12,18 +12,18 @@ from contourpy import contour_generator
 from numpy.typing import NDArray
 
 from processing.bench import volume_site
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.road_run import StageWatch
 from processing.bench.timing import alternating, median_seconds, seconds_of
 from processing.earthwork.comparison import compare
-from processing.earthwork.contours import LineWish, contour_lines
+from processing.earthwork.contours import ContourOptions, contour_lines
 from processing.earthwork.epoch_ground import ground_of_drives
 from processing.earthwork.heat_map import change_colours
 from processing.earthwork.tin_volume import volume_between
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.earthwork.volume_parameters import VolumeParameters
 from processing.earthwork.volume_result import VolumeResult
-from processing.earthwork.within import Within
+from processing.earthwork.volume_scope import VolumeScope
 from processing.ground.cells import CellGrid
 from processing.ground.drive_points import DrivePoints
 from processing.ground.ground_columns import GROUND
@@ -41,13 +41,13 @@ _INTERVAL_M = 0.1
 _REPEATS = 3
 
 
-def measure_volume(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_volume(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """A volume of two epochs, from opened drives to its result, with the time of each stage.
 
     Beside it numpy sums the same ground points into the same cells and subtracts their means:
     what the least of volumes costs, without holes, registration or uncertainty.
     """
-    points = wish.limited(_POINTS)
+    points = options.limited(_POINTS)
     with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
         before, after = (
             volume_site.scanned_drives(Path(name), points, is_later=is_later)
@@ -55,7 +55,7 @@ def measure_volume(wish: BenchWish) -> tuple[Measurement, ...]:
         )
         _volume(before, after, StageWatch())
         watches = []
-        for _ in range(wish.repeats(_REPEATS)):
+        for _ in range(options.repeats(_REPEATS)):
             watch = StageWatch()
             result = _volume(before, after, watch)
             watch.close()
@@ -90,8 +90,8 @@ def measure_volume(wish: BenchWish) -> tuple[Measurement, ...]:
 
 def _volume(before: tuple[Drive, ...], after: tuple[Drive, ...], watch: StageWatch) -> VolumeResult:
     sides = [ground_of_drives(drives, SilentMonitor()) for drives in (before, after)]
-    wish = VolumeParameters(grid_m=_GRID_M)
-    return compare(sides[0], sides[1], wish, watch, Within(volume_site.boundary()))
+    options = VolumeParameters(grid_m=_GRID_M)
+    return compare(sides[0], sides[1], options, watch, VolumeScope(volume_site.boundary()))
 
 
 def _plain_seconds(before: tuple[Drive, ...], after: tuple[Drive, ...]) -> float:
@@ -119,13 +119,13 @@ def _ground_in_memory(drives: tuple[Drive, ...]) -> Floats:
     return xyz[((xyz[:, :2] >= 0) & (xyz[:, :2] < volume_site.SIDE_M)).all(axis=1)]
 
 
-def measure_volume_tin(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_volume_tin(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """Two networks of triangles that share no corner, exactly; beside it Open3D casts rays.
 
     Rays upright through the middles of cells of 0.1 m at both networks give a volume too, though
     no exact one; building its trees is counted, as building ours is.
     """
-    wanted = wish.limited(_TRIANGLES)
+    wanted = options.limited(_TRIANGLES)
     before, after = (
         _network(wanted, seed=seed, is_later=is_later) for seed, is_later in ((1, False), (2, True))
     )
@@ -135,7 +135,7 @@ def measure_volume_tin(wish: BenchWish) -> tuple[Measurement, ...]:
             lambda: volumes.append(volume_between(before, after, SilentMonitor())),
             lambda: _cast_volume(before, after),
         ],
-        wish.repeats(_REPEATS),
+        options.repeats(_REPEATS),
     )
     found, count = volumes[0], len(before.corners)
     return (
@@ -193,12 +193,12 @@ def _cast_volume(before: TriangleSurface, after: TriangleSurface) -> float:
     return float(change[np.isfinite(change)].sum()) * _GRID_M**2
 
 
-def measure_volume_view(wish: BenchWish) -> tuple[Measurement, ...]:
+def measure_volume_view(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """Colours for another limit and contours of another interval, on one map of change.
 
     Beside it contourpy alone finds the lines of the same levels.
     """
-    side = max(10, round(math.sqrt(wish.limited(_CELLS))))
+    side = max(10, round(math.sqrt(options.limited(_CELLS))))
     size_m = volume_site.SIDE_M / side
     middles = (np.arange(side) + 0.5) * size_m
     xy = np.column_stack([np.tile(middles, side), np.repeat(middles, side)])
@@ -211,7 +211,7 @@ def measure_volume_view(wish: BenchWish) -> tuple[Measurement, ...]:
     ground = (later + noise).astype(np.float32)
     change = ground - earlier.astype(np.float32)
     levels = np.arange(math.ceil(ground.min() / _INTERVAL_M), ground.max() / _INTERVAL_M)
-    lines = LineWish(_INTERVAL_M, simplify_m=size_m / 4, shortest_m=1.0)
+    lines = ContourOptions(_INTERVAL_M, simplify_m=size_m / 4, shortest_m=1.0)
 
     def plain() -> None:
         generator = contour_generator(middles, middles, ground)
@@ -219,11 +219,12 @@ def measure_volume_view(wish: BenchWish) -> tuple[Measurement, ...]:
             generator.lines(level * _INTERVAL_M)
 
     colours = [
-        seconds_of(lambda: change_colours(change, 0.5)) for _ in range(wish.repeats(_REPEATS) + 1)
+        seconds_of(lambda: change_colours(change, 0.5))
+        for _ in range(options.repeats(_REPEATS) + 1)
     ]
     ours, bare = alternating(
         [lambda: contour_lines(grid, ground, lines, SilentMonitor()), plain],
-        wish.repeats(_REPEATS),
+        options.repeats(_REPEATS),
     )
     colours_s = statistics.median(colours[1:])
     return (

@@ -48,14 +48,14 @@ def ground_height(xy: Floats, *, is_later: bool) -> Floats:
 def true_volumes() -> tuple[float, float]:
     """Cut and fill within the boundary, m³: the bowls are (1 - r²/R²)² and don't overlap."""
     cut, fill = (
-        depth * np.pi * place[2] ** 2 / 3
-        for depth, place in ((_PIT_DEEP_M, _PIT_M), (_HEAP_TALL_M, _HEAP_M))
+        depth * np.pi * position[2] ** 2 / 3
+        for depth, position in ((_PIT_DEEP_M, _PIT_M), (_HEAP_TALL_M, _HEAP_M))
     )
     return cut, fill
 
 
-def _bowl(xy: Floats, place: tuple[float, float, float]) -> Floats:
-    away = np.hypot(xy[:, 0] - place[0], xy[:, 1] - place[1]) / place[2]
+def _bowl(xy: Floats, position: tuple[float, float, float]) -> Floats:
+    away = np.hypot(xy[:, 0] - position[0], xy[:, 1] - position[1]) / position[2]
     bowl: Floats = np.square(np.maximum(1.0 - np.square(away), 0.0))
     return bowl
 
@@ -71,9 +71,11 @@ def scanned_drives(folder: Path, points: int, *, is_later: bool) -> tuple[Drive,
     """An epoch as it is imported: about so many points of four set-ups, with ground classes."""
     random = np.random.default_rng(7 + is_later)
     clouds = []
-    for number, place in enumerate(_SCANNERS_M):
+    for number, position in enumerate(_SCANNERS_M):
         cloud = folder / f"{'after' if is_later else 'before'}-{number}.laz"
-        _write_scan(cloud, np.array(place), points // len(_SCANNERS_M), random, is_later=is_later)
+        _write_scan(
+            cloud, np.array(position), points // len(_SCANNERS_M), random, is_later=is_later
+        )
         clouds.append(cloud)
     into = folder / ("later" if is_later else "earlier")
     made = import_drives(ImportRequest(tuple(clouds), ()), into, SilentMonitor())
@@ -81,14 +83,14 @@ def scanned_drives(folder: Path, points: int, *, is_later: bool) -> tuple[Drive,
 
 
 def _write_scan(
-    path: Path, place: Floats, points: int, random: np.random.Generator, *, is_later: bool
+    path: Path, position: Floats, points: int, random: np.random.Generator, *, is_later: bool
 ) -> None:
     """What a head that turns slowly measures while its mirror turns fast; even in plan."""
     pulses = np.arange(round(points * _OF_WHICH_ONE_IS_HERE))
     steps = (pulses % _IN_TURN + random.uniform(size=pulses.size)) / _IN_TURN
     away = np.sqrt(_NEAREST_M**2 + steps * (_FARTHEST_M**2 - _NEAREST_M**2))
     turn = 2 * np.pi * pulses / pulses.size
-    xy = place + np.column_stack([np.cos(turn), np.sin(turn)]) * away[:, None]
+    xy = position + np.column_stack([np.cos(turn), np.sin(turn)]) * away[:, None]
     is_here = np.flatnonzero(((xy > 0) & (xy < SIDE_M)).all(axis=1))
     xy = xy[is_here]
     codes = np.full(len(xy), _GROUND, np.uint8)

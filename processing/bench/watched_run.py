@@ -61,8 +61,8 @@ def run_watched(module: str, arguments: Sequence[str]) -> WatchedRun:
         with process, MemoryWatch(process.pid) as memory:
             said, _ = process.communicate()
         complaints.seek(0)
-        told = complaints.read()
-    return WatchedRun(process.returncode, tuple(said.splitlines()), told, memory)
+        reported = complaints.read()
+    return WatchedRun(process.returncode, tuple(said.splitlines()), reported, memory)
 
 
 def _more(peak: MemorySample, held: MemorySample) -> tuple[float, float]:

@@ -102,7 +102,7 @@ def camera_of(image: CameraImage) -> str:
     return "_".join(word.strip(" _-.") for word in words) or image.path.parent.name
 
 
-def with_offset(
+def apply_offset(
     image: CameraImage, offset: CameraOffset, trajectory: Trajectory | None
 ) -> CameraImage:
     """An image as its camera's offset wants it.
@@ -116,7 +116,7 @@ def with_offset(
     return _moved([image], offset, trajectory)[0]
 
 
-def with_offsets(
+def apply_offsets(
     images: ImageList, offsets: Mapping[str, CameraOffset], trajectory: Trajectory | None
 ) -> ImageList:
     """All images, each with the offset of its camera; cameras without one stay as delivered."""
@@ -189,7 +189,7 @@ def _moved(
     ]
 
 
-def estimated_from(
+def estimate_offset(
     pairs: Sequence[PixelPair], trajectory: Trajectory | None = None, *, time_s: float = 0.0
 ) -> EstimatedOffset:
     """The offset with which measured points fall on the pixels that show them.
@@ -207,12 +207,13 @@ def estimated_from(
     if len(pairs) < _PAIRS_FOR_ROTATION:
         raise Unsuitable(_FEW, Text.same(f"{len(pairs)}"), _MORE)
     has_shift = len(pairs) >= _PAIRS_FOR_SHIFT
-    delivered = [(with_offset(p.image, CameraOffset(time_s=time_s), trajectory), p) for p in pairs]
+    delivered = [(apply_offset(p.image, CameraOffset(time_s=time_s), trajectory), p) for p in pairs]
 
     def misses(unknowns: NDArray[np.float64]) -> NDArray[np.float64]:
         offset = _offset_of(unknowns)
         away = [
-            Camera(with_offset(image, offset, None)).pixels_of(np.array([pair.xyz]))[0] - pair.pixel
+            Camera(apply_offset(image, offset, None)).pixels_of(np.array([pair.xyz]))[0]
+            - pair.pixel
             for image, pair in delivered
         ]
         return np.asarray(np.nan_to_num(np.concatenate(away), nan=_BEHIND_PX))
@@ -233,7 +234,7 @@ def residuals_px(
 ) -> NDArray[np.float64]:
     """How far pairs are off with an offset: (n,), px; NaN for places behind the camera."""
     away = [
-        Camera(with_offset(pair.image, offset, trajectory)).pixels_of(np.array([pair.xyz]))[0]
+        Camera(apply_offset(pair.image, offset, trajectory)).pixels_of(np.array([pair.xyz]))[0]
         - pair.pixel
         for pair in pairs
     ]

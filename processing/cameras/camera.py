@@ -93,8 +93,8 @@ class Camera:
         (n, 3) float64
             Unit vectors from the perspective centre, project axes.
         """
-        place = np.asarray(pixels, dtype=np.float64)
-        right, down = place[:, 0] - self.image.cx_px, place[:, 1] - self.image.cy_px
+        position = np.asarray(pixels, dtype=np.float64)
+        right, down = position[:, 0] - self.image.cx_px, position[:, 1] - self.image.cy_px
         if self.image.projection == "equirectangular":
             azimuth = right * 2 * np.pi / self.image.width_px
             below = down * np.pi / self.image.height_px

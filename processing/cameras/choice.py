@@ -23,7 +23,7 @@ _MARGIN = 0.01
 _EDGE_STEPS = 24
 _LOWEST_DEG = -89.0
 
-Hides = Callable[[int, NDArray[np.float64]], bool | None]
+OcclusionTest = Callable[[int, NDArray[np.float64]], bool | None]
 """Whether something hides a place, (3,) float64 m, in the image of a number; None: not known."""
 
 
@@ -53,7 +53,7 @@ class Sighting:
     is_hidden: bool | None
 
 
-class ImageChoice:
+class ImageFinder:
     """Finds the images that see a place among thousands.
 
     Parameters
@@ -69,7 +69,11 @@ class ImageChoice:
         self._tree = _tree_of(self._centres) if self.images else None
 
     def seeing(
-        self, xyz: NDArray[np.float64], hides: Hides | None = None, *, reach_m: float = REACH_M
+        self,
+        xyz: NDArray[np.float64],
+        hides: OcclusionTest | None = None,
+        *,
+        reach_m: float = REACH_M,
     ) -> tuple[Sighting, ...]:
         """The images that see a place, best first.
 
@@ -114,7 +118,7 @@ class ImageChoice:
         return list(self._tree.query_ball_point(xyz, reach_m))
 
     def _sighting(
-        self, number: int, xyz: NDArray[np.float64], hides: Hides | None
+        self, number: int, xyz: NDArray[np.float64], hides: OcclusionTest | None
     ) -> tuple[float, Sighting] | None:
         camera, image = self.cameras[number], self.images[number]
         distance = float(np.linalg.norm(xyz - self._centres[number]))
@@ -127,9 +131,9 @@ class ImageChoice:
         # A panorama has no left and right edge.
         aside = (off / limits)[1:] if image.projection == "equirectangular" else off / limits
         hidden = hides(number, xyz) if hides is not None else None
-        place = (float(pixel[0]), float(pixel[1]))
+        position = (float(pixel[0]), float(pixel[1]))
         score = footprint * (1.0 + float((aside * aside).sum()) / 2)
-        return score, Sighting(number, image, place, distance, footprint, hidden)
+        return score, Sighting(number, image, position, distance, footprint, hidden)
 
 
 def pixels_per_radian(image: CameraImage) -> float:
@@ -183,7 +187,7 @@ def _view_angles(image: CameraImage) -> tuple[float, float] | None:
     return float(middle + turned.min()), float(middle + turned.max())
 
 
-def _tree_of(places: NDArray[np.float64]) -> cKDTree:
+def _tree_of(positions: NDArray[np.float64]) -> cKDTree:
     from scipy.spatial import cKDTree
 
-    return cKDTree(places)
+    return cKDTree(positions)

@@ -13,7 +13,7 @@ from processing.cameras.camera import Camera
 from processing.cameras.choice import pixels_per_radian
 from processing.cameras.depth_kernels import front_kernel, hidden_kernel
 from processing.cameras.image_list import CameraImage
-from processing.cameras.surroundings import SizedPoints, Surroundings
+from processing.cameras.surroundings import ImageSurroundings, SizedPoints
 
 if TYPE_CHECKING:  # a drive knows its cameras, so importing it here would be a circle
     from processing.points.drive import Drive
@@ -100,7 +100,7 @@ class DepthPicture:
         rows, columns = np.indices(shape)
         middles = (np.column_stack([columns.ravel(), rows.ravel()]) + 0.5) * self.cell_px
         self._rays = self.camera.rays_of(middles).reshape(*shape, 3)
-        self._surroundings = Surroundings(self.camera, drives, reach_m)
+        self._surroundings = ImageSurroundings(self.camera, drives, reach_m)
         self._per_radian = pixels_per_radian(image)
         self._points: list[NDArray[np.int64]] = []
         self._drives: list[int] = []
@@ -126,8 +126,8 @@ class DepthPicture:
         (n,) bool
             False for places outside the image.
         """
-        places = np.asarray(xyz, dtype=np.float64).reshape(-1, 3)
-        return self.hides_at(self.camera.pixels_of(places), self.camera.distances_to(places))
+        positions = np.asarray(xyz, dtype=np.float64).reshape(-1, 3)
+        return self.hides_at(self.camera.pixels_of(positions), self.camera.distances_to(positions))
 
     def hides_at(
         self,

@@ -97,7 +97,7 @@ def sizes_kernel(
 
 @kernel
 def front_kernel(
-    places: NDArray[np.float64],
+    positions: NDArray[np.float64],
     points: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
     scale: float,
     rays: NDArray[np.float64],
@@ -106,15 +106,15 @@ def front_kernel(
 ) -> None:
     """The nearest piece of surface in each cell.
 
-    ``places``: (n, 2) column and row in cells, NaN where not seen; ``points``: (n, 3) from the
+    ``positions``: (n, 2) column and row in cells, NaN where not seen; ``points``: (n, 3) from the
     perspective centre, m, (n, 3) normals, (n,) radii of their discs, m; ``scale``: cells a
     radian; ``rays``: (h, w, 3) directions of the cells' middles; ``front``: (h, w), infinite at
     first; ``number``: (h, w), the front point.
     """
     height, width = front.shape
     away, normals, radii = points
-    for k in range(places.shape[0]):
-        x, y = places[k, 0], places[k, 1]
+    for k in range(positions.shape[0]):
+        x, y = positions[k, 0], positions[k, 1]
         square = away[k, 0] ** 2 + away[k, 1] ** 2 + away[k, 2] ** 2
         distance = np.sqrt(square)
         radius = min(radii[k] * scale / distance, MOST_CELLS)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-Projection = Literal["perspective", "equirectangular"]
+ProjectionName = Literal["perspective", "equirectangular"]
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class CameraImage:
     width_px: int
     height_px: int
     distortion: tuple[float, float, float, float, float] = (0.0, 0.0, 0.0, 0.0, 0.0)
-    projection: Projection = "perspective"
+    projection: ProjectionName = "perspective"
 
 
 @dataclass(frozen=True)

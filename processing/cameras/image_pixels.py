@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.cameras.image_list import CameraImage
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile, report_as_user_error
 from processing.text import Text
 
 MOST_PIXELS = 16_000_000
@@ -45,13 +45,13 @@ class ImagePixels:
         height, width = self.pixels.shape[:2]
         return self.image.width_px / width, self.image.height_px / height
 
-    def colours_at(self, places: NDArray[np.float64]) -> NDArray[np.uint8]:
+    def colours_at(self, positions: NDArray[np.float64]) -> NDArray[np.uint8]:
         """Colours at (n, 2) columns and rows of the listed image, (n, 3); inside it."""
         height, width = self.pixels.shape[:2]
         across, down = self.scale
         # Pixels have their middles at whole numbers.
-        columns = np.floor((places[:, 0] + 0.5) / across).astype(np.int64)
-        rows = np.floor((places[:, 1] + 0.5) / down).astype(np.int64)
+        columns = np.floor((positions[:, 0] + 0.5) / across).astype(np.int64)
+        rows = np.floor((positions[:, 1] + 0.5) / down).astype(np.int64)
         columns, rows = np.clip(columns, 0, width - 1), np.clip(rows, 0, height - 1)
         return np.asarray(self.pixels[rows, columns])
 
@@ -69,7 +69,7 @@ def read_pixels(image: CameraImage, most_pixels: int = MOST_PIXELS) -> ImagePixe
     """
     import cv2
 
-    with told_as_user_error(image.path):
+    with report_as_user_error(image.path):
         # Not cv2.imread: it can't open names outside the system's code page on Windows.
         content = np.fromfile(image.path, np.uint8)
     size, reads_in_parts = _size_in(bytes(content[:_HEAD_BYTES]))
@@ -128,20 +128,20 @@ def _size_in(head: bytes) -> tuple[tuple[int, int] | None, bool]:
         return ((width, height) if width and height else None), False
     if not head.startswith(b"\xff\xd8"):
         return None, False
-    place = 2
-    while place + 9 <= len(head):
-        marker, length = struct.unpack_from(">BxH", head, place)[0], 0
-        kind = head[place + 1]
+    position = 2
+    while position + 9 <= len(head):
+        marker, length = struct.unpack_from(">BxH", head, position)[0], 0
+        kind = head[position + 1]
         if marker != 0xFF:
             break
         if kind == 0xFF or 0xD0 <= kind <= 0xD8:
-            place += 1 if kind == 0xFF else 2
+            position += 1 if kind == 0xFF else 2
             continue
-        length = struct.unpack_from(">H", head, place + 2)[0]
+        length = struct.unpack_from(">H", head, position + 2)[0]
         if kind in _FRAMES:
-            height, width = struct.unpack_from(">HH", head, place + 5)
+            height, width = struct.unpack_from(">HH", head, position + 5)
             return ((width, height) if width and height else None), kind not in _PROGRESSIVE
-        place += 2 + length
+        position += 2 + length
     return None, False
 
 

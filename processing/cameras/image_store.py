@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 
 from processing.cameras.image_list import CameraImage, ImageList
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile, report_as_user_error
 from processing.owned_files import new_file
 from processing.text import Text
 
@@ -19,7 +19,7 @@ def write_images(folder: Path, images: ImageList) -> None:
     noted = [{**dataclasses.asdict(image), "path": str(image.path.absolute())} for image in images]
     path = folder / _FILE_NAME
     temporary = path.with_suffix(".part")
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         text = json.dumps(noted, ensure_ascii=False)
         with new_file(temporary) as file:
             # Names of files may be no text; JSON reads them back.
@@ -38,7 +38,7 @@ def read_images(folder: Path) -> ImageList | None:
     path = folder / _FILE_NAME
     if not path.is_file():
         return None
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         text = path.read_text(encoding="utf-8")
     try:
         noted = json.loads(text)

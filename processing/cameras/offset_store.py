@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from processing.cameras.calibration import CameraOffset
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile, report_as_user_error
 from processing.owned_files import new_file
 from processing.text import Text
 
@@ -31,7 +31,7 @@ def write_offsets(folder: Path, offsets: Mapping[str, CameraOffset]) -> None:
         if not offset.is_zero
     }
     temporary = path.with_suffix(".part")
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         try:
             with new_file(temporary) as file:
                 file.write(json.dumps(noted, ensure_ascii=False).encode())
@@ -51,7 +51,7 @@ def read_offsets(folder: Path) -> dict[str, CameraOffset]:
     path = folder / _FILE_NAME
     if not path.is_file():
         return {}
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         text = path.read_bytes()
     try:
         noted = json.loads(text.decode("utf-8"))

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.cameras.camera import Camera
-from processing.cameras.choice import ImageChoice
+from processing.cameras.choice import ImageFinder
 from processing.cameras.colouring import SeenColours, penalties
 from processing.cameras.depth import TOLERANCE_M, DepthPicture
 from processing.cameras.image_list import ImageList
@@ -44,7 +44,7 @@ class PointColouring:
     """
 
     def __init__(self, images: ImageList, drives: Sequence[Drive], reach_m: float) -> None:
-        self._choice = ImageChoice(images)
+        self._choice = ImageFinder(images)
         self._drives = tuple(drives)
         self._reach_m = reach_m
         self._depths: OrderedDict[int, DepthPicture] = OrderedDict()
@@ -104,13 +104,13 @@ class PointColouring:
             return
         self._used += 1
         depth = self._depth(number, check) if self._drives else None
-        for points, places, ranges, scores in parts:
+        for points, positions, ranges, scores in parts:
             check()
             if depth is not None:
-                open_ = ~depth.hides_at(places, ranges, TOLERANCE_M)
-                points, places, scores = points[open_], places[open_], scores[open_]
+                open_ = ~depth.hides_at(positions, ranges, TOLERANCE_M)
+                points, positions, scores = points[open_], positions[open_], scores[open_]
             best[points] = scores
-            found.colours[points] = pixels.colours_at(places)
+            found.colours[points] = pixels.colours_at(positions)
             found.is_seen[points] = True
 
     def _better(
@@ -119,11 +119,11 @@ class PointColouring:
         """Points of a part that an image might show better: indices, pixels, ranges, penalties."""
         ranges = camera.distances_to(xyz[part])
         near = np.flatnonzero(ranges <= self._reach_m)
-        places = xyz[part][near]
-        scores = penalties(camera, places, ranges[near])
+        positions = xyz[part][near]
+        scores = penalties(camera, positions, ranges[near])
         kept = scores < best[part][near]
-        near, places, scores = near[kept], places[kept], scores[kept]
-        pixels = camera.pixels_of(places)
+        near, positions, scores = near[kept], positions[kept], scores[kept]
+        pixels = camera.pixels_of(positions)
         shown = camera.shows(pixels)
         near = near[shown]
         return near + part.start, pixels[shown], ranges[near], scores[shown]

@@ -24,7 +24,7 @@ _NEAREST_M, _FARTHEST_M = 1.0, 300.0
 
 
 @dataclass(frozen=True)
-class StereoPlace:
+class StereoPosition:
     """Where two lines of sight meet.
 
     Attributes
@@ -48,12 +48,12 @@ class StereoPlace:
     angle_deg: float
 
 
-def stereo_place(
+def stereo_position(
     one: tuple[Camera, ArrayLike],
     other: tuple[Camera, ArrayLike],
     *,
     pixel_error_px: float = PIXEL_ERROR_PX,
-) -> StereoPlace:
+) -> StereoPosition:
     """The place that two pixels of two images show.
 
     Parameters
@@ -89,14 +89,14 @@ def stereo_place(
         raise _refused(_DIVERGING, cameras)
     per_radian = np.array([pixels_per_radian(camera.image) for camera in cameras])
     sigma = pixel_error_px / per_radian * distances
-    place = _solved(across, base, 1 / sigma**2)
+    position = _solved(across, base, 1 / sigma**2)
     covariance = np.linalg.inv((across / (sigma**2)[:, None, None]).sum(axis=0))
     normal = np.cross(rays[0], rays[1])
     gap = float(abs((base[1] - base[0]) @ normal) / np.linalg.norm(normal))
     if gap > _MOST_ERRORS_APART * float(np.hypot(*sigma)):
         raise _refused(_APART.filled(gap=gap), cameras)
     error = float(np.sqrt(np.trace(covariance)))
-    return StereoPlace(place + centres[0], covariance, error, gap, angle)
+    return StereoPosition(position + centres[0], covariance, error, gap, angle)
 
 
 def epipolar_line(

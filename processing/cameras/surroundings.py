@@ -58,7 +58,7 @@ class SizedPoints:
         return np.asarray(self.sizes > ALONE_M)
 
 
-class Surroundings:
+class ImageSurroundings:
     """What was measured around one camera image.
 
     Parameters

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.drafting.polyline import (
-    SAME_PLACE_M,
+    SAME_POSITION_M,
     Polyline,
-    said_place,
+    name_position,
 )
 from processing.errors import OutOfRange
 from processing.project.feature import Position
@@ -47,13 +47,13 @@ def arc_through(
     plan = line.xyz[:, :2]
     if _least_height(plan) <= max(tolerance_m, _FINEST_M):
         return _without_repeats((first, second, third))
-    places: list[Position] = [first]
+    positions: list[Position] = [first]
     for number, given in enumerate((second, third)):
         inner = _arc_between(plan, number, tolerance_m)
         share = np.arange(1, len(inner) + 1) / (len(inner) + 1)
         heights = line.xyz[number, 2] + share * (line.xyz[number + 1, 2] - line.xyz[number, 2])
-        places += [*line.positions(np.column_stack([inner, heights])), given]
-    return tuple(places)
+        positions += [*line.positions(np.column_stack([inner, heights])), given]
+    return tuple(positions)
 
 
 def circle_through(
@@ -77,15 +77,15 @@ def circle_through(
         The three lie on one straight line.
     """
     line = Polyline.of((first, second, third))
-    if _least_height(line.xyz) < SAME_PLACE_M:
+    if _least_height(line.xyz) < SAME_POSITION_M:
         raise _on_one_line(first)
     axes = _axes_of_plane(line.xyz[1], line.xyz[2])
     in_plane = line.xyz @ axes.T
-    places: list[Position] = []
+    positions: list[Position] = []
     for number, given in enumerate((first, second, third)):
         inner = _arc_between(in_plane, number, tolerance_m)
-        places += [given, *line.positions(inner @ axes)]
-    return tuple(places)
+        positions += [given, *line.positions(inner @ axes)]
+    return tuple(positions)
 
 
 def rectangle_from(first: Position, second: Position, third: Position) -> tuple[Position, ...]:
@@ -113,7 +113,7 @@ def rectangle_from(first: Position, second: Position, third: Position) -> tuple[
     length = float(np.linalg.norm(side))
     along = side / length if length > 0 else side
     width = away - (away @ along) * along
-    if length < SAME_PLACE_M or float(np.linalg.norm(width)) < SAME_PLACE_M:
+    if length < SAME_POSITION_M or float(np.linalg.norm(width)) < SAME_POSITION_M:
         raise _on_one_line(first)
     third_corner, fourth = line.positions(np.stack([side + width, width]))
     return (first, second, third_corner, fourth)
@@ -150,22 +150,22 @@ def spline_through(
     controls = _bezier_controls(knots)
     counts = _divisions(controls, tolerance_m)
     inner = _samples(controls, counts)
-    places: list[Position] = []
+    curve_points: list[Position] = []
     done = 0
     for number, (start, piece) in enumerate(zip(leads_on.tolist(), inner, strict=True)):
-        places += given[done : start + 1]
+        curve_points += given[done : start + 1]
         done = start + 1
         ends = knots[number], knots[number + 1]
         heights = line.xyz[start, 2], line.xyz[start + 1, 2]
-        places += line.positions(_with_heights(piece, ends, heights))
-    return (*places, *given[done:])
+        curve_points += line.positions(_with_heights(piece, ends, heights))
+    return (*curve_points, *given[done:])
 
 
 def _without_repeats(positions: Sequence[Position]) -> tuple[Position, ...]:
     return tuple(
-        place
-        for number, place in enumerate(positions)
-        if number == 0 or place != positions[number - 1]
+        position
+        for number, position in enumerate(positions)
+        if number == 0 or position != positions[number - 1]
     )
 
 
@@ -235,9 +235,9 @@ def _samples(controls: Floats, counts: NDArray[np.int64]) -> Iterator[Floats]:
     step = np.arange(segment.size) - (ends - inner)[segment] + 1
     t = (step / counts[segment])[:, None]
     p = controls[segment]
-    places = (1 - t) ** 3 * p[:, 0] + 3 * (1 - t) ** 2 * t * p[:, 1]
-    places += 3 * (1 - t) * t**2 * p[:, 2] + t**3 * p[:, 3]
-    return iter(np.split(places, ends[:-1]))
+    positions = (1 - t) ** 3 * p[:, 0] + 3 * (1 - t) ** 2 * t * p[:, 1]
+    positions += 3 * (1 - t) * t**2 * p[:, 2] + t**3 * p[:, 3]
+    return iter(np.split(positions, ends[:-1]))
 
 
 def _with_heights(
@@ -250,13 +250,13 @@ def _with_heights(
     return np.column_stack([inner, heights[0] + shares * (heights[1] - heights[0])])
 
 
-def _on_one_line(place: Position) -> OutOfRange:
+def _on_one_line(position: Position) -> OutOfRange:
     return OutOfRange(
         Text(
             "The three places lie on one straight line.",
             "3点が一直線上にあるため、図形を作成できません。",
         ),
-        said_place(place),
+        name_position(position),
         Text(
             "Choose a third place beside the line through the first two.",
             "1点目と2点目を結ぶ線から離れた位置に3点目を指定してください。",

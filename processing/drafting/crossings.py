@@ -17,11 +17,11 @@ from processing.drafting.plan_sides import (
     meeting_pairs,
     nearest_fractions,
 )
-from processing.drafting.polyline import SAME_PLACE_M, Polyline, end_direction, position_of
+from processing.drafting.polyline import SAME_POSITION_M, Polyline, end_direction, position_of
 from processing.project.feature import Position
 
 Floats = NDArray[np.float64]
-What = Literal["vertex", "line", "intersection", "extension", "perpendicular"]
+SnapTarget = Literal["vertex", "line", "intersection", "extension", "perpendicular"]
 
 EXTENSION_M = 5.0
 """How far a line is thought to go on beyond its ends."""
@@ -31,7 +31,7 @@ LEVEL_M = 0.5
 
 
 @dataclass(frozen=True)
-class LinePlace:
+class LinePosition:
     """A place on drawn lines that the cursor may snap to.
 
     Attributes
@@ -44,7 +44,7 @@ class LinePlace:
     """
 
     xyz: Position
-    what: What
+    what: SnapTarget
     distance_m: float
 
 
@@ -74,20 +74,20 @@ def crosses_itself(positions: Sequence[Position], *, is_closed: bool) -> tuple[f
         shared = shapely.get_coordinates(
             shapely.intersection(shapely.LineString(one), shapely.LineString(other))
         )
-        place = shared[0]
+        position = shared[0]
     else:
-        place = one[0] + fractions[0].clip(0, 1) * (one[1] - one[0])
-    east, north = (place + line.origin[:2]).tolist()
+        position = one[0] + fractions[0].clip(0, 1) * (one[1] - one[0])
+    east, north = (position + line.origin[:2]).tolist()
     return float(east), float(north)
 
 
-def line_places(
+def line_positions(
     near: Position,
     lines: Sequence[Sequence[Position]],
     reach_m: float,
     *,
     from_: Position | None = None,
-) -> tuple[LinePlace, ...]:
+) -> tuple[LinePosition, ...]:
     """The places on drawn lines that a cursor may snap to.
 
     Vertices; the nearest place on each line; crossings of lines in plan; straight continuations
@@ -107,38 +107,40 @@ def line_places(
 
     Returns
     -------
-    tuple of LinePlace
+    tuple of LinePosition
         The nearest first; of places of different sorts within a millimetre of each other only a
         vertex, then an intersection, is given.
     """
     drawn = _Drawn.of(near, lines)
     nearby = _Nearby.of(drawn, reach_m)
-    found: list[tuple[Floats, What]] = [
-        *((place, "vertex") for place in drawn.vertices_within(reach_m)),
-        *((place, "intersection") for place in nearby.crossings()),
-        *((place, "perpendicular") for place in nearby.feet(from_, near)),
-        *((place, "line") for place in nearby.nearest_of_lines()),
-        *((place, "extension") for place in nearby.nearest_of_extensions()),
+    found: list[tuple[Floats, SnapTarget]] = [
+        *((position, "vertex") for position in drawn.vertices_within(reach_m)),
+        *((position, "intersection") for position in nearby.crossings()),
+        *((position, "perpendicular") for position in nearby.feet(from_, near)),
+        *((position, "line") for position in nearby.nearest_of_lines()),
+        *((position, "extension") for position in nearby.nearest_of_extensions()),
     ]
-    kept: list[tuple[Floats, What]] = []
-    for place, what in found:
-        is_near = np.hypot(place[0], place[1]) <= reach_m and abs(place[2]) <= LEVEL_M
-        if is_near and not any(_is_shown(place, what, other) for other in kept):
-            kept.append((place, what))
+    kept: list[tuple[Floats, SnapTarget]] = []
+    for position, what in found:
+        is_near = np.hypot(position[0], position[1]) <= reach_m and abs(position[2]) <= LEVEL_M
+        if is_near and not any(_is_shown(position, what, other) for other in kept):
+            kept.append((position, what))
     origin = np.array(near)
-    places = [
-        LinePlace(position_of(place + origin), what, float(np.hypot(place[0], place[1])))
-        for place, what in kept
+    positions = [
+        LinePosition(
+            position_of(position + origin), what, float(np.hypot(position[0], position[1]))
+        )
+        for position, what in kept
     ]
-    return tuple(sorted(places, key=lambda one: one.distance_m))
+    return tuple(sorted(positions, key=lambda one: one.distance_m))
 
 
-def _is_shown(place: Floats, what: What, other: tuple[Floats, What]) -> bool:
+def _is_shown(position: Floats, what: SnapTarget, other: tuple[Floats, SnapTarget]) -> bool:
     """Whether another place already stands for this one."""
     if what == "vertex":
         # Vertices of two lines in one place are one target only where their heights agree.
-        return other[1] == "vertex" and bool(np.abs(place - other[0]).max() < SAME_PLACE_M)
-    return float(np.hypot(*(place - other[0])[:2])) < SAME_PLACE_M
+        return other[1] == "vertex" and bool(np.abs(position - other[0]).max() < SAME_POSITION_M)
+    return float(np.hypot(*(position - other[0])[:2])) < SAME_POSITION_M
 
 
 @dataclass(frozen=True)
@@ -247,7 +249,7 @@ class _Nearby:
             if np.isnan(s) or is_corner:
                 continue
             heights = self._at(i, s), self._at(j, t)
-            yield min(heights, key=lambda place: abs(float(place[2])))
+            yield min(heights, key=lambda position: abs(float(position[2])))
 
     def feet(self, start: Position | None, near: Position) -> Iterator[Floats]:
         """The feet of perpendiculars from a start, where they fall inside a side."""
@@ -260,5 +262,5 @@ class _Nearby:
 
     def _at(self, side: int, fraction: float) -> Floats:
         start, end = self.sides[side]
-        place: Floats = start + fraction * (end - start)
-        return place
+        position: Floats = start + fraction * (end - start)
+        return position

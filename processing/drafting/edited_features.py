@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from processing.drafting.polyline import said_place
+from processing.drafting.polyline import name_position
 from processing.errors import Unsuitable
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature, Vertex
@@ -16,7 +16,7 @@ def check_line(feature: Feature) -> None:
     if feature.geometry is not Geometry.LINE or len(feature.vertices) < 2:
         raise Unsuitable(
             Text("Only lines can be edited like this.", "この編集は線にのみ行えます。"),
-            said_feature(feature),
+            name_feature(feature),
             Text("Choose a line.", "線を選んでください。"),
         )
 
@@ -26,7 +26,7 @@ def check_area(feature: Feature) -> None:
     if feature.geometry is not Geometry.AREA:
         raise Unsuitable(
             Text("Only areas can be edited like this.", "この編集は面にのみ行えます。"),
-            said_feature(feature),
+            name_feature(feature),
             Text("Choose an area.", "面を選んでください。"),
         )
 
@@ -36,6 +36,6 @@ def gap_m(one: Vertex, other: Vertex) -> float:
     return float(np.linalg.norm(np.subtract(one.xyz, other.xyz)))
 
 
-def said_feature(feature: Feature) -> Text:
+def name_feature(feature: Feature) -> Text:
     """Where a message about a feature is."""
-    return said_place(feature.vertices[0].xyz)
+    return name_position(feature.vertices[0].xyz)

@@ -15,7 +15,7 @@ def near_points_kernel(
     near: NDArray[np.uint8],
     cell_starts: NDArray[np.int64],
     order: NDArray[np.int64],
-    places: NDArray[np.float64],
+    positions: NDArray[np.float64],
     reach: NDArray[np.float64],
     owners: NDArray[np.int64],
     offsets: NDArray[np.float64],
@@ -31,7 +31,7 @@ def near_points_kernel(
         Whether a cell or one of its eight neighbours holds a place.
     cell_starts : (rows · columns + 1,) int64
         Cell c holds the places ``order[cell_starts[c]:cell_starts[c + 1]]``.
-    places : (p, 3) float64
+    positions : (p, 3) float64
         About the grid's corner.
     reach : (2,) float64
         In plan and in height; the cell is at least as large as the former.
@@ -58,13 +58,13 @@ def near_points_kernel(
         for line in range(max(row - 1, 0), min(row + 1, rows - 1) + 1):
             start = cell_starts[line * columns + first]
             for one in range(start, cell_starts[line * columns + last + 1]):
-                place = order[one]
-                dx, dy = east - places[place, 0], north - places[place, 1]
-                dz = height - places[place, 2]
+                position = order[one]
+                dx, dy = east - positions[position, 0], north - positions[position, 1]
+                dz = height - positions[position, 2]
                 if dx * dx + dy * dy > reach[0] * reach[0] or abs(dz) > reach[1]:
                     continue
                 if found < owners.size:
-                    owners[found] = place
+                    owners[found] = position
                     offsets[found, 0], offsets[found, 1], offsets[found, 2] = dx, dy, dz
                 found += 1
     return found

@@ -40,7 +40,7 @@ _ON_PLANE_M = 0.03
 _CLOSER = 0.7
 
 
-def grounded(
+def set_on_ground(
     positions: Sequence[Position],
     drives: Sequence[Drive],
     *,
@@ -81,8 +81,8 @@ def grounded(
     heights, is_found = _fitted(pairs, len(positions), reach_m)
     rises = _filled(line, heights, is_found)
     return tuple(
-        Vertex((place[0], place[1], place[2] + rise), is_occluded=not found)
-        for place, rise, found in zip(positions, rises.tolist(), is_found.tolist(), strict=True)
+        Vertex((position[0], position[1], position[2] + rise), is_occluded=not found)
+        for position, rise, found in zip(positions, rises.tolist(), is_found.tolist(), strict=True)
     )
 
 
@@ -102,7 +102,7 @@ class _Search:
     ----------
     corner : (3,) float64
         The grid's corner, m, project CRS.
-    places : (p, 3) float64
+    positions : (p, 3) float64
         About the corner.
     cell_m : float
     near : (rows, columns) uint8
@@ -112,7 +112,7 @@ class _Search:
     """
 
     corner: Floats
-    places: Floats
+    positions: Floats
     reach: Floats
     cell_m: float
     near: NDArray[np.uint8]
@@ -128,8 +128,8 @@ class _Search:
         cell = max(reach_m, float(np.sqrt(extent.prod() / _MOST_CELLS)), extent.max() / _MOST_CELLS)
         columns, rows = (np.floor(extent / cell).astype(np.int64) + 3).tolist()
         corner = np.append(low[:2] - cell, low[2])
-        places = line.xyz - corner
-        east, north = np.floor(places[:, :2] / cell).astype(np.int64).T
+        positions = line.xyz - corner
+        east, north = np.floor(positions[:, :2] / cell).astype(np.int64).T
         cells = north * columns + east
         near = np.zeros((rows, columns), np.uint8)
         for up in (-1, 0, 1):
@@ -138,7 +138,7 @@ class _Search:
         counts = np.bincount(cells, minlength=rows * columns)
         return _Search(
             corner=line.origin + corner,
-            places=places,
+            positions=positions,
             reach=np.array([reach_m, step_m]),
             cell_m=cell,
             near=near,
@@ -162,7 +162,9 @@ class _Search:
         while True:
             owners, offsets = np.empty(room, np.int64), np.empty((room, 3))
             cells = (self.near, self.cell_starts, self.order)
-            count = near_points_kernel(xyz, frame, *cells, self.places, self.reach, owners, offsets)
+            count = near_points_kernel(
+                xyz, frame, *cells, self.positions, self.reach, owners, offsets
+            )
             if count <= room:
                 return _Pairs(owners[:count].copy(), offsets[:count].copy())
             room = count
@@ -174,7 +176,7 @@ class _Search:
         lowest, highest = tiles[:, LOWEST] - self.corner, tiles[:, HIGHEST] - self.corner
         margin = np.array([self.reach[0], self.reach[0], self.reach[1]])
         # Thousands of places are looked up by groups of neighbours.
-        groups = np.array_split(self.places, min(len(self.places), _MOST_GROUPS))
+        groups = np.array_split(self.positions, min(len(self.positions), _MOST_GROUPS))
         low = np.array([group.min(axis=0) for group in groups]) - margin
         high = np.array([group.max(axis=0) for group in groups]) + margin
         whole = (lowest <= high.max(axis=0)) & (highest >= low.min(axis=0))
@@ -229,8 +231,8 @@ def _fitted(pairs: _Pairs, count: int, reach_m: float) -> tuple[Floats, NDArray[
     heights = planes[:, 0]
     few = np.flatnonzero((numbers > 0) & (numbers < _LEAST_FOR_PLANE))
     starts, ends = np.searchsorted(owners, few), np.searchsorted(owners, few, side="right")
-    for place, start, end in zip(few, starts, ends, strict=True):
-        heights[place] = offsets[start + away[start:end].argmin(), 2]
+    for position, start, end in zip(few, starts, ends, strict=True):
+        heights[position] = offsets[start + away[start:end].argmin(), 2]
     return heights, numbers > 0
 
 
@@ -317,7 +319,7 @@ def _filled(line: Polyline, heights: Floats, is_found: NDArray[np.bool_]) -> Flo
     along = line.plan_distances
     found, given = np.flatnonzero(is_found), line.xyz[:, 2]
     between = np.interp(along, along[found], given[found] + heights[found]) - given
-    places = np.arange(len(heights))
-    beyond = (places < found[0]) | (places > found[-1])
-    moved = np.where(places < found[0], heights[found[0]], heights[found[-1]])
+    positions = np.arange(len(heights))
+    beyond = (positions < found[0]) | (positions > found[-1])
+    moved = np.where(positions < found[0], heights[found[0]], heights[found[-1]])
     return np.where(is_found, heights, np.where(beyond, moved, between))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 
-from processing.drafting.edited_features import check_line, gap_m, said_feature
-from processing.drafting.polyline import SAME_PLACE_M
+from processing.drafting.edited_features import check_line, gap_m, name_feature
+from processing.drafting.polyline import SAME_POSITION_M
 from processing.errors import Unsuitable
 from processing.project.catalogue import FeatureKind, Geometry
 from processing.project.feature import Feature, Vertex
@@ -36,7 +36,7 @@ def with_kind(feature: Feature, kind: FeatureKind) -> Feature:
     )
 
 
-def closed(feature: Feature, kind: FeatureKind) -> Feature:
+def close_line(feature: Feature, kind: FeatureKind) -> Feature:
     """A line closed: an area where the kind is one, else a line that returns to its first vertex.
 
     Parameters
@@ -56,7 +56,7 @@ def closed(feature: Feature, kind: FeatureKind) -> Feature:
     return with_kind(feature, kind).with_vertices((*ring, ring[0]))
 
 
-def opened(feature: Feature, kind: FeatureKind, vertex: int = 0) -> Feature:
+def open_area(feature: Feature, kind: FeatureKind, vertex: int = 0) -> Feature:
     """An area, or a line that returns to its first vertex, as a line without its closing side.
 
     Parameters
@@ -76,10 +76,10 @@ def opened(feature: Feature, kind: FeatureKind, vertex: int = 0) -> Feature:
     else:
         check_line(feature)
         ring = feature.vertices[:-1]
-        if len(ring) < 2 or gap_m(feature.vertices[0], feature.vertices[-1]) > SAME_PLACE_M:
+        if len(ring) < 2 or gap_m(feature.vertices[0], feature.vertices[-1]) > SAME_POSITION_M:
             raise Unsuitable(
                 Text("This line is not closed.", "この線は閉じていません。"),
-                said_feature(feature),
+                name_feature(feature),
                 Text("Choose an area or a closed line.", "面または閉じた線を選んでください。"),
             )
     if kind.geometry is not Geometry.LINE:
@@ -103,7 +103,7 @@ def _as_geometry(feature: Feature, kind: FeatureKind) -> tuple[Vertex, ...]:
 def _ring_of(feature: Feature) -> tuple[Vertex, ...]:
     """The vertices of a line as those of a ring: its first not repeated."""
     vertices = feature.vertices
-    if len(vertices) > 1 and gap_m(vertices[0], vertices[-1]) <= SAME_PLACE_M:
+    if len(vertices) > 1 and gap_m(vertices[0], vertices[-1]) <= SAME_POSITION_M:
         vertices = vertices[:-1]
     if len({vertex.xyz for vertex in vertices}) < _LEAST_OF_RING:
         raise Unsuitable(
@@ -111,7 +111,7 @@ def _ring_of(feature: Feature) -> tuple[Vertex, ...]:
                 "A line of fewer than three places can't be closed.",
                 "頂点が3点未満の線は閉じられません。",
             ),
-            said_feature(feature),
+            name_feature(feature),
             Text("Add vertices to the line first.", "先に頂点を追加してください。"),
         )
     return vertices
@@ -128,7 +128,7 @@ def _wrong_kind(feature: Feature, kind: FeatureKind) -> Unsuitable:
             "What is drawn as {old} can't become “{kind}”, which is {new}.",
             "{old}として描いた地物を、{new}の種別「{kind}」に変更することはできません。",
         ).filled(old=names[feature.geometry], new=names[kind.geometry], kind=kind.name),
-        said_feature(feature),
+        name_feature(feature),
         Text(
             "Choose a kind of the same geometry, or draw it anew.",
             "同じ図形種類の種別を選ぶか、描き直してください。",

@@ -10,39 +10,39 @@ import dataclasses
 
 import numpy as np
 
-from processing.drafting.edited_features import check_area, check_line, gap_m, said_feature
-from processing.drafting.kind_edits import closed, opened, with_kind
+from processing.drafting.edited_features import check_area, check_line, gap_m, name_feature
+from processing.drafting.kind_edits import close_line, open_area, with_kind
 from processing.drafting.line_joins import extend_to, join, trim_at
-from processing.drafting.polyline import SAME_PLACE_M, said_place
-from processing.drafting.simplification import kept_places
+from processing.drafting.polyline import SAME_POSITION_M, name_position
+from processing.drafting.simplification import kept_positions
 from processing.errors import Unsuitable
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature, Position, Vertex, new_feature_id
 from processing.text import Text
 
 __all__ = [
-    "closed",
+    "close_line",
     "extend_to",
     "join",
-    "moved",
-    "opened",
-    "reversed_line",
-    "simplified",
-    "split",
+    "move_feature",
+    "open_area",
+    "reverse_line",
+    "simplify_line",
+    "split_line",
     "split_ring",
     "trim_at",
     "with_kind",
 ]
 
 
-def split(feature: Feature, segment: int, place: Vertex) -> tuple[Feature, Feature]:
+def split_line(feature: Feature, segment: int, position: Vertex) -> tuple[Feature, Feature]:
     """Cut an open line into two.
 
     Parameters
     ----------
     segment : int
         The side from vertex ``segment`` to the next.
-    place : Vertex
+    position : Vertex
         Where on it; the vertex itself is taken where one lies within a millimetre.
 
     Returns
@@ -61,16 +61,16 @@ def split(feature: Feature, segment: int, place: Vertex) -> tuple[Feature, Featu
         message = f"side {segment} of a line of {len(vertices)} vertices"
         raise IndexError(message)
     for corner in (segment, segment + 1):
-        if gap_m(vertices[corner], place) <= SAME_PLACE_M:
+        if gap_m(vertices[corner], position) <= SAME_POSITION_M:
             first, second = vertices[: corner + 1], vertices[corner:]
             break
     else:
-        first = (*vertices[: segment + 1], place)
-        second = (place, *vertices[segment + 1 :])
+        first = (*vertices[: segment + 1], position)
+        second = (position, *vertices[segment + 1 :])
     if min(len(first), len(second)) < 2:
         raise Unsuitable(
             Text("A line can't be split at its end.", "線の端点では分割できません。"),
-            said_place(place.xyz),
+            name_position(position.xyz),
             Text("Choose a place inside the line.", "線の途中の位置を指定してください。"),
         )
     kept = feature.with_vertices(first)
@@ -99,7 +99,7 @@ def split_ring(feature: Feature, first: int, second: int) -> tuple[Feature, Feat
                 "An area can't be split between neighbouring vertices.",
                 "隣り合う頂点どうしでは面を分割できません。",
             ),
-            said_feature(feature),
+            name_feature(feature),
             Text("Choose two vertices that face each other.", "向かい合う2頂点を選んでください。"),
         )
     order = [feature.vertices[(first + step) % count] for step in range(count)]
@@ -108,25 +108,25 @@ def split_ring(feature: Feature, first: int, second: int) -> tuple[Feature, Feat
     return kept, dataclasses.replace(feature, id=new_feature_id(), vertices=other)
 
 
-def reversed_line(feature: Feature) -> Feature:
+def reverse_line(feature: Feature) -> Feature:
     """The same line or area drawn the other way round."""
     return feature.with_vertices(feature.vertices[::-1])
 
 
-def simplified(feature: Feature, tolerance_m: float) -> Feature:
+def simplify_line(feature: Feature, tolerance_m: float) -> Feature:
     """A line or area with as few of its vertices as a tolerance allows.
 
-    See :func:`processing.drafting.simplification.kept_places`; a point stays as it is.
+    See :func:`processing.drafting.simplification.kept_positions`; a point stays as it is.
     """
-    kept = kept_places(
+    kept = kept_positions(
         [vertex.xyz for vertex in feature.vertices],
         tolerance_m,
         is_closed=feature.geometry is Geometry.AREA,
     )
-    return feature.with_vertices(tuple(feature.vertices[place] for place in kept))
+    return feature.with_vertices(tuple(feature.vertices[position] for position in kept))
 
 
-def moved(feature: Feature, by: Position) -> Feature:
+def move_feature(feature: Feature, by: Position) -> Feature:
     """A feature in another place; its vertices no longer rest on measured points.
 
     Parameters

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from processing.drafting.edited_features import check_line
 from processing.drafting.plan_sides import crossing_fractions, meeting_pairs, nearest_fractions
-from processing.drafting.polyline import SAME_PLACE_M, Polyline, end_direction, said_place
+from processing.drafting.polyline import SAME_POSITION_M, Polyline, end_direction, name_position
 from processing.errors import Unsuitable
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature, Position, Vertex
 from processing.text import Text
 
 Floats = NDArray[np.float64]
-End = Literal["start", "end"]
+LineEnd = Literal["start", "end"]
 
 
 def join(features: Sequence[Feature], tolerance_m: float = 0.0) -> Feature:
@@ -48,13 +48,13 @@ def join(features: Sequence[Feature], tolerance_m: float = 0.0) -> Feature:
     if any(feature.kind != first.kind for feature in features):
         raise Unsuitable(
             Text("Lines of different kinds can't be joined.", "種別の異なる線は連結できません。"),
-            said_place(first.vertices[0].xyz),
+            name_position(first.vertices[0].xyz),
             Text("Give them the same kind first.", "先に種別をそろえてください。"),
         )
     vertices: tuple[Vertex, ...] = ()
     for number, is_reversed in _order_of(features):
         own = features[number].vertices[:: -1 if is_reversed else 1]
-        vertices = _appended(vertices, own, max(tolerance_m, SAME_PLACE_M))
+        vertices = _appended(vertices, own, max(tolerance_m, SAME_POSITION_M))
     attributes = dict(first.attributes)
     for feature in features[1:]:
         for name, value in feature.attributes.items():
@@ -63,7 +63,7 @@ def join(features: Sequence[Feature], tolerance_m: float = 0.0) -> Feature:
     return dataclasses.replace(first, vertices=vertices, attributes=attributes)
 
 
-def extend_to(line: Feature, target: Feature, end: End) -> Feature:
+def extend_to(line: Feature, target: Feature, end: LineEnd) -> Feature:
     """A line continued straight on to where it meets another line or area in plan.
 
     Parameters
@@ -96,7 +96,7 @@ def extend_to(line: Feature, target: Feature, end: End) -> Feature:
     beyond = end_direction(own)
     if beyond is None or not len(sides):
         raise _never_meets(line.vertices[-1].xyz)
-    if nearest_fractions(sides, np.zeros(2))[1].min() <= SAME_PLACE_M:
+    if nearest_fractions(sides, np.zeros(2))[1].min() <= SAME_POSITION_M:
         return line
     direction, slope = beyond
     ray = np.broadcast_to(np.stack([np.zeros(2), direction]), sides.shape)
@@ -105,8 +105,8 @@ def extend_to(line: Feature, target: Feature, end: End) -> Feature:
     if not meets.any():
         raise _never_meets(line.vertices[-1].xyz)
     distance = float(ahead[meets].min())
-    (place,) = own.positions(distance * np.append(direction, slope)[None])
-    return line.with_vertices((*line.vertices, Vertex(place)))
+    (position,) = own.positions(distance * np.append(direction, slope)[None])
+    return line.with_vertices((*line.vertices, Vertex(position)))
 
 
 def trim_at(line: Feature, target: Feature, keep_near: Position) -> Feature:
@@ -138,7 +138,7 @@ def trim_at(line: Feature, target: Feature, keep_near: Position) -> Feature:
     if not cuts.size:
         raise Unsuitable(
             Text("The two lines don't cross.", "2本の線は交差していません。"),
-            said_place(line.vertices[0].xyz),
+            name_position(line.vertices[0].xyz),
             Text("Extend one of them first.", "先にどちらかの線を延長してください。"),
         )
     inner = line.vertices[int(start) + 1 : int(np.ceil(stop))]
@@ -206,8 +206,8 @@ def _cuts(line: Polyline, target: Floats) -> Floats:
     is_met = ~np.isnan(fractions)
     own, fractions = own[is_met], fractions[is_met].clip(0, 1)
     lengths = np.linalg.norm(sides[own, 1] - sides[own, 0], axis=1)
-    fractions[fractions * lengths <= SAME_PLACE_M] = 0.0
-    fractions[(1 - fractions) * lengths <= SAME_PLACE_M] = 1.0
+    fractions[fractions * lengths <= SAME_POSITION_M] = 0.0
+    fractions[(1 - fractions) * lengths <= SAME_POSITION_M] = 1.0
     cuts: Floats = np.unique(own + fractions)
     return cuts[(cuts > 0) & (cuts < len(line.xyz) - 1)]
 
@@ -216,17 +216,17 @@ def _vertex_at(feature: Feature, line: Polyline, cut: float) -> Vertex:
     side = int(cut)
     if side == cut:
         return feature.vertices[side]
-    (place,) = line.positions(line.between(np.array([side]), np.array([cut - side])))
-    return Vertex(place)
+    (position,) = line.positions(line.between(np.array([side]), np.array([cut - side])))
+    return Vertex(position)
 
 
-def _never_meets(place: Position) -> Unsuitable:
+def _never_meets(position: Position) -> Unsuitable:
     return Unsuitable(
         Text(
             "The line's continuation never meets the other line.",
             "延長しても相手の線と交わりません。",
         ),
-        said_place(place),
+        name_position(position),
         Text(
             "Choose the other end, or another line to extend to.",
             "反対側の端点か、別の線を指定してください。",

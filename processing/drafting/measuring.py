@@ -11,7 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from processing.drafting.plan_sides import SideIndex, crossing_fractions
-from processing.drafting.polyline import SAME_PLACE_M, Polyline, said_place
+from processing.drafting.polyline import SAME_POSITION_M, Polyline, name_position
 from processing.errors import Unsuitable
 from processing.project.feature import Position
 from processing.project.measures import length_m, plan_area_m2, plan_length_m
@@ -89,7 +89,7 @@ def cross_fall(first: Position, second: Position) -> tuple[Measure, ...]:
     """
     step = _step(first, second)
     plan = float(np.hypot(step[0], step[1]))
-    if plan < SAME_PLACE_M:
+    if plan < SAME_POSITION_M:
         return ()
     fall = Measure(
         "cross_fall_percent", Text("Cross fall", "横断勾配"), abs(step[2]) / plan * 100, "%", 2
@@ -116,7 +116,7 @@ def width_between(line: Sequence[Position], other: Sequence[Position]) -> Width:
     """
     own = Polyline.of(line)
     opposite = Polyline.of(other, origin=line[0])
-    has_length = len(other) > 1 and own.plan_distances[-1] > SAME_PLACE_M
+    has_length = len(other) > 1 and own.plan_distances[-1] > SAME_POSITION_M
     if not has_length:
         raise _never_beside(line[0])
     along = _stations(own)
@@ -139,11 +139,11 @@ def _of_two(first: Position, second: Position) -> tuple[Measure, ...]:
         _metres("plan_distance_m", Text("Plan distance", "水平距離"), plan),
         _metres("height_difference_m", Text("Height difference", "比高"), float(step[2])),
     ]
-    if plan >= SAME_PLACE_M:
+    if plan >= SAME_POSITION_M:
         measures.append(
             Measure("slope_percent", Text("Slope", "勾配"), float(step[2]) / plan * 100, "%", 2)
         )
-        if abs(step[2]) >= SAME_PLACE_M:
+        if abs(step[2]) >= SAME_POSITION_M:
             gradient = Text("Gradient 1:n", "勾配 1:n")
             measures.append(Measure("gradient", gradient, plan / abs(float(step[2])), "", 1))
         measures.append(
@@ -170,7 +170,7 @@ def _of_line(positions: Sequence[Position]) -> tuple[Measure, ...]:
         ),
     ]
     one, other = _step(corner, before)[:2], _step(corner, last)[:2]
-    if min(np.hypot(*one), np.hypot(*other)) >= SAME_PLACE_M:
+    if min(np.hypot(*one), np.hypot(*other)) >= SAME_POSITION_M:
         turn = np.arctan2(one[0] * other[1] - one[1] * other[0], one @ other)
         measures.append(
             Measure("angle_deg", Text("Angle", "夾角"), abs(float(np.degrees(turn))), "°", 2)
@@ -221,7 +221,7 @@ def _perpendiculars(line: Polyline, along: Floats) -> tuple[Floats, Floats]:
     sides = np.flatnonzero(np.diff(distances) > 0)
     steps = line.plan_sides[sides, 1] - line.plan_sides[sides, 0]
     directions = steps / np.linalg.norm(steps, axis=1)[:, None]
-    nearly = SAME_PLACE_M / 2
+    nearly = SAME_POSITION_M / 2
     before = np.searchsorted(distances[sides], along - nearly).clip(1) - 1
     after = np.searchsorted(distances[sides], along + nearly).clip(1) - 1
     mean = directions[before] + directions[after]
@@ -229,34 +229,34 @@ def _perpendiculars(line: Polyline, along: Floats) -> tuple[Floats, Floats]:
     mean[is_reversal] = directions[after[is_reversal]]
     mean /= np.linalg.norm(mean, axis=1)[:, None]
     into = (along - distances[sides[after]]) / np.diff(distances)[sides[after]]
-    places = line.between(sides[after], into.clip(0, 1))[:, :2]
-    return places, np.column_stack([-mean[:, 1], mean[:, 0]])
+    positions = line.between(sides[after], into.clip(0, 1))[:, :2]
+    return positions, np.column_stack([-mean[:, 1], mean[:, 0]])
 
 
-def _widths(places: Floats, normals: Floats, sides: Floats) -> Floats:
+def _widths(positions: Floats, normals: Floats, sides: Floats) -> Floats:
     """(k,): from places along their perpendiculars to the nearest of sides; inf where none is."""
-    nearest = SideIndex(sides).nearest(places)[2]
+    nearest = SideIndex(sides).nearest(positions)[2]
     # A line that turns away so far that the perpendicular is four times longer isn't beside it.
-    arms = (_MOST_SKEW * nearest + SAME_PLACE_M)[:, None] * normals
-    reaches = np.stack([places - arms, places + arms], axis=1)
+    arms = (_MOST_SKEW * nearest + SAME_POSITION_M)[:, None] * normals
+    reaches = np.stack([positions - arms, positions + arms], axis=1)
     tree = shapely.STRtree(shapely.linestrings(sides))
     station, side = tree.query(shapely.linestrings(reaches), predicate="intersects")
     on_reach, _ = crossing_fractions(reaches[station], sides[side])
     lengths = np.linalg.norm(arms, axis=1)[station]
     found = np.abs(2 * on_reach - 1) * lengths
-    widths = np.full(len(places), np.inf)
+    widths = np.full(len(positions), np.inf)
     is_met = ~np.isnan(found)
     np.minimum.at(widths, station[is_met], found[is_met])
     return widths
 
 
-def _never_beside(place: Position) -> Unsuitable:
+def _never_beside(position: Position) -> Unsuitable:
     return Unsuitable(
         Text(
             "The two lines nowhere lie beside each other.",
             "2本の線が向かい合う区間がないため、幅を計測できません。",
         ),
-        said_place(place),
+        name_position(position),
         Text(
             "Choose two lines that run side by side.",
             "並行して延びる2本の線を選んでください。",

@@ -9,7 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from processing.drafting.plan_sides import SideIndex, cross, nearest_fractions
-from processing.drafting.polyline import Polyline, said_place
+from processing.drafting.polyline import Polyline, name_position
 from processing.errors import OutOfRange
 from processing.project.feature import Position
 from processing.text import Text
@@ -69,7 +69,7 @@ def parallel(
 
 
 def distance_to_line(
-    positions: Sequence[Position], place: Position, *, is_closed: bool = False
+    positions: Sequence[Position], position: Position, *, is_closed: bool = False
 ) -> float:
     """How far a place lies beside a line in plan.
 
@@ -84,7 +84,7 @@ def distance_to_line(
         The line has no length in plan.
     """
     # About the place itself: the line may be long.
-    line = _without_repeats(Polyline.of(positions, is_closed=is_closed, origin=place))
+    line = _without_repeats(Polyline.of(positions, is_closed=is_closed, origin=position))
     sides = line.plan_sides
     if not sides.size:
         raise _no_copy(positions)
@@ -147,8 +147,8 @@ def _far_sides(
     for polygon in shapely.get_parts(shapely.orient_polygons(band)):
         for ring in (polygon.exterior, *polygon.interiors):
             # With the strip on its left a boundary runs against a line that has it on its left.
-            places = shapely.get_coordinates(ring)[:: -1 if distance > 0 else 1]
-            yield from _runs_off(places, line, index, abs(distance))
+            positions = shapely.get_coordinates(ring)[:: -1 if distance > 0 else 1]
+            yield from _runs_off(positions, line, index, abs(distance))
 
 
 def _runs_off(ring: Floats, line: Polyline, index: SideIndex, distance: float) -> Iterator[Floats]:
@@ -173,22 +173,22 @@ def _runs_off(ring: Floats, line: Polyline, index: SideIndex, distance: float) -
             yield _without_doubles(np.concatenate([ring[kept], ring[kept[-1:] + 1]]))
 
 
-def _is_at_end(places: Floats, line: Polyline, distance: float) -> NDArray[np.bool_]:
+def _is_at_end(positions: Floats, line: Polyline, distance: float) -> NDArray[np.bool_]:
     """Which places are on the straight edges that end the strip of an open line."""
-    found = np.zeros(len(places), np.bool_)
+    found = np.zeros(len(positions), np.bool_)
     for xyz in (line.xyz, line.xyz[::-1]):
         along = xyz[1, :2] - xyz[0, :2]
         along /= np.linalg.norm(along)
-        away = places - xyz[0, :2]
+        away = positions - xyz[0, :2]
         is_square = np.abs(away @ along) < _JOINED_M
         found |= is_square & (np.linalg.norm(away, axis=1) < distance + _JOINED_M)
     return found
 
 
-def _without_doubles(places: Floats) -> Floats:
-    moves = np.linalg.norm(np.diff(places, axis=0), axis=1) > _JOINED_M
+def _without_doubles(positions: Floats) -> Floats:
+    moves = np.linalg.norm(np.diff(positions, axis=0), axis=1) > _JOINED_M
     moves[-1:] = True
-    kept: Floats = places[np.concatenate([[True], moves])]
+    kept: Floats = positions[np.concatenate([[True], moves])]
     return kept
 
 
@@ -227,13 +227,13 @@ def _length(plan: Floats) -> float:
 
 
 def _no_copy(positions: Sequence[Position]) -> OutOfRange:
-    place = positions[0] if positions else (0.0, 0.0, 0.0)
+    position = positions[0] if positions else (0.0, 0.0, 0.0)
     return OutOfRange(
         Text(
             "No parallel line is left at this distance on this side.",
             "この距離・この側では平行線を作成できません。",
         ),
-        said_place(place),
+        name_position(position),
         Text(
             "Choose a smaller distance or the other side.",
             "距離を小さくするか、反対側を指定してください。",

@@ -22,13 +22,13 @@ def cross(one: Floats, other: Floats) -> Floats:
     return product
 
 
-def nearest_fractions(sides: Floats, places: Floats) -> tuple[Floats, Floats]:
+def nearest_fractions(sides: Floats, positions: Floats) -> tuple[Floats, Floats]:
     """Where on sides the place nearest to another place is, side by side.
 
     Parameters
     ----------
     sides : (k, 2, 2) float64
-    places : (k, 2) or (2,) float64
+    positions : (k, 2) or (2,) float64
 
     Returns
     -------
@@ -38,7 +38,7 @@ def nearest_fractions(sides: Floats, places: Floats) -> tuple[Floats, Floats]:
         m.
     """
     steps = sides[:, 1] - sides[:, 0]
-    away = places - sides[:, 0]
+    away = positions - sides[:, 0]
     squares = (steps**2).sum(axis=1)
     along = (away * steps).sum(axis=1)
     fractions = np.divide(along, squares, out=np.zeros_like(along), where=squares > 0).clip(0, 1)
@@ -58,12 +58,12 @@ class SideIndex:
         self._sides = sides
         self._tree = shapely.STRtree(shapely.linestrings(sides))
 
-    def nearest(self, places: Floats) -> tuple[Integers, Floats, Floats]:
+    def nearest(self, positions: Floats) -> tuple[Integers, Floats, Floats]:
         """The side nearest to each of many places.
 
         Parameters
         ----------
-        places : (k, 2) float64
+        positions : (k, 2) float64
 
         Returns
         -------
@@ -71,9 +71,9 @@ class SideIndex:
         fractions, distances : (k,) float64
             See :func:`nearest_fractions`.
         """
-        _, found = self._tree.query_nearest(shapely.points(places), all_matches=False)
+        _, found = self._tree.query_nearest(shapely.points(positions), all_matches=False)
         nearest = np.asarray(found, dtype=np.int64)
-        fractions, distances = nearest_fractions(self._sides[nearest], places)
+        fractions, distances = nearest_fractions(self._sides[nearest], positions)
         return nearest, fractions, distances
 
 

@@ -17,7 +17,7 @@ from processing.text import Text
 
 Floats = NDArray[np.float64]
 
-SAME_PLACE_M = 1e-3
+SAME_POSITION_M = 1e-3
 """Places nearer than this are one place: a millimetre, as coordinates are delivered."""
 
 _SLOPE_OVER_M = 1.0
@@ -76,15 +76,15 @@ class Polyline:
         lengths = np.linalg.norm(self.ends[:, :2] - self.starts[:, :2], axis=1)
         return np.concatenate([[0.0], np.cumsum(lengths)])
 
-    def local(self, place: Position) -> Floats:
+    def local(self, position: Position) -> Floats:
         """A place about the origin: (3,)."""
-        return np.array(place, dtype=np.float64) - self.origin
+        return np.array(position, dtype=np.float64) - self.origin
 
     def between(self, sides: NDArray[np.int64], fractions: Floats) -> Floats:
         """Places on sides, (k, 3) about the origin; a fraction of 0 is the side's start."""
         starts, ends = self.starts[sides], self.ends[sides]
-        places: Floats = starts + fractions[:, None] * (ends - starts)
-        return places
+        positions: Floats = starts + fractions[:, None] * (ends - starts)
+        return positions
 
     def positions(self, local: Floats) -> tuple[Position, ...]:
         """Places about the origin, (k, 3), as positions in the project's system."""
@@ -92,9 +92,9 @@ class Polyline:
         return tuple((x, y, z) for x, y, z in absolute)
 
 
-def position_of(place: Floats) -> Position:
+def position_of(position: Floats) -> Position:
     """A position from (3,) absolute coordinates."""
-    return (float(place[0]), float(place[1]), float(place[2]))
+    return (float(position[0]), float(position[1]), float(position[2]))
 
 
 def end_direction(line: Polyline) -> tuple[Floats, float] | None:
@@ -125,7 +125,7 @@ def end_direction(line: Polyline) -> tuple[Floats, float] | None:
     return direction, slope
 
 
-def said_place(position: Position) -> Text:
+def name_position(position: Position) -> Text:
     """Where a message is about."""
     return Text("Easting {e:.3f}, northing {n:.3f}", "東距 {e:.3f}、北距 {n:.3f}").filled(
         e=position[0], n=position[1]

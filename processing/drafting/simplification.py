@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.drafting.crossings import crosses_itself
-from processing.drafting.needed_places import from_chord, needed_places
+from processing.drafting.needed_positions import from_chord, needed_positions
 from processing.drafting.polyline import Polyline
 from processing.project.feature import Position
 
@@ -18,7 +18,7 @@ Kept = NDArray[np.int64]
 _MOST_TRIES = 40
 
 
-def kept_places(
+def kept_positions(
     positions: Sequence[Position], tolerance_m: float, *, is_closed: bool = False
 ) -> Kept:
     """The places that a simpler line needs.
@@ -45,8 +45,10 @@ def kept_places(
     line = Polyline.of(positions, is_closed=is_closed)
     crosses = crosses_itself(positions, is_closed=is_closed) is not None
     for _ in range(_MOST_TRIES):
-        kept = _ring(line.xyz, tolerance_m) if is_closed else needed_places(line.xyz, tolerance_m)
-        simpler = [positions[place] for place in kept]
+        kept = (
+            _ring(line.xyz, tolerance_m) if is_closed else needed_positions(line.xyz, tolerance_m)
+        )
+        simpler = [positions[position] for position in kept]
         if crosses or crosses_itself(simpler, is_closed=is_closed) is None:
             return kept
         tolerance_m /= 2
@@ -60,9 +62,11 @@ def _ring(xyz: Floats, tolerance_m: float) -> Kept:
     if start == stop:
         return np.arange(len(xyz))
     order = np.roll(np.arange(len(xyz)), -start)
-    there = needed_places(xyz[start : stop + 1], tolerance_m) + start
+    there = needed_positions(xyz[start : stop + 1], tolerance_m) + start
     back = order[
-        needed_places(xyz[np.append(order[stop - start :], start)], tolerance_m)[:-1] + stop - start
+        needed_positions(xyz[np.append(order[stop - start :], start)], tolerance_m)[:-1]
+        + stop
+        - start
     ]
     kept = np.union1d(there, back)
     if kept.size < 3:
@@ -72,5 +76,5 @@ def _ring(xyz: Floats, tolerance_m: float) -> Kept:
     return kept if kept.size >= 3 else np.arange(len(xyz))
 
 
-def _farthest(xyz: Floats, place: int) -> int:
-    return int(((xyz - xyz[place]) ** 2).sum(axis=1).argmax())
+def _farthest(xyz: Floats, position: int) -> int:
+    return int(((xyz - xyz[position]) ** 2).sum(axis=1).argmax())

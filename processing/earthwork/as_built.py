@@ -47,7 +47,7 @@ class AsBuiltRules:
     berm_m: float = FaceRules.berm_m
 
 
-class Item(Enum):
+class FaceMeasure(Enum):
     """What is judged of a face."""
 
     MEAN = "mean"
@@ -93,7 +93,7 @@ class FaceResult:
     within_80: int
     area_m2: float
     unmeasured_area_m2: float
-    verdicts: Mapping[Item, bool]
+    verdicts: Mapping[FaceMeasure, bool]
 
     @property
     def density_per_m2(self) -> float:
@@ -163,7 +163,7 @@ class _JudgedFace:
         return is_on
 
 
-def judge_as_built(
+def evaluate_as_built(
     ground: EpochGround,
     design: TriangleSurface,
     limits: tuple[AsBuiltLimits, str],
@@ -266,16 +266,16 @@ def _deviations(
     cells = grid.rows * grid.columns
     for block in ground.blocks():
         monitor.check()
-        place = np.floor((block.xyz[:, :2] - grid.origin[:2]) / grid.size_m)
-        is_in = np.all((place >= 0) & (place < [grid.columns, grid.rows]), axis=1)
-        xyz, place = block.xyz[is_in], place[is_in].astype(np.int64)
-        cell = place[:, 1] * grid.columns + place[:, 0]
+        position = np.floor((block.xyz[:, :2] - grid.origin[:2]) / grid.size_m)
+        is_in = np.all((position >= 0) & (position < [grid.columns, grid.rows]), axis=1)
+        xyz, position = block.xyz[is_in], position[is_in].astype(np.int64)
+        cell = position[:, 1] * grid.columns + position[:, 0]
         for number, face in enumerate(faces):
             on_face = np.flatnonzero(face.holds(xyz[:, :2], cell))
             off = xyz[on_face, 2] - design.heights_at(xyz[on_face, :2])
-            is_told = np.isfinite(off)
-            keys.append((cell[on_face][is_told] + number * cells).astype(np.int32))
-            deviations.append(off[is_told].astype(np.float32))
+            is_reported = np.isfinite(off)
+            keys.append((cell[on_face][is_reported] + number * cells).astype(np.int32))
+            deviations.append(off[is_reported].astype(np.float32))
     return np.concatenate(keys), np.concatenate(deviations)
 
 
@@ -321,11 +321,12 @@ def _face_result(
         area_m2=area_m2,
         unmeasured_area_m2=float(empty) * cell_m**2,
         verdicts={
-            Item.MEAN: limits.mean.holds(mean),
-            Item.LARGEST: limits.single.holds(largest),
-            Item.SMALLEST: limits.single.holds(smallest),
-            Item.DENSITY: len(found) * _MET >= table.density_per_m2 * area_m2,
-            Item.REJECTED: len(found) > 0 and rejected <= table.rejected_share * len(found) * _MET,
+            FaceMeasure.MEAN: limits.mean.holds(mean),
+            FaceMeasure.LARGEST: limits.single.holds(largest),
+            FaceMeasure.SMALLEST: limits.single.holds(smallest),
+            FaceMeasure.DENSITY: len(found) * _MET >= table.density_per_m2 * area_m2,
+            FaceMeasure.REJECTED: len(found) > 0
+            and rejected <= table.rejected_share * len(found) * _MET,
         },
     )
 

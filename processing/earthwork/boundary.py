@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 Extent = tuple[float, float, float, float]
 """Least easting and northing, greatest easting and northing, m."""
 
-_SAME_PLACE_M = 1e-6
+_SAME_POSITION_M = 1e-6
 _LEAST_AREA_M2 = 1e-6
 _WHOLE = 1e-9
 """A share of a cell that differs by less from none or all of it does so by rounding."""
@@ -92,8 +92,8 @@ def inside_shares(polygon: shapely.Geometry, grid: CellGrid) -> NDArray[np.float
     sums = np.zeros((grid.rows, grid.columns + 1))
     for part in shapely.get_parts(shapely.orient_polygons(polygon)):
         for ring in (part.exterior, *part.interiors):
-            places = (shapely.get_coordinates(ring) - grid.origin[:2]) / grid.size_m
-            _add_ring_kernel(places, sums)
+            positions = (shapely.get_coordinates(ring) - grid.origin[:2]) / grid.size_m
+            _add_ring_kernel(positions, sums)
     np.cumsum(sums, axis=1, out=sums)
     shares = sums[:, :-1]
     shares[shares < _WHOLE] = 0.0
@@ -103,8 +103,8 @@ def inside_shares(polygon: shapely.Geometry, grid: CellGrid) -> NDArray[np.float
 
 def _corners(ring: Floats, number: int) -> Floats:
     """Corners of a ring without its closing one and without those that repeat the one before."""
-    places = np.asarray(ring, np.float64)[:, :2]
-    broken = np.flatnonzero(~np.isfinite(places).all(axis=1))
+    positions = np.asarray(ring, np.float64)[:, :2]
+    broken = np.flatnonzero(~np.isfinite(positions).all(axis=1))
     if broken.size:
         raise Unsuitable(
             Text(
@@ -114,19 +114,19 @@ def _corners(ring: Floats, number: int) -> Floats:
             _ring_name(number),
             Text("Draw the boundary again.", "境界を描き直してください。"),
         )
-    if len(places):
-        is_new = np.hypot(*(places - np.roll(places, 1, axis=0)).T) > _SAME_PLACE_M
-        places = places[is_new]
-    if len(places) < 3:
+    if len(positions):
+        is_new = np.hypot(*(positions - np.roll(positions, 1, axis=0)).T) > _SAME_POSITION_M
+        positions = positions[is_new]
+    if len(positions) < 3:
         raise Unsuitable(
             Text(
-                f"A boundary needs three corners; this one has {len(places)}.",
-                f"境界には3つ以上の頂点が必要です（この境界は{len(places)}点）。",
+                f"A boundary needs three corners; this one has {len(positions)}.",
+                f"境界には3つ以上の頂点が必要です（この境界は{len(positions)}点）。",
             ),
             _ring_name(number),
             Text("Choose a closed area.", "閉じた領域を指定してください。"),
         )
-    return places
+    return positions
 
 
 def _check_crossings(rings: Sequence[Floats]) -> None:
@@ -143,10 +143,10 @@ def _check_crossings(rings: Sequence[Floats]) -> None:
     follows = (ring_of[one] == ring_of[other]) & (is_next | closes)
     shared = shapely.intersection(sides[one], sides[other])
     # One side that follows another shares its corner; more than that only where it turns back.
-    wrong = np.flatnonzero(~follows | (shapely.length(shared) > _SAME_PLACE_M))
+    wrong = np.flatnonzero(~follows | (shapely.length(shared) > _SAME_POSITION_M))
     if wrong.size:
         first = wrong[np.argmin(one[wrong])]
-        place = shapely.Point(shapely.get_coordinates(shared[first])[0])
+        position = shapely.Point(shapely.get_coordinates(shared[first])[0])
         if ring_of[one[first]] == ring_of[other[first]]:
             what = Text("The boundary crosses or touches itself.", "境界が自己交差しています。")
         else:
@@ -154,7 +154,7 @@ def _check_crossings(rings: Sequence[Floats]) -> None:
                 "Two outlines of the boundary cross or touch each other.",
                 "境界の2つの外周線が交差または接触しています。",
             )
-        raise _flawed(what, int(ring_of[one[first]]) + 1, place)
+        raise _flawed(what, int(ring_of[one[first]]) + 1, position)
 
 
 def _check_within_reach(whole: shapely.Geometry, extent: Extent) -> None:
@@ -166,7 +166,7 @@ def _check_within_reach(whole: shapely.Geometry, extent: Extent) -> None:
         "Choose a boundary on the site, in the reference system of the ground.",
         "現場内の境界を、地盤と同じ座標系で指定してください。",
     )
-    swapped = shapely.transform(whole, lambda places: places[:, ::-1])
+    swapped = shapely.transform(whole, lambda positions: positions[:, ::-1])
     if shapely.area(shapely.intersection(swapped, ground)) > 0.0:
         remedy = Text(
             "Its easting and northing seem to be swapped: give easting first.",
@@ -200,16 +200,16 @@ def _ring_name(number: int) -> Text:
 
 
 @kernel
-def _add_ring_kernel(places: Floats, sums: Floats) -> None:
+def _add_ring_kernel(positions: Floats, sums: Floats) -> None:
     """Add one closed ring, in cells: differences along each row of what it encloses.
 
     A piece of a side that rises by dy within a cell takes from that cell what lies to the east
     of it there, and dy from every cell beyond.
     """
     rows = sums.shape[0]
-    for side in range(places.shape[0] - 1):
-        x0, y0 = places[side, 0], places[side, 1]
-        x1, y1 = places[side + 1, 0], places[side + 1, 1]
+    for side in range(positions.shape[0] - 1):
+        x0, y0 = positions[side, 0], positions[side, 1]
+        x1, y1 = positions[side + 1, 0], positions[side + 1, 1]
         if y0 == y1:
             continue
         sign = -1.0

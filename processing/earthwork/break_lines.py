@@ -19,7 +19,7 @@ from processing.text import Text
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
-_SAME_PLACE_M = 1e-3
+_SAME_POSITION_M = 1e-3
 """Vertices, and a vertex and a line, that are nearer in plan are at one place."""
 
 
@@ -76,7 +76,7 @@ def _check_lines(lines: Sequence[Floats]) -> None:
                 where,
                 again,
             )
-        if len(line) < 2 or np.ptp(line[:, :2], axis=0).max() < _SAME_PLACE_M:
+        if len(line) < 2 or np.ptp(line[:, :2], axis=0).max() < _SAME_POSITION_M:
             raise Unsuitable(
                 Text("A break line has no length in plan.", "平面上の長さがありません。"),
                 where,
@@ -91,21 +91,21 @@ def _joined(xyz: Floats, segments: Numbers, agree_within_m: float) -> BreakNet:
     from scipy.spatial import cKDTree
 
     origin = xyz[:, :2].min(axis=0)
-    pairs = cKDTree(xyz[:, :2] - origin).query_pairs(_SAME_PLACE_M, output_type="ndarray")
+    pairs = cKDTree(xyz[:, :2] - origin).query_pairs(_SAME_POSITION_M, output_type="ndarray")
     links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(xyz),) * 2)
-    count, place = connected_components(links, directed=False)
+    count, position = connected_components(links, directed=False)
     lowest, highest = np.full(count, np.inf), np.full(count, -np.inf)
-    np.minimum.at(lowest, place, xyz[:, 2])
-    np.maximum.at(highest, place, xyz[:, 2])
+    np.minimum.at(lowest, position, xyz[:, 2])
+    np.maximum.at(highest, position, xyz[:, 2])
     first = np.full(count, len(xyz))
-    np.minimum.at(first, place, np.arange(len(xyz)))
+    np.minimum.at(first, position, np.arange(len(xyz)))
     apart = highest - lowest
     if apart.max() > agree_within_m:
         worst = int(apart.argmax())
         raise _disagree(xyz[first[worst]], lowest[worst], highest[worst])
-    heights = np.bincount(place, xyz[:, 2]) / np.bincount(place)
+    heights = np.bincount(position, xyz[:, 2]) / np.bincount(position)
     merged = np.column_stack([xyz[first, :2], heights])
-    ends = np.sort(place[segments].astype(np.int64), axis=1)
+    ends = np.sort(position[segments].astype(np.int64), axis=1)
     ends = np.unique(ends[ends[:, 0] != ends[:, 1]], axis=0)
     return BreakNet(merged, ends)
 
@@ -135,13 +135,13 @@ def _cut_where_they_meet(net: BreakNet) -> tuple[Floats, Numbers]:
     origin = net.xyz[:, :2].min(axis=0)
     plan = net.xyz[:, :2] - origin
     figures = shapely.linestrings(plan[net.segments])
-    pairs = shapely.STRtree(figures).query(figures, predicate="dwithin", distance=_SAME_PLACE_M)
+    pairs = shapely.STRtree(figures).query(figures, predicate="dwithin", distance=_SAME_POSITION_M)
     one, other = pairs[:, pairs[0] != pairs[1]]
     meetings = [_touched(plan, net.segments, one, net.segments[other, end]) for end in range(2)]
     meetings.append(_crossed(plan, net.segments, one, other))
-    cut, shares, places = (np.concatenate(parts) for parts in zip(*meetings, strict=True))
+    cut, shares, positions = (np.concatenate(parts) for parts in zip(*meetings, strict=True))
     low, high = net.xyz[net.segments[cut], 2].T
-    added = np.column_stack([places + origin, low + shares * (high - low)])
+    added = np.column_stack([positions + origin, low + shares * (high - low)])
     every = np.arange(len(net.segments))
     of_segment = np.concatenate([every, cut, every])
     along = np.concatenate([np.full(len(every), -1.0), shares, np.full(len(every), 2.0)])
@@ -162,7 +162,7 @@ def _touched(
     to_vertex = plan[vertex] - start
     share = (to_vertex * along).sum(axis=1) / (along**2).sum(axis=1)
     beside = np.hypot(*(to_vertex - share[:, None] * along).T)
-    is_on = (share > 0.0) & (share < 1.0) & (beside <= _SAME_PLACE_M)
+    is_on = (share > 0.0) & (share < 1.0) & (beside <= _SAME_POSITION_M)
     is_on &= (vertex != segments[one, 0]) & (vertex != segments[one, 1])
     return one[is_on], share[is_on], plan[vertex[is_on]]
 
@@ -180,5 +180,5 @@ def _crossed(
     share = (between[:, 0] * across[:, 1] - between[:, 1] * across[:, 0]) / safe
     their_share = (between[:, 0] * along[:, 1] - between[:, 1] * along[:, 0]) / safe
     crosses = is_turned & (share > 0.0) & (share < 1.0) & (their_share > 0.0) & (their_share < 1.0)
-    places = start + share[:, None] * along
-    return one[crosses], share[crosses], places[crosses]
+    positions = start + share[:, None] * along
+    return one[crosses], share[crosses], positions[crosses]

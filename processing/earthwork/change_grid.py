@@ -48,9 +48,9 @@ class ChangeGrid:
         xy : (n, 2) float64
             m, project CRS.
         """
-        places = np.floor((xy - self.grid.origin[:2]) / self.grid.size_m)
-        is_in = np.all((places >= 0) & (places < [self.grid.columns, self.grid.rows]), axis=1)
+        positions = np.floor((xy - self.grid.origin[:2]) / self.grid.size_m)
+        is_in = np.all((positions >= 0) & (positions < [self.grid.columns, self.grid.rows]), axis=1)
         found = np.full(len(xy), np.nan)
-        column, row = places[is_in].astype(np.int64).T
+        column, row = positions[is_in].astype(np.int64).T
         found[is_in] = self.change_m[row, column]
         return found

@@ -14,10 +14,10 @@ from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.change_sums import change_sums, is_filled
 from processing.earthwork.ground_cells import GroundCells, grid_over, ground_cells
 from processing.earthwork.other_methods import OtherMethod, volume_by
-from processing.earthwork.registration import corrected, registration_of
+from processing.earthwork.registration import correctable_shift, registration_of
 from processing.earthwork.sides import EpochGround, Side
 from processing.earthwork.surfaces import (
-    GroundSurface,
+    SideHeights,
     cells_of_hole,
     coarse_means,
     designed_surface,
@@ -26,7 +26,7 @@ from processing.earthwork.surfaces import (
 from processing.earthwork.uncertainty import volume_spread
 from processing.earthwork.volume_parameters import GRID, VolumeParameters
 from processing.earthwork.volume_result import Registration, VolumeResult, Volumes
-from processing.earthwork.within import EVERYWHERE, Within
+from processing.earthwork.volume_scope import EVERYWHERE, VolumeScope
 from processing.ground.cells import CellGrid
 from processing.monitor import Monitor, parts_of
 from processing.text import Text
@@ -46,7 +46,7 @@ def compare(
     after: Side,
     parameters: VolumeParameters,
     monitor: Monitor,
-    within: Within = EVERYWHERE,
+    within: VolumeScope = EVERYWHERE,
 ) -> VolumeResult:
     """The volume between two sides.
 
@@ -67,7 +67,7 @@ def compare(
     registration = _registration(cells)
     shift = (0.0, 0.0, 0.0)
     if registration is not None and parameters.correct_shift and isinstance(after, EpochGround):
-        registration = corrected(registration)
+        registration = correctable_shift(registration)
         if registration.is_corrected:
             shift = registration.shift_m
             cells[1] = ground_cells(after, grid, counting, shift)
@@ -127,7 +127,7 @@ def _registration(cells: list[GroundCells | None]) -> Registration | None:
     return registration_of(one, other, times * before.grid.size_m)
 
 
-def _designed(side: Side, grid: CellGrid) -> GroundSurface | None:
+def _designed(side: Side, grid: CellGrid) -> SideHeights | None:
     return None if isinstance(side, EpochGround) else designed_surface(side, grid)
 
 
@@ -137,7 +137,7 @@ def _measured(
     inside: NDArray[np.float32],
     monitor: Monitor,
     shift_m: tuple[float, float, float],
-) -> GroundSurface:
+) -> SideHeights:
     if not isinstance(side, EpochGround) or cells is None:
         raise TypeError(side)
     return measured_surface(side, cells, inside > 0, monitor, shift_m)
@@ -145,7 +145,7 @@ def _measured(
 
 def _inside(
     cells: list[GroundCells | None],
-    designs: list[GroundSurface | None],
+    designs: list[SideHeights | None],
     grid: CellGrid,
     boundary: shapely.Geometry | None,
 ) -> NDArray[np.float32]:
@@ -166,9 +166,7 @@ def _inside(
     return common.astype(np.float32)
 
 
-def _change(
-    grid: CellGrid, surfaces: list[GroundSurface], inside: NDArray[np.float32]
-) -> ChangeGrid:
+def _change(grid: CellGrid, surfaces: list[SideHeights], inside: NDArray[np.float32]) -> ChangeGrid:
     before, after = surfaces
     return ChangeGrid(
         grid,
@@ -181,9 +179,9 @@ def _change(
 
 def _told(
     change: ChangeGrid,
-    surfaces: list[GroundSurface],
+    surfaces: list[SideHeights],
     tie: _Tie,
-    asked: tuple[VolumeParameters, Within],
+    asked: tuple[VolumeParameters, VolumeScope],
     monitor: Monitor,
 ) -> VolumeResult:
     (before, after), (parameters, within) = surfaces, asked

@@ -51,7 +51,7 @@ class LevelLine:
 
 
 @dataclass(frozen=True)
-class LineWish:
+class ContourOptions:
     """Which lines are wanted.
 
     Attributes
@@ -69,7 +69,7 @@ class LineWish:
     shortest_m: float = 0.0
 
 
-def chosen_interval(low_m: float, high_m: float, most_levels: int = _WANTED_LEVELS) -> float:
+def choose_interval(low_m: float, high_m: float, most_levels: int = _WANTED_LEVELS) -> float:
     """The smallest of 1, 2, 5, 10, 20, 50 … cm that gives no more levels between two heights."""
     least = max((high_m - low_m) / most_levels, _SMALLEST_M)
     decade = 10.0 ** math.floor(math.log10(least) + 1e-9)
@@ -78,7 +78,7 @@ def chosen_interval(low_m: float, high_m: float, most_levels: int = _WANTED_LEVE
 
 
 def contour_lines(
-    grid: CellGrid, heights: NDArray[np.float32], wish: LineWish, monitor: Monitor
+    grid: CellGrid, heights: NDArray[np.float32], options: ContourOptions, monitor: Monitor
 ) -> tuple[LevelLine, ...]:
     """Contours through the middles of cells, lowest first.
 
@@ -93,10 +93,12 @@ def contour_lines(
         The interval isn't positive, or gives too many levels.
     """
     values = heights.astype(np.float64) + float(grid.origin[2])
-    return _lines(grid, values, wish, _levels_between(values, wish), monitor=monitor)
+    return _lines(grid, values, options, _levels_between(values, options), monitor=monitor)
 
 
-def change_lines(change: ChangeGrid, wish: LineWish, monitor: Monitor) -> tuple[LevelLine, ...]:
+def change_lines(
+    change: ChangeGrid, options: ContourOptions, monitor: Monitor
+) -> tuple[LevelLine, ...]:
     """Lines of equal change within the boundary, deepest cut first.
 
     There is none of no change: over ground that nobody touched it would follow the noise.
@@ -107,36 +109,36 @@ def change_lines(change: ChangeGrid, wish: LineWish, monitor: Monitor) -> tuple[
         The interval isn't positive, or gives too many levels.
     """
     values = change.change_m.astype(np.float64)
-    numbers = [number for number in _levels_between(values, wish) if number != 0]
-    return _lines(change.grid, values, wish, numbers, monitor=monitor)
+    numbers = [number for number in _levels_between(values, options) if number != 0]
+    return _lines(change.grid, values, options, numbers, monitor=monitor)
 
 
-def _levels_between(values: Floats, wish: LineWish) -> list[int]:
+def _levels_between(values: Floats, options: ContourOptions) -> list[int]:
     """Multiples of the interval that values reach."""
-    if not (math.isfinite(wish.interval_m) and wish.interval_m > 0.0):
+    if not (math.isfinite(options.interval_m) and options.interval_m > 0.0):
         raise OutOfRange(
             Text(
                 "The interval of contours is no positive length.",
                 "等高線の間隔が正の長さではありません。",
             ),
-            Text(f"{wish.interval_m} m", f"{wish.interval_m} m"),
+            Text(f"{options.interval_m} m", f"{options.interval_m} m"),
             Text("Give a positive interval.", "正の間隔を指定してください。"),
         )
     known = values[np.isfinite(values)]
     if not known.size:
         return []
     low, high = float(known.min()), float(known.max())
-    first, last = math.ceil(low / wish.interval_m), math.floor(high / wish.interval_m)
+    first, last = math.ceil(low / options.interval_m), math.floor(high / options.interval_m)
     if last - first >= _MOST_LEVELS:
-        enough = chosen_interval(low, high, _MOST_LEVELS // 2)
+        enough = choose_interval(low, high, _MOST_LEVELS // 2)
         raise OutOfRange(
             Text(
                 f"The interval gives {last - first + 1:,} contour levels.",
                 f"この間隔では等高線が{last - first + 1:,}段になります。",
             ),
             Text(
-                f"Interval {wish.interval_m} m over {high - low:.2f} m of height",
-                f"高低差{high - low:.2f} mに対して間隔{wish.interval_m} m",
+                f"Interval {options.interval_m} m over {high - low:.2f} m of height",
+                f"高低差{high - low:.2f} mに対して間隔{options.interval_m} m",
             ),
             Text(f"Take {enough:g} m or more.", f"{enough:g} m以上にしてください。"),
         )
@@ -144,7 +146,12 @@ def _levels_between(values: Floats, wish: LineWish) -> list[int]:
 
 
 def _lines(
-    grid: CellGrid, values: Floats, wish: LineWish, numbers: Iterable[int], *, monitor: Monitor
+    grid: CellGrid,
+    values: Floats,
+    options: ContourOptions,
+    numbers: Iterable[int],
+    *,
+    monitor: Monitor,
 ) -> tuple[LevelLine, ...]:
     if min(values.shape) < 2:
         return ()
@@ -160,24 +167,24 @@ def _lines(
     found = []
     for number in numbers:
         monitor.check()
-        level = round(number * wish.interval_m, 9)
+        level = round(number * options.interval_m, 9)
         for plan in generator.lines(level):
-            local = _drawn(np.asarray(plan, np.float64), wish)
+            local = _drawn(np.asarray(plan, np.float64), options)
             if local is not None:
                 xyz = np.column_stack([local + grid.origin[:2], np.full(len(local), level)])
                 found.append(LevelLine(level, number % _INDEX_EACH == 0, xyz))
     return tuple(found)
 
 
-def _drawn(plan: Floats, wish: LineWish) -> Floats | None:
+def _drawn(plan: Floats, options: ContourOptions) -> Floats | None:
     """A line as it is wanted, or None where it is none."""
     line = shapely.LineString(plan)
-    if line.length <= wish.shortest_m:
+    if line.length <= options.shortest_m:
         return None
-    if wish.simplify_m <= 0.0:
+    if options.simplify_m <= 0.0:
         return plan
     simple: Floats = shapely.get_coordinates(
-        shapely.simplify(line, wish.simplify_m, preserve_topology=False)
+        shapely.simplify(line, options.simplify_m, preserve_topology=False)
     )
     # A closed line that becomes a stroke there and back is smaller than what is left out.
     return None if len(simple) < 4 and np.array_equal(simple[0], simple[-1]) else simple

@@ -17,8 +17,8 @@ from processing.text import Text
 
 Floats = NDArray[np.float64]
 
-_PLACES_AT_ONCE = 50_000
-_MOST_PLACES = 50_000_000
+_POSITIONS_AT_ONCE = 50_000
+_MOST_POSITIONS = 50_000_000
 _SAME_OFFSET_M = 1e-9
 
 
@@ -78,7 +78,7 @@ class CrossSection:
     ----------
     station_m : float
         Along the line in plan.
-    place, direction : (2,) float64
+    position, direction : (2,) float64
         Where the line is there, m, project CRS, and the unit vector along it.
     offsets_m : (n,) float64
         Rising; left of the line negative, as in LandXML.
@@ -91,7 +91,7 @@ class CrossSection:
     """
 
     station_m: float
-    place: Floats
+    position: Floats
     direction: Floats
     offsets_m: Floats
     before: Floats
@@ -119,15 +119,15 @@ class CrossSection:
 @dataclass(frozen=True)
 class _Placed:
     station_m: float
-    place: Floats
+    position: Floats
     direction: Floats
     offsets_m: Floats
     is_inside: NDArray[np.bool_]
 
-    def places(self) -> Floats:
+    def positions(self) -> Floats:
         across = np.array([self.direction[1], -self.direction[0]])
-        places: Floats = self.place + self.offsets_m[:, None] * across
-        return places
+        positions: Floats = self.position + self.offsets_m[:, None] * across
+        return positions
 
 
 def stations_of(line: SectionLayout) -> Floats:
@@ -143,7 +143,7 @@ def stations_of(line: SectionLayout) -> Floats:
     _check_line(line)
     length = _measured(line).length_m
     count = int(np.ceil(length / line.interval_m - 1e-9))
-    if count * 2 * line.half_width_m / line.step_m > _MOST_PLACES:
+    if count * 2 * line.half_width_m / line.step_m > _MOST_POSITIONS:
         raise OutOfRange(
             Text("The sections have too many places.", "横断の点数が多すぎます。"),
             Text(f"{count + 1} sections", f"横断{count + 1}か所"),
@@ -208,7 +208,7 @@ def _measured(line: SectionLayout) -> Stations:
 
 def _blocks(line: SectionLayout, stations_m: Floats) -> Iterator[Floats]:
     each = int(2 * line.half_width_m / line.step_m) + 2
-    count = max(1, _PLACES_AT_ONCE // each)
+    count = max(1, _POSITIONS_AT_ONCE // each)
     for start in range(0, len(stations_m), count):
         yield stations_m[start : start + count]
 
@@ -217,27 +217,27 @@ def _placed(
     line: SectionLayout, measured: Stations, station_m: float, boundary: shapely.Geometry | None
 ) -> _Placed:
     """The offsets of a section, those where it meets the boundary among them."""
-    place = np.array(measured.place_at(station_m)[:2])
+    position = np.array(measured.position_at(station_m)[:2])
     direction = np.array(measured.direction_at(station_m))
     half = line.half_width_m
     offsets = np.linspace(-half, half, int(np.ceil(2 * half / line.step_m)) + 1)
     if boundary is None:
-        return _Placed(station_m, place, direction, offsets, np.ones(len(offsets) - 1, bool))
+        return _Placed(station_m, position, direction, offsets, np.ones(len(offsets) - 1, bool))
     across = np.array([direction[1], -direction[0]])
-    whole = shapely.LineString([place - half * across, place + half * across])
-    met = (shapely.get_coordinates(shapely.intersection(whole, boundary)) - place) @ across
+    whole = shapely.LineString([position - half * across, position + half * across])
+    met = (shapely.get_coordinates(shapely.intersection(whole, boundary)) - position) @ across
     offsets = np.sort(np.concatenate([offsets, np.clip(met, -half, half)]))
     offsets = offsets[np.append(True, np.diff(offsets) > _SAME_OFFSET_M)]
-    middles = place + ((offsets[1:] + offsets[:-1]) / 2)[:, None] * across
+    middles = position + ((offsets[1:] + offsets[:-1]) / 2)[:, None] * across
     is_inside = shapely.contains_xy(boundary, middles[:, 0], middles[:, 1])
-    return _Placed(station_m, place, direction, offsets, is_inside)
+    return _Placed(station_m, position, direction, offsets, is_inside)
 
 
 def _with_heights(
     placed: Sequence[_Placed], grounds: tuple[HeightSurface, HeightSurface]
 ) -> list[CrossSection]:
-    places = np.concatenate([one.places() for one in placed])
-    before, after = (ground.heights_at(places) for ground in grounds)
+    positions = np.concatenate([one.positions() for one in placed])
+    before, after = (ground.heights_at(positions) for ground in grounds)
     ends = np.cumsum([len(one.offsets_m) for one in placed])[:-1]
     return [
         _section(one, below, above)
@@ -262,7 +262,7 @@ def _section(one: _Placed, before: Floats, after: Floats) -> CrossSection:
     cut, cut_moment = _above(start[kept], end[kept], -change[:-1][kept], -change[1:][kept])
     return CrossSection(
         one.station_m,
-        one.place,
+        one.position,
         one.direction,
         one.offsets_m,
         before,

@@ -16,13 +16,13 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from processing.earthwork.limits import Face
+from processing.earthwork.limits import FaceKind
 from processing.earthwork.triangle_surface import TriangleSurface, twice_areas
 from processing.errors import Unsuitable
 from processing.text import Text
 
 _LEAST_AREA_M2 = 1e-6
-_SAME_PLACE_M = 1e-4
+_SAME_POSITION_M = 1e-4
 _LEAST_SIDE_SHARE = 0.25
 
 
@@ -49,7 +49,7 @@ class FaceRules:
 
 def design_faces(
     design: TriangleSurface, rules: FaceRules, boundary: shapely.Geometry | None = None
-) -> Mapping[Face, shapely.Geometry]:
+) -> Mapping[FaceKind, shapely.Geometry]:
     """The plan of each face, less the strips; a kind that the design lacks is not in it.
 
     Parameters
@@ -68,7 +68,7 @@ def design_faces(
     steep = _merged(triangles.outlines[is_steep])
     strips = shapely.buffer(shapely.boundary(steep), rules.margin_m)
     faces = {}
-    for face, chosen in ((Face.FLAT, ~is_slope), (Face.SLOPE, is_slope)):
+    for face, chosen in ((FaceKind.FLAT, ~is_slope), (FaceKind.SLOPE, is_slope)):
         plan = _merged(triangles.outlines[chosen])
         if rules.margin_m > 0.0:
             plan = shapely.difference(plan, strips)
@@ -149,12 +149,12 @@ def _neighbours(
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """Triangles that share a side, the side's two corners, and the far corner of each triangle."""
     # Programs that write each face with corners of its own give the same place many numbers.
-    _, place = np.unique(np.round(xyz / _SAME_PLACE_M), axis=0, return_inverse=True)
-    place = place.reshape(-1)
+    _, position = np.unique(np.round(xyz / _SAME_POSITION_M), axis=0, return_inverse=True)
+    position = position.reshape(-1)
     sides = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
     far = np.concatenate([corners[:, 2], corners[:, 0], corners[:, 1]])
     triangle = np.tile(np.arange(len(corners)), 3)
-    ends = np.sort(place[sides], axis=1)
+    ends = np.sort(position[sides], axis=1)
     order = np.lexsort((ends[:, 1], ends[:, 0]))
     is_same = (ends[order[1:]] == ends[order[:-1]]).all(axis=1)
     one, other = order[:-1][is_same], order[1:][is_same]

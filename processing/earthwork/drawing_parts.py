@@ -66,7 +66,7 @@ def parts_with_ground(offsets: Floats, heights: Floats) -> list[Floats]:
     return [part for part in np.split(both, breaks) if len(part) > 1 and np.isfinite(part).all()]
 
 
-def moved_parts(section: DrawnSection) -> list[tuple[bool, Floats]]:
+def earth_moved(section: DrawnSection) -> list[tuple[bool, Floats]]:
     """What lies between the two grounds of a section within the boundary, cut where they cross.
 
     Returns
@@ -75,13 +75,13 @@ def moved_parts(section: DrawnSection) -> list[tuple[bool, Floats]]:
         True for cut; corners, offset and height, along the earlier ground and back along the
         later one.
     """
-    places = np.column_stack([section.offsets, section.before, section.after])
-    is_known = np.isfinite(places.sum(axis=1))
+    positions = np.column_stack([section.offsets, section.before, section.after])
+    is_known = np.isfinite(positions.sum(axis=1))
     counts = is_known[:-1] & is_known[1:]
     if section.is_inside is not None:
         counts &= section.is_inside
     bounds = np.flatnonzero(np.diff(counts.astype(np.int8), prepend=0, append=0))
-    stretches = [places[start : end + 1] for start, end in bounds.reshape(-1, 2).tolist()]
+    stretches = [positions[start : end + 1] for start, end in bounds.reshape(-1, 2).tolist()]
     return [lens for stretch in stretches for lens in _lenses(stretch)]
 
 
@@ -92,14 +92,14 @@ def _lenses(part: Floats) -> list[tuple[bool, Floats]]:
     share = change[crosses] / (change[crosses] - change[crosses + 1])
     between = part[crosses] + share[:, None] * (part[crosses + 1] - part[crosses])
     between[:, 2] = between[:, 1]
-    places = np.insert(part, crosses + 1, between, axis=0)
-    change = places[:, 2] - places[:, 1]
+    positions = np.insert(part, crosses + 1, between, axis=0)
+    change = positions[:, 2] - positions[:, 1]
     side = np.sign(change[:-1] + change[1:])  # of each stretch
     bounds = np.flatnonzero(np.diff(side)) + 1
     lenses = []
     for start, end in zip([0, *bounds], [*bounds, len(side)], strict=True):
         if end > start and side[start]:
-            stretch = places[start : end + 1]
+            stretch = positions[start : end + 1]
             outline = np.concatenate([stretch[:, [0, 1]], stretch[::-1][:, [0, 2]]])
             lenses.append((bool(side[start] < 0), outline))
     return lenses

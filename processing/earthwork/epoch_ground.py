@@ -11,7 +11,7 @@ from processing.errors import MissingInput
 from processing.ground.drive_points import Chunk, DrivePoints, read_ahead
 from processing.ground.ground_columns import GROUND
 from processing.monitor import Monitor, SilentMonitor
-from processing.noise.standing_places import standing_place
+from processing.noise.scanner_positions import scanner_position_of
 from processing.points.drive import Drive
 from processing.points.measured_day import measured_day
 from processing.text import Text
@@ -59,14 +59,14 @@ def ground_of_drives(drives: tuple[Drive, ...], monitor: Monitor, *, name: str =
     def measured() -> Iterator[GroundBlock]:
         return read_ahead(everything_of, points.chunks)
 
-    places = list(in_order(standing_place, drives))
-    stations = tuple(number for number, place in enumerate(places) if place is not None)
+    positions = list(in_order(scanner_position_of, drives))
+    stations = tuple(number for number, position in enumerate(positions) if position is not None)
     return EpochGround(
         name,
         blocks,
         low=np.min([drive.info.lowest for drive in drives], axis=0),
         high=np.max([drive.info.highest for drive in drives], axis=0),
-        stands=np.array([places[number] for number in stations]).reshape(-1, 3),
+        stands=np.array([positions[number] for number in stations]).reshape(-1, 3),
         stations=stations,
         measured=measured,
         crs=next((drive.info.crs for drive in drives if drive.info.crs), ""),

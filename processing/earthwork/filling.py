@@ -19,7 +19,7 @@ _TENSION = 0.02
 _SWEEPS = 24
 
 
-def filled_smoothly(heights: Floats, is_known: Mask, is_wanted: Mask) -> Floats:
+def fill_smoothly(heights: Floats, is_known: Mask, is_wanted: Mask) -> Floats:
     """Heights with holes filled by the smoothest surface that meets what is known.
 
     It goes on with the slopes at the rim, as graded ground does; the tension keeps it from
@@ -105,7 +105,7 @@ def _squared(
     return csr_array(difference.T @ difference)
 
 
-def relaxed(heights: Floats, is_known: Mask) -> None:
+def relax_heights(heights: Floats, is_known: Mask) -> None:
     """Fit filled cells to the measured ones beside them, in place: gaps of a few cells.
 
     Parameters

@@ -54,9 +54,9 @@ class GridSurface:
     def heights_at(self, xy: Floats) -> Floats:
         """Between the middles of four cells; beside a hole that of the cell itself: (n,), m."""
         found = heights_at(xy, self.grid, self.heights)
-        places = np.floor((xy - self.grid.origin[:2]) / self.grid.size_m)
-        is_in = np.all((places >= 0) & (places < [self.grid.columns, self.grid.rows]), axis=1)
+        positions = np.floor((xy - self.grid.origin[:2]) / self.grid.size_m)
+        is_in = np.all((positions >= 0) & (positions < [self.grid.columns, self.grid.rows]), axis=1)
         beside = np.flatnonzero(np.isnan(found) & is_in)
-        column, row = places[beside].astype(np.int64).T
+        column, row = positions[beside].astype(np.int64).T
         found[beside] = self.heights[row, column] + self.grid.origin[2]
         return found

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.earthwork.filling import filled_smoothly
+from processing.earthwork.filling import fill_smoothly
 from processing.earthwork.sight_lines import SightLines
 from processing.kernels import kernel
 from processing.monitor import Monitor
@@ -53,7 +53,7 @@ class FilledGround:
     spread: Floats
 
 
-def filled_ground(
+def fill_ground(
     heights: Floats, is_wanted: Mask, lines: SightLines, size_m: float, monitor: Monitor
 ) -> FilledGround:
     """Fill holes in measured ground.
@@ -75,7 +75,7 @@ def filled_ground(
         return FilledGround(np.full(heights.shape, np.nan), np.full(heights.shape, np.nan))
     away_m = np.asarray(distance_transform_edt(~is_known)) * size_m
     wanted = is_wanted & (away_m <= FARTHEST_M)
-    smooth = filled_smoothly(heights, is_known, wanted)
+    smooth = fill_smoothly(heights, is_known, wanted)
     monitor.check()
     holes = wanted & ~is_known
     spread = np.where(holes, _roughness_at(heights, away_m, size_m), 0.0)
@@ -89,16 +89,16 @@ def _behind_crests(
 ) -> FilledGround:
     """Lower the smooth surface where it runs along a beam over a crest."""
     lines, size_m = seen
-    places = np.argwhere(holes).astype(np.int64)
+    positions = np.argwhere(holes).astype(np.int64)
     typical, steep = _site_slopes(np.where(is_known, smooth, np.nan), size_m)
-    sums = np.zeros((len(places), 3))
+    sums = np.zeros((len(positions), 3))
     known = np.where(is_known, smooth, np.nan)
-    middles: Floats = (places[:, ::-1].astype(np.float64) + 0.5) * size_m
+    middles: Floats = (positions[:, ::-1].astype(np.float64) + 0.5) * size_m
     for number, stand in enumerate(lines.stands):
         monitor.check()
         limit = lines.highest_at(number, middles)
-        behind = np.full((len(places), 6), np.nan)
-        _crest_kernel(known, places, stand, size_m, behind)
+        behind = np.full((len(positions), 6), np.nan)
+        _crest_kernel(known, positions, stand, size_m, behind)
         from_crest, crest, to_far, far, rise, horizon = behind.T
         here = smooth[holes]
         is_behind = ((horizon >= here - _ON_BEAM_M) | (limit <= here - _ON_BEAM_M)) & (to_far > 0)
@@ -113,11 +113,11 @@ def _behind_crests(
         sums[is_behind, :2] += told[is_behind]
         sums[is_behind, 2] += 1.0
     heights, spread = smooth.copy(), np.zeros_like(smooth)
-    if len(places):
-        is_told = sums[:, 2] > 0
-        rows, columns = places[is_told].T
-        heights[rows, columns] = sums[is_told, 0] / sums[is_told, 2]
-        spread[rows, columns] = _BEAM_SHARE * sums[is_told, 1] / sums[is_told, 2]
+    if len(positions):
+        is_reported = sums[:, 2] > 0
+        rows, columns = positions[is_reported].T
+        heights[rows, columns] = sums[is_reported, 0] / sums[is_reported, 2]
+        spread[rows, columns] = _BEAM_SHARE * sums[is_reported, 1] / sums[is_reported, 2]
     return FilledGround(heights, spread)
 
 
@@ -166,7 +166,7 @@ def _height_kernel(known: Floats, size_m: float, x: float, y: float) -> float:
 
 @kernel
 def _crest_kernel(
-    known: Floats, places: NDArray[np.int64], stand: Floats, size_m: float, behind: Floats
+    known: Floats, positions: NDArray[np.int64], stand: Floats, size_m: float, behind: Floats
 ) -> None:
     """What a standing scanner's beams over measured ground say of places that have none.
 
@@ -175,9 +175,9 @@ def _crest_kernel(
     where there is none.
     """
     step = size_m / 2
-    for place in range(places.shape[0]):
-        x = (places[place, 1] + 0.5) * size_m - stand[0]
-        y = (places[place, 0] + 0.5) * size_m - stand[1]
+    for position in range(positions.shape[0]):
+        x = (positions[position, 1] + 0.5) * size_m - stand[0]
+        y = (positions[position, 0] + 0.5) * size_m - stand[1]
         far_m = np.hypot(x, y)
         if far_m < size_m:
             continue
@@ -189,12 +189,12 @@ def _crest_kernel(
             # NaN is never more.
             if (z - stand[2]) / at >= steepest:
                 steepest = (z - stand[2]) / at
-                behind[place, 0] = far_m - at
-                behind[place, 1] = z
+                behind[position, 0] = far_m - at
+                behind[position, 1] = z
             at += step
         if steepest > -np.inf:
-            behind[place, 5] = stand[2] + far_m * steepest
-            _behind_kernel(known, size_m, (stand[0], stand[1], x, y, far_m), behind[place])
+            behind[position, 5] = stand[2] + far_m * steepest
+            _behind_kernel(known, size_m, (stand[0], stand[1], x, y, far_m), behind[position])
 
 
 @kernel
@@ -229,5 +229,5 @@ def _behind_kernel(
 
 def warm_up() -> None:
     """Compile the kernel of this file."""
-    known, places = np.zeros((2, 2)), np.zeros((1, 2), np.int64)
-    _crest_kernel(known, places, np.array([-3.0, 0.0, 1.0]), 1.0, np.zeros((1, 6)))
+    known, positions = np.zeros((2, 2)), np.zeros((1, 2), np.int64)
+    _crest_kernel(known, positions, np.array([-3.0, 0.0, 1.0]), 1.0, np.zeros((1, 6)))

@@ -9,14 +9,14 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import named
+from processing.errors import name_with_type
 from processing.text import Text
 
 # A limit of 50 mm is met by 50 mm: sums of many values end a little beside it.
 _TOLERANCE_M = 1e-7
 
 
-class Face(Enum):
+class FaceKind(Enum):
     """Kinds of faces, told apart by the slope of the design."""
 
     FLAT = "flat"
@@ -24,7 +24,7 @@ class Face(Enum):
 
 
 @dataclass(frozen=True)
-class Allowed:
+class AllowedRange:
     """Deviations that a limit allows, both ends included.
 
     Attributes
@@ -45,9 +45,9 @@ class Allowed:
         is_low: NDArray[np.bool_] = values_m < self.low_m - _TOLERANCE_M
         return is_low | (values_m > self.high_m + _TOLERANCE_M)
 
-    def part(self, percent: float) -> Allowed:
+    def part(self, percent: float) -> AllowedRange:
         """A limit that is so many percent of this one."""
-        return Allowed(self.low_m * percent / 100.0, self.high_m * percent / 100.0)
+        return AllowedRange(self.low_m * percent / 100.0, self.high_m * percent / 100.0)
 
     @property
     def is_one_sided(self) -> bool:
@@ -89,10 +89,10 @@ class FaceLimits:
         Of the mean of all deviations, and of each.
     """
 
-    face: Face
+    face: FaceKind
     name: Text
-    mean: Allowed
-    single: Allowed
+    mean: AllowedRange
+    single: AllowedRange
 
 
 @dataclass(frozen=True)
@@ -135,7 +135,7 @@ class AsBuiltLimits:
         OutOfRange
             The table has none; tells those that it has.
         """
-        return named(
+        return name_with_type(
             {one.id: one for one in self.work_types},
             work_type,
             Text("The table of limits has no such work type.", "規格値表にその工種がありません。"),

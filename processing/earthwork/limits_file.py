@@ -10,10 +10,10 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeGuard
 
-from processing.earthwork.limits import Allowed, AsBuiltLimits, Face, FaceLimits, WorkType
+from processing.earthwork.limits import AllowedRange, AsBuiltLimits, FaceKind, FaceLimits, WorkType
 from processing.errors import BadFile
 from processing.text import Text
-from processing.toml_lines import refused_line, short, toml_content, toml_of
+from processing.toml_lines import line_error, short, toml_content, toml_of
 from resources import path_of
 
 BUNDLED = "catalogue/as_built_limits.toml"
@@ -67,7 +67,7 @@ class _Entry:
     header: int
 
     def refused(self, key: str, what: Text) -> BadFile:
-        return refused_line(what, self.path, self._line_of(key), _CORRECT)
+        return line_error(what, self.path, self._line_of(key), _CORRECT)
 
     def not_allowed(self, key: str, meant: Text) -> BadFile:
         """The error for a key that is missing or has a value that it can't have."""
@@ -107,7 +107,7 @@ class _Entry:
             raise self.not_allowed(key, Text.same(f"{low} 0, ≤ {largest:g}"))
         return float(value)
 
-    def allowed(self, key: str) -> Allowed:
+    def allowed(self, key: str) -> AllowedRange:
         """``50``, or ``[-50, inf]``, mm."""
         value = self.values.get(key)
         ends = [-value, value] if _is_number(value) else value
@@ -119,7 +119,7 @@ class _Entry:
         sizes = [size for size in (-low, high) if math.isfinite(size)]
         if not is_one_finite or not all(0.0 < size <= _LARGEST_MM for size in sizes) or low > high:
             raise self.not_allowed(key, meant)
-        return Allowed(low / 1000.0, high / 1000.0)
+        return AllowedRange(low / 1000.0, high / 1000.0)
 
     def tables(self, key: str, header: str) -> list[_Entry]:
         """The tables of an array below this entry, each with the line of its header."""
@@ -187,13 +187,13 @@ def _work_types(entries: Sequence[_Entry]) -> tuple[WorkType, ...]:
 
 
 def _faces(work_type: _Entry) -> tuple[FaceLimits, ...]:
-    read: dict[Face, FaceLimits] = {}
+    read: dict[FaceKind, FaceLimits] = {}
     for entry in work_type.tables("face", "work_type.face"):
         entry.check_keys("face", "name", "mean_mm", "single_mm")
-        kinds = [one.value for one in Face]
+        kinds = [one.value for one in FaceKind]
         if entry.values.get("face") not in kinds:
             raise entry.not_allowed("face", Text.same(", ".join(kinds)))
-        face = Face(entry.values["face"])
+        face = FaceKind(entry.values["face"])
         if face in read:
             raise entry.refused("face", _TWICE.filled(value=face.value))
         mean, single = entry.allowed("mean_mm"), entry.allowed("single_mm")

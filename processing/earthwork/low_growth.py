@@ -17,7 +17,7 @@ from processing.kernels import kernel
 from processing.monitor import Monitor
 
 Floats = NDArray[np.float64]
-Counts = NDArray[np.int32]
+CellCounts = NDArray[np.int32]
 
 _BLOCK_M = 1.0
 _BIN_M = 0.004
@@ -60,7 +60,7 @@ def lift_of_growth(
     return lift[: grid.rows, : grid.columns]
 
 
-def _lift(counts: Counts) -> Floats:
+def _lift(counts: CellCounts) -> Floats:
     """From how many points of each block lie how far above their cells' planes."""
     middles = (np.arange(_BINS) + 0.5 - _BINS / 2) * _BIN_M
     count = np.maximum(counts.sum(axis=2), 1)
@@ -84,7 +84,7 @@ def _heights_kernel(
     origin: Floats,
     sizes: tuple[float, int],
     planes: tuple[Floats, Floats, Floats],
-    counts: Counts,
+    counts: CellCounts,
 ) -> None:
     size_m, times = sizes
     heights, slopes_x, slopes_y = planes

@@ -17,9 +17,9 @@ from processing.earthwork.height_surfaces import GridSurface
 from processing.earthwork.sides import Side
 from processing.earthwork.tin_volume import volume_between
 from processing.earthwork.triangle_surface import TriangleSurface
-from processing.earthwork.triangulation import triangulated_ground
+from processing.earthwork.triangulation import triangulate_ground
 from processing.earthwork.volume_parameters import PRISMOIDAL, TIN, VolumeParameters
-from processing.earthwork.within import Within
+from processing.earthwork.volume_scope import VolumeScope
 from processing.monitor import Monitor
 from processing.text import Text
 
@@ -62,7 +62,7 @@ def volume_by(
     change: ChangeGrid,
     sides: tuple[Side, Side],
     monitor: Monitor,
-    within: Within,
+    within: VolumeScope,
 ) -> OtherMethod:
     """Cut and fill by triangles or along a line, as the parameters say.
 
@@ -90,7 +90,7 @@ def volume_by(
 
 
 def _by_triangles(
-    change: ChangeGrid, sides: tuple[Side, Side], monitor: Monitor, within: Within
+    change: ChangeGrid, sides: tuple[Side, Side], monitor: Monitor, within: VolumeScope
 ) -> OtherMethod:
     surfaces: list[TriangleSurface] = []
     used: set[int] = set()
@@ -101,8 +101,8 @@ def _by_triangles(
             continue
         lines = _lines_on(GridSurface(change.grid, heights), within.break_lines)
         used |= set(lines)
-        places = _places(change, heights)
-        surfaces.append(triangulated_ground(places, tuple(lines.values()), monitor))
+        positions = _positions(change, heights)
+        surfaces.append(triangulate_ground(positions, tuple(lines.values()), monitor))
     area = within.boundary if within.boundary is not None else _outline(change)
     found = volume_between(surfaces[0], surfaces[1], monitor, area)
     left = [number for number in range(len(within.break_lines)) if number not in used]
@@ -132,7 +132,7 @@ def _lines_on(ground: GridSurface, lines: tuple[Floats, ...]) -> dict[int, Float
     return found
 
 
-def _places(change: ChangeGrid, heights: NDArray[np.float32]) -> Floats:
+def _positions(change: ChangeGrid, heights: NDArray[np.float32]) -> Floats:
     row, column = np.nonzero(np.isfinite(heights))
     x, y = ((np.stack([column, row]) + 0.5) * change.grid.size_m) + change.grid.origin[:2, None]
     return np.column_stack([x, y, heights[row, column].astype(np.float64) + change.grid.origin[2]])

@@ -236,9 +236,9 @@ def pieces_kernel(
                 if _fan_area(work[1], corner) <= _NO_AREA_M2:
                     continue
                 if made < pieces.shape[0]:
-                    for place, of_figure in enumerate((0, corner, corner + 1)):
+                    for position, of_figure in enumerate((0, corner, corner + 1)):
                         x, y = work[1, of_figure, 0], work[1, of_figure, 1]
-                        pieces[made, place, 0], pieces[made, place, 1] = x, y
-                        pieces[made, place, 2] = _height(one, gradient, x, y)
+                        pieces[made, position, 0], pieces[made, position, 1] = x, y
+                        pieces[made, position, 2] = _height(one, gradient, x, y)
                 made += 1
     return made

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from processing.kernels import kernel
 
 Floats = NDArray[np.float64]
-Counts = NDArray[np.int64]
+BucketCounts = NDArray[np.int64]
 
 _SMALLEST_M = 1e-6
 _OF_TRIANGLE = 1.2
@@ -43,11 +43,11 @@ class PlanBuckets:
     size_m: float
     rows: int
     columns: int
-    starts: Counts
-    triangles: Counts
+    starts: BucketCounts
+    triangles: BucketCounts
 
 
-def bucketed(triangles: Floats) -> PlanBuckets:
+def sort_into_buckets(triangles: Floats) -> PlanBuckets:
     """Buckets about as large as most triangles; larger ones where there would be too many.
 
     The size of the triangles counts, not that of the plan: a road that runs aslant leaves most of
@@ -82,7 +82,7 @@ def bucketed(triangles: Floats) -> PlanBuckets:
     return PlanBuckets(*frame, rows, columns, starts, held)
 
 
-def buckets_of_triangles(buckets: PlanBuckets) -> tuple[Counts, Counts]:
+def buckets_of_triangles(buckets: PlanBuckets) -> tuple[BucketCounts, BucketCounts]:
     """The same from the other side.
 
     Returns
@@ -147,7 +147,7 @@ def _columns_of(
 
 @kernel
 def _count_kernel(
-    triangles: Floats, frame: tuple[float, float, float], columns: int, counts: Counts
+    triangles: Floats, frame: tuple[float, float, float], columns: int, counts: BucketCounts
 ) -> None:
     """How many triangles reach into each bucket."""
     rows = (counts.shape[0] - 1) // columns
@@ -164,7 +164,7 @@ def _fill_kernel(
     triangles: Floats,
     frame: tuple[float, float, float],
     columns: int,
-    held: tuple[Counts, Counts],
+    held: tuple[BucketCounts, BucketCounts],
 ) -> None:
     """The triangles of each bucket, from where its place in the list begins."""
     following, numbers = held
@@ -181,4 +181,4 @@ def _fill_kernel(
 
 def warm_up() -> None:
     """Compile the kernels."""
-    bucketed(np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]]))
+    sort_into_buckets(np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]]))

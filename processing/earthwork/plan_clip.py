@@ -20,7 +20,7 @@ _CELLS_EACH = 2.0
 _CUT_AT_ONCE = 10_000
 
 
-def clipped(triangles: Floats, boundary: shapely.Geometry, monitor: Monitor) -> Floats:
+def clip_triangles(triangles: Floats, boundary: shapely.Geometry, monitor: Monitor) -> Floats:
     """What of triangles lies within a boundary: (k, 3, 3) float64, counterclockwise.
 
     Those that the boundary doesn't touch come first, unchanged; what is left of the others is cut
@@ -95,4 +95,4 @@ def _cut(triangles: Floats, boundary: shapely.Geometry, monitor: Monitor) -> Ite
 def warm_up() -> None:
     """Compile the kernel."""
     triangle = np.array([[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]])
-    clipped(triangle, shapely.box(0.0, 0.0, 0.5, 0.5), SilentMonitor())
+    clip_triangles(triangle, shapely.box(0.0, 0.0, 0.5, 0.5), SilentMonitor())

@@ -65,7 +65,7 @@ def registration_of(before: Floats, after: Floats, size_m: float) -> Registratio
         return None
     shift, weights = _robust_fit(terms, values)
     misses = values - terms @ shift
-    sure = _sureness(terms, weights * misses, weights, _patches(stable, size_m))
+    sure = _significance(terms, weights * misses, weights, _patches(stable, size_m))
     # A scanner's own errors differ with the slope that its beams come in on: where slopes are
     # gentle they look like a large shift to the side.
     spread = np.std(terms[:, :2], axis=0)
@@ -82,7 +82,7 @@ def registration_of(before: Floats, after: Floats, size_m: float) -> Registratio
     )
 
 
-def corrected(registration: Registration) -> Registration:
+def correctable_shift(registration: Registration) -> Registration:
     """The shift that can be taken back: what is more than chance, each direction by itself.
 
     Taking back what chance made of a gentle slope would make volumes worse.
@@ -138,7 +138,9 @@ def _patches(stable: Mask, size_m: float) -> NDArray[np.int64]:
     return patches
 
 
-def _sureness(terms: Floats, pulls: Floats, weights: Floats, patches: NDArray[np.int64]) -> Floats:
+def _significance(
+    terms: Floats, pulls: Floats, weights: Floats, patches: NDArray[np.int64]
+) -> Floats:
     """Standard deviations, m, as if each patch were one measurement.
 
     What a scanner's place is off, and what work left on a slope, is the same over a patch: it

@@ -14,8 +14,8 @@ import shapely
 from numpy.typing import NDArray
 
 from processing.earthwork.overlay_kernels import overlap_kernel
-from processing.earthwork.plan_buckets import bucketed, buckets_of_triangles
-from processing.earthwork.same_places import numbered_places
+from processing.earthwork.plan_buckets import buckets_of_triangles, sort_into_buckets
+from processing.earthwork.same_positions import number_positions
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import Unsuitable
 from processing.text import Text
@@ -23,7 +23,7 @@ from processing.text import Text
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
-_SAME_PLACE_M = 1e-6
+_SAME_POSITION_M = 1e-6
 _BORNE_SHARE = 1e-4
 """Part of the area that may be covered twice: it changes no volume that is told."""
 
@@ -123,7 +123,7 @@ def outline(surface: TriangleSurface) -> shapely.Geometry:
     """
     triangles = surface.plan_triangles(np.array([*surface.origin[:2], 0.0]))
     plan = triangles[:, :, :2].reshape(-1, 2)
-    corner, first = numbered_places(plan, _SAME_PLACE_M)
+    corner, first = number_positions(plan, _SAME_POSITION_M)
     corner = corner.reshape(-1, 3)
     sides = np.concatenate([corner[:, [0, 1]], corner[:, [1, 2]], corner[:, [2, 0]]])
     sides.sort(axis=1)
@@ -138,7 +138,7 @@ def outline(surface: TriangleSurface) -> shapely.Geometry:
         if part.area >= _LEAST_PART_M2:
             whole.append(shapely.Polygon(part.exterior, holes))
     joined = shapely.orient_polygons(whole[0] if len(whole) == 1 else shapely.MultiPolygon(whole))
-    return shapely.transform(joined, lambda places: places + surface.origin[:2])
+    return shapely.transform(joined, lambda positions: positions + surface.origin[:2])
 
 
 def holes_of(surface: TriangleSurface) -> tuple[shapely.Geometry, ...]:
@@ -187,8 +187,8 @@ def _name_of(surface: TriangleSurface) -> Text:
 
 def _repeated(surface: TriangleSurface) -> NDArray[np.bool_]:
     """Triangles whose three corners are those of an earlier one: (t,) bool."""
-    places = surface.xyz[surface.corners.ravel()] - surface.origin
-    number, _ = numbered_places(places, _SAME_PLACE_M)
+    positions = surface.xyz[surface.corners.ravel()] - surface.origin
+    number, _ = number_positions(positions, _SAME_POSITION_M)
     corners = np.sort(number.reshape(-1, 3), axis=1)
     order = np.lexsort(corners.T)
     is_repeated = np.zeros(len(corners), bool)
@@ -199,7 +199,7 @@ def _repeated(surface: TriangleSurface) -> NDArray[np.bool_]:
 def _covered_twice(surface: TriangleSurface) -> float:
     """Area that more than one triangle covers, m²."""
     triangles = surface.plan_triangles(surface.origin)
-    buckets = bucketed(triangles)
+    buckets = sort_into_buckets(triangles)
     found = np.zeros(4)
     held = (buckets.starts, buckets.triangles)
     overlap_kernel(triangles, held, buckets_of_triangles(buckets), found)

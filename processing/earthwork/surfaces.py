@@ -1,4 +1,4 @@
-"""GroundSurface: one side of a comparison as heights on cells, measured, filled in, or designed."""
+"""SideHeights: one side of a comparison as heights on cells, measured, filled in, or designed."""
 
 from __future__ import annotations
 
@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.earthwork.filling import relaxed
+from processing.earthwork.filling import relax_heights
 from processing.earthwork.ground_cells import GroundCells
-from processing.earthwork.hidden_ground import filled_ground
+from processing.earthwork.hidden_ground import fill_ground
 from processing.earthwork.sides import EpochGround, Level
 from processing.earthwork.sight_lines import Floor, SightLines
 from processing.earthwork.triangle_surface import TriangleSurface
@@ -33,7 +33,7 @@ def cells_of_hole(size_m: float) -> int:
 
 
 @dataclass(frozen=True)
-class GroundSurface:
+class SideHeights:
     """Heights of a side on cells; row = north, column = east.
 
     Attributes
@@ -51,7 +51,7 @@ class GroundSurface:
     spread: Floats
 
 
-def designed_surface(side: TriangleSurface | Level, grid: CellGrid) -> GroundSurface:
+def designed_surface(side: TriangleSurface | Level, grid: CellGrid) -> SideHeights:
     """A design or a level at the middles of cells."""
     if isinstance(side, Level):
         heights = np.full((grid.rows, grid.columns), side.height_m - grid.origin[2])
@@ -60,7 +60,7 @@ def designed_surface(side: TriangleSurface | Level, grid: CellGrid) -> GroundSur
         y = grid.origin[1] + (np.arange(grid.rows) + 0.5) * grid.size_m
         middles = np.column_stack([np.tile(x, grid.rows), np.repeat(y, grid.columns)])
         heights = side.heights_at(middles).reshape(grid.rows, grid.columns) - grid.origin[2]
-    return GroundSurface(heights, np.isfinite(heights), np.zeros_like(heights))
+    return SideHeights(heights, np.isfinite(heights), np.zeros_like(heights))
 
 
 def measured_surface(
@@ -69,7 +69,7 @@ def measured_surface(
     is_wanted: Mask,
     monitor: Monitor,
     shift_m: tuple[float, float, float] = (0.0, 0.0, 0.0),
-) -> GroundSurface:
+) -> SideHeights:
     """The ground of an epoch, holes filled in as far as they can be.
 
     Gaps between points are bridged; larger holes are filled on cells of half a metre, where a
@@ -87,16 +87,16 @@ def measured_surface(
     coarse, wanted = coarse_means(cells.heights, times), _any_of(is_wanted, times)
     origin = grid.origin + np.asarray(shift_m)
     lines = _sight_lines(epoch, origin, (coarse, times * grid.size_m), monitor)
-    filled = filled_ground(coarse, wanted, lines, times * grid.size_m, monitor)
+    filled = fill_ground(coarse, wanted, lines, times * grid.size_m, monitor)
     shape = cells.heights.shape
     heights = np.where(cells.is_counted, cells.heights, _fine(filled.heights, times, shape))
     # Larger holes keep what was found for them: a crest would be smoothed away again.
-    relaxed(heights, cells.is_counted | np.isnan(_repeated(coarse, times, shape)))
+    relax_heights(heights, cells.is_counted | np.isnan(_repeated(coarse, times, shape)))
     is_measured = _bridged(cells) | _thinly_measured(cells, times)
     spread = np.where(is_measured, 0.0, _repeated(filled.spread, times, shape))
     outside = ~is_wanted & ~cells.is_counted
     heights[outside] = np.nan
-    return GroundSurface(heights, is_measured & np.isfinite(heights), spread)
+    return SideHeights(heights, is_measured & np.isfinite(heights), spread)
 
 
 def _bridged(cells: GroundCells) -> Mask:

@@ -21,8 +21,8 @@ import shapely
 from numpy.typing import NDArray
 
 from processing.earthwork.overlay_kernels import level_kernel, overlay_kernel
-from processing.earthwork.plan_buckets import PlanBuckets, bucketed
-from processing.earthwork.plan_clip import clipped
+from processing.earthwork.plan_buckets import PlanBuckets, sort_into_buckets
+from processing.earthwork.plan_clip import clip_triangles
 from processing.earthwork.triangle_surface import TriangleSurface, twice_areas
 from processing.errors import Unsuitable
 from processing.monitor import Monitor, SilentMonitor
@@ -110,7 +110,7 @@ def volume_between(
     monitor.check()
     if not len(one) or not len(other):
         raise _apart()
-    buckets = bucketed(other)
+    buckets = sort_into_buckets(other)
     monitor.check()
     frame = (buckets.west, buckets.south, buckets.size_m, buckets.rows, buckets.columns)
     ends = _block_ends(one, buckets)
@@ -173,7 +173,7 @@ def volume_to_level(
 
 
 def _moved(boundary: shapely.Geometry, origin: Floats) -> shapely.Geometry:
-    return shapely.transform(boundary, lambda places: places - origin[:2])
+    return shapely.transform(boundary, lambda positions: positions - origin[:2])
 
 
 def _within(
@@ -181,7 +181,7 @@ def _within(
 ) -> Floats:
     triangles = surface.plan_triangles(origin)
     monitor.check()
-    return triangles if boundary is None else clipped(triangles, boundary, monitor)
+    return triangles if boundary is None else clip_triangles(triangles, boundary, monitor)
 
 
 def _left(whole: float, part: float) -> float:

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.earthwork.plan_buckets import PlanBuckets, bucketed
+from processing.earthwork.plan_buckets import PlanBuckets, sort_into_buckets
 from processing.kernels import kernel
 from processing.text import Text
 from processing.worked_ahead import in_order
@@ -55,8 +55,8 @@ class TriangleSurface:
         xy : (n, 2) float64
             m, project CRS.
         """
-        places = np.ascontiguousarray(np.asarray(xy, np.float64)[:, :2])
-        heights = np.full(len(places), np.nan)
+        positions = np.ascontiguousarray(np.asarray(xy, np.float64)[:, :2])
+        heights = np.full(len(positions), np.nan)
         if not len(self._triangles):
             return heights
         buckets, origin = self._buckets, self.origin
@@ -64,11 +64,11 @@ class TriangleSurface:
 
         def fill(start: int) -> None:
             part = slice(start, start + _BLOCK)
-            local = places[part] - origin[:2]
+            local = positions[part] - origin[:2]
             held = (buckets.starts, buckets.triangles)
             _heights_kernel(local, self._triangles, frame, held, heights[part])
 
-        starts = range(0, len(places), _BLOCK)
+        starts = range(0, len(positions), _BLOCK)
         if len(starts) == 1:  # a place under the mouse is worth no threads
             fill(0)
         else:
@@ -104,8 +104,8 @@ class TriangleSurface:
         """A place near the triangles that is subtracted before any arithmetic: (3,) float64, m."""
         if not len(self.corners):
             return np.zeros(3)
-        places = self.xyz[self.corners.ravel()]
-        known = places[np.isfinite(places).all(axis=1)]
+        positions = self.xyz[self.corners.ravel()]
+        known = positions[np.isfinite(positions).all(axis=1)]
         origin: Floats = np.floor(known.min(axis=0)) if len(known) else np.zeros(3)
         return origin
 
@@ -140,7 +140,7 @@ class TriangleSurface:
 
     @cached_property
     def _buckets(self) -> PlanBuckets:
-        return bucketed(self._triangles)
+        return sort_into_buckets(self._triangles)
 
 
 def twice_areas(triangles: Floats) -> Floats:
@@ -187,7 +187,7 @@ def _height_in(triangle: Floats, x: float, y: float) -> tuple[float, float]:
 
 @kernel
 def _heights_kernel(
-    places: Floats,
+    positions: Floats,
     triangles: Floats,
     frame: tuple[float, float, float, int, int],
     held: tuple[NDArray[np.int64], NDArray[np.int64]],
@@ -196,8 +196,8 @@ def _heights_kernel(
     """Heights at places; those outside of all triangles stay as they are."""
     west, south, size, rows, columns = frame
     starts, numbers = held
-    for place in range(places.shape[0]):
-        x, y = places[place, 0], places[place, 1]
+    for position in range(positions.shape[0]):
+        x, y = positions[position, 0], positions[position, 1]
         along, up = (x - west) / size, (y - south) / size
         # Written so that a place that is no number is passed over, too.
         if not (-1.0 < along < columns + 1.0 and -1.0 < up < rows + 1.0):
@@ -210,7 +210,7 @@ def _heights_kernel(
             out, height = _height_in(triangles[numbers[entry]], x, y)
             if out < nearest:
                 nearest = out
-                heights[place] = height
+                heights[position] = height
                 if out == 0.0:
                     break
 

@@ -24,8 +24,8 @@ from numpy.typing import NDArray
 from scipy.spatial import Delaunay, QhullError, cKDTree
 
 from processing.earthwork.break_lines import BreakNet, break_net
-from processing.earthwork.plan_clip import clipped
-from processing.earthwork.same_places import numbered_places
+from processing.earthwork.plan_clip import clip_triangles
+from processing.earthwork.same_positions import number_positions
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import Unsuitable
 from processing.monitor import Monitor
@@ -37,7 +37,7 @@ Numbers = NDArray[np.int64]
 AGREE_WITHIN_M = 0.05
 """Break lines that meet at heights no farther apart are joined at the mean of both."""
 
-_SAME_PLACE_M = 1e-4
+_SAME_POSITION_M = 1e-4
 _ROUNDING_M = 1e-6
 _SPACING_NEIGHBOURS = 4
 """On a square grid so many neighbours are one spacing away."""
@@ -51,7 +51,7 @@ _SHORTEST_M = 1e-3
 _MOST_ROUNDS = 60
 
 
-def triangulated_ground(
+def triangulate_ground(
     xyz: Floats,
     break_lines: Sequence[Floats],
     monitor: Monitor,
@@ -104,13 +104,13 @@ def triangulated_ground(
     surface = TriangleSurface(corners + origin, triangles)
     surface = TriangleSurface(surface.xyz, triangles[~surface.is_vertical])
     if boundary is not None and len(surface.corners):
-        surface = clipped_surface(surface, boundary, monitor)
+        surface = clip_surface(surface, boundary, monitor)
     if not len(surface.corners):
         raise _none_left()
     return surface
 
 
-def clipped_surface(
+def clip_surface(
     surface: TriangleSurface, boundary: shapely.Geometry, monitor: Monitor
 ) -> TriangleSurface:
     """A surface that ends at a boundary; triangles that it cuts are cut into smaller ones.
@@ -121,9 +121,9 @@ def clipped_surface(
         m, project CRS.
     """
     origin = np.array([*surface.origin[:2], 0.0])
-    local = shapely.transform(boundary, lambda places: places - origin[:2])
-    pieces = clipped(surface.plan_triangles(origin), local, monitor).reshape(-1, 3)
-    corners, firsts = numbered_places(pieces, _ROUNDING_M)
+    local = shapely.transform(boundary, lambda positions: positions - origin[:2])
+    pieces = clip_triangles(surface.plan_triangles(origin), local, monitor).reshape(-1, 3)
+    corners, firsts = number_positions(pieces, _ROUNDING_M)
     return TriangleSurface(pieces[firsts] + origin, corners.reshape(-1, 3), surface.name)
 
 
@@ -151,7 +151,7 @@ def _too_few(count: int) -> Unsuitable:
 
 def _merged(xyz: Floats) -> Floats:
     """Points at one place in plan as one at their mean height."""
-    numbers, firsts = numbered_places(xyz[:, :2], _SAME_PLACE_M)
+    numbers, firsts = number_positions(xyz[:, :2], _SAME_POSITION_M)
     heights = np.bincount(numbers, xyz[:, 2]) / np.bincount(numbers)
     return np.column_stack([xyz[firsts, :2], heights])
 
@@ -218,8 +218,8 @@ def _halved(
     share = np.where(is_given[:, 0] != is_given[:, 1], shell, 0.5)[:, None]
     added = len(xyz) + np.arange(len(ends))
     halves = [np.column_stack([ends[:, 0], added]), np.column_stack([added, ends[:, 1]])]
-    places = start + share * (end - start)
-    return np.concatenate([xyz, places]), np.concatenate([segments[~cut], *halves])
+    positions = start + share * (end - start)
+    return np.concatenate([xyz, positions]), np.concatenate([segments[~cut], *halves])
 
 
 def _delaunay(points: Floats, net: BreakNet, origin: Floats) -> tuple[Floats, Numbers]:
@@ -233,15 +233,15 @@ def _delaunay(points: Floats, net: BreakNet, origin: Floats) -> tuple[Floats, Nu
         raise _too_few(len(corners)) from error
     missing = _not_edges(triangles, net.segments, len(corners))
     if len(missing):
-        place = corners[missing[0, 0]] + origin
+        position = corners[missing[0, 0]] + origin
         raise Unsuitable(
             Text(
                 "Break lines meet at so small an angle that no triangle fits between them.",
                 "ブレークラインどうしの角度が小さすぎて、間に三角形を作れません。",
             ),
             Text(
-                f"Easting {place[0]:.3f}, northing {place[1]:.3f}",
-                f"東{place[0]:.3f} 北{place[1]:.3f}",
+                f"Easting {position[0]:.3f}, northing {position[1]:.3f}",
+                f"東{position[0]:.3f} 北{position[1]:.3f}",
             ),
             Text("Draw one of the lines again.", "一方の線を描き直してください。"),
         )

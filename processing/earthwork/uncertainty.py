@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.earthwork.change_grid import ChangeGrid
-from processing.earthwork.surfaces import GroundSurface
+from processing.earthwork.surfaces import SideHeights
 from processing.earthwork.volume_result import Registration
 
 Floats = NDArray[np.float64]
@@ -54,7 +54,7 @@ class VolumeSpread:
 
 def volume_spread(
     change: ChangeGrid,
-    sides: tuple[GroundSurface, GroundSurface],
+    sides: tuple[SideHeights, SideHeights],
     registration: Registration | None,
     epochs: int,
 ) -> VolumeSpread:
@@ -62,7 +62,7 @@ def volume_spread(
 
     Parameters
     ----------
-    sides : (GroundSurface, GroundSurface)
+    sides : (SideHeights, SideHeights)
         What the change was taken from.
     epochs : int
         How many of the sides were measured: 1 or 2.
@@ -90,7 +90,7 @@ def _of_noise(change: ChangeGrid) -> float:
     return sigma_m * change.grid.size_m**2 * math.sqrt(cells)
 
 
-def _of_holes(change: ChangeGrid, side: GroundSurface) -> float:
+def _of_holes(change: ChangeGrid, side: SideHeights) -> float:
     """Within a hole all may be off to one side; one hole tells nothing of another."""
     from scipy.ndimage import label
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from processing.text import Text
-from processing.tools.parameters import Choice, choice, file, length, switch, text
+from processing.tools.parameters import ParameterChoice, choice, file, length, switch, text
 
 GRID, TIN, END_AREA, PRISMOIDAL = "grid", "tin", "end-area", "prismoidal"
 
@@ -17,10 +17,12 @@ class VolumeParameters:
     method: str = choice(
         GRID,
         choices=(
-            Choice(GRID, Text("Grid", "点高法（格子）")),
-            Choice(TIN, Text("TIN against TIN", "TIN対TIN（プリズモイダル法）")),
-            Choice(END_AREA, Text("Average end area", "平均断面法")),
-            Choice(PRISMOIDAL, Text("Prismoidal, by sections", "断面法（プリズモイダル公式）")),
+            ParameterChoice(GRID, Text("Grid", "点高法（格子）")),
+            ParameterChoice(TIN, Text("TIN against TIN", "TIN対TIN（プリズモイダル法）")),
+            ParameterChoice(END_AREA, Text("Average end area", "平均断面法")),
+            ParameterChoice(
+                PRISMOIDAL, Text("Prismoidal, by sections", "断面法（プリズモイダル公式）")
+            ),
         ),
         name=Text("Method", "方法"),
         explanation=Text(

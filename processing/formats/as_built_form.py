@@ -20,17 +20,17 @@ from processing.formats.as_built_rows import (
     notes,
     verdict,
 )
-from processing.formats.paper import (
+from processing.formats.pdf_page import (
     A4_LANDSCAPE,
     PALE,
     THICK_MM,
     Paper,
+    break_lines,
     leading_mm,
     width_of,
-    wrapped,
-    written_paper,
+    write_report_page,
 )
-from processing.formats.paper_table import Cell, Row, Table
+from processing.formats.pdf_table import Table, TableCell, TableRow
 from processing.formats.plan_picture import (
     NO_VALUE,
     PlanPicture,
@@ -81,8 +81,8 @@ def write_as_built_form(
     monitor.check()
     plan = as_built_plan(result)
     monitor.check()
-    title = TITLE.spoken(language)
-    with written_paper(path, A4_LANDSCAPE, language, title, never=never) as paper:
+    title = TITLE.in_language(language)
+    with write_report_page(path, A4_LANDSCAPE, language, title, never=never) as paper:
         below = _draw_head(paper, result, facts)
         top = below + _GAP_MM
         bottom = paper.height_mm - _MARGIN_MM - _FOOT_MM
@@ -129,10 +129,10 @@ def _draw_head(paper: Paper, result: AsBuiltResult, facts: AsBuiltFacts) -> floa
     label, half = 30.0, width / 2
     table = Table(_MARGIN_MM, (label, half - label, label, half - label))
     shown = fact_rows(result, facts)[:-1]  # the software stands at the foot
-    first = (_name(shown[0][0]), Cell(shown[0][1], columns=3))
-    cells = [(_name(name), Cell(value)) for name, value in shown[1:]]
-    cells.append((_name(RESULT), Cell("")))
-    rows: list[Row] = [first]
+    first = (_name(shown[0][0]), TableCell(shown[0][1], columns=3))
+    cells = [(_name(name), TableCell(value)) for name, value in shown[1:]]
+    cells.append((_name(RESULT), TableCell("")))
+    rows: list[TableRow] = [first]
     rows += [(*cells[at], *cells[at + 1]) for at in range(0, len(cells), 2)]
     end = table.draw(paper, _MARGIN_MM + 9.0, rows)
     last = table.height_of(paper, rows[-1])
@@ -143,27 +143,27 @@ def _draw_head(paper: Paper, result: AsBuiltResult, facts: AsBuiltFacts) -> floa
     return end
 
 
-def _name(words: Text) -> Cell:
-    return Cell(words, is_head=True)
+def _name(words: Text) -> TableCell:
+    return TableCell(words, is_head=True)
 
 
 def _draw_faces(paper: Paper, y: float, result: AsBuiltResult) -> float:
     whole = Table(_MARGIN_MM, _WIDTHS, size=7.5)
-    y = whole.draw(paper, y, [[Cell(words, "centre", is_head=True) for words in COLUMNS]])
+    y = whole.draw(paper, y, [[TableCell(words, "centre", is_head=True) for words in COLUMNS]])
     body = Table(_MARGIN_MM + _WIDTHS[0], _WIDTHS[1:], size=7.5)
     for face in result.faces:
         rows = [
             (
-                Cell(row.name),
-                Cell(row.shown, "right"),
-                Cell(row.limit, "right"),
-                Cell(row.verdict, "centre"),
+                TableCell(row.name),
+                TableCell(row.shown, "right"),
+                TableCell(row.limit, "right"),
+                TableCell(row.verdict, "centre"),
             )
             for row in face_rows(face, result.table)
         ]
         end = body.draw(paper, y, rows)
         paper.box((_MARGIN_MM, y), (_WIDTHS[0], end - y), fill=PALE)
-        name = wrapped(paper.spoken(face.limits.name), 7.5, _WIDTHS[0] - 2.0)
+        name = break_lines(paper.in_language(face.limits.name), 7.5, _WIDTHS[0] - 2.0)
         step = leading_mm(7.5)
         for number, line in enumerate(name):
             middle = y + 0.5 * (end - y) + (number - 0.5 * (len(name) - 1)) * step
@@ -180,7 +180,7 @@ def _draw_notes(paper: Paper, y: float, bottom: float, said: Sequence[Text]) -> 
         if len(lines) * leading_mm(size) <= bottom - y:
             paper.lines(_MARGIN_MM, y, lines, size)
             return ()
-    paper.lines(_MARGIN_MM, y, [_NEXT_PAGE.spoken(paper.language)], _NOTE_SIZES[0])
+    paper.lines(_MARGIN_MM, y, [_NEXT_PAGE.in_language(paper.language)], _NOTE_SIZES[0])
     return said
 
 
@@ -196,6 +196,6 @@ def _note_lines(paper: Paper, said: Sequence[Text], size: float, width: float) -
     lines = []
     for number, note in enumerate(said, 1):
         mark = f"{number}) "
-        pieces = wrapped(paper.spoken(note), size, width - width_of(mark, size))
+        pieces = break_lines(paper.in_language(note), size, width - width_of(mark, size))
         lines += [mark + pieces[0], *("    " + piece for piece in pieces[1:])]
     return lines

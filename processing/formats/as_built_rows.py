@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from processing.earthwork.as_built import AsBuiltResult, FaceResult, Item
+from processing.earthwork.as_built import AsBuiltResult, FaceMeasure, FaceResult
 from processing.earthwork.limits import AsBuiltLimits
 from processing.formats.work_facts import (
     FAIL,
@@ -13,10 +13,10 @@ from processing.formats.work_facts import (
     PASS,
     SideFacts,
     WorkFacts,
-    counted,
     crs_words,
     day,
-    signed,
+    format_count,
+    format_signed,
 )
 from processing.text import Text
 
@@ -25,7 +25,7 @@ FORM = Text("Form 31-2", "様式-31-2")
 MEASURED_ITEM = Text("Difference in height (measured − design)", "標高較差（計測値 − 設計値）")
 COLUMNS = (
     Text("Face", "部位"),
-    Text("Item", "項目"),
+    Text("FaceMeasure", "項目"),
     Text("Measured", "測定値"),
     Text("Limit", "規格値"),
     Text("Verdict", "判定"),
@@ -103,7 +103,7 @@ def fact_rows(result: AsBuiltResult, facts: AsBuiltFacts) -> tuple[tuple[Text, T
         (Text("Measured item", "測定項目"), MEASURED_ITEM),
         (Text("Client", "発注者"), same(work.client)),
         (Text("Contractor", "受注者"), same(work.contractor)),
-        (Text("Part", "測点・範囲"), same(work.place)),
+        (Text("Part", "測点・範囲"), same(work.position)),
         (Text("Surveyor", "測定者"), same(work.surveyor)),
         (Text("Design", "設計データ"), _source(facts.design)),
         (Text("Measured data", "計測データ"), _source(facts.ground)),
@@ -124,18 +124,23 @@ def face_rows(face: FaceResult, table: AsBuiltLimits) -> tuple[FormRow, ...]:
     percent = f"{100 * table.rejected_share:g} %"
     empty = face.unmeasured_area_m2
     return (
-        _length(Text("Mean", "平均値"), face.mean_m, face.limits.mean.words(), verdicts[Item.MEAN]),
+        _length(
+            Text("Mean", "平均値"),
+            face.mean_m,
+            face.limits.mean.words(),
+            verdicts[FaceMeasure.MEAN],
+        ),
         _length(
             Text("Largest (difference)", "最大値（差）"),
             face.largest_m,
             single,
-            verdicts[Item.LARGEST],
+            verdicts[FaceMeasure.LARGEST],
         ),
         _length(
             Text("Smallest (difference)", "最小値（差）"),
             face.smallest_m,
             single,
-            verdicts[Item.SMALLEST],
+            verdicts[FaceMeasure.SMALLEST],
         ),
         FormRow(
             Text("Number of data", "データ数"),
@@ -146,7 +151,7 @@ def face_rows(face: FaceResult, table: AsBuiltLimits) -> tuple[FormRow, ...]:
                 f"{table.density_per_m2:g} /m² or more ({least:,})",
                 f"{table.density_per_m2:g} 点/m² 以上（{least:,} 点以上）",
             ),
-            verdicts[Item.DENSITY],
+            verdicts[FaceMeasure.DENSITY],
         ),
         FormRow(
             Text("Evaluated area", "評価面積"),
@@ -160,7 +165,7 @@ def face_rows(face: FaceResult, table: AsBuiltLimits) -> tuple[FormRow, ...]:
             _VALUES,
             _share(face.rejected, face.count, digits=2),
             Text(f"{percent} or less ({most:,})", f"{percent} 以下（{most:,} 点以下）"),
-            verdicts[Item.REJECTED],
+            verdicts[FaceMeasure.REJECTED],
         ),
         _within(face, 80, face.within_80),
         _within(face, 50, face.within_50),
@@ -204,7 +209,8 @@ def notes(result: AsBuiltResult) -> tuple[Text, ...]:
     for face in result.faces:
         if face.rejected:
             high, low = (
-                signed(1000 * value, 1) for value in (face.largest_of_all_m, face.smallest_of_all_m)
+                format_signed(1000 * value, 1)
+                for value in (face.largest_of_all_m, face.smallest_of_all_m)
             )
             said.append(
                 Text("{face}, with the rejected points: {low} … {high} mm.",
@@ -218,13 +224,15 @@ def _source(side: SideFacts) -> Text:
     names = " / ".join(dict.fromkeys(part for part in (side.name, side.source) if part))
     if side.count is None:
         return Text.same(names)
-    return Text("{names} ({count})", "{names}（{count}）").filled(names=names, count=counted(side))
+    return Text("{names} ({count})", "{names}（{count}）").filled(
+        names=names, count=format_count(side)
+    )
 
 
 def _length(name: Text, value_m: float, limit: Text, passes: bool) -> FormRow:  # noqa: FBT001
     if math.isnan(value_m):
         return FormRow(name, value_m, _MM, NO_DATA, limit, passes)
-    shown = Text.same(f"{signed(1000 * value_m, 1)} mm")
+    shown = Text.same(f"{format_signed(1000 * value_m, 1)} mm")
     return FormRow(name, round(1000 * value_m, 1), _MM, shown, limit, passes)
 
 

@@ -17,7 +17,7 @@ from processing.errors import (
     OutOfRange,
     Unsuitable,
     UserError,
-    told_as_user_error,
+    report_as_user_error,
     use_one_of,
 )
 from processing.formats.drawn_outlines import outlines_of_dxf
@@ -29,7 +29,7 @@ from processing.text import Text
 Floats = NDArray[np.float64]
 
 _LEAST_AREA_M2 = 1e-4
-_PLACE = re.compile(r"\[(\S+) (\S+)\]")
+_POSITION = re.compile(r"\[(\S+) (\S+)\]")
 _WITH_LAYER = re.compile(r"(.+\.(?:gpkg|dxf))#(.+)", re.IGNORECASE | re.DOTALL)
 _AGAIN = Text(
     "Draw the boundary as a closed polygon and save it as GeoJSON, GeoPackage or DXF.",
@@ -157,11 +157,15 @@ def _of_geojson(path: Path) -> tuple[list[Any], str]:
         own = system_of(whole, shapes)
     except BadFile as error:
         # The reader speaks of a clipboard and a map to paste into.
-        place = Text(error.where.en.removeprefix(WHERE.en), error.where.ja.removeprefix(WHERE.ja))
-        raise BadFile(error.what, Text(f"{path}{place.en}", f"{path}{place.ja}"), _AGAIN) from error
+        position = Text(
+            error.where.en.removeprefix(WHERE.en), error.where.ja.removeprefix(WHERE.ja)
+        )
+        raise BadFile(
+            error.what, Text(f"{path}{position.en}", f"{path}{position.ja}"), _AGAIN
+        ) from error
     rings: list[list[Floats]] = []
     for shape in shapes:
-        ring = np.array(shape.places, dtype=np.float64)[:, :2]
+        ring = np.array(shape.positions, dtype=np.float64)[:, :2]
         if shape.is_hole:  # it follows its outline
             rings[-1].append(ring)
         elif shape.geometry is Geometry.AREA:
@@ -182,7 +186,7 @@ def _layers_of_geopackage(path: Path) -> tuple[dict[str, list[Any]], dict[str, s
     import shapely
     from pyogrio.errors import DataLayerError, DataSourceError
 
-    with told_as_user_error(path), path.open("rb"):
+    with report_as_user_error(path), path.open("rb"):
         # The library's own words for a missing file, or a name that is no text, help nobody.
         str(path).encode()
     found: dict[str, list[Any]] = {}
@@ -281,11 +285,11 @@ def _require_simple(polygon: Any, path: Path, number: int) -> None:
     import shapely
 
     reason = str(shapely.is_valid_reason(polygon))
-    at = _PLACE.search(reason)
+    at = _POSITION.search(reason)
     where = Text(f"{path}, polygon {number}", f"{path}、{number}番目のポリゴン")
     if at is not None:
-        place = f"E {float(at[1]):.3f}, N {float(at[2]):.3f}"
-        where = Text(f"{where.en}, {place}", f"{where.ja}、{place}")
+        position = f"E {float(at[1]):.3f}, N {float(at[2]):.3f}"
+        where = Text(f"{where.en}, {position}", f"{where.ja}、{position}")
     if not bool(np.isfinite(shapely.get_coordinates(polygon)).all()):
         what = Text("A corner is no place.", "座標として使えない頂点があります。")
     elif not float(polygon.convex_hull.area) > _LEAST_AREA_M2:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from processing.earthwork.change_grid import ChangeGrid
 from processing.formats.geotiff import TILE, Raster, write_geotiff
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import Monitor, SilentMonitor
 
 CHANGE_BANDS = ("change_m", "before_m", "after_m", "measured")
@@ -40,7 +40,7 @@ def write_change_geotiff(
     Raises
     ------
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises; `Cancelled`.
+        What :func:`processing.formats.safe_write.write_safely` raises; `Cancelled`.
     """
     grid = change.grid
     west, south, lowest = grid.origin.tolist()
@@ -67,5 +67,5 @@ def write_change_geotiff(
 
     down, across = -(-grid.rows // TILE), -(-grid.columns // TILE)
     tiles = [(row, column) for row in range(down) for column in range(across)]
-    with written_safely(path, never=never) as temporary:
+    with write_safely(path, never=never) as temporary:
         write_geotiff(temporary, raster, window, tiles, monitor or SilentMonitor())

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import BinaryIO
 from xml.parsers import expat
 
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile, report_as_user_error
 from processing.monitor import Monitor
 from processing.text import Text
 
@@ -39,8 +39,8 @@ COPY_AGAIN = Text(
     "納品データからコピーし直すか、書き出し直してください。",
 )
 
-Start = Callable[[str, dict[str, str]], None]
-End = Callable[[str], None]
+StartHandler = Callable[[str, dict[str, str]], None]
+EndHandler = Callable[[str], None]
 
 
 class CheckedXml:
@@ -57,7 +57,7 @@ class CheckedXml:
         self.path = path
         self._root = root
         self._is_in = False
-        self._start: Start
+        self._start: StartHandler
         # What is read is decoded before: expat itself knows few encodings.
         self._parser = expat.ParserCreate("utf-8")
         self._parser.buffer_text = True
@@ -80,7 +80,7 @@ class CheckedXml:
         """Give the text that follows to a listener, in pieces; to nobody for None."""
         self._parser.CharacterDataHandler = listener
 
-    def read(self, start: Start, end: End, monitor: Monitor) -> None:
+    def read(self, start: StartHandler, end: EndHandler, monitor: Monitor) -> None:
         """Go through the whole document.
 
         Parameters
@@ -99,7 +99,7 @@ class CheckedXml:
         """
         self._start = start
         self._parser.EndElementHandler = lambda name: end(name.rpartition(":")[2])
-        with told_as_user_error(self.path), self.path.open("rb") as file:
+        with report_as_user_error(self.path), self.path.open("rb") as file:
             encoding = self._encoding(file)
             decoder = codecs.getincrementaldecoder(encoding)()
             size = max(os.fstat(file.fileno()).st_size, 1)

@@ -33,14 +33,14 @@ _SPOKEN: dict[str, tuple[str, ...]] = {
     "classification": ("classid", "classcode", "label", "labels", "クラス", "分類", "ラベル"),
 }
 _MEANINGS = {
-    spoken: field
+    in_language: field
     for field, names in FIELD_NAMES.items()
-    for spoken in (*names, *_SPOKEN.get(field, ()))
+    for in_language in (*names, *_SPOKEN.get(field, ()))
 }
 _RANKS = {
-    spoken: rank
+    in_language: rank
     for field, names in FIELD_NAMES.items()
-    for rank, spoken in enumerate((*names, *_SPOKEN.get(field, ())))
+    for rank, in_language in enumerate((*names, *_SPOKEN.get(field, ())))
 }
 _KNOWN_BUT_UNUSED = frozenset(
     (

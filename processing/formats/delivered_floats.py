@@ -14,12 +14,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UNCHANGED, BadFile, told_as_user_error
+from processing.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.formats.point_chunk import PointChunk, PointFileInfo, Vector3
 from processing.text import Text
 
 # Any numeric type as the file has it; what must come is said in FloatFile.
-Block = dict[str, NDArray[np.generic]]
+ColumnBlock = dict[str, NDArray[np.generic]]
 
 _SCALES_M = (0.0001, 0.001)
 _LARGEST_INTEGER = 2_000_000_000
@@ -29,7 +29,7 @@ _LARGEST_INDEX = 2**31 - 1
 _FULL = 65535.0
 _INTENSITY_RANGES = ((0.0, 1.0), (0.0, 255.0), (0.0, _FULL), (-100.0, 100.0), (-2048.0, 2047.0))
 _SMALL_COLUMNS = ("return_number", "number_of_returns", "classification")
-_OF_SCANS = ("scan", "scanner_place")
+_OF_SCANS = ("scan", "scanner_position")
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class FloatFile:
         ``number_of_returns``, ``classification``, ``scan_angle_deg`` (n,), ``color`` (n, 3)
         uint16, ``origin`` (n, 3) float64. NaN or infinite coordinates: no point. Scans of a
         standing scanner have ``grid`` (n, 2) int64: sweep and place in it, −1 where unknown;
-        ``scan`` (n,): number in the file from 1; ``scanner_place`` (n, 3) float64: where the
+        ``scan`` (n,): number in the file from 1; ``scanner_position`` (n, 3) float64: where the
         scanner stood, m. A block is of one scan, and scans follow one another.
     columns_taken : tuple of str
         As :class:`PointFileInfo` says.
@@ -54,7 +54,7 @@ class FloatFile:
 
     path: Path
     format: str
-    blocks: Callable[[], Iterator[Block]]
+    blocks: Callable[[], Iterator[ColumnBlock]]
     columns_taken: tuple[str, ...] = ()
 
 
@@ -68,7 +68,7 @@ class _Summary:
     intensity_low: float
     intensity_high: float
     is_intensity_integral: bool
-    scanner_places: tuple[tuple[int, Vector3], ...]
+    scanner_positions: tuple[tuple[int, Vector3], ...]
 
 
 def info_of(file: FloatFile) -> PointFileInfo:
@@ -94,7 +94,7 @@ def info_of(file: FloatFile) -> PointFileInfo:
         has_color="color" in summary.names,
         first_time=summary.first_time,
         attributes=tuple(name for name in summary.names if name not in _OF_SCANS),
-        scanner_places=summary.scanner_places,
+        scanner_positions=summary.scanner_positions,
         columns_taken=file.columns_taken,
     )
 
@@ -129,7 +129,7 @@ def chunks_of(file: FloatFile, chunk_points: int) -> Iterator[PointChunk]:
 
 @np.errstate(invalid="ignore")
 def _chunk_columns(
-    values: Block, summary: _Summary, scale: float, offset: Vector3
+    values: ColumnBlock, summary: _Summary, scale: float, offset: Vector3
 ) -> dict[str, NDArray[np.generic]]:
     count = values["xyz"].shape[0]
     integers = np.rint((values["xyz"].astype(np.float64) - np.array(offset)) / scale)
@@ -159,13 +159,13 @@ def _chunk_columns(
     return columns
 
 
-def _scanners(values: Block, summary: _Summary) -> NDArray[np.uint16]:
-    if len(summary.scanner_places) < 2:
+def _scanners(values: ColumnBlock, summary: _Summary) -> NDArray[np.uint16]:
+    if len(summary.scanner_positions) < 2:
         return np.zeros(values["xyz"].shape[0], dtype=np.uint16)
     return _bounded(values["scan"], 0, _FULL).astype(np.uint16)
 
 
-def _intensity(values: Block, summary: _Summary) -> NDArray[np.uint16]:
+def _intensity(values: ColumnBlock, summary: _Summary) -> NDArray[np.uint16]:
     given = values.get("intensity")
     if given is None:
         return np.zeros(values["xyz"].shape[0], dtype=np.uint16)
@@ -203,7 +203,7 @@ def _usable(xyz: NDArray[np.generic]) -> NDArray[np.bool_]:
 
 
 def _summary_of(file: FloatFile) -> _Summary:
-    with told_as_user_error(file.path):
+    with report_as_user_error(file.path):
         status = file.path.stat()
     return _read_summary(_Key(file, status.st_size, status.st_mtime_ns))
 
@@ -235,7 +235,7 @@ def _read_summary(key: _Key) -> _Summary:
     low, high, is_integral = np.inf, -np.inf, True
     names: tuple[str, ...] = ()
     first_time = np.nan
-    places: dict[int, Vector3] = {}
+    positions: dict[int, Vector3] = {}
     for block in key.file.blocks():
         names = tuple(name for name in block if name != "xyz")
         good = _usable(block["xyz"])
@@ -252,7 +252,7 @@ def _read_summary(key: _Key) -> _Summary:
                 low, high = min(low, float(values.min())), max(high, float(values.max()))
                 is_integral = is_integral and bool((values == np.rint(values)).all())
         if "scan" in block:
-            places[int(block["scan"][good][0])] = _vector(block["scanner_place"][0])
+            positions[int(block["scan"][good][0])] = _vector(block["scanner_position"][0])
         if "time" in block and count == 0:
             first_time = float(block["time"][good][0])
         count += xyz.shape[0]
@@ -265,7 +265,7 @@ def _read_summary(key: _Key) -> _Summary:
         intensity_low=low,
         intensity_high=high,
         is_intensity_integral=is_integral,
-        scanner_places=tuple(places.items()),
+        scanner_positions=tuple(positions.items()),
     )
 
 

@@ -14,7 +14,7 @@ def grid_step(least: float) -> float:
     return next((step for step in _STEPS if step >= least * 0.999), _STEPS[-1])
 
 
-def rounded_down(value: float, step: float) -> float:
+def round_down_to(value: float, step: float) -> float:
     """The multiple of a step that is not above a value."""
     return math.floor(value / step) * step
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile, report_as_user_error
 from processing.formats.dxf_document import APP_ID
 from processing.text import Text
 
@@ -53,7 +53,7 @@ def outlines_of_dxf(path: Path) -> DrawnOutlines:
     from ezdxf.filemanagement import readfile
     from ezdxf.lldxf.const import DXFError
 
-    with told_as_user_error(path), path.open("rb"):
+    with report_as_user_error(path), path.open("rb"):
         pass  # the library takes a missing file for a damaged one
     found: dict[str, list[NDArray[np.float64]]] = {}
     # What the library mends by itself is no line on a terminal.
@@ -88,8 +88,8 @@ def outlines_of_dxf(path: Path) -> DrawnOutlines:
 
 def _system(drawing: Any) -> str:  # an ezdxf drawing; ezdxf is not typed here
     layer = drawing.layers.get("0")
-    told = [value for _, value in layer.get_xdata(APP_ID)] if layer.has_xdata(APP_ID) else []
-    return next((str(value) for value in told if str(value).startswith("EPSG:")), "")
+    reported = [value for _, value in layer.get_xdata(APP_ID)] if layer.has_xdata(APP_ID) else []
+    return next((str(value) for value in reported if str(value).startswith("EPSG:")), "")
 
 
 def _outline(entity: Any) -> NDArray[np.float64] | None:
@@ -98,9 +98,9 @@ def _outline(entity: Any) -> NDArray[np.float64] | None:
     if entity.dxftype() == "POLYLINE" and not (entity.is_2d_polyline or entity.is_3d_polyline):
         return None
     drawn = list(make_path(entity).flattening(_ARC_M)) if len(entity) > 1 else []
-    places = np.array([(one.x, one.y) for one in drawn], dtype=np.float64).reshape(-1, 2)
-    if len(places) > 1 and float(np.hypot(*(places[0] - places[-1]))) <= _CLOSED_M:
-        places = places[:-1]
+    positions = np.array([(one.x, one.y) for one in drawn], dtype=np.float64).reshape(-1, 2)
+    if len(positions) > 1 and float(np.hypot(*(positions[0] - positions[-1]))) <= _CLOSED_M:
+        positions = positions[:-1]
     elif not entity.is_closed:
         return None
-    return places if len(places) > 2 else None
+    return positions if len(positions) > 2 else None

@@ -22,7 +22,7 @@ from processing.formats.dxf_document import (
 from processing.formats.dxf_labels import LABEL_HEIGHT_M, label_of
 from processing.formats.dxf_symbols import add_symbol_block
 from processing.formats.dxf_text import dxf_strings, dxf_text
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import Monitor, SilentMonitor
 from processing.project.catalogue import LINE_TYPES, Catalogue, FeatureKind, Geometry
 from processing.project.feature import AttributeValue, Feature, Position, Status
@@ -75,7 +75,7 @@ def write_dxf(
     Unsuitable
         A feature's kind is not in the catalogue, or its attributes are longer than DXF holds.
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises; `Cancelled`.
+        What :func:`processing.formats.safe_write.write_safely` raises; `Cancelled`.
     """
     check_one_of(encoding, ENCODINGS.values())
     monitor = monitor or SilentMonitor()
@@ -86,7 +86,7 @@ def write_dxf(
         if feature.status is not Status.REJECTED:
             drawing.add(feature)
     drawing.finish()
-    with written_safely(path, never=never) as temporary:
+    with write_safely(path, never=never) as temporary:
         drawing.document.write(temporary, monitor)
 
 
@@ -169,7 +169,7 @@ class _Drawing:
             return []
         layer = looks.layer + BODY_SUFFIX
         self._need_layer(layer, kind)
-        self._lowest[2] = min(self._lowest[2], float(solid.places[:, 2].min()))
+        self._lowest[2] = min(self._lowest[2], float(solid.positions[:, 2].min()))
         return add_body(self._space, solid, {**looks.own, "layer": layer, "linetype": "BYLAYER"})
 
     def _looks(self, kind: FeatureKind, feature: Feature) -> _Looks:
@@ -210,7 +210,7 @@ class _Drawing:
             "rotation": label.rotation_deg,
             **{key: value for key, value in looks.own.items() if key != "linetype"},
         }
-        self.document.write_text(label.words, label.place, label.align, attributes)
+        self.document.write_text(label.words, label.position, label.align, attributes)
 
     def _extended_data(self, feature: Feature) -> list[tuple[int, Any]]:
         encoding = self.document.encoding

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from processing.project.solids import Face, Solid
+from processing.project.solids import FaceIndices, Solid
 
 BODY_SUFFIX = "_立体"
 """Behind the layer of the outlines: who wants a plan switches this layer off."""
@@ -29,18 +29,18 @@ def add_body(
     ----------
     Autodesk, DXF reference, 3DFACE: group 70, bits 1 to 8 are invisible edges.
     """
-    count = len(solid.places) // 2
+    count = len(solid.positions) // 2
     faces = []
     for face in (*solid.top, *solid.sides):
         # A face of three corners has the third twice.
-        places = [tuple(solid.places[at].tolist()) for at in (*face, face[-1])[:4]]
-        drawn = space.add_3dface(places, dxfattribs=dict(attributes))
+        positions = [tuple(solid.positions[at].tolist()) for at in (*face, face[-1])[:4]]
+        drawn = space.add_3dface(positions, dxfattribs=dict(attributes))
         drawn.dxf.invisible_edges = _invisible(face, count)
         faces.append(drawn)
     return faces
 
 
-def _invisible(face: Face, count: int) -> int:
+def _invisible(face: FaceIndices, count: int) -> int:
     """The edges of a face that are none of the body, as bits."""
     hidden = 0
     if len(face) == 3:

@@ -29,7 +29,7 @@ APP_ID = "ZUKA"
 _STYLE, _FONT, _FONT_FAMILY = "JAPANESE", "msgothic.ttc", "MS Gothic"
 _CHECK_WRITES = 4096
 
-Place = tuple[float, ...]
+DxfPoint = tuple[float, ...]
 
 
 class DxfDocument:
@@ -73,11 +73,11 @@ class DxfDocument:
 
     def tell_system(self, crs: str) -> None:
         """Write ``EPSG:n``, or that it is not known, where drawings of this program are asked."""
-        told = crs or "unknown"
+        reported = crs or "unknown"
         self.doc.appids.add(APP_ID)
-        self.doc.header.custom_vars.append("CRS", told)
+        self.doc.header.custom_vars.append("CRS", reported)
         # R2000 has no properties of its own.
-        self.doc.layers.get("0").set_xdata(APP_ID, [(1000, "CRS"), (1000, told)])
+        self.doc.layers.get("0").set_xdata(APP_ID, [(1000, "CRS"), (1000, reported)])
 
     def add_layer(self, name: str, aci: int, rgb: tuple[int, int, int] | None = None) -> None:
         """Add a layer of a colour; R2000 takes the index alone."""
@@ -107,14 +107,14 @@ class DxfDocument:
             )
 
     def write_text(
-        self, words: str, place: Place, align: str, attributes: Mapping[str, Any]
+        self, words: str, position: DxfPoint, align: str, attributes: Mapping[str, Any]
     ) -> None:
         """Write words at a place, unless nothing of them is left.
 
         Parameters
         ----------
         align : str
-            Name of an ezdxf ``TextEntityAlignment``: which part of the words is at ``place``.
+            Name of an ezdxf ``TextEntityAlignment``: which part of the words is at ``position``.
         attributes : mapping
             Of DXF: layer, height, rotation.
         """
@@ -123,9 +123,9 @@ class DxfDocument:
         written = label_text(words, self.encoding)
         if written:
             text = self.space.add_text(written, dxfattribs={"style": _STYLE, **attributes})
-            text.set_placement(place, align=TextEntityAlignment[align])
+            text.set_placement(position, align=TextEntityAlignment[align])
 
-    def show(self, low: Place, high: Place) -> None:
+    def show(self, low: DxfPoint, high: DxfPoint) -> None:
         """Set the extent and what is seen when the file is opened: all of it."""
         lowest, highest = ((*corner, 0.0)[:3] for corner in (low, high))
         self.space.reset_extents(lowest, highest)

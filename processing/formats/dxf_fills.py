@@ -83,8 +83,8 @@ def add_areas(
         for area in areas[start : start + _AREAS_A_HATCH]:
             holes = [(hole, _HOLE) for hole in area.interiors]
             for ring, flags in ((area.exterior, _OUTER), *holes):
-                places = shapely.get_coordinates(ring)[:-1].tolist()
-                hatch.paths.add_polyline_path(places, is_closed=True, flags=flags)
+                positions = shapely.get_coordinates(ring)[:-1].tolist()
+                hatch.paths.add_polyline_path(positions, is_closed=True, flags=flags)
 
 
 def add_box(

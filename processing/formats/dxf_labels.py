@@ -25,13 +25,13 @@ class Label:
     Attributes
     ----------
     align : str
-        Name of an ezdxf ``TextEntityAlignment``: which part of the words is at ``place``.
+        Name of an ezdxf ``TextEntityAlignment``: which part of the words is at ``position``.
     rotation_deg : float
         Counter-clockwise from east; words are never upside down.
     """
 
     words: str
-    place: Position
+    position: Position
     align: str
     rotation_deg: float = 0.0
 
@@ -47,8 +47,8 @@ def label_of(kind: FeatureKind, feature: Feature) -> Label | None:
             x, y, z = positions[0]
             return Label(words, (x + _GAP_M, y, z), "MIDDLE_LEFT")
         case Geometry.LINE:
-            place, rotation_deg = _above_middle(positions)
-            return Label(words, place, "BOTTOM_CENTER", rotation_deg)
+            position, rotation_deg = _above_middle(positions)
+            return Label(words, position, "BOTTOM_CENTER", rotation_deg)
         case Geometry.AREA:
             count = len(positions)
             x, y, z = (math.fsum(one[axis] for one in positions) / count for axis in range(3))

@@ -23,15 +23,15 @@ def dxf_text(text: str, encoding: str) -> str:
     ----------
     Autodesk, DXF reference, "ASCII control characters in DXF files" and Unicode escapes.
     """
-    return "".join(_escaped(text, place, encoding) for place in range(len(text)))
+    return "".join(_escaped(text, position, encoding) for position in range(len(text)))
 
 
 def dxf_strings(text: str, encoding: str) -> list[str]:
     """The same in pieces short enough for extended data; joined they are :func:`dxf_text`."""
     pieces = [""]
     size = 0
-    for place in range(len(text)):
-        escaped = _escaped(text, place, encoding)
+    for position in range(len(text)):
+        escaped = _escaped(text, position, encoding)
         bytes_ = len(escaped.encode(encoding))
         if size + bytes_ > _LONGEST_BYTES:
             pieces.append("")
@@ -51,12 +51,12 @@ def label_text(text: str, encoding: str) -> str:
     return dxf_text(words, encoding)
 
 
-def _escaped(text: str, place: int, encoding: str) -> str:
-    character = text[place]
+def _escaped(text: str, position: int, encoding: str) -> str:
+    character = text[position]
     code = ord(character)
     if character == "\\":
         # What looks like an escape must not become one.
-        is_escape = text[place + 1 : place + 3] in ("U+", "u+", "M+", "m+")
+        is_escape = text[position + 1 : position + 3] in ("U+", "u+", "M+", "m+")
         return "\\U+005C" if is_escape else character
     if character == "^":
         return "^ "

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UNCHANGED, BadFile, told_as_user_error
-from processing.formats.delivered_floats import Block, FloatFile
+from processing.errors import UNCHANGED, BadFile, report_as_user_error
+from processing.formats.delivered_floats import ColumnBlock, FloatFile
 from processing.formats.las_header import damaged
 from processing.text import Text
 
@@ -48,11 +48,11 @@ def open_e57(path: Path) -> FloatFile:
     MissingInput, NoSpace, BadFile
         It can't be read; a checksum or a section of it is damaged.
     """
-    with told_as_user_error(path), path.open("rb"):
+    with report_as_user_error(path), path.open("rb"):
         return FloatFile(path, "E57", lambda: _blocks(path))
 
 
-def _blocks(path: Path) -> Iterator[Block]:
+def _blocks(path: Path) -> Iterator[ColumnBlock]:
     import pye57
 
     with _damage_told(path):
@@ -69,7 +69,7 @@ def _blocks(path: Path) -> Iterator[Block]:
 
 def _scan_blocks(
     path: Path, file: E57, scan: ScanHeader, number: int, known: set[str]
-) -> Iterator[Block]:
+) -> Iterator[ColumnBlock]:
     with _damage_told(path):
         position = next(
             (p for p in (_CARTESIAN, _SPHERICAL) if set(p) <= set(scan.point_fields)), ()
@@ -95,7 +95,7 @@ def _scan_blocks(
         block = _block({name: v[valid] for name, v in values.items()}, facts)
         # Not @: on some builds of the linear algebra library it warns about unused lanes.
         block["xyz"] = np.einsum("ij,nj->ni", turn, block["xyz"].astype(np.float64)) + shift
-        block["scanner_place"] = np.broadcast_to(
+        block["scanner_position"] = np.broadcast_to(
             np.asarray(shift, dtype=np.float64), block["xyz"].shape
         )
         yield block
@@ -134,7 +134,7 @@ def _buffers(
     return data, buffers
 
 
-def _block(values: dict[str, NDArray[np.float64]], facts: _ScanFacts) -> Block:
+def _block(values: dict[str, NDArray[np.float64]], facts: _ScanFacts) -> ColumnBlock:
     if _CARTESIAN[0] in values:
         xyz = np.column_stack([values[name] for name in _CARTESIAN])
     else:
@@ -144,7 +144,7 @@ def _block(values: dict[str, NDArray[np.float64]], facts: _ScanFacts) -> Block:
             [level * np.cos(azimuth), level * np.sin(azimuth), distance * np.sin(elevation)]
         )
     known, count = facts.known, xyz.shape[0]
-    block: Block = {"xyz": xyz, "scan": np.full(count, facts.number)}
+    block: ColumnBlock = {"xyz": xyz, "scan": np.full(count, facts.number)}
     nothing = np.zeros(count)
     if _INTENSITY in known:
         block["intensity"] = values.get(_INTENSITY, nothing)
@@ -179,7 +179,7 @@ def _damage_told(path: Path) -> Iterator[None]:
     from pye57 import libe57
 
     try:
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             yield
     except libe57.E57Exception as error:
         # "checksum mismatch, file is corrupted (ErrorBadChecksum)", then pages of debugging.

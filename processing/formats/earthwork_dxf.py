@@ -23,7 +23,7 @@ from processing.errors import Unsuitable
 from processing.formats.drawing_scale import fitting_scale, grid_step
 from processing.formats.dxf_document import DxfDocument, DxfVersion
 from processing.formats.dxf_fills import Ink, add_areas, add_box, inks_of
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import Monitor, SilentMonitor
 from processing.text import Language, Text
 
@@ -53,7 +53,7 @@ _WHITE_ACI = 255
 
 
 @dataclass(frozen=True)
-class PlanLook:
+class PlanStyle:
     """How the plan is drawn.
 
     Attributes
@@ -98,7 +98,7 @@ class EarthworkPlan:
 def write_earthwork_dxf(
     path: Path,
     plan: EarthworkPlan,
-    look: PlanLook | None = None,
+    look: PlanStyle | None = None,
     *,
     monitor: Monitor | None = None,
     never: Iterable[Path] = (),
@@ -117,23 +117,23 @@ def write_earthwork_dxf(
     Unsuitable
         There is nothing to draw.
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises; `Cancelled`.
+        What :func:`processing.formats.safe_write.write_safely` raises; `Cancelled`.
 
     References
     ----------
     MLIT, CAD drafting standard: layers of contours in plans.
     """
     monitor = monitor or SilentMonitor()
-    sheet = _Sheet(plan, look or PlanLook(), path)
+    sheet = _Sheet(plan, look or PlanStyle(), path)
     sheet.draw(monitor)
-    with written_safely(path, never=never) as temporary:
+    with write_safely(path, never=never) as temporary:
         sheet.document.write(temporary, monitor)
 
 
 class _Sheet:
     """A plan being drawn."""
 
-    def __init__(self, plan: EarthworkPlan, look: PlanLook, path: Path) -> None:
+    def __init__(self, plan: EarthworkPlan, look: PlanStyle, path: Path) -> None:
         self._plan = plan
         self._look = look
         self.document = DxfDocument(look.version)
@@ -223,8 +223,8 @@ class _Sheet:
         for number in range(count):
             at = length * (number + 0.5) / count
             start, end, middle = (
-                np.array([np.interp(place, along, contour.xyz[:, axis]) for axis in (0, 1)])
-                for place in (max(at - half, 0.0), min(at + half, length), at)
+                np.array([np.interp(position, along, contour.xyz[:, axis]) for axis in (0, 1)])
+                for position in (max(at - half, 0.0), min(at + half, length), at)
             )
             direction = math.atan2(*(end - start)[::-1])
             if not -math.pi / 2 < direction <= math.pi / 2:
@@ -240,8 +240,8 @@ class _Sheet:
                 "height": height,
                 "rotation": math.degrees(direction) % 360.0,
             }
-            place = (*middle.tolist(), contour.level_m)
-            self.document.write_text(words, place, "MIDDLE_CENTER", looks)
+            position = (*middle.tolist(), contour.level_m)
+            self.document.write_text(words, position, "MIDDLE_CENTER", looks)
 
     def _draw_plate(self, middle: Floats, right: Floats, up: Floats, height_m: float) -> None:
         corners = [(sign * right + side * up) for side in (-1, 1) for sign in (-1, 1)]
@@ -263,15 +263,15 @@ class _Sheet:
             low = (left, top - number * row - height)
             lines_m = _LINES_M * self._scale if layer == UNMEASURED_LAYER else 0.0
             add_box(self._space, low, (width, height), (layer, LEGEND_LAYER), lines_m=lines_m)
-            place = (left + width + self._text_m, low[1] + height / 2)
-            self._write(words, place, "MIDDLE_LEFT", layer=LEGEND_LAYER)
+            position = (left + width + self._text_m, low[1] + height / 2)
+            self._write(words, position, "MIDDLE_LEFT", layer=LEGEND_LAYER)
         bottom = top - len(rows) * row
         self._draw_bar((left, bottom - 2 * row))
         return left + 0.07 * self._scale, bottom - 4 * row
 
-    def _draw_bar(self, place: tuple[float, float]) -> None:
+    def _draw_bar(self, position: tuple[float, float]) -> None:
         length = grid_step(_BAR_M * self._scale / 2.5)
-        x, y = place
+        x, y = position
         tick = self._text_m / 2
         for number in range(3):
             at = x + number * length
@@ -304,11 +304,11 @@ class _Sheet:
     def _line(self, start: tuple[float, float], end: tuple[float, float]) -> None:
         self._space.add_line(start, end, dxfattribs={"layer": LEGEND_LAYER})
 
-    def _write(self, words: str, place: tuple[float, float], align: str, *, layer: str) -> None:
-        self.document.write_text(words, place, align, {"layer": layer, "height": self._text_m})
+    def _write(self, words: str, position: tuple[float, float], align: str, *, layer: str) -> None:
+        self.document.write_text(words, position, align, {"layer": layer, "height": self._text_m})
 
     def _said(self, text: Text) -> str:
-        return text.spoken(self._look.language)
+        return text.in_language(self._look.language)
 
 
 def _extent(plan: EarthworkPlan, path: Path) -> tuple[Floats, Floats]:
@@ -328,8 +328,8 @@ def _extent(plan: EarthworkPlan, path: Path) -> tuple[Floats, Floats]:
             Text.same(str(path)),
             Text("Compute the volume first.", "先に土量を計算してください。"),
         )
-    places = np.concatenate(parts)
-    return places.min(axis=0), places.max(axis=0)
+    positions = np.concatenate(parts)
+    return positions.min(axis=0), positions.max(axis=0)
 
 
 def _digits(classes: tuple[ColourClass, ...]) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.formats.delivered_floats import Block
+from processing.formats.delivered_floats import ColumnBlock
 
 _POSITION = (
     ("x", "easting", "eastingm", "east"),
@@ -45,7 +45,7 @@ def has_position(names: tuple[str, ...]) -> bool:
 @np.errstate(invalid="ignore")
 def block_of(
     fields: Mapping[str, NDArray[np.generic]], offset: tuple[float, float, float] = (0, 0, 0)
-) -> Block:
+) -> ColumnBlock:
     """Columns of points out of named fields.
 
     Parameters
@@ -68,7 +68,7 @@ def block_of(
     if position is None:
         message = f"no x, y, z among {list(fields)}"
         raise ValueError(message)
-    block: Block = {"xyz": np.column_stack(position).astype(np.float64) + shift}
+    block: ColumnBlock = {"xyz": np.column_stack(position).astype(np.float64) + shift}
     for column, names in _SINGLE.items():
         values = next((named[name] for name in names if name in named), None)
         if values is not None:

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import Monitor, SilentMonitor
 from processing.project.catalogue import RESERVED_ATTRIBUTES, Geometry
 from processing.project.feature import AttributeValue, Feature, Position
@@ -41,7 +41,7 @@ def write_geojson(
     Raises
     ------
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises; `Cancelled`.
+        What :func:`processing.formats.safe_write.write_safely` raises; `Cancelled`.
 
     References
     ----------
@@ -68,7 +68,7 @@ def write_members(
     """
     monitor = monitor or SilentMonitor()
     with (
-        written_safely(path, never=never) as temporary,
+        write_safely(path, never=never) as temporary,
         temporary.open("w", encoding="utf-8", errors="backslashreplace", newline="\n") as file,
     ):
         file.write(f'{{"type": "FeatureCollection",\n"crs": {_line(_crs_member(crs))},\n')

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.errors import NoSpace
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import Monitor, SilentMonitor
 from processing.project.catalogue import (
     RESERVED_ATTRIBUTES,
@@ -58,13 +58,13 @@ def write_geopackage(
     NoSpace
         The library can't write the file.
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises; `Cancelled`.
+        What :func:`processing.formats.safe_write.write_safely` raises; `Cancelled`.
     """
     monitor = monitor or SilentMonitor()
     layers: dict[tuple[str, Geometry], list[Feature]] = {}
     for feature in features:
         layers.setdefault((feature.kind, feature.geometry), []).append(feature)
-    with written_safely(path, never=never) as temporary:
+    with write_safely(path, never=never) as temporary:
         for number, ((kind, geometry), members) in enumerate(layers.items()):
             monitor.check()
             monitor.report(number / len(layers))
@@ -132,12 +132,14 @@ def _refused(path: Path, error: RuntimeError) -> NoSpace:
     )
 
 
-Column = tuple[NDArray[Any], NDArray[np.bool_]]  # text, float64 or int64; True where missing
+ColumnValues = tuple[NDArray[Any], NDArray[np.bool_]]  # text, float64 or int64; True where missing
 
 
-def _columns(features: Sequence[Feature], fields: Sequence[AttributeField]) -> Mapping[str, Column]:
+def _columns(
+    features: Sequence[Feature], fields: Sequence[AttributeField]
+) -> Mapping[str, ColumnValues]:
     """The columns of a layer: what every feature has, then attributes as the catalogue has them."""
-    columns: dict[str, Column] = {
+    columns: dict[str, ColumnValues] = {
         "id": _text([feature.id for feature in features]),
         "kind": _text([feature.kind for feature in features]),
         "status": _text([feature.status.value for feature in features]),
@@ -169,7 +171,7 @@ def _free_name(name: str, taken: set[str]) -> str:
     return candidate
 
 
-def _column(values: Sequence[AttributeValue], type_: AttributeType) -> Column:
+def _column(values: Sequence[AttributeValue], type_: AttributeType) -> ColumnValues:
     """Whole numbers, numbers, or text, whichever holds all values; by ``type_`` if empty."""
     kept = [None if isinstance(one, float) and math.isnan(one) else one for one in values]
     present = [one for one in kept if one is not None]
@@ -185,7 +187,7 @@ def _column(values: Sequence[AttributeValue], type_: AttributeType) -> Column:
     return _text(kept)
 
 
-def _text(values: Sequence[AttributeValue]) -> Column:
+def _text(values: Sequence[AttributeValue]) -> ColumnValues:
     texts = [None if one is None else _storable(str(one)) for one in values]
     return np.array(texts, dtype=object), np.array([one is None for one in texts], dtype=np.bool_)
 

@@ -16,7 +16,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.monitor import Monitor
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ _ASCII, _SHORT, _LONG, _DOUBLE, _LONG8 = 2, 3, 4, 12, 16
 _DEFLATE, _SEPARATE, _FLOAT = 8, 2, 3
 _PROJECTED, _PIXEL_IS_AREA, _METRE = 1, 1, 9001
 
-Window = Callable[[range, range], NDArray[np.float32]]
+WindowReader = Callable[[range, range], NDArray[np.float32]]
 """From rows (from the north) and columns to (bands, rows, columns) float32; NaN where no data."""
 
 
@@ -61,7 +61,7 @@ class Raster:
 def write_geotiff(
     path: Path,
     raster: Raster,
-    window: Window,
+    window: WindowReader,
     filled: Iterable[tuple[int, int]],
     monitor: Monitor,
 ) -> None:
@@ -83,15 +83,15 @@ def write_geotiff(
     TIFF 6.0; OGC 19-008r4 (GeoTIFF 1.1); GDAL's own tags for “no data” and names of bands.
     """
     across, down = -(-raster.columns // TILE), -(-raster.rows // TILE)
-    places = sorted(set(filled))
-    is_big = len(places) * len(raster.bands) * TILE * TILE * 4 > _MOST_CLASSIC
+    positions = sorted(set(filled))
+    is_big = len(positions) * len(raster.bands) * TILE * TILE * 4 > _MOST_CLASSIC
     offsets = np.zeros((len(raster.bands), down, across), np.int64)
     sizes = np.zeros_like(offsets)
-    with told_as_user_error(path), path.open("wb") as file:
+    with report_as_user_error(path), path.open("wb") as file:
         file.write(_start(0, is_big=is_big))
-        for done, (row, column) in enumerate(places):
+        for done, (row, column) in enumerate(positions):
             monitor.check()
-            monitor.report(done / len(places))
+            monitor.report(done / len(positions))
             rows = range(row * TILE, min((row + 1) * TILE, raster.rows))
             columns = range(column * TILE, min((column + 1) * TILE, raster.columns))
             bands = window(rows, columns)
@@ -165,5 +165,5 @@ def _geo_keys(crs: str) -> tuple[int, ...]:
     authority, _, code = crs.partition(":")
     if authority == "EPSG" and code.isdecimal():
         keys = [(1024, _PROJECTED), *keys, (3072, int(code)), (3076, _METRE)]
-    flat = [value for key, told in keys for value in (key, 0, 1, told)]
+    flat = [value for key, reported in keys for value in (key, 0, 1, reported)]
     return (1, 1, 1, len(keys), *flat)

@@ -12,7 +12,7 @@ from pyproj.exceptions import CRSError
 
 from processing.earthwork.sides import EpochGround
 from processing.errors import OutOfRange
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import Monitor
 from processing.text import Text
 
@@ -46,7 +46,7 @@ def write_ground_las(
     OutOfRange
         The ending says another format.
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises; `Cancelled`.
+        What :func:`processing.formats.safe_write.write_safely` raises; `Cancelled`.
 
     References
     ----------
@@ -63,7 +63,7 @@ def write_ground_las(
             Text("Give a name ending in .las or .laz.", "拡張子を .las か .laz にしてください。"),
         )
     count = 0
-    with written_safely(path, never=never) as temporary:
+    with write_safely(path, never=never) as temporary:
         is_compressed = path.suffix.lower() == ".laz"
         with laspy.open(
             temporary, mode="w", header=_header_of(ground), do_compress=is_compressed

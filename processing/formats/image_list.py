@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.cameras.image_list import CameraImage, ImageList, Projection
+from processing.cameras.image_list import CameraImage, ImageList, ProjectionName
 from processing.formats.text_table import TextTable, read_table
 from processing.text import Text
 
@@ -80,7 +80,7 @@ def _optional_numbers(table: TextTable, name: str) -> NDArray[np.float64]:
     return table.numbers(name, -1e6, 1e6) if table.has(name) else np.zeros(len(table.rows))
 
 
-def _projections(table: TextTable) -> list[Projection]:
+def _projections(table: TextTable) -> list[ProjectionName]:
     if not table.has("projection"):
         return ["perspective"] * len(table.rows)
     words = [word.lower() or "perspective" for word in table.words("projection")]
@@ -91,4 +91,4 @@ def _projections(table: TextTable) -> list[Projection]:
                 "投影「{word}」は使えません（perspective または equirectangular）。",
             )
             raise table.damage(i, what.filled(word=word[:40]))
-    return [cast("Projection", word) for word in words]
+    return [cast("ProjectionName", word) for word in words]

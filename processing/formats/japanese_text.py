@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile, report_as_user_error
 from processing.text import Text
 
 _UTF8_MARK = b"\xef\xbb\xbf"
 _UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 
 
-def decoded(data: bytes, path: Path) -> str:
+def decode_text(data: bytes, path: Path) -> str:
     """Bytes as text, by what they can be: UTF-8, UTF-16 with a mark, cp932.
 
     Parameters
@@ -30,13 +30,13 @@ def decoded(data: bytes, path: Path) -> str:
         raise _not_text(path, data.index(b"\0"))
     else:
         encodings = ["utf-8-sig"] if data.startswith(_UTF8_MARK) else ["utf-8", "cp932"]
-    place = 0
+    position = 0
     for encoding in encodings:
         try:
             return data.decode(encoding)
         except UnicodeDecodeError as error:
-            place = max(place, error.start)
-    raise _not_text(path, place)
+            position = max(position, error.start)
+    raise _not_text(path, position)
 
 
 def read_text(path: Path) -> str:
@@ -47,9 +47,9 @@ def read_text(path: Path) -> str:
     MissingInput, NoSpace, BadFile
         It can't be read, or is not text.
     """
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         data = path.read_bytes()
-    return decoded(data, path)
+    return decode_text(data, path)
 
 
 def read_lines(path: Path) -> list[str]:
@@ -64,13 +64,13 @@ def read_lines(path: Path) -> list[str]:
     return read_text(path).replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 
-def _not_text(path: Path, place: int) -> BadFile:
+def _not_text(path: Path, position: int) -> BadFile:
     return BadFile(
         Text(
             "The file is not text in UTF-8 or Shift_JIS (cp932).",
             "UTF-8またはShift_JIS（cp932）のテキストファイルではありません。",
         ),
-        Text(f"{path}, byte {place:,}", f"{path}、{place:,}バイト目"),
+        Text(f"{path}, byte {position:,}", f"{path}、{position:,}バイト目"),
         Text(
             "Choose the right file, or save it again as UTF-8 text.",
             "正しいファイルを選ぶか、UTF-8のテキストとして保存し直してください。",

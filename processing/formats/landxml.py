@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import BadFile, OutOfRange, Unsuitable, use_one_of
-from processing.formats.landxml_records import DrawnSurface, Header, records_of
+from processing.formats.landxml_records import DrawnSurface, LandXmlHeader, records_of
 from processing.formats.landxml_systems import METRES, system_of_names
 from processing.monitor import Monitor, SilentMonitor
 from processing.text import Text
@@ -163,7 +163,7 @@ def _chosen(path: Path, drawn: list[DrawnSurface], name: str) -> list[DrawnSurfa
     return with_faces
 
 
-def _scale(path: Path, header: Header) -> NDArray[np.float64]:
+def _scale(path: Path, header: LandXmlHeader) -> NDArray[np.float64]:
     """What makes metres of a file's easting, northing and height."""
     length = header.units.get("linearUnit", "meter")
     height = header.units.get("elevationUnit", length)
@@ -184,7 +184,7 @@ def _scale(path: Path, header: Header) -> NDArray[np.float64]:
     return np.array([across, across, up])
 
 
-def _difference(path: Path, header: Header) -> float:
+def _difference(path: Path, header: LandXmlHeader) -> float:
     words = header.system_properties.get("differTP", "").strip()
     try:
         value = float(words or 0.0)
@@ -204,11 +204,11 @@ def _difference(path: Path, header: Header) -> float:
 
 def _surface(path: Path, drawn: DrawnSurface, scale: NDArray[np.float64]) -> LandXmlSurface:
     rows = _rows_of_corners(path, drawn)
-    places = drawn.places[:, [1, 0, 2]] * scale
+    positions = drawn.positions[:, [1, 0, 2]] * scale
     used, corners = np.unique(rows, return_inverse=True)
-    xyz = places[used]
+    xyz = positions[used]
     corners = corners.reshape(-1, 3).astype(np.int64, copy=False)
-    _require_places(path, drawn, xyz[corners])
+    _require_positions(path, drawn, xyz[corners])
     # Counted from a corner: products of survey coordinates keep too few digits.
     first, second, third = (xyz[corners[:, at], :2] - xyz[corners[0, 0], :2] for at in range(3))
     (ax, ay), (bx, by) = (second - first).T, (third - first).T
@@ -258,9 +258,9 @@ def _rows_of_corners(path: Path, drawn: DrawnSurface) -> NDArray[np.int64]:
     return rows
 
 
-def _require_places(path: Path, drawn: DrawnSurface, places: NDArray[np.float64]) -> None:
+def _require_positions(path: Path, drawn: DrawnSurface, positions: NDArray[np.float64]) -> None:
     """Refuse faces with a corner without a height, or far beyond any coordinate."""
-    is_bad = ~(np.abs(places) < _MOST_METRES).all(axis=2)
+    is_bad = ~(np.abs(positions) < _MOST_METRES).all(axis=2)
     if is_bad.any():
         face, corner = np.argwhere(is_bad)[0].tolist()
         what = Text(

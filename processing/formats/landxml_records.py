@@ -20,7 +20,7 @@ _CORRECT = Text(
 
 
 @dataclass
-class Header:
+class LandXmlHeader:
     """What a file says of all its numbers: attributes as written.
 
     Attributes
@@ -48,7 +48,7 @@ class DrawnSurface:
         Made of triangles, by what the file says.
     ids : (n,) int64
         Of the points.
-    places : (n, 3) float64
+    positions : (n, 3) float64
         North, east, height; NaN for a height that is not there.
     face_corners : (t, 3) int64
         Ids of points.
@@ -64,7 +64,7 @@ class DrawnSurface:
     description: str
     is_tin: bool
     ids: NDArray[np.int64]
-    places: NDArray[np.float64]
+    positions: NDArray[np.float64]
     face_corners: NDArray[np.int64]
     point_lines: NDArray[np.int64]
     face_lines: NDArray[np.int64]
@@ -72,7 +72,7 @@ class DrawnSurface:
     invisible: int
 
 
-def records_of(path: Path, monitor: Monitor) -> tuple[Header, list[DrawnSurface]]:
+def records_of(path: Path, monitor: Monitor) -> tuple[LandXmlHeader, list[DrawnSurface]]:
     """Read a file once, from its beginning to its end.
 
     Raises
@@ -94,7 +94,7 @@ class _Growing:
     description: str
     is_tin: bool = True
     ids: array[int] = field(default_factory=lambda: array("q"))
-    places: array[float] = field(default_factory=lambda: array("d"))
+    positions: array[float] = field(default_factory=lambda: array("d"))
     corners: array[int] = field(default_factory=lambda: array("q"))
     point_lines: array[int] = field(default_factory=lambda: array("q"))
     face_lines: array[int] = field(default_factory=lambda: array("q"))
@@ -108,7 +108,7 @@ class _Growing:
             self.description,
             self.is_tin,
             np.array(self.ids, dtype=np.int64),
-            np.array(self.places, dtype=np.float64).reshape(-1, 3),
+            np.array(self.positions, dtype=np.float64).reshape(-1, 3),
             np.array(self.corners, dtype=np.int64).reshape(-1, 3),
             np.array(self.point_lines, dtype=np.int64),
             np.array(self.face_lines, dtype=np.int64),
@@ -122,7 +122,7 @@ class _Reading:
 
     def __init__(self, path: Path) -> None:
         self.xml = CheckedXml(path, "LandXML")
-        self.header = Header()
+        self.header = LandXmlHeader()
         self.surfaces: list[DrawnSurface] = []
         self._surface: _Growing | None = None
         self._path: list[str] = []
@@ -186,9 +186,9 @@ class _Reading:
             )
             raise self._refused(what.filled(id=id_ or "-", count=len(words)))
         surface.ids.append(self._whole(id_))
-        surface.places.extend(map(self._number, words))
+        surface.positions.extend(map(self._number, words))
         if len(words) == 2:
-            surface.places.append(math.nan)
+            surface.positions.append(math.nan)
         surface.point_lines.append(self._line)
 
     def _add_face(self, surface: _Growing) -> None:
@@ -216,8 +216,8 @@ class _Reading:
             )
             raise self._refused(what.filled(count=len(words)))
         if words:
-            places = np.array(list(map(self._number, words)), dtype=np.float64)
-            surface.breaklines.append(places.reshape(-1, 3))
+            positions = np.array(list(map(self._number, words)), dtype=np.float64)
+            surface.breaklines.append(positions.reshape(-1, 3))
 
     def _number(self, word: str) -> float:
         try:

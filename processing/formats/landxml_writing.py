@@ -22,7 +22,7 @@ from processing.earthwork.drawing_parts import DrawnSection, SectionedLine, part
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import Unsuitable
 from processing.formats.landxml_systems import names_of_system
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import Monitor, SilentMonitor
 from processing.text import Text
 
@@ -115,7 +115,7 @@ def write_landxml(
         There is nothing to write, a corner is no place, or J-LandXML has no name for the
         reference system.
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises; `Cancelled`.
+        What :func:`processing.formats.safe_write.write_safely` raises; `Cancelled`.
 
     References
     ----------
@@ -124,7 +124,7 @@ def write_landxml(
     _check(path, surfaces, facts, line=line, form=form)
     monitor = monitor or SilentMonitor()
     with (
-        written_safely(path, never=never) as temporary,
+        write_safely(path, never=never) as temporary,
         temporary.open("w", encoding="utf-8", newline="\n") as file,
     ):
         for words in _head(facts, form):
@@ -204,8 +204,8 @@ def _head(facts: LandXmlFacts, form: LandXmlForm) -> Iterator[str]:
         names["verticalDatum"] = "T.P" if is_tokyo else facts.height_datum
         # Heights of 2011 and of 2024 both count from Tokyo Peil, and differ.
         names["desc"] = facts.height_datum
-    told = " ".join(f"{name}={_quoted(value)}" for name, value in names.items())
-    yield f"<CoordinateSystem {told}/>"
+    reported = " ".join(f"{name}={_quoted(value)}" for name, value in names.items())
+    yield f"<CoordinateSystem {reported}/>"
     yield (
         '<Units><Metric areaUnit="squareMeter" linearUnit="meter" volumeUnit="cubicMeter" '
         'temperatureUnit="celsius" pressureUnit="HPA" angularUnit="decimal dd.mm.ss" '
@@ -219,15 +219,15 @@ def _surface(name: str, one: WrittenSurface, decimals: int, form: LandXmlForm) -
     if form == "LandXML" and one.breaklines:
         yield "<SourceData><Breaklines>"
         for line in one.breaklines:
-            places = _rounded(line[:, [1, 0, 2]], decimals)
-            numbers = " ".join(f"{value:.{decimals}f}" for value in places.ravel().tolist())
+            positions = _rounded(line[:, [1, 0, 2]], decimals)
+            numbers = " ".join(f"{value:.{decimals}f}" for value in positions.ravel().tolist())
             yield (f'<Breakline brkType="standard"><PntList3D>{numbers}</PntList3D></Breakline>')
         yield "</Breaklines></SourceData>"
     yield '<Definition surfType="TIN"><Pnts>'
     used, corners = np.unique(one.surface.corners, return_inverse=True)
-    places = _rounded(one.surface.xyz[used][:, [1, 0, 2]], decimals)
-    for start in range(0, len(places), _ROWS):
-        rows = enumerate(places[start : start + _ROWS].tolist(), start + 1)
+    positions = _rounded(one.surface.xyz[used][:, [1, 0, 2]], decimals)
+    for start in range(0, len(positions), _ROWS):
+        rows = enumerate(positions[start : start + _ROWS].tolist(), start + 1)
         yield "\n".join(
             f'<P id="{id_}">{north:.{decimals}f} {east:.{decimals}f} {height:.{decimals}f}</P>'
             for id_, (north, east, height) in rows
@@ -247,15 +247,15 @@ def _alignment(line: SectionedLine, facts: LandXmlFacts) -> Iterator[str]:
     corners = _rounded(line.xy[np.append(True, moved)][:, ::-1], decimals)
     lengths = [float(np.hypot(*(end - start))) for start, end in pairwise(corners)]
     names = ["BP", *(f"IP.{number}" for number in range(1, len(corners) - 1)), "EP"]
-    told = f'length="{sum(lengths):.{decimals}f}" staStart="{line.start_m:.{decimals}f}"'
-    yield f"<Alignments><Alignment name={_quoted(line.name or '1')} {told}><CoordGeom>"
+    reported = f'length="{sum(lengths):.{decimals}f}" staStart="{line.start_m:.{decimals}f}"'
+    yield f"<Alignments><Alignment name={_quoted(line.name or '1')} {reported}><CoordGeom>"
     ends = list(zip(names, corners.tolist(), strict=True))
     for length, (start, end) in zip(lengths, pairwise(ends), strict=True):
-        places = [
+        positions = [
             f'<{tag} name="{name}">{north:.{decimals}f} {east:.{decimals}f}</{tag}>'
             for tag, (name, (north, east)) in (("Start", start), ("End", end))
         ]
-        yield f'<Line length="{length:.{decimals}f}">{"".join(places)}</Line>'
+        yield f'<Line length="{length:.{decimals}f}">{"".join(positions)}</Line>'
     yield "</CoordGeom>"
     if line.sections:
         yield "<CrossSects>"

@@ -11,7 +11,7 @@ import lazrs
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.formats.field_names import GRID_NAMES, plain_name, whole_numbers
 from processing.formats.las_crs import crs_of
 from processing.formats.las_header import RECORD_SIZES, LasHeader, damaged, read_header
@@ -127,7 +127,7 @@ def read_ends(path: Path, points: int) -> list[PointChunk]:
     """
     header = read_header(path)
     ends = []
-    with told_as_user_error(path), path.open("rb") as file:
+    with report_as_user_error(path), path.open("rb") as file:
         chunks = read_chunk_table(header, file) if header.is_compressed else None
         for start, end in _end_spans(header.count, points):
             if chunks is None:
@@ -154,7 +154,7 @@ def _chunk(records: NDArray[np.uint8], header: LasHeader, first: int) -> PointCh
     if grid is not None:
         indices = [whole_numbers(_extra(records, header, one)) for one in grid]
         chunk.columns["grid"] = np.column_stack(indices).astype(np.int32)
-    _check_places(chunk.columns["xyz"], header, first)
+    _check_positions(chunk.columns["xyz"], header, first)
     return chunk
 
 
@@ -186,7 +186,7 @@ def read_records(
     MissingInput, NoSpace, BadFile
         As :func:`read_chunks`.
     """
-    with told_as_user_error(header.path), header.path.open("rb") as file:
+    with report_as_user_error(header.path), header.path.open("rb") as file:
         if header.is_compressed:
             chunks = read_chunk_table(header, file)
             for begin, end in chunks.groups(chunk_points):
@@ -261,7 +261,7 @@ def _times(times: NDArray[np.generic]) -> NDArray[np.generic]:
     return times if good.all() else np.where(good, times, np.nan)
 
 
-def _check_places(xyz: NDArray[np.int32], header: LasHeader, first: int) -> None:
+def _check_positions(xyz: NDArray[np.int32], header: LasHeader, first: int) -> None:
     limits = np.iinfo(np.int32)
     for axis, name in enumerate(("X", "Y", "Z")):
         own = xyz[:, axis]
@@ -295,9 +295,9 @@ def _first_time(header: LasHeader) -> float:
     """A chunk's first point is not compressed, so LAZ holds it where LAS does, 8 bytes later."""
     if header.count == 0:
         return float("nan")
-    place = header.points_at + (8 if header.is_compressed else 0) + _TIME_AT[header.point_format]
-    with told_as_user_error(header.path), header.path.open("rb") as file:
-        file.seek(place)
+    position = header.points_at + (8 if header.is_compressed else 0) + _TIME_AT[header.point_format]
+    with report_as_user_error(header.path), header.path.open("rb") as file:
+        file.seek(position)
         data = file.read(8)
     time = struct.unpack("<d", data)[0] if len(data) == 8 else float("nan")
     return float(time) if abs(time) < _LONGEST_TIME_S else float("nan")

@@ -13,7 +13,7 @@ from typing import BinaryIO
 
 import numpy as np
 
-from processing.errors import UNCHANGED, BadFile, told_as_user_error
+from processing.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.formats.point_chunk import Vector3
 from processing.text import Text
 
@@ -85,14 +85,14 @@ class LasHeader:
 
 def damaged(path: Path, what: Text, byte: int | None = None) -> BadFile:
     """The error for a file whose content is not what LAS says."""
-    place = (
+    position = (
         Text.same(str(path))
         if byte is None
         else Text(f"{path}, byte {byte:,}", f"{path}、{byte:,}バイト目")
     )
     return BadFile(
         what,
-        place,
+        position,
         Text(
             "Copy the file again from the delivery. {unchanged}",
             "納品データからファイルをコピーし直してください。{unchanged}",
@@ -108,7 +108,7 @@ def read_header(path: Path) -> LasHeader:
     MissingInput, NoSpace, BadFile
         It can't be read; it is not LAS; it contradicts itself or the file's size: names the byte.
     """
-    with told_as_user_error(path), path.open("rb") as file:
+    with report_as_user_error(path), path.open("rb") as file:
         file_size = path.stat().st_size
         start = file.read(375)
         _check_start(path, start, file_size)
@@ -229,34 +229,34 @@ def _read_vlrs(file: BinaryIO, path: Path, count: int, span: tuple[int, int]) ->
     file.seek(span[0])
     data = file.read(span[1] - span[0])
     vlrs = []
-    place = 0
+    position = 0
     for number in range(count):
-        end = place + _VLR_HEADER.size
+        end = position + _VLR_HEADER.size
         if end > len(data):
-            raise _bad_vlr(path, number, count, span[0] + place)
-        _, user, record_id, length, _ = _VLR_HEADER.unpack_from(data, place)
+            raise _bad_vlr(path, number, count, span[0] + position)
+        _, user, record_id, length, _ = _VLR_HEADER.unpack_from(data, position)
         if end + length > len(data):
-            raise _bad_vlr(path, number, count, span[0] + place)
+            raise _bad_vlr(path, number, count, span[0] + position)
         vlrs.append(Vlr(_name(user), record_id, data[end : end + length]))
-        place = end + length
+        position = end + length
     return vlrs
 
 
 def _read_evlrs(file: BinaryIO, path: Path, count: int, span: tuple[int, int]) -> list[Vlr]:
     vlrs = []
-    place, file_size = span
+    position, file_size = span
     for number in range(count):
-        file.seek(min(place, file_size))
+        file.seek(min(position, file_size))
         head = file.read(_EVLR_HEADER.size)
         if len(head) < _EVLR_HEADER.size:
-            raise _bad_vlr(path, number, count, place)
+            raise _bad_vlr(path, number, count, position)
         _, user, record_id, length, _ = _EVLR_HEADER.unpack(head)
-        place += _EVLR_HEADER.size
-        if place + length > file_size:
-            raise _bad_vlr(path, number, count, place - _EVLR_HEADER.size)
+        position += _EVLR_HEADER.size
+        if position + length > file_size:
+            raise _bad_vlr(path, number, count, position - _EVLR_HEADER.size)
         data = file.read(length) if length <= _LARGEST_EVLR_READ else b""
         vlrs.append(Vlr(_name(user), record_id, data))
-        place += length
+        position += length
     return vlrs
 
 

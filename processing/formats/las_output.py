@@ -13,7 +13,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.formats.las_crs import crs_of
 from processing.formats.las_header import HEADER_SIZES, LasHeader
 from processing.formats.las_records import PROMOTED
@@ -67,20 +67,20 @@ class LasFrame:
 
     def finish(self, file: BinaryIO, source: BinaryIO) -> None:
         """Copy the extended records behind the points and note in the header where they are."""
-        places = {}
+        positions = {}
         file.seek(0, 2)
         for byte, length in self.evlrs:
-            places[byte] = file.tell()
+            positions[byte] = file.tell()
             source.seek(byte)
             _copy(source, file, length)
         minor = self.head[25]
         if minor >= 3:
             waveforms = struct.unpack_from("<Q", self.head, 227)[0]
             file.seek(227)
-            file.write(struct.pack("<Q", places.get(waveforms, 0)))
+            file.write(struct.pack("<Q", positions.get(waveforms, 0)))
         if minor == 4:
             file.seek(235)
-            file.write(struct.pack("<QI", min(places.values(), default=0), len(places)))
+            file.write(struct.pack("<QI", min(positions.values(), default=0), len(positions)))
 
     def note_returns(self, file: BinaryIO, of_return: NDArray[np.int64]) -> None:
         """Note how many points there are of each return, (16,), number 0 first."""
@@ -113,7 +113,7 @@ def frame_of(header: LasHeader, *, promote: bool) -> LasFrame:
     MissingInput, NoSpace, BadFile
         The file can't be read.
     """
-    with told_as_user_error(header.path), header.path.open("rb") as file:
+    with report_as_user_error(header.path), header.path.open("rb") as file:
         head = file.read(header.header_size)
         vlrs = _vlrs_in(file.read(header.points_at - header.header_size), head)
         evlrs = _evlrs_in(file, header, head)
@@ -164,31 +164,31 @@ def _promoted_head(head: bytes, header: LasHeader) -> bytearray:
 
 def _vlrs_in(data: bytes, head: bytes) -> tuple[bytes, ...]:
     vlrs = []
-    place = 0
+    position = 0
     for _ in range(struct.unpack_from("<I", head, 100)[0]):
-        size = _VLR_HEAD + struct.unpack_from("<H", data, place + 20)[0]
-        vlr = data[place : place + size]
+        size = _VLR_HEAD + struct.unpack_from("<H", data, position + 20)[0]
+        vlr = data[position : position + size]
         if vlr[2:18].rstrip(b"\0 ") not in _NOT_TAKEN_OVER:
             vlrs.append(vlr)
-        place += size
+        position += size
     return tuple(vlrs)
 
 
 def _evlrs_in(file: BinaryIO, header: LasHeader, head: bytes) -> tuple[tuple[int, int], ...]:
     """Extended records; LAS 1.3 has at most one, the waveforms, and notes only where it is."""
-    count, place = header.evlr_count, header.evlrs_at
+    count, position = header.evlr_count, header.evlrs_at
     if header.minor == 3 and header.encoding & _INTERNAL_WAVEFORMS_BIT:
-        place = struct.unpack_from("<Q", head, 227)[0]
-        count = 1 if header.points_at <= place <= header.file_size - _EVLR_HEAD else 0
+        position = struct.unpack_from("<Q", head, 227)[0]
+        count = 1 if header.points_at <= position <= header.file_size - _EVLR_HEAD else 0
     evlrs = []
     for _ in range(count):
-        file.seek(place)
+        file.seek(position)
         start = file.read(_EVLR_HEAD)
         size = _EVLR_HEAD + struct.unpack_from("<Q", start, 20)[0]
-        size = min(size, header.file_size - place)
+        size = min(size, header.file_size - position)
         if start[2:18].rstrip(b"\0 ") not in _NOT_TAKEN_OVER:
-            evlrs.append((place, size))
-        place += size
+            evlrs.append((position, size))
+        position += size
     return tuple(evlrs)
 
 

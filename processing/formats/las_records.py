@@ -57,7 +57,7 @@ class ExtraDimension:
     dtype: str
 
 
-def promoted(records: NDArray[np.uint8], point_format: int) -> NDArray[np.uint8]:
+def promote_records(records: NDArray[np.uint8], point_format: int) -> NDArray[np.uint8]:
     """Records of formats 0 to 5 as records of the format in :data:`PROMOTED`.
 
     Parameters
@@ -96,7 +96,7 @@ def promoted(records: NDArray[np.uint8], point_format: int) -> NDArray[np.uint8]
     return new
 
 
-def with_class(
+def set_classes(
     records: NDArray[np.uint8], point_format: int, classes: NDArray[np.uint8]
 ) -> NDArray[np.uint8]:
     """The records, changed in place, with these (n,) classes and all flags as they were."""
@@ -107,7 +107,7 @@ def with_class(
     return records
 
 
-def with_room_for_color(records: NDArray[np.uint8], point_format: int) -> NDArray[np.uint8]:
+def add_color_fields(records: NDArray[np.uint8], point_format: int) -> NDArray[np.uint8]:
     """Records of a format without colour as records of its sister in :data:`COLORED`, black."""
     room = RECORD_SIZES[COLORED[point_format]] - RECORD_SIZES[point_format]
     at = _COLOR_AT[COLORED[point_format]]
@@ -115,7 +115,7 @@ def with_room_for_color(records: NDArray[np.uint8], point_format: int) -> NDArra
     return np.concatenate([records[:, :at], black, records[:, at:]], axis=1)
 
 
-def with_color(
+def set_colors(
     records: NDArray[np.uint8], point_format: int, colors: NDArray[np.uint16]
 ) -> NDArray[np.uint8]:
     """The records, changed in place, with these (n, 3) red, green, blue."""

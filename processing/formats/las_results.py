@@ -21,23 +21,23 @@ from processing.formats.las_records import (
     HIGHEST_OLD_CLASS,
     PROMOTED,
     ExtraDimension,
+    add_color_fields,
     description_of,
     extra_dimensions,
-    promoted,
+    promote_records,
     records_of,
-    with_class,
-    with_color,
-    with_room_for_color,
+    set_classes,
+    set_colors,
 )
 from processing.formats.point_files import is_las, read_chunks, read_info
-from processing.formats.safe_write import written_safely
-from processing.formats.told_writes import ToldWrites, failures_told
+from processing.formats.reported_writes import ReportedWrites, report_write_failures
+from processing.formats.safe_write import write_safely
 from processing.monitor import Monitor
 from processing.text import Text
 
 # Any: each column has its own type.
-Columns = Mapping[str, NDArray[Any]]
-Results = Columns | Callable[[int, int], Columns]
+ResultColumns = Mapping[str, NDArray[Any]]
+Results = ResultColumns | Callable[[int, int], ResultColumns]
 
 _CHUNK_POINTS = 1_000_000
 _CLASS, _COLOR = "classification", "color"
@@ -108,7 +108,7 @@ def write_results(
     """
     is_compressed = _is_compressed(output)
     part = results if callable(results) else _parts_of(results)
-    with written_safely(output, never=(source,)) as temporary:
+    with write_safely(output, never=(source,)) as temporary:
         plan = _plan_of(source, part, columns)
         with temporary.open("wb+") as file, source.open("rb") as source_file:
             of_return = _write_points(file, plan, part, monitor, is_compressed=is_compressed)
@@ -131,11 +131,13 @@ def _is_compressed(output: Path) -> bool:
     return ending == ".laz"
 
 
-def _parts_of(results: Columns) -> Callable[[int, int], Columns]:
+def _parts_of(results: ResultColumns) -> Callable[[int, int], ResultColumns]:
     return lambda start, stop: {name: values[start:stop] for name, values in results.items()}
 
 
-def _plan_of(source: Path, part: Callable[[int, int], Columns], columns: tuple[str, ...]) -> _Plan:
+def _plan_of(
+    source: Path, part: Callable[[int, int], ResultColumns], columns: tuple[str, ...]
+) -> _Plan:
     records: Iterator[NDArray[np.uint8]]
     if not is_las(source):
         info = read_info(source, columns=columns)
@@ -170,7 +172,7 @@ def _plan_of(source: Path, part: Callable[[int, int], Columns], columns: tuple[s
     return _Plan(frame, count, size, records, promoted_from, room_in, dimensions, is_las(source))
 
 
-def _needs_promotion(part: Callable[[int, int], Columns], count: int) -> bool:
+def _needs_promotion(part: Callable[[int, int], ResultColumns], count: int) -> bool:
     for start in range(0, count, _CHUNK_POINTS):
         classes = part(start, min(start + _CHUNK_POINTS, count)).get(_CLASS)
         if classes is None:
@@ -181,7 +183,7 @@ def _needs_promotion(part: Callable[[int, int], Columns], count: int) -> bool:
 
 
 def _placed(
-    given: Columns, old: tuple[ExtraDimension, ...]
+    given: ResultColumns, old: tuple[ExtraDimension, ...]
 ) -> tuple[tuple[ExtraDimension, ...], tuple[ExtraDimension, ...]]:
     """All extra dimensions of the output, and those among them that the results fill."""
     dimensions = list(old)
@@ -212,7 +214,7 @@ def _described(
 def _write_points(
     file: BinaryIO,
     plan: _Plan,
-    part: Callable[[int, int], Columns],
+    part: Callable[[int, int], ResultColumns],
     monitor: Monitor,
     *,
     is_compressed: bool,
@@ -223,8 +225,8 @@ def _write_points(
     file.write(
         plan.frame.start(plan.point_size, bytes(laz.record_data()) if is_compressed else None)
     )
-    told = ToldWrites(file)
-    compressor = lazrs.ParLasZipCompressor(told, laz) if is_compressed else None
+    reported = ReportedWrites(file)
+    compressor = lazrs.ParLasZipCompressor(reported, laz) if is_compressed else None
     of_return = np.zeros(16, dtype=np.int64)
     start = 0
     for source_records in plan.records:
@@ -235,28 +237,30 @@ def _write_points(
         if compressor is None:
             file.write(records.data)
         else:
-            with failures_told(told):
+            with report_write_failures(reported):
                 compressor.compress_many(records.reshape(-1))
         start = stop
         monitor.report(start / plan.count, Text("Writing the points", "点群を書き込み中"))
     if compressor is not None:
-        with failures_told(told):
+        with report_write_failures(reported):
             compressor.done()
     return of_return
 
 
-def _with_results(source: NDArray[np.uint8], plan: _Plan, results: Columns) -> NDArray[np.uint8]:
-    kept = source if plan.promoted_from < 0 else promoted(source, plan.promoted_from)
+def _with_results(
+    source: NDArray[np.uint8], plan: _Plan, results: ResultColumns
+) -> NDArray[np.uint8]:
+    kept = source if plan.promoted_from < 0 else promote_records(source, plan.promoted_from)
     if plan.room_in >= 0:
-        kept = with_room_for_color(kept, plan.room_in)
+        kept = add_color_fields(kept, plan.room_in)
     records = np.zeros((kept.shape[0], plan.point_size), dtype=np.uint8)
     records[:, : kept.shape[1]] = kept
     if _CLASS in results:
         classes = np.asarray(results[_CLASS], dtype=np.uint8)
-        records = with_class(records, plan.frame.point_format, classes)
+        records = set_classes(records, plan.frame.point_format, classes)
     if _COLOR in results:
         colors = np.asarray(results[_COLOR], dtype=np.uint16)
-        records = with_color(records, plan.frame.point_format, colors)
+        records = set_colors(records, plan.frame.point_format, colors)
     standard = RECORD_SIZES[plan.frame.point_format]
     others = [values for name, values in results.items() if name not in _OF_RECORDS]
     for dimension, values in zip(plan.dimensions, others, strict=True):

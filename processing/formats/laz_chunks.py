@@ -111,11 +111,11 @@ class LazChunks:
         """Formats 6 to 10: each chunk says how many points and how long layers it has."""
         head = 4 * (1 + self.layer_count)
         for chunk in range(begin, end) if self.layer_count else ():
-            place = int(self.at[chunk] - self.at[begin]) + self.header.point_size
+            position = int(self.at[chunk] - self.at[begin]) + self.header.point_size
             size = int(self.at[chunk + 1] - self.at[chunk]) - self.header.point_size - head
             if size < 0:
                 raise self._undecodable(chunk, chunk + 1)
-            numbers = struct.unpack_from(f"<{1 + self.layer_count}I", data, place)
+            numbers = struct.unpack_from(f"<{1 + self.layer_count}I", data, position)
             if numbers[0] != self.first[chunk + 1] - self.first[chunk] or sum(numbers[1:]) > size:
                 raise self._undecodable(chunk, chunk + 1)
 
@@ -149,7 +149,7 @@ def read_chunk_table(header: LasHeader, file: BinaryIO) -> LazChunks:
     if header.count == 0:
         nothing = np.zeros(1, dtype=np.int64)
         return LazChunks(header, record, nothing, nothing + header.points_at, layer_count)
-    table_at = _table_place(header, file)
+    table_at = _table_position(header, file)
     start = header.points_at + 8
     file.seek(table_at)
     version, chunk_count = struct.unpack("<II", file.read(8))
@@ -187,15 +187,15 @@ def _read_table(
     return counts.copy(), sizes.copy()
 
 
-def _table_place(header: LasHeader, file: BinaryIO) -> int:
+def _table_position(header: LasHeader, file: BinaryIO) -> int:
     """Byte of the chunk table; a writer that could not go back noted it in the last 8 bytes."""
     file.seek(header.points_at)
     head = file.read(8)
-    place = struct.unpack("<q", head)[0] if len(head) == 8 else 0
-    if place == -1:
+    position = struct.unpack("<q", head)[0] if len(head) == 8 else 0
+    if position == -1:
         file.seek(header.file_size - 8)
-        place = struct.unpack("<q", file.read(8))[0]
-    if not header.points_at + 8 <= place <= header.file_size - 8:
+        position = struct.unpack("<q", file.read(8))[0]
+    if not header.points_at + 8 <= position <= header.file_size - 8:
         raise damaged(
             header.path,
             Text(
@@ -204,7 +204,7 @@ def _table_place(header: LasHeader, file: BinaryIO) -> int:
             ),
             header.file_size,
         )
-    return int(place)
+    return int(position)
 
 
 def _checked_record(header: LasHeader) -> tuple[bytes, int, int]:
@@ -235,15 +235,15 @@ def _checked_record(header: LasHeader) -> tuple[bytes, int, int]:
 
 
 @contextmanager
-def _damage_told(told: BadFile) -> Iterator[None]:
-    """Raise ``told`` for what the decoder raises; a panic is no Exception, by pyo3's choice."""
+def _damage_told(reported: BadFile) -> Iterator[None]:
+    """Raise ``reported`` for what the decoder raises; a panic is no Exception, by pyo3's choice."""
     with panics_unprinted():
         try:
             yield
         except BaseException as error:
             if not isinstance(error, lazrs.LazrsError) and not is_panic(error):
                 raise
-            raise told from error
+            raise reported from error
 
 
 def _bad_table(header: LasHeader, table_at: int) -> BadFile:

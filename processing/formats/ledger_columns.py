@@ -20,7 +20,7 @@ _SHAPES = {
 }
 _DEGREE_DIGITS = 8  # about a millimetre
 
-Cell = Callable[[Feature], str]
+CellText = Callable[[Feature], str]
 
 
 @dataclass(frozen=True)
@@ -53,13 +53,13 @@ class TableStyle:
 
 
 @dataclass(frozen=True)
-class Column:
+class LedgerColumn:
     """A column: its id for programs, its title for people, its unit, its cells."""
 
     id: str
     title: Text
     unit: str
-    cell: Cell
+    cell: CellText
 
     def header(self, language: Language | None) -> str:
         """What stands in the first row."""
@@ -79,12 +79,12 @@ FEATURE_ID = Text("Feature ID", "地物ID")
 def header(id: str, title: Text, unit: str, language: Language | None) -> str:  # noqa: A002
     """What stands above a column in a language, or its id."""
     if language is None:
-        return guarded(id)
-    words = title.spoken(language)
-    return guarded(f"{words} [{unit}]" if unit else words)
+        return guard_text(id)
+    words = title.in_language(language)
+    return guard_text(f"{words} [{unit}]" if unit else words)
 
 
-def guarded(text: str) -> str:
+def guard_text(text: str) -> str:
     """A text that no spreadsheet takes for a formula.
 
     One apostrophe is put before ``= + - @``, their full-width twins, tabs, and before an apostrophe
@@ -93,34 +93,34 @@ def guarded(text: str) -> str:
     return f"'{text}" if text.startswith(_GUARDED) else text
 
 
-def identity_columns() -> tuple[Column, ...]:
+def identity_columns() -> tuple[LedgerColumn, ...]:
     """The feature's id, by which ``vertices.csv`` refers to it."""
-    return (Column("id", FEATURE_ID, "", lambda feature: guarded(feature.id)),)
+    return (LedgerColumn("id", FEATURE_ID, "", lambda feature: guard_text(feature.id)),)
 
 
-def kind_columns(catalogue: Catalogue, style: TableStyle) -> tuple[Column, ...]:
+def kind_columns(catalogue: Catalogue, style: TableStyle) -> tuple[LedgerColumn, ...]:
     """What the feature is."""
 
     def name(feature: Feature) -> str:
         known = feature.kind in catalogue
         name = catalogue[feature.kind].name if known else Text.same(feature.kind)
-        return guarded(name.spoken(style.language or "en"))
+        return guard_text(name.in_language(style.language or "en"))
 
     def code(feature: Feature) -> str:
         return catalogue[feature.kind].dm_code if feature.kind in catalogue else ""
 
     def shape(feature: Feature) -> str:
-        return _SHAPES[feature.geometry].spoken(style.language or "en")
+        return _SHAPES[feature.geometry].in_language(style.language or "en")
 
     return (
-        Column("kind", Text("Kind", "種別ID"), "", lambda feature: guarded(feature.kind)),
-        Column("kind_name", Text("Name of kind", "種別"), "", name),
-        Column("dm_code", Text("Class code", "分類コード"), "", code),
-        Column("geometry", Text("Shape", "形状"), "", shape),
+        LedgerColumn("kind", Text("Kind", "種別ID"), "", lambda feature: guard_text(feature.kind)),
+        LedgerColumn("kind_name", Text("Name of kind", "種別"), "", name),
+        LedgerColumn("dm_code", Text("Class code", "分類コード"), "", code),
+        LedgerColumn("geometry", Text("Shape", "形状"), "", shape),
     )
 
 
-def status_columns(style: TableStyle) -> tuple[Column, ...]:
+def status_columns(style: TableStyle) -> tuple[LedgerColumn, ...]:
     """Whether a person agreed, and how sure the tool was."""
     names = {
         "candidate": Text("candidate", "候補"),
@@ -130,7 +130,7 @@ def status_columns(style: TableStyle) -> tuple[Column, ...]:
 
     def status(feature: Feature) -> str:
         value = feature.status.value
-        return names[value].spoken(style.language) if style.language else value
+        return names[value].in_language(style.language) if style.language else value
 
     def confidence(feature: Feature) -> str:
         return style.number(feature.provenance.confidence, 3)
@@ -138,16 +138,16 @@ def status_columns(style: TableStyle) -> tuple[Column, ...]:
     def tool(feature: Feature) -> str:
         is_by_hand = feature.provenance.tool == "hand"
         name = Text("hand", "手動") if is_by_hand else Text.same(feature.provenance.tool)
-        return guarded(name.spoken(style.language or "en"))
+        return guard_text(name.in_language(style.language or "en"))
 
     return (
-        Column("status", Text("Status", "状態"), "", status),
-        Column("confidence", Text("Confidence", "信頼度"), "", confidence),
-        Column("tool", Text("Made by", "作成方法"), "", tool),
+        LedgerColumn("status", Text("Status", "状態"), "", status),
+        LedgerColumn("confidence", Text("Confidence", "信頼度"), "", confidence),
+        LedgerColumn("tool", Text("Made by", "作成方法"), "", tool),
     )
 
 
-def place_columns(features: Iterable[Feature], style: TableStyle) -> tuple[Column, ...]:
+def place_columns(features: Iterable[Feature], style: TableStyle) -> tuple[LedgerColumn, ...]:
     """First vertex; last vertex and lengths where there are lines, areas where there are areas."""
     shapes = {feature.geometry for feature in features}
     columns = _position_columns("", Text("", ""), style, 0)
@@ -160,7 +160,7 @@ def place_columns(features: Iterable[Feature], style: TableStyle) -> tuple[Colum
     if Geometry.AREA in shapes:
         columns += (_measure("plan_area_m2", Text("Plan area", "面積"), plan_area_m2, style),)
     if shapes - {Geometry.POINT}:
-        count = Column(
+        count = LedgerColumn(
             "vertices", Text("Vertices", "頂点数"), "", lambda one: str(len(one.vertices))
         )
         columns += (count,)
@@ -169,8 +169,8 @@ def place_columns(features: Iterable[Feature], style: TableStyle) -> tuple[Colum
 
 def _position_columns(
     prefix: str, title: Text, style: TableStyle, vertex: int
-) -> tuple[Column, ...]:
-    def cell_of(axis: int) -> Cell:
+) -> tuple[LedgerColumn, ...]:
+    def cell_of(axis: int) -> CellText:
         def cell(feature: Feature) -> str:
             is_blank = vertex == -1 and feature.geometry is not Geometry.LINE
             return "" if is_blank else style.number(feature.vertices[vertex].xyz[axis])
@@ -178,14 +178,16 @@ def _position_columns(
         return cell
 
     return tuple(
-        Column(prefix + id_, Text(title.en + name.en, title.ja + name.ja), unit, cell_of(axis))
+        LedgerColumn(
+            prefix + id_, Text(title.en + name.en, title.ja + name.ja), unit, cell_of(axis)
+        )
         for axis, (id_, name, unit) in enumerate(POSITION)
     )
 
 
 def _measure(
     id_: str, title: Text, measure: Callable[[Sequence[Position]], float], style: TableStyle
-) -> Column:
+) -> LedgerColumn:
     is_area = id_.endswith("_m2")
     shape = Geometry.AREA if is_area else Geometry.LINE
 
@@ -196,10 +198,10 @@ def _measure(
 
     # Shift_JIS has the square metre as one character, and no raised two.
     square_metre = "㎡" if style.language == "ja" else "m2"
-    return Column(id_, title, square_metre if is_area else "m", cell)
+    return LedgerColumn(id_, title, square_metre if is_area else "m", cell)
 
 
-def latitude_columns(features: Sequence[Feature], style: TableStyle) -> tuple[Column, ...]:
+def latitude_columns(features: Sequence[Feature], style: TableStyle) -> tuple[LedgerColumn, ...]:
     """Latitude and longitude on the reference system's own datum; none where it is not known."""
     points = [one for one in features if one.geometry is Geometry.POINT]
     if not style.crs or not points:
@@ -213,28 +215,30 @@ def latitude_columns(features: Sequence[Feature], style: TableStyle) -> tuple[Co
     to_degrees = Transformer.from_crs(system, geodetic.to_2d(), always_xy=True)
     eastings, northings = zip(*(one.vertices[0].xyz[:2] for one in points), strict=True)
     longitudes, latitudes = to_degrees.transform(eastings, northings)
-    places = {
-        one.id: place
-        for one, place in zip(points, zip(latitudes, longitudes, strict=True), strict=True)
+    positions = {
+        one.id: position
+        for one, position in zip(points, zip(latitudes, longitudes, strict=True), strict=True)
     }
 
-    def cell_of(axis: int) -> Cell:
+    def cell_of(axis: int) -> CellText:
         def cell(feature: Feature) -> str:
-            place = places.get(feature.id)
-            return "" if place is None else style.number(place[axis], _DEGREE_DIGITS)
+            position = positions.get(feature.id)
+            return "" if position is None else style.number(position[axis], _DEGREE_DIGITS)
 
         return cell
 
     return (
-        Column("latitude_deg", Text("Latitude", "緯度"), "°", cell_of(0)),
-        Column("longitude_deg", Text("Longitude", "経度"), "°", cell_of(1)),
+        LedgerColumn("latitude_deg", Text("Latitude", "緯度"), "°", cell_of(0)),
+        LedgerColumn("longitude_deg", Text("Longitude", "経度"), "°", cell_of(1)),
     )
 
 
-def crs_column(style: TableStyle) -> Column:
+def crs_column(style: TableStyle) -> LedgerColumn:
     """The reference system, or that it is not known."""
-    unknown = Text("unknown", "不明").spoken(style.language or "en")
-    return Column("crs", Text("Reference system", "座標参照系"), "", lambda _: style.crs or unknown)
+    unknown = Text("unknown", "不明").in_language(style.language or "en")
+    return LedgerColumn(
+        "crs", Text("Reference system", "座標参照系"), "", lambda _: style.crs or unknown
+    )
 
 
 def fields_of(features: Iterable[Feature], catalogue: Catalogue) -> tuple[AttributeField, ...]:
@@ -250,14 +254,16 @@ def fields_of(features: Iterable[Feature], catalogue: Catalogue) -> tuple[Attrib
     return tuple(fields.values())
 
 
-def attribute_column(field: AttributeField, catalogue: Catalogue, style: TableStyle) -> Column:
+def attribute_column(
+    field: AttributeField, catalogue: Catalogue, style: TableStyle
+) -> LedgerColumn:
     """An attribute; each kind's own choices are called by their names."""
 
     def cell(feature: Feature) -> str:
         known = catalogue[feature.kind].attribute(field.id) if feature.kind in catalogue else None
         return attribute_cell(feature.attributes.get(field.id), known or field, style)
 
-    return Column(field.id, field.name, field.unit, cell)
+    return LedgerColumn(field.id, field.name, field.unit, cell)
 
 
 def attribute_cell(value: AttributeValue, field: AttributeField, style: TableStyle) -> str:
@@ -273,5 +279,5 @@ def attribute_cell(value: AttributeValue, field: AttributeField, style: TableSty
             return style.number(value)
         return repr(value) if math.isfinite(value) else ""
     if field.type == "choice" and style.language:
-        return guarded(field.name_of_choice(value).spoken(style.language))
-    return guarded(value)
+        return guard_text(field.name_of_choice(value).in_language(style.language))
+    return guard_text(value)

@@ -12,12 +12,12 @@ from processing.errors import OutOfRange
 from processing.formats.ledger_columns import (
     FEATURE_ID,
     POSITION,
-    Column,
+    LedgerColumn,
     TableStyle,
     attribute_column,
     crs_column,
     fields_of,
-    guarded,
+    guard_text,
     header,
     identity_columns,
     kind_columns,
@@ -25,7 +25,7 @@ from processing.formats.ledger_columns import (
     place_columns,
     status_columns,
 )
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import Monitor, SilentMonitor
 from processing.project.catalogue import Catalogue, FeatureKind
 from processing.project.feature import Feature
@@ -61,7 +61,7 @@ def write_features(
     OutOfRange
         A character that the encoding lacks; names it and the feature.
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises; `Cancelled`.
+        What :func:`processing.formats.safe_write.write_safely` raises; `Cancelled`.
     """
     columns = (
         *identity_columns(),
@@ -126,17 +126,17 @@ def write_vertices(
         for number, feature in enumerate(features):
             if number % _CHECK_EVERY == 0:
                 monitor.check()
-            for place, vertex in enumerate(feature.vertices, 1):
+            for position, vertex in enumerate(feature.vertices, 1):
                 point = vertex.measured
-                cells = [guarded(feature.id), str(place), *map(style.number, vertex.xyz)]
-                cells += [guarded(point.drive), str(point.point)] if point else ["", ""]
+                cells = [guard_text(feature.id), str(position), *map(style.number, vertex.xyz)]
+                cells += [guard_text(point.drive), str(point.point)] if point else ["", ""]
                 table.write(cells, feature.id)
 
 
 def _write_rows(
     path: Path,
     features: Sequence[Feature],
-    columns: Sequence[Column],
+    columns: Sequence[LedgerColumn],
     style: TableStyle,
     *,
     monitor: Monitor | None,
@@ -207,7 +207,7 @@ class _Table:
 def _opened(path: Path, style: TableStyle, never: Iterable[Path]) -> Iterator[_Table]:
     encoding = "utf-8-sig" if style.encoding == "utf-8" else style.encoding
     with (
-        written_safely(path, never=never) as temporary,
+        write_safely(path, never=never) as temporary,
         temporary.open("w", encoding=encoding, newline="") as file,
     ):
         yield _Table(file, style)

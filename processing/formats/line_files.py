@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from processing.errors import BadFile, OutOfRange, Unsuitable, told_as_user_error
+from processing.errors import BadFile, OutOfRange, Unsuitable, report_as_user_error
 from processing.text import Text
 
 Floats = NDArray[np.float64]
@@ -49,7 +49,7 @@ def read_lines(path: Path, *, crs: str = "") -> tuple[Floats, ...]:
                 ".geojson・.gpkg・.dxf のファイルを指定してください。",
             ),
         )
-    with told_as_user_error(path), path.open("rb"):
+    with report_as_user_error(path), path.open("rb"):
         pass
     shapes, own = _shapes(path)
     if crs and own and own != crs:
@@ -92,5 +92,5 @@ def _shapes(path: Path) -> tuple[NDArray[np.object_], str]:
     kept = np.array([shape for shape in shapes if shape is not None], dtype=object)
     system = str(facts["crs"] or "")
     # GeoJSON without a system counts as WGS 84 to the reader, but plans of works aren't.
-    is_told = system.startswith("EPSG:") and system != "EPSG:4326"
-    return kept, system if is_told else ""
+    is_reported = system.startswith("EPSG:") and system != "EPSG:4326"
+    return kept, system if is_reported else ""

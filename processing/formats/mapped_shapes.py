@@ -8,13 +8,17 @@ from typing import Any
 
 import numpy as np
 
-from processing.errors import BadFile, OutOfRange, told_as_user_error
+from processing.errors import BadFile, OutOfRange, report_as_user_error
 from processing.formats.japanese_text import read_text
 from processing.project.geojson_shapes import WHERE, read_collection, shapes_of, system_of
-from processing.score.mapped_features import Floats, MappedFeature, MappedFile, Shape
+from processing.score.mapped_features import Floats, GeometryType, MappedFeature, MappedFile
 from processing.text import Text
 
-_GEOPACKAGE_SHAPES: dict[str, Shape] = {"Point": "point", "LineString": "line", "Polygon": "area"}
+_GEOPACKAGE_SHAPES: dict[str, GeometryType] = {
+    "Point": "point",
+    "LineString": "line",
+    "Polygon": "area",
+}
 _AGAIN = Text(
     "Write the file again with the tool, or copy it again.",
     "ツールで出力し直すか、ファイルをコピーし直してください。",
@@ -73,7 +77,7 @@ def _of_geojson(path: Path) -> MappedFile:
                 shapes.append(shape)
                 if shape.is_hole:
                     continue
-                xyz = np.array(shape.places, dtype=np.float64)
+                xyz = np.array(shape.positions, dtype=np.float64)
                 if shape.heightless:
                     xyz[:, 2] = np.nan
                 features.append(
@@ -87,8 +91,12 @@ def _of_geojson(path: Path) -> MappedFile:
         return MappedFile(path, system_of(whole, shapes), tuple(features))
     except BadFile as error:
         # The reader speaks of a clipboard and a map to paste into.
-        place = Text(error.where.en.removeprefix(WHERE.en), error.where.ja.removeprefix(WHERE.ja))
-        raise BadFile(error.what, Text(f"{path}{place.en}", f"{path}{place.ja}"), _AGAIN) from error
+        position = Text(
+            error.where.en.removeprefix(WHERE.en), error.where.ja.removeprefix(WHERE.ja)
+        )
+        raise BadFile(
+            error.what, Text(f"{path}{position.en}", f"{path}{position.ja}"), _AGAIN
+        ) from error
 
 
 def _of_geopackage(path: Path) -> MappedFile:
@@ -96,18 +104,18 @@ def _of_geopackage(path: Path) -> MappedFile:
     import pyogrio.raw
     from pyogrio.errors import DataLayerError, DataSourceError
 
-    with told_as_user_error(path), path.open("rb"):
+    with report_as_user_error(path), path.open("rb"):
         # The library's own words for a missing file, or a name that is no text, help nobody.
         str(path).encode()
     features: list[MappedFeature] = []
     systems: set[str] = set()
     try:
         for layer in pyogrio.list_layers(path)[:, 0]:
-            told, _, shapes, columns = pyogrio.raw.read(path, layer=layer)
-            systems.add(told["crs"] or "")
+            reported, _, shapes, columns = pyogrio.raw.read(path, layer=layer)
+            systems.add(reported["crs"] or "")
             rows = zip(shapes, *columns, strict=True)
             for shape, *values in rows:
-                facts = dict(zip(told["fields"], map(_plain, values), strict=True))
+                facts = dict(zip(reported["fields"], map(_plain, values), strict=True))
                 features += _of_wkb(shape, facts, len(features) + 1)
     except (DataLayerError, DataSourceError) as error:
         raise BadFile(

@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UNCHANGED, BadFile, told_as_user_error
-from processing.formats.delivered_floats import Block, FloatFile
+from processing.errors import UNCHANGED, BadFile, report_as_user_error
+from processing.formats.delivered_floats import ColumnBlock, FloatFile
 from processing.formats.field_names import block_of, has_position
 from processing.formats.las_header import damaged
 from processing.formats.text_numbers import TextPart, number_blocks
@@ -55,7 +55,7 @@ def open_pcd(path: Path) -> FloatFile:
     return FloatFile(path, "PCD", lambda: _blocks(header))
 
 
-def _blocks(header: _Header) -> Iterator[Block]:
+def _blocks(header: _Header) -> Iterator[ColumnBlock]:
     done = 0
     for fields in _text_fields(header) if header.is_text else _binary_fields(header):
         block = block_of(_with_colors(fields))
@@ -84,12 +84,12 @@ def _with_colors(fields: dict[str, NDArray[np.generic]]) -> dict[str, NDArray[np
 
 def _text_fields(header: _Header) -> Iterator[dict[str, NDArray[np.generic]]]:
     part = TextPart(header.path, header.size, limit=header.count)
-    places = np.concatenate([[0], np.cumsum(header.columns)])
+    positions = np.concatenate([[0], np.cumsum(header.columns)])
     done = 0
-    for numbers in number_blocks(part, int(places[-1])) if header.count else ():
+    for numbers in number_blocks(part, int(positions[-1])) if header.count else ():
         done += numbers.shape[0]
         fields: dict[str, NDArray[np.generic]] = {
-            name: numbers[:, places[i]] for i, name in enumerate(header.names)
+            name: numbers[:, positions[i]] for i, name in enumerate(header.names)
         }
         # Packed colours need the type that they were packed in; coordinates lose nothing as text.
         for i, name in enumerate(header.names):
@@ -101,7 +101,7 @@ def _text_fields(header: _Header) -> Iterator[dict[str, NDArray[np.generic]]]:
 
 
 def _binary_fields(header: _Header) -> Iterator[dict[str, NDArray[np.generic]]]:
-    with told_as_user_error(header.path), header.path.open("rb") as file:
+    with report_as_user_error(header.path), header.path.open("rb") as file:
         file.seek(header.size)
         for start in range(0, header.count, _BLOCK_POINTS):
             count = min(_BLOCK_POINTS, header.count - start)
@@ -114,7 +114,7 @@ def _binary_fields(header: _Header) -> Iterator[dict[str, NDArray[np.generic]]]:
 
 
 def _read_header(path: Path) -> _Header:
-    with told_as_user_error(path), path.open("rb") as file:
+    with report_as_user_error(path), path.open("rb") as file:
         start = file.read(_LONGEST_HEADER)
         file_size = path.stat().st_size
     said: dict[str, list[str]] = {}

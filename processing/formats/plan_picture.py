@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from processing.earthwork.as_built import AsBuiltResult
 from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.heat_map import SHARE_CLASSES, ColourClass, class_colours, on_paper
-from processing.formats.paper import GREY, Paper, Rgb
+from processing.formats.pdf_page import GREY, Paper, Rgb
 from processing.ground.cells import CellGrid
 from processing.text import Text
 
@@ -223,8 +223,8 @@ def _parts_at(
 
 def _span(held: NDArray[np.int64]) -> tuple[int, int]:
     """First and one after the last; all where nothing is held."""
-    places = np.flatnonzero(held)
-    return (int(places[0]), int(places[-1]) + 1) if len(places) else (0, len(held))
+    positions = np.flatnonzero(held)
+    return (int(positions[0]), int(positions[-1]) + 1) if len(positions) else (0, len(held))
 
 
 def _reduced(
@@ -270,20 +270,20 @@ def _draw_ticks(
     names = ("Y", "X") if paper.language == "ja" else ("E", "N")
     across = [lower_left[0] + (easting - plan.west) * mm for easting in eastings]
     down = [lower_left[1] - (northing - plan.south) * mm for northing in northings]
-    for place, easting in zip(across, eastings, strict=True):
-        paper.line([(place, y + height), (place, y + height + 1.2)])
-        at = min(max(place, x + 9.0), x + width - 9.0)
+    for position, easting in zip(across, eastings, strict=True):
+        paper.line([(position, y + height), (position, y + height + 1.2)])
+        at = min(max(position, x + 9.0), x + width - 9.0)
         words = f"{names[0]} {easting:,.{digits}f}".replace("-", "−")
         paper.text(at, y + height + 3.2, words, _TYPE, "centre")
-    for place, northing in zip(down, northings, strict=True):
-        paper.line([(x, place), (x - 1.2, place)])
-        at = min(max(place, y + 9.0), y + height - 9.0)
+    for position, northing in zip(down, northings, strict=True):
+        paper.line([(x, position), (x - 1.2, position)])
+        at = min(max(position, y + 9.0), y + height - 9.0)
         words = f"{names[1]} {northing:,.{digits}f}".replace("-", "−")
         paper.turned_text(x - 2.8, at, words, _TYPE)
-    for place in across:
+    for position in across:
         for other in down:
-            paper.line([(place - 1.2, other), (place + 1.2, other)], colour=GREY)
-            paper.line([(place, other - 1.2), (place, other + 1.2)], colour=GREY)
+            paper.line([(position - 1.2, other), (position + 1.2, other)], colour=GREY)
+            paper.line([(position, other - 1.2), (position, other + 1.2)], colour=GREY)
 
 
 def _within(origin: float, low: float, high: float, step: float) -> list[float]:

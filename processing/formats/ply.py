@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import BadFile, told_as_user_error
-from processing.formats.delivered_floats import Block, FloatFile
+from processing.errors import BadFile, report_as_user_error
+from processing.formats.delivered_floats import ColumnBlock, FloatFile
 from processing.formats.field_names import block_of, has_position
 from processing.formats.las_header import damaged
 from processing.formats.text_numbers import TextPart, number_blocks
@@ -68,7 +68,7 @@ def open_ply(path: Path) -> FloatFile:
     return FloatFile(path, "PLY", lambda: _blocks(header))
 
 
-def _blocks(header: _Header) -> Iterator[Block]:
+def _blocks(header: _Header) -> Iterator[ColumnBlock]:
     records = _text_records(header) if header.order == "" else _binary_records(header)
     for block in records:
         yield block_of(block, header.offset)
@@ -77,7 +77,7 @@ def _blocks(header: _Header) -> Iterator[Block]:
 def _binary_records(header: _Header) -> Iterator[dict[str, NDArray[np.generic]]]:
     element = header.vertices
     dtype = np.dtype([(name, header.order + kind) for name, kind in element.fields])
-    with told_as_user_error(header.path), header.path.open("rb") as file:
+    with report_as_user_error(header.path), header.path.open("rb") as file:
         file.seek(header.size + _bytes_before(header))
         for start in range(0, element.count, _BLOCK_POINTS):
             count = min(_BLOCK_POINTS, element.count - start)
@@ -115,7 +115,7 @@ def _bytes_before(header: _Header) -> int:
 
 
 def _read_header(path: Path) -> _Header:
-    with told_as_user_error(path), path.open("rb") as file:
+    with report_as_user_error(path), path.open("rb") as file:
         start = file.read(_LONGEST_HEADER)
         file_size = path.stat().st_size
     end = re.search(rb"end_header[ \t]*(\r\n|\n|\r)", start)

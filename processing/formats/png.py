@@ -11,7 +11,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 
 MOST_ROWS = 1_000_000
 """Of a picture that programs built on libpng open."""
@@ -46,7 +46,7 @@ def write_png(path: Path, size: tuple[int, int], strips: Iterable[NDArray[np.uin
     ISO/IEC 15948:2004, Portable Network Graphics: clauses 9 (filter type 1) and 11.2.
     """
     rows, columns = size
-    with written_safely(path) as temporary, temporary.open("wb") as file:
+    with write_safely(path) as temporary, temporary.open("wb") as file:
         file.write(_SIGNATURE)
         _write_chunk(
             file,

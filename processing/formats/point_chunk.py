@@ -41,7 +41,7 @@ class PointFileInfo:
         Whether points refer to waveform packets.
     attributes : tuple of str
         Names of the columns of a chunk but ``xyz``, then names of extra dimensions.
-    scanner_places : tuple of (int, tuple of float)
+    scanner_positions : tuple of (int, tuple of float)
         Of files of standing scanners: each scan's number, which is that of its points' scanner
         where there are several, and where the scanner stood, m.
     columns_taken : tuple of str
@@ -66,7 +66,7 @@ class PointFileInfo:
     point_format: int = -1
     has_waveforms: bool = False
     attributes: tuple[str, ...] = ()
-    scanner_places: tuple[tuple[int, Vector3], ...] = ()
+    scanner_positions: tuple[tuple[int, Vector3], ...] = ()
     columns_taken: tuple[str, ...] = ()
 
 

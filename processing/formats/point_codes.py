@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import BadFile, MissingInput, told_as_user_error
+from processing.errors import BadFile, MissingInput, report_as_user_error
 from processing.formats.point_files import read_chunks, read_info
 from processing.formats.text_numbers import TextPart, number_blocks
 from processing.points.array_files import read_arrays
@@ -57,7 +57,7 @@ def read_result(path: Path) -> CodedFile:
             xyz = chunk.columns["xyz"] * scale + offset
             yield CodedPoints(chunk.columns["classification"], xyz)
 
-    return CodedFile(path, info.count, max(info.scale), has_places=True, blocks=blocks)
+    return CodedFile(path, info.count, max(info.scale), has_positions=True, blocks=blocks)
 
 
 def read_truth(
@@ -82,7 +82,7 @@ def read_truth(
     MissingInput, NoSpace, BadFile
         It can't be read, is damaged, or has no classes.
     """
-    with told_as_user_error(path), path.open("rb") as file:
+    with report_as_user_error(path), path.open("rb") as file:
         start = file.read(_LOOKED_AT)
     if start.startswith(_NPY_MAGIC):
         return _of_arrays(path, _loaded_array(path), flags)
@@ -103,7 +103,7 @@ def _loaded_array(path: Path) -> Arrays:
 
 def _mapped(path: Path) -> NDArray[Any]:
     try:
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             found: NDArray[Any] = np.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError) as error:
         raise _damaged(path) from error
@@ -112,7 +112,7 @@ def _mapped(path: Path) -> NDArray[Any]:
 
 def _loaded_arrays(path: Path) -> Arrays:
     try:
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             return read_arrays(path)
     except (ValueError, EOFError, zipfile.BadZipFile, KeyError) as error:
         raise _damaged(path) from error
@@ -137,7 +137,7 @@ def _of_arrays(path: Path, arrays: Arrays, flags: Mapping[str, tuple[int, int]])
                 kinds={name: np.asarray(one[part]).astype(np.int16) for name, one in kinds.items()},
             )
 
-    return CodedFile(path, codes.size, 0.0, has_places=False, blocks=blocks)
+    return CodedFile(path, codes.size, 0.0, has_positions=False, blocks=blocks)
 
 
 def _codes_of(
@@ -204,13 +204,13 @@ def _of_text(path: Path, if_false: int, if_true: int) -> CodedFile:
         for numbers in number_blocks(TextPart(path), _TEXT_COLUMNS):
             yield CodedPoints(codes_of[numbers[:, 3].astype(np.intp)], numbers[:, :3])
 
-    return CodedFile(path, count, 0.0, has_places=True, blocks=blocks)
+    return CodedFile(path, count, 0.0, has_positions=True, blocks=blocks)
 
 
-def _no_codes(path: Path, told: str) -> BadFile:
+def _no_codes(path: Path, reported: str) -> BadFile:
     return BadFile(
         Text("True classes are whole numbers from 0 to 255.", "正解のクラスは0～255の整数です。"),
-        Text.same(f"{path}, {told}"),
+        Text.same(f"{path}, {reported}"),
         _AGAIN,
     )
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UNCHANGED, BadFile, UserError, told_as_user_error
+from processing.errors import UNCHANGED, BadFile, UserError, report_as_user_error
 from processing.formats import las
 from processing.formats.delivered_floats import FloatFile, chunks_of, info_of
 from processing.formats.e57 import MAGIC as E57_MAGIC
@@ -136,7 +136,7 @@ def read_sample(
     else:
         file = opener(path)
         info, chunks = info_of(file), chunks_of(file, points)
-        is_told_by_first = not info.has_time and len(info.scanner_places) < 2
+        is_told_by_first = not info.has_time and len(info.scanner_positions) < 2
         ends = list(islice(chunks, 2)) if is_told_by_first else _ends_of(chunks, points)
     names = ends[0].columns if ends else ()
     return {name: np.concatenate([end.columns[name] for end in ends]) for name in names}
@@ -184,7 +184,7 @@ def _opener(path: Path, columns: tuple[str, ...] = ()) -> Callable[[Path], Float
     """What opens the file; None for LAS, which needs no turning into integers."""
     if path.is_dir() and is_pulse_folder(path):
         return open_pulse_folder
-    with told_as_user_error(path), path.open("rb") as file:
+    with report_as_user_error(path), path.open("rb") as file:
         start = file.read(_LOOKED_AT)
     if not start:
         raise BadFile(

@@ -14,11 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from processing.errors import OutOfRange, Unsuitable
-from processing.formats.drawing_scale import decimals_of, grid_step, rounded_down
+from processing.formats.drawing_scale import decimals_of, grid_step, round_down_to
 from processing.formats.dxf_document import DxfDocument, DxfVersion
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import SilentMonitor
-from processing.section.profile import Crossing, Profile
+from processing.section.profile import Crossing, SectionProfile
 from processing.text import Language, Text
 
 GROUND_LAYER, POINT_LAYER = "断面_地盤線", "断面_点群"
@@ -42,7 +42,7 @@ _MARGIN_M = 0.5
 
 
 @dataclass(frozen=True)
-class ProfileLook:
+class ProfileStyle:
     """How a profile is drawn.
 
     Attributes
@@ -67,7 +67,11 @@ class ProfileLook:
 
 
 def write_profile_dxf(
-    path: Path, profile: Profile, look: ProfileLook | None = None, *, never: Iterable[Path] = ()
+    path: Path,
+    profile: SectionProfile,
+    look: ProfileStyle | None = None,
+    *,
+    never: Iterable[Path] = (),
 ) -> None:
     """Draw a section.
 
@@ -83,9 +87,9 @@ def write_profile_dxf(
     Unsuitable
         The section shows no ground.
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises.
+        What :func:`processing.formats.safe_write.write_safely` raises.
     """
-    look = look or ProfileLook()
+    look = look or ProfileStyle()
     if not (look.scale > 0 and look.exaggeration > 0 and math.isfinite(look.exaggeration)):
         raise OutOfRange(
             Text("A profile can't be drawn at this scale.", "この縮尺では断面図を作図できません。"),
@@ -103,14 +107,14 @@ def write_profile_dxf(
         )
     sheet = _Sheet(profile, look)
     sheet.draw()
-    with written_safely(path, never=never) as temporary:
+    with write_safely(path, never=never) as temporary:
         sheet.document.write(temporary, SilentMonitor())
 
 
 class _Sheet:
     """A drawing being filled."""
 
-    def __init__(self, profile: Profile, look: ProfileLook) -> None:
+    def __init__(self, profile: SectionProfile, look: ProfileStyle) -> None:
         self._profile = profile
         self._look = look
         self.document = DxfDocument(look.version)
@@ -122,10 +126,10 @@ class _Sheet:
         heights = [*ground[:, 1].tolist(), *(one.height_m for one in profile.crossings)]
         self._step_x = grid_step(_GRID_M * look.scale)
         self._step_y = grid_step(_GRID_M * look.scale / look.exaggeration)
-        self._left = rounded_down(min(ground[0, 0], self._least_offset), self._step_x)
-        self._right = -rounded_down(-max(ground[-1, 0], self._most_offset), self._step_x)
-        self._datum = rounded_down(min(heights) - _MARGIN_M, self._step_y)
-        self._top = -rounded_down(-max(heights) - _MARGIN_M, self._step_y)
+        self._left = round_down_to(min(ground[0, 0], self._least_offset), self._step_x)
+        self._right = -round_down_to(-max(ground[-1, 0], self._most_offset), self._step_x)
+        self._datum = round_down_to(min(heights) - _MARGIN_M, self._step_y)
+        self._top = -round_down_to(-max(heights) - _MARGIN_M, self._step_y)
 
     @property
     def _least_offset(self) -> float:
@@ -141,8 +145,8 @@ class _Sheet:
         if self._look.has_points:
             self._draw_points()
         for part in self._profile.ground:
-            places = [(x, self._y(height)) for x, height in part.tolist()]
-            self._space.add_lwpolyline(places, dxfattribs={"layer": GROUND_LAYER})
+            positions = [(x, self._y(height)) for x, height in part.tolist()]
+            self._space.add_lwpolyline(positions, dxfattribs={"layer": GROUND_LAYER})
         for crossing in self._profile.crossings:
             self._draw_crossing(crossing)
         self._draw_title()
@@ -161,8 +165,8 @@ class _Sheet:
             height = self._datum + number * self._step_y
             self._line((self._left, self._y(height)), (self._right, self._y(height)))
             words = f"{height:.{decimals_of(self._step_y)}f}"
-            place = self._left - self._text_m / 2, self._y(height)
-            self._write(words if number else f"DL={words}", place, "MIDDLE_RIGHT")
+            position = self._left - self._text_m / 2, self._y(height)
+            self._write(words if number else f"DL={words}", position, "MIDDLE_RIGHT")
         for number in range(round((self._right - self._left) / self._step_x) + 1):
             offset = self._left + number * self._step_x
             self._line((offset, 0.0), (offset, top))
@@ -170,12 +174,12 @@ class _Sheet:
             self._write(words, (offset, self._below(0.7)), "MIDDLE_CENTER")
             ground_m = self._profile.ground_at(offset)
             if ground_m is not None:
-                place = offset, self._below(1.3)
-                self._write(f"{ground_m:.3f}", place, "MIDDLE_RIGHT", rotation_deg=90.0)
+                position = offset, self._below(1.3)
+                self._write(f"{ground_m:.3f}", position, "MIDDLE_RIGHT", rotation_deg=90.0)
         names = {0.7: Text("Offset", "離れ"), 2.4: Text("Ground", "地盤高")}
         for lines, name in names.items():
-            place = self._left - 1.5 * self._text_m, self._below(lines)
-            self._write(self._said(name), place, "MIDDLE_RIGHT")
+            position = self._left - 1.5 * self._text_m, self._below(lines)
+            self._write(self._said(name), position, "MIDDLE_RIGHT")
 
     def _draw_points(self) -> None:
         for offset, height in self._profile.points.tolist():
@@ -188,10 +192,10 @@ class _Sheet:
             self.document.require_encodable(layer)
             self._layers.add(layer, color=crossing.aci)
         looks = {"layer": layer}
-        place = crossing.offset_m, self._y(crossing.height_m)
-        head = place[0], place[1] + 4 * self._text_m
-        self._space.add_circle(place, self._text_m / 2, dxfattribs=looks)
-        self._space.add_line((place[0], place[1] + self._text_m / 2), head, dxfattribs=looks)
+        position = crossing.offset_m, self._y(crossing.height_m)
+        head = position[0], position[1] + 4 * self._text_m
+        self._space.add_circle(position, self._text_m / 2, dxfattribs=looks)
+        self._space.add_line((position[0], position[1] + self._text_m / 2), head, dxfattribs=looks)
         words = f"{self._said(crossing.name)} {crossing.height_m:.3f}"
         head = head[0], head[1] + self._text_m / 2
         self._write(words, head, "MIDDLE_LEFT", layer=layer, rotation_deg=90.0)
@@ -223,8 +227,8 @@ class _Sheet:
             station = Text("Station {m:.3f} m", "測点 {m:.3f} m")
             lines.insert(1, self._said(station.filled(m=self._profile.station_m)))
         for number, words in enumerate(reversed([line for line in lines if line])):
-            place = self._left, self._y(self._top) - self._below(number + 1)
-            self._write(words, place, "LEFT", layer=TITLE_LAYER)
+            position = self._left, self._y(self._top) - self._below(number + 1)
+            self._write(words, position, "LEFT", layer=TITLE_LAYER)
 
     def _line(self, start: tuple[float, float], end: tuple[float, float]) -> None:
         self._space.add_line(start, end, dxfattribs={"layer": GRID_LAYER})
@@ -232,17 +236,17 @@ class _Sheet:
     def _write(
         self,
         words: str,
-        place: tuple[float, float],
+        position: tuple[float, float],
         align: str,
         *,
         layer: str = TEXT_LAYER,
         rotation_deg: float = 0.0,
     ) -> None:
         attributes = {"layer": layer, "height": self._text_m, "rotation": rotation_deg}
-        self.document.write_text(words, place, align, attributes)
+        self.document.write_text(words, position, align, attributes)
 
     def _said(self, text: Text) -> str:
-        return text.spoken(self._look.language)
+        return text.in_language(self._look.language)
 
 
 def _azimuth_deg(direction: tuple[float, float]) -> float:

@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import BadFile, told_as_user_error
-from processing.formats.delivered_floats import Block, FloatFile
+from processing.errors import BadFile, report_as_user_error
+from processing.formats.delivered_floats import ColumnBlock, FloatFile
 from processing.formats.field_names import block_of
 from processing.formats.las_header import damaged
 from processing.formats.text_numbers import NumberLines
 from processing.text import Text
 
-_PLACE_LINES, _POSE_LINES = 4, 4
+_POSITION_LINES, _POSE_LINES = 4, 4
 _NAMES = ("x", "y", "z", "intensity", "red", "green", "blue")
 _WIDTHS = (7, 4, 3)
 _LEAST_LINE_BYTES = 6
@@ -53,13 +53,13 @@ def open_ptx(path: Path) -> FloatFile:
     MissingInput, NoSpace, BadFile
         It can't be read; a line is not what it should be; it ends inside a scan.
     """
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         path.stat()
     return FloatFile(path, "PTX", lambda: _blocks(path))
 
 
-def _blocks(path: Path) -> Iterator[Block]:
-    with told_as_user_error(path), path.open("rb") as file:
+def _blocks(path: Path) -> Iterator[ColumnBlock]:
+    with report_as_user_error(path), path.open("rb") as file:
         size = path.stat().st_size
         lines = NumberLines(path, file)
         number = 0
@@ -75,7 +75,7 @@ def _blocks(path: Path) -> Iterator[Block]:
                 raise _ends_early(path, done, scan.cells)
 
 
-def _block(numbers: NDArray[np.float64], scan: _Scan, first_cell: int) -> Block:
+def _block(numbers: NDArray[np.float64], scan: _Scan, first_cell: int) -> ColumnBlock:
     is_measured = numbers[:, :3].any(axis=1)
     measured = numbers[is_measured]
     fields = {name: measured[:, i] for i, name in enumerate(_NAMES[: measured.shape[1]])}
@@ -85,7 +85,7 @@ def _block(numbers: NDArray[np.float64], scan: _Scan, first_cell: int) -> Block:
     cells = first_cell + np.flatnonzero(is_measured)
     block["grid"] = np.column_stack(np.divmod(cells, scan.sweep_length))
     block["scan"] = np.full(cells.size, scan.number)
-    block["scanner_place"] = np.broadcast_to(scan.pose[3, :3], (cells.size, 3))
+    block["scanner_position"] = np.broadcast_to(scan.pose[3, :3], (cells.size, 3))
     return block
 
 
@@ -100,9 +100,12 @@ def _next_scan(path: Path, lines: NumberLines, number: int, size: int) -> _Scan 
     # Held against the file, a count can't make anything be allocated.
     if sweeps * sweep_length * _LEAST_LINE_BYTES > size + 1:
         raise _ends_early(path, size // _LEAST_LINE_BYTES, sweeps * sweep_length)
-    place = _taken(lines, _PLACE_LINES, 3)
+    position = _taken(lines, _POSITION_LINES, 3)
     pose = _taken(lines, _POSE_LINES, 4)
-    if place.shape[0] + pose.shape[0] < _PLACE_LINES + _POSE_LINES or not np.isfinite(pose).all():
+    if (
+        position.shape[0] + pose.shape[0] < _POSITION_LINES + _POSE_LINES
+        or not np.isfinite(pose).all()
+    ):
         raise _ends_early(path, 0, sweeps * sweep_length)
     return _Scan(number, sweeps, sweep_length, pose)
 

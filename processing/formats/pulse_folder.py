@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UNCHANGED, BadFile, told_as_user_error
-from processing.formats.delivered_floats import Block, FloatFile
+from processing.errors import UNCHANGED, BadFile, report_as_user_error
+from processing.formats.delivered_floats import ColumnBlock, FloatFile
 from processing.text import Text
 
 _FOLDER = re.compile(r"(pulse|echo)-(float32|uint8)-(\w+)")
@@ -51,7 +51,7 @@ def open_pulse_folder(path: Path) -> FloatFile:
     MissingInput, NoSpace, BadFile
         An attribute is missing, or the numbers of values don't agree.
     """
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         layout = _layout_of(path)
     for kind, name in (("pulse", "theta"), ("pulse", "n_echo"), ("echo", "range")):
         if name not in (layout.pulse if kind == "pulse" else layout.echo):
@@ -71,8 +71,8 @@ def _layout_of(path: Path) -> _Layout:
     return layout
 
 
-def _blocks(layout: _Layout) -> Iterator[Block]:
-    with told_as_user_error(layout.path):
+def _blocks(layout: _Layout) -> Iterator[ColumnBlock]:
+    with report_as_user_error(layout.path):
         names = sorted(file.stem for file in layout.pulse["n_echo"][0].glob("*.bin"))
     up: float | None = None
     for name in names:
@@ -86,7 +86,7 @@ def _blocks(layout: _Layout) -> Iterator[Block]:
 
 def _block(
     layout: _Layout, name: str, theta: NDArray[np.float64], echoes: NDArray[np.int64]
-) -> Block:
+) -> ColumnBlock:
     pulse_of_echo = np.repeat(np.arange(echoes.size), echoes)
     ranges = _read(layout.echo, "range", name).astype(np.float64)
     if ranges.size != pulse_of_echo.size:
@@ -96,7 +96,7 @@ def _block(
         phi = _read(layout.pulse, "phi", name).astype(np.float64)
     angle, tilt = theta[pulse_of_echo], phi[pulse_of_echo]
     first_echo = np.cumsum(echoes) - echoes
-    block: Block = {
+    block: ColumnBlock = {
         "xyz": np.column_stack(
             [
                 ranges * np.cos(tilt) * np.sin(angle),
@@ -125,7 +125,7 @@ def _read(
 ) -> NDArray[np.generic]:
     folder, dtype = attributes[attribute]
     path = folder / f"{name}.bin"
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         if path.stat().st_size % np.dtype(dtype).itemsize:
             raise _damaged(
                 path, Text("The file ends inside a value.", "ファイルが値の途中で終わっています。")
@@ -135,7 +135,7 @@ def _read(
 
 def _times(folder: Path, name: str, pulses: int) -> NDArray[np.float64]:
     path = folder / _TIME_FOLDER / f"{name}.txt"
-    with told_as_user_error(path), path.open("rb") as file:
+    with report_as_user_error(path), path.open("rb") as file:
         words = file.read(_LONGEST_TEXT).decode("utf-8", errors="replace")
     found = _LINEAR_TIME.match(words)
     if found is None:

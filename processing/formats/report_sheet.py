@@ -15,15 +15,15 @@ from numpy.typing import NDArray
 
 from processing.earthwork.heat_map import ColourClass
 from processing.errors import OutOfRange
-from processing.formats.ledger_columns import guarded
-from processing.formats.paper import Rgb
-from processing.formats.safe_write import written_safely
+from processing.formats.ledger_columns import guard_text
+from processing.formats.pdf_page import Rgb
+from processing.formats.safe_write import write_safely
 from processing.text import Language, Text
 
 if TYPE_CHECKING:
     from openpyxl.worksheet.worksheet import Worksheet
 
-Value = Text | str | float | int | None
+SheetValue = Text | str | float | int | None
 
 # Shift_JIS has another minus, dash and wave than Unicode's first, and no raised digits.
 _CP932 = str.maketrans("〜−—‖²³", "～－―∥23")
@@ -44,7 +44,7 @@ class SheetRow:
         Of its numbers behind the point.
     """
 
-    cells: Sequence[Value]
+    cells: Sequence[SheetValue]
     is_head: bool = False
     digits: int = 1
 
@@ -100,7 +100,7 @@ def write_report_csv(
     OutOfRange
         A character that the encoding lacks; it is named.
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises.
+        What :func:`processing.formats.safe_write.write_safely` raises.
     """
     words = io.StringIO()
     writer = csv.writer(words, lineterminator="\r\n")
@@ -113,7 +113,7 @@ def write_report_csv(
         content = text.encode("utf-8-sig" if encoding == "utf-8" else encoding)
     except UnicodeEncodeError as error:
         raise _lacking(path, error) from error
-    with written_safely(path, never=never) as temporary:
+    with write_safely(path, never=never) as temporary:
         temporary.write_bytes(content)
 
 
@@ -129,33 +129,33 @@ def write_report_xlsx(
     Raises
     ------
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises.
+        What :func:`processing.formats.safe_write.write_safely` raises.
     """
     from openpyxl import Workbook
 
     book = Workbook()
     book.remove(book.worksheets[0])
     for one in sheets:
-        sheet = book.create_sheet(_sheet_name(one.name.spoken(language)))
+        sheet = book.create_sheet(_sheet_name(one.name.in_language(language)))
         _fill(sheet, one, language)
     content = io.BytesIO()  # in memory: a full disk then meets one plain write
     book.save(content)
-    with written_safely(path, never=never) as temporary:
+    with write_safely(path, never=never) as temporary:
         temporary.write_bytes(content.getvalue())
 
 
-def _csv_cell(value: Value, digits: int, language: Language) -> str:
+def _csv_cell(value: SheetValue, digits: int, language: Language) -> str:
     if isinstance(value, bool) or value is None:
         return ""
     if isinstance(value, int):
         return str(value)
     if isinstance(value, float):
         return f"{value:.{digits}f}" if math.isfinite(value) else ""
-    return guarded(" ".join(_spoken(value, language).split()))
+    return guard_text(" ".join(_in_language(value, language).split()))
 
 
-def _spoken(value: Text | str, language: Language) -> str:
-    return value if isinstance(value, str) else value.spoken(language)
+def _in_language(value: Text | str, language: Language) -> str:
+    return value if isinstance(value, str) else value.in_language(language)
 
 
 def _fill(sheet: Worksheet, report: ReportSheet, language: Language) -> None:
@@ -191,14 +191,16 @@ def _fill(sheet: Worksheet, report: ReportSheet, language: Language) -> None:
         _add_picture(sheet, report.picture, columns + 2, language)
 
 
-def _set(cell: Any, value: Value, digits: int, language: Language) -> None:  # openpyxl has no types
+def _set(
+    cell: Any, value: SheetValue, digits: int, language: Language
+) -> None:  # openpyxl has no types
     if value is None or (isinstance(value, float) and not math.isfinite(value)):
         return
     if isinstance(value, (int, float)):
         cell.value = value
         cell.number_format = "#,##0" if isinstance(value, int) else _FORMATS[digits]
         return
-    cell.value = " ".join(_printable(_spoken(value, language)).split())
+    cell.value = " ".join(_printable(_in_language(value, language)).split())
     # Never a formula, whatever the words begin with.
     cell.data_type = "s"
 
@@ -219,11 +221,11 @@ def _widths(report: ReportSheet, columns: int, language: Language) -> list[float
     return widths
 
 
-def _wide(value: Value, language: Language) -> float:
+def _wide(value: SheetValue, language: Language) -> float:
     """How wide words are, in digits; Japanese characters are twice as wide."""
     if not isinstance(value, (Text, str)):
         return 0.0
-    return float(sum(1 + (ord(one) > 255) for one in _spoken(value, language)))
+    return float(sum(1 + (ord(one) > 255) for one in _in_language(value, language)))
 
 
 def _add_picture(sheet: Worksheet, picture: SheetPicture, column: int, language: Language) -> None:
@@ -238,7 +240,7 @@ def _add_picture(sheet: Worksheet, picture: SheetPicture, column: int, language:
     scale = _PICTURE_PX / max(picture.rgb.shape[:2])
     image.width, image.height = (round(scale * length) for length in picture.rgb.shape[1::-1])
     letter = chr(ord("A") + column - 1)
-    sheet.cell(1, column).value = picture.title.spoken(language)
+    sheet.cell(1, column).value = picture.title.in_language(language)
     entries = [
         (one.label(picture.digits, picture.unit), one.rgb) for one in reversed(picture.classes)
     ]
@@ -247,7 +249,7 @@ def _add_picture(sheet: Worksheet, picture: SheetPicture, column: int, language:
         cell: Any = sheet.cell(number, column)
         cell.fill = PatternFill("solid", fgColor="{:02X}{:02X}{:02X}".format(*rgb))
         label: Any = sheet.cell(number, column + 1)
-        label.value = name.spoken(language)
+        label.value = name.in_language(language)
         label.data_type = "s"
     sheet.column_dimensions[chr(ord(letter) + 1)].width = 20.0
     sheet.add_image(image, f"{letter}{len(entries) + 3}")

@@ -8,12 +8,12 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from processing.errors import InUse, told_as_user_error
+from processing.errors import InUse, report_as_user_error
 from processing.text import Text
 
 
 @contextmanager
-def written_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
+def write_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
     """A temporary name beside ``path``; it takes the real name when the body is through.
 
     Parameters
@@ -37,7 +37,7 @@ def written_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
     """
     refuse_inputs(path, never)
     temporary = path.with_name(f".{path.stem}-{uuid.uuid4().hex[:8]}{path.suffix}")
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         try:
             yield temporary
@@ -57,7 +57,7 @@ def refuse_inputs(path: Path, never: Iterable[Path]) -> None:
     InUse
         ``path`` is one of ``never``.
     """
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         for source in never:
             is_same_name = source.resolve() == path.resolve()
             if is_same_name or (path.exists() and source.exists() and path.samefile(source)):

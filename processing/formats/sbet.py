@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UNCHANGED, BadFile, MissingInput, OutOfRange, told_as_user_error
+from processing.errors import UNCHANGED, BadFile, MissingInput, OutOfRange, report_as_user_error
 from processing.formats.trajectory_csv import too_few_records
 from processing.points.trajectory import Trajectory
 from processing.text import Text
@@ -86,7 +86,7 @@ def read_sbet(path: Path, crs: str) -> Trajectory:
 
 @np.errstate(invalid="ignore")
 def _read_records(path: Path) -> NDArray[np.void]:
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         data = path.read_bytes()
     if len(data) % RECORD_BYTES or not data:
         raise _bad_record(

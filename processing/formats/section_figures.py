@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.earthwork.drawing_parts import DrawnSection, moved_parts, parts_with_ground
+from processing.earthwork.drawing_parts import DrawnSection, earth_moved, parts_with_ground
 from processing.earthwork.heat_map import CUT_RGB, FILL_RGB
-from processing.formats.paper import BLACK, GREY, THIN_MM, Paper, Rgb
+from processing.formats.pdf_page import BLACK, GREY, THIN_MM, Paper, Rgb
 from processing.text import Text
 
 Floats = NDArray[np.float64]
@@ -45,13 +45,13 @@ def draw_section(
     spans = ((float(section.offsets[0]), float(section.offsets[-1])), (low - spare, high + spare))
     _draw_ticks(paper, frame, frame_mm, spans)
 
-    def placed(places: Floats) -> list[tuple[float, float]]:
+    def placed(positions: Floats) -> list[tuple[float, float]]:
         (left, right), (bottom, top) = spans
-        x = frame[0] + (places[:, 0] - left) / (right - left) * frame_mm[0]
-        y = frame[1] + (top - places[:, 1]) / (top - bottom) * frame_mm[1]
+        x = frame[0] + (positions[:, 0] - left) / (right - left) * frame_mm[0]
+        y = frame[1] + (top - positions[:, 1]) / (top - bottom) * frame_mm[1]
         return list(zip(x.tolist(), y.tolist(), strict=True))
 
-    for is_cut, outline in moved_parts(section):
+    for is_cut, outline in earth_moved(section):
         paper.area(placed(outline), CUT_RGB if is_cut else FILL_RGB)
     for part in parts_with_ground(section.offsets, section.before):
         paper.line(placed(part), 0.2, GREY, dash_mm=(1.2, 0.8))
@@ -69,13 +69,13 @@ def _draw_ticks(
     (x, y), (width, height) = frame, frame_mm
     (left, right), (bottom, top) = spans
     for offset, words in _ticks(left, right):
-        place = x + (offset - left) / (right - left) * width
-        paper.line([(place, y), (place, y + height)], 0.05, _GRID_RGB)
-        paper.text(place, y + height + 2.2, words, _TYPE, "centre")
+        position = x + (offset - left) / (right - left) * width
+        paper.line([(position, y), (position, y + height)], 0.05, _GRID_RGB)
+        paper.text(position, y + height + 2.2, words, _TYPE, "centre")
     for level, words in _ticks(bottom, top):
-        place = y + (top - level) / (top - bottom) * height
-        paper.line([(x, place), (x + width, place)], 0.05, _GRID_RGB)
-        paper.text(x - 1.0, place, words, _TYPE, "right")
+        position = y + (top - level) / (top - bottom) * height
+        paper.line([(x, position), (x + width, position)], 0.05, _GRID_RGB)
+        paper.text(x - 1.0, position, words, _TYPE, "right")
 
 
 def _ticks(low: float, high: float) -> list[tuple[float, str]]:

@@ -17,12 +17,12 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from processing.earthwork.drawing_parts import DrawnSection, moved_parts, parts_with_ground
+from processing.earthwork.drawing_parts import DrawnSection, earth_moved, parts_with_ground
 from processing.errors import OutOfRange, Unsuitable
-from processing.formats.drawing_scale import decimals_of, fitting_scale, grid_step, rounded_down
+from processing.formats.drawing_scale import decimals_of, fitting_scale, grid_step, round_down_to
 from processing.formats.dxf_document import DxfDocument, DxfVersion
 from processing.formats.dxf_fills import Ink, add_areas
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import Monitor, SilentMonitor
 from processing.text import Language, Text
 
@@ -57,7 +57,7 @@ _SHEET_RATIO = 1.4
 
 
 @dataclass(frozen=True)
-class SectionLook:
+class SectionStyle:
     """How sections are drawn.
 
     Attributes
@@ -85,7 +85,7 @@ def write_section_sheet_dxf(
     path: Path,
     sections: Iterable[DrawnSection],
     title: Text,
-    look: SectionLook | None = None,
+    look: SectionStyle | None = None,
     *,
     monitor: Monitor | None = None,
     never: Iterable[Path] = (),
@@ -106,9 +106,9 @@ def write_section_sheet_dxf(
     Unsuitable
         No section has ground.
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises; `Cancelled`.
+        What :func:`processing.formats.safe_write.write_safely` raises; `Cancelled`.
     """
-    look = look or SectionLook()
+    look = look or SectionStyle()
     if look.scale < 0 or not 0.0 < look.exaggeration < math.inf:
         raise OutOfRange(
             Text("Sections can't be drawn at this scale.", "この縮尺では断面図を作図できません。"),
@@ -128,7 +128,7 @@ def write_section_sheet_dxf(
     monitor = monitor or SilentMonitor()
     sheet = _Sheet(drawn, look)
     sheet.draw(drawn, title, monitor)
-    with written_safely(path, never=never) as temporary:
+    with write_safely(path, never=never) as temporary:
         sheet.document.write(temporary, monitor)
 
 
@@ -173,7 +173,7 @@ class _Layout:
         )
 
 
-def _layout(sections: list[DrawnSection], look: SectionLook) -> _Layout:
+def _layout(sections: list[DrawnSection], look: SectionStyle) -> _Layout:
     left = min(float(one.offsets[0]) for one in sections)
     right = max(float(one.offsets[-1]) for one in sections)
     high = max(float(np.ptp(_heights(one))) for one in sections)
@@ -187,8 +187,8 @@ def _layout(sections: list[DrawnSection], look: SectionLook) -> _Layout:
         _TEXT_M * scale,
         step_x,
         step_y,
-        rounded_down(left, step_x),
-        -rounded_down(-right, step_x),
+        round_down_to(left, step_x),
+        -round_down_to(-right, step_x),
         # One more, since the lowest place seldom lies on a line of the grid.
         math.ceil((high + 2 * margin) / step_y) + 1,
         margin,
@@ -198,7 +198,7 @@ def _layout(sections: list[DrawnSection], look: SectionLook) -> _Layout:
 class _Sheet:
     """A sheet being drawn."""
 
-    def __init__(self, sections: list[DrawnSection], look: SectionLook) -> None:
+    def __init__(self, sections: list[DrawnSection], look: SectionStyle) -> None:
         self._look = look
         self._layout = _layout(sections, look)
         self.document = DxfDocument(look.version)
@@ -221,7 +221,7 @@ class _Sheet:
 
     def _draw_section(self, section: DrawnSection, corner: tuple[float, float]) -> None:
         layout = self._layout
-        datum = rounded_down(float(_heights(section).min()) - layout.margin, layout.step_y)
+        datum = round_down_to(float(_heights(section).min()) - layout.margin, layout.step_y)
         x = corner[0] + _LEFT_TEXTS * layout.text_m
         y = corner[1] + _BELOW_TEXTS * layout.text_m
         self._draw_grid((x, y), datum)
@@ -230,7 +230,7 @@ class _Sheet:
             shifted: Floats = (line - [layout.left, datum]) * [1.0, layout.exaggeration] + [x, y]
             return shifted
 
-        for is_cut, outline in moved_parts(section):
+        for is_cut, outline in earth_moved(section):
             area = shapely.Polygon(placed(outline))
             add_areas(self._space, [area], CUT_LAYER if is_cut else FILL_LAYER)
         for layer, heights in ((BEFORE_LAYER, section.before), (AFTER_LAYER, section.after)):
@@ -246,8 +246,8 @@ class _Sheet:
             at = y + number * layout.step_y * layout.exaggeration
             self._line((x, at), (x + width, at), GRID_LAYER)
             words = f"{datum + number * layout.step_y:.{max(1, decimals_of(layout.step_y))}f}"
-            place = (x - layout.text_m / 2, at)
-            self._write(words if number else f"DL={words}", place, "MIDDLE_RIGHT")
+            position = (x - layout.text_m / 2, at)
+            self._write(words if number else f"DL={words}", position, "MIDDLE_RIGHT")
         for number in range(round(width / layout.step_x) + 1):
             at = x + number * layout.step_x
             self._line((at, y), (at, y + height), GRID_LAYER)
@@ -274,8 +274,8 @@ class _Sheet:
             station.filled(name=section.name, m=section.station_m),
         )
         for number, line in enumerate(lines):
-            place = (corner[0], corner[1] + (1.0 + 1.8 * number) * size)
-            self._write(self._said(line), place, "LEFT")
+            position = (corner[0], corner[1] + (1.0 + 1.8 * number) * size)
+            self._write(self._said(line), position, "LEFT")
 
     def _draw_title(self, title: Text, bottom: float) -> float:
         """Write title, scales and what the lines are above all sections; gives the upper end."""
@@ -289,21 +289,21 @@ class _Sheet:
             self._write(self._said(name), (x + 7 * size, y), "LEFT", layer=TITLE_LAYER)
             x += (10 + len(self._said(name))) * size
         for number, words in enumerate((scales, title), 1):
-            place = (_LEFT_TEXTS * size, y + 2 * number * size)
-            self._write(self._said(words), place, "LEFT", layer=TITLE_LAYER)
+            position = (_LEFT_TEXTS * size, y + 2 * number * size)
+            self._write(self._said(words), position, "LEFT", layer=TITLE_LAYER)
         return y + 7 * size
 
     def _line(self, start: tuple[float, float], end: tuple[float, float], layer: str) -> None:
         self._space.add_line(start, end, dxfattribs={"layer": layer})
 
     def _write(
-        self, words: str, place: tuple[float, float], align: str, *, layer: str = TEXT_LAYER
+        self, words: str, position: tuple[float, float], align: str, *, layer: str = TEXT_LAYER
     ) -> None:
         looks = {"layer": layer, "height": self._layout.text_m}
-        self.document.write_text(words, place, align, looks)
+        self.document.write_text(words, position, align, looks)
 
     def _said(self, text: Text) -> str:
-        return text.spoken(self._look.language)
+        return text.in_language(self._look.language)
 
 
 def _heights(section: DrawnSection) -> Floats:

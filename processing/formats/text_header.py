@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-from processing.errors import UNCHANGED, BadFile, OutOfRange, told_as_user_error
+from processing.errors import UNCHANGED, BadFile, OutOfRange, report_as_user_error
 from processing.formats.column_words import (
     PASSED_OVER,
     POSITION,
@@ -17,7 +17,7 @@ from processing.formats.column_words import (
     read_header,
     taken_columns,
 )
-from processing.formats.japanese_text import decoded
+from processing.formats.japanese_text import decode_text
 from processing.formats.text_numbers import words_in
 from processing.text import Text
 
@@ -167,21 +167,21 @@ def read_beginning(path: Path) -> TextBeginning:
     MissingInput, NoSpace, BadFile
         It can't be read, is not text, or has no line with three numbers near its start.
     """
-    with told_as_user_error(path), path.open("rb") as file:
+    with report_as_user_error(path), path.open("rb") as file:
         start = file.read(_LOOKED_AT)
-    place = len(_UTF8_MARK) if start.startswith(_UTF8_MARK) else 0
+    position = len(_UTF8_MARK) if start.startswith(_UTF8_MARK) else 0
     header: list[tuple[int, str]] = []
     # A header may be Japanese; a NUL can be in no line of text.
-    lines = start[place:].splitlines(keepends=True) if b"\0" not in start else []
+    lines = start[position:].splitlines(keepends=True) if b"\0" not in start else []
     for number, line in enumerate(lines, 1):
         if _is_points(line):
             _refuse_decimal_commas(path, number, line)
             rows = (words_in(one) for one in lines[number - 1 :])
             shown = islice((row for row in rows if row), _SHOWN_ROWS)
-            cells = tuple(tuple(decoded(word, path) for word in row) for row in shown)
-            return TextBeginning(path, tuple(header), number, place, cells)
-        place += len(line)
-        text = decoded(line, path)
+            cells = tuple(tuple(decode_text(word, path) for word in row) for row in shown)
+            return TextBeginning(path, tuple(header), number, position, cells)
+        position += len(line)
+        text = decode_text(line, path)
         if text.strip() and not _is_count(text):
             header.append((number, text.strip()))
     raise _no_points(path)

@@ -11,7 +11,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UNCHANGED, BadFile, told_as_user_error
+from processing.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.text import Text
 
 _BLOCK_BYTES = 8 << 20
@@ -126,7 +126,7 @@ class NumberLines:
 
     def _next_lines(self) -> list[tuple[int, bytes]]:
         """Whole lines with separators made blanks, each with its number in the file."""
-        with told_as_user_error(self._path):
+        with report_as_user_error(self._path):
             following = self._file.read(_BLOCK_BYTES)
         # The last line may lack its end.
         data = self._rest + self._data + (b"" if following else b"\n")
@@ -156,7 +156,7 @@ def number_blocks(part: TextPart, columns: int | Sequence[int]) -> Iterator[NDAr
     MissingInput, NoSpace, BadFile
         As :meth:`NumberLines.numbers`.
     """
-    with told_as_user_error(part.path), part.path.open("rb") as file:
+    with report_as_user_error(part.path), part.path.open("rb") as file:
         file.seek(part.start)
         lines = NumberLines(part.path, file)
         lines.skip(part.skip)

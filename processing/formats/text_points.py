@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from processing.formats.column_words import PASSED_OVER
-from processing.formats.delivered_floats import Block, FloatFile
+from processing.formats.delivered_floats import ColumnBlock, FloatFile
 from processing.formats.field_names import block_of
 from processing.formats.text_header import Heading, read_heading
 from processing.formats.text_numbers import TextPart, number_blocks
@@ -39,7 +39,7 @@ def open_text_points(path: Path, columns: tuple[str, ...] = ()) -> FloatFile:
     return FloatFile(path, "text", lambda: _blocks(path, heading), taken)
 
 
-def _blocks(path: Path, heading: Heading) -> Iterator[Block]:
+def _blocks(path: Path, heading: Heading) -> Iterator[ColumnBlock]:
     wanted = {at: name for at, name in enumerate(heading.columns) if name != PASSED_OVER}
     width = len(heading.columns) if heading.has_words else None
     for numbers in number_blocks(TextPart(path, heading.start, width=width), tuple(wanted)):

@@ -49,8 +49,8 @@ class TextTable:
             There is no such column.
         """
         self.require((column,))
-        place = self.columns.index(column.lower())
-        return [row[place].strip() for row in self.rows]
+        position = self.columns.index(column.lower())
+        return [row[position].strip() for row in self.rows]
 
     def numbers(
         self, column: str, low: float = -np.inf, high: float = np.inf

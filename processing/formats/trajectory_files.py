@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.formats.sbet import RECORD_BYTES, read_sbet
 from processing.formats.trajectory_csv import read_trajectory_csv
 from processing.points.trajectory import Trajectory
@@ -28,7 +28,7 @@ def read_trajectory(path: Path, crs: str) -> Trajectory:
     MissingInput, OutOfRange, NoSpace, BadFile
         As the readers say.
     """
-    with told_as_user_error(path), path.open("rb") as file:
+    with report_as_user_error(path), path.open("rb") as file:
         start = file.read(4 * RECORD_BYTES)
     if _is_binary(start):
         return read_sbet(path, crs)

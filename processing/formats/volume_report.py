@@ -8,16 +8,16 @@ from pathlib import Path
 
 from processing.earthwork.heat_map import change_classes, change_limit
 from processing.earthwork.volume_result import VolumeResult
-from processing.formats.paper import (
+from processing.formats.pdf_page import (
     A4_PORTRAIT,
     THICK_MM,
     Paper,
+    break_lines,
     leading_mm,
     width_of,
-    wrapped,
-    written_paper,
+    write_report_page,
 )
-from processing.formats.paper_table import Cell, Row, Table
+from processing.formats.pdf_table import Table, TableCell, TableRow
 from processing.formats.plan_picture import (
     PlanPicture,
     change_plan,
@@ -36,12 +36,12 @@ from processing.formats.volume_rows import (
     TOTAL,
     VolumeFacts,
     class_digits,
+    format_value,
     method_rows,
     quantities,
     remarks,
     section_rows,
     section_sums,
-    shown,
     surface_rows,
     work_rows,
 )
@@ -92,8 +92,8 @@ def write_volume_report(
     monitor.check()
     limit_m = change_limit(result.change.change_m)
     plan = change_plan(result.change, change_classes(limit_m))
-    title = TITLE.spoken(language)
-    with written_paper(path, A4_PORTRAIT, language, title, never=never) as paper:
+    title = TITLE.in_language(language)
+    with write_report_page(path, A4_PORTRAIT, language, title, never=never) as paper:
         _draw_numbers(paper, result, facts)
         monitor.check()
         _next_page(paper, facts)
@@ -135,37 +135,42 @@ def _draw_numbers(paper: Paper, result: VolumeResult, facts: VolumeFacts) -> Non
     y = pairs.draw(paper, y, _paired(work_rows(facts))) + _GAP_MM
     y = _draw_heading(paper, y, _SURFACES)
     surfaces = Table(_MARGIN_MM, (18.0, 42.0, 31.0, 52.0, width - 143.0), _TYPE)
-    rows: list[Row] = [[Cell(words, "centre", is_head=True) for words in SURFACE_COLUMNS]]
+    rows: list[TableRow] = [[TableCell(words, "centre", is_head=True) for words in SURFACE_COLUMNS]]
     for name, *values in surface_rows(facts):
-        cells = [Cell(value) for value in values[:-1]]
-        rows.append([Cell(name, is_head=True), *cells, Cell(values[-1], "right")])
+        cells = [TableCell(value) for value in values[:-1]]
+        rows.append([TableCell(name, is_head=True), *cells, TableCell(values[-1], "right")])
     y = surfaces.draw(paper, y, rows) + _GAP_MM
     y = _draw_heading(paper, y, _METHOD)
     methods = Table(_MARGIN_MM, (_LABEL_MM, width - _LABEL_MM), _TYPE)
-    told = [(Cell(name, is_head=True), Cell(value)) for name, value in method_rows(result, facts)]
-    y = methods.draw(paper, y, told) + _GAP_MM
+    reported = [
+        (TableCell(name, is_head=True), TableCell(value))
+        for name, value in method_rows(result, facts)
+    ]
+    y = methods.draw(paper, y, reported) + _GAP_MM
     y = _draw_quantities(paper, _draw_heading(paper, y, _QUANTITIES), result) + _GAP_MM
     _draw_remarks(paper, y, remarks(result), facts)
 
 
-def _paired(facts: Sequence[tuple[Text, Text]]) -> list[Row]:
+def _paired(facts: Sequence[tuple[Text, Text]]) -> list[TableRow]:
     """The first fact over the whole width, the others two by two."""
     (first, value), *others = facts
-    rows: list[Row] = [(Cell(first, is_head=True), Cell(value, columns=3))]
-    cells = [(Cell(name, is_head=True), Cell(told)) for name, told in others]
+    rows: list[TableRow] = [(TableCell(first, is_head=True), TableCell(value, columns=3))]
+    cells = [(TableCell(name, is_head=True), TableCell(reported)) for name, reported in others]
     return rows + [(*cells[at], *cells[at + 1]) for at in range(0, len(cells), 2)]
 
 
 def _draw_quantities(paper: Paper, y: float, result: VolumeResult) -> float:
     width = _width(paper)
     table = Table(_MARGIN_MM, (62.0, 44.0, width - 122.0, 16.0), 10.0)
-    rows: list[Row] = [[Cell(words, "centre", is_head=True) for words in QUANTITY_COLUMNS]]
+    rows: list[TableRow] = [
+        [TableCell(words, "centre", is_head=True) for words in QUANTITY_COLUMNS]
+    ]
     rows += [
         (
-            Cell(one.name, is_head=True),
-            Cell(shown(one, one.whole), "right"),
-            Cell(shown(one, one.measured), "right"),
-            Cell(one.unit, "centre"),
+            TableCell(one.name, is_head=True),
+            TableCell(format_value(one, one.whole), "right"),
+            TableCell(format_value(one, one.measured), "right"),
+            TableCell(one.unit, "centre"),
         )
         for one in quantities(result)
     ]
@@ -181,7 +186,7 @@ def _draw_remarks(paper: Paper, y: float, said: Sequence[Text], facts: VolumeFac
     for number, one in enumerate(said, 1):
         mark = f"{number}) "
         indent = width_of(mark, _TYPE)
-        lines = wrapped(paper.spoken(one), _TYPE, _width(paper) - indent)
+        lines = break_lines(paper.in_language(one), _TYPE, _width(paper) - indent)
         if y + len(lines) * step > _bottom(paper):
             y = _next_page(paper, facts)
         paper.lines(_MARGIN_MM, y, [mark], _TYPE)
@@ -221,21 +226,23 @@ def _draw_section_table(paper: Paper, facts: VolumeFacts) -> None:
     rows = section_rows(facts)
     if not rows or facts.line is None:
         return
-    cells: list[Row] = [
+    cells: list[TableRow] = [
         (
-            Cell(row.name),
+            TableCell(row.name),
             *(
-                Cell(_number(value), "right")
+                TableCell(_number(value), "right")
                 for value in (row.distance_m, row.cut_m2, row.cut_m3, row.fill_m2, row.fill_m3)
             ),
         )
         for row in rows
     ]
-    distance, cut, fill = (Cell(_number(value), "right") for value in section_sums(rows))
-    cells.append((Cell(TOTAL, is_head=True), distance, Cell(""), cut, Cell(""), fill))
+    distance, cut, fill = (TableCell(_number(value), "right") for value in section_sums(rows))
+    cells.append(
+        (TableCell(TOTAL, is_head=True), distance, TableCell(""), cut, TableCell(""), fill)
+    )
     width = _width(paper)
     table = Table(_MARGIN_MM, (width - 5 * 29.0, *(29.0,) * 5), _TYPE)
-    head: Row = [Cell(words, "centre", is_head=True) for words in SECTION_COLUMNS]
+    head: TableRow = [TableCell(words, "centre", is_head=True) for words in SECTION_COLUMNS]
     while cells:
         y = _draw_heading(paper, _next_page(paper, facts), _SECTIONS.filled(name=facts.line.name))
         y = table.draw(paper, y, [head])

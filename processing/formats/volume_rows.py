@@ -13,10 +13,10 @@ from processing.formats.work_facts import (
     NOTHING,
     SideFacts,
     WorkFacts,
-    counted,
     crs_words,
     day,
-    signed,
+    format_count,
+    format_signed,
 )
 from processing.text import Text
 
@@ -136,7 +136,7 @@ def work_rows(facts: VolumeFacts) -> tuple[tuple[Text, Text], ...]:
         (Text("Work", "工事名"), same(work.work)),
         (Text("Client", "発注者"), same(work.client)),
         (Text("Contractor", "受注者"), same(work.contractor)),
-        (Text("Part", "測点・範囲"), same(work.place)),
+        (Text("Part", "測点・範囲"), same(work.position)),
         (Text("Surveyor", "測定者"), same(work.surveyor)),
         (Text("CRS", "座標系"), crs_words(work.crs)),
         (Text("Heights", "標高の基準"), same(work.height_datum) if work.height_datum else NOTHING),
@@ -168,7 +168,7 @@ def surface_rows(facts: VolumeFacts) -> tuple[tuple[Text, ...], ...]:
             Text.same(side.name),
             day(side.measured_on),
             Text.same(side.source) if side.source else NOTHING,
-            counted(side),
+            format_count(side),
         )
         for name, side in ((BEFORE, facts.before), (AFTER, facts.after))
     )
@@ -176,27 +176,29 @@ def surface_rows(facts: VolumeFacts) -> tuple[tuple[Text, ...], ...]:
 
 def quantities(result: VolumeResult) -> tuple[Quantity, ...]:
     """The numbers of the report."""
-    told, nan = result.volumes, math.nan
-    measured_net = told.measured_fill_m3 - told.measured_cut_m3
-    measured_area = told.area_m2 - told.unmeasured_area_m2
+    reported, nan = result.volumes, math.nan
+    measured_net = reported.measured_fill_m3 - reported.measured_cut_m3
+    measured_area = reported.area_m2 - reported.unmeasured_area_m2
     return (
-        Quantity(CUT, told.cut_m3, told.measured_cut_m3, "m³"),
-        Quantity(FILL, told.fill_m3, told.measured_fill_m3, "m³"),
+        Quantity(CUT, reported.cut_m3, reported.measured_cut_m3, "m³"),
+        Quantity(FILL, reported.fill_m3, reported.measured_fill_m3, "m³"),
         Quantity(
-            Text("Net (fill − cut)", "差引土量（盛土 − 切土）"), told.net_m3, measured_net, "m³"
+            Text("Net (fill − cut)", "差引土量（盛土 − 切土）"), reported.net_m3, measured_net, "m³"
         ),
-        Quantity(Text("Uncertainty (±)", "不確かさ（±）"), told.uncertainty_m3, nan, "m³"),
-        Quantity(Text("Area", "対象面積"), told.area_m2, measured_area, "m²"),
-        Quantity(Text("Area without data", "データのない面積"), told.unmeasured_area_m2, nan, "m²"),
+        Quantity(Text("Uncertainty (±)", "不確かさ（±）"), reported.uncertainty_m3, nan, "m³"),
+        Quantity(Text("Area", "対象面積"), reported.area_m2, measured_area, "m²"),
+        Quantity(
+            Text("Area without data", "データのない面積"), reported.unmeasured_area_m2, nan, "m²"
+        ),
     )
 
 
-def shown(quantity: Quantity, value: float) -> str:
+def format_value(quantity: Quantity, value: float) -> str:
     """A number as it is printed."""
     if math.isnan(value):
         return "—"
     if quantity.name.en.startswith("Net"):
-        return signed(value, 1)
+        return format_signed(value, 1)
     return f"{value:,.1f}"
 
 
@@ -248,7 +250,7 @@ def remarks(result: VolumeResult) -> tuple[Text, ...]:
 def _registration(found: Registration | None) -> tuple[Text, ...]:
     if found is None:
         return (_NO_REGISTRATION,)
-    east, north, up = (signed(value, 3) for value in found.shift_m)
+    east, north, up = (format_signed(value, 3) for value in found.shift_m)
     sure = ", ".join(f"{value:.3f}" for value in found.sure_m)
     shift = _SHIFT.filled(
         area=f"{found.stable_area_m2:,.0f}", east=east, north=north, up=up, sure=sure

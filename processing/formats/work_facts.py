@@ -23,7 +23,7 @@ class WorkFacts:
 
     Attributes
     ----------
-    work, place : str
+    work, position : str
         Name of the work (工事名), and which part of it is meant (測点, 施工箇所).
     client, contractor, surveyor : str
         発注者, 受注者, 測定者.
@@ -38,7 +38,7 @@ class WorkFacts:
     """
 
     work: str = ""
-    place: str = ""
+    position: str = ""
     client: str = ""
     contractor: str = ""
     surveyor: str = ""
@@ -85,7 +85,7 @@ def day(value: date | None) -> Text:
     return Text(value.isoformat(), f"{value.year}年{value.month}月{value.day}日")
 
 
-def counted(side: SideFacts) -> Text:
+def format_count(side: SideFacts) -> Text:
     """How many points or triangles a surface has."""
     if side.count is None:
         return NOTHING
@@ -113,7 +113,7 @@ def crs_words(crs: str) -> Text:
     return Text(f"{name} ({crs})", f"平面直角座標系 第{zone}系（{found[1]}、{crs}）")
 
 
-def signed(value: float, digits: int) -> str:
+def format_signed(value: float, digits: int) -> str:
     """A number with its sign, with a true minus; zero has none."""
     words = f"{value:+,.{digits}f}"
     if float(words.replace(",", "")) == 0.0:
@@ -124,6 +124,6 @@ def signed(value: float, digits: int) -> str:
 def _number(roman: str) -> int:
     values = [_ROMAN[letter] for letter in roman]
     return sum(
-        -value if any(value < later for later in values[place + 1 :]) else value
-        for place, value in enumerate(values)
+        -value if any(value < later for later in values[position + 1 :]) else value
+        for position, value in enumerate(values)
     )

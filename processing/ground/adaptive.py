@@ -8,14 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.ground.band import Band, Tolerances, classify, ground_band, heights_at
-from processing.ground.below import ghosts, sunk_points
-from processing.ground.cells import CellGrid, Levels, choose_cells, levels_above
+from processing.ground.band import GroundBand, Tolerances, classify, ground_band, heights_at
+from processing.ground.cell_positions import Blocks
+from processing.ground.cells import CellGrid, LevelsAboveFloor, choose_cells, levels_above
 from processing.ground.layers import begin_of_ground
-from processing.ground.morphology import filled, steepness_of
+from processing.ground.morphology import fill_heights, steepness_of
 from processing.ground.neighbours import off_neighbours
-from processing.ground.places import Blocks
-from processing.ground.regions import Shape, standing_cells
+from processing.ground.points_below_ground import ghosts, sunk_points
+from processing.ground.regions import ObjectShape, standing_cells
 from processing.monitor import Monitor
 from processing.text import Text
 
@@ -31,7 +31,7 @@ _MARGIN_M = 0.025
 
 
 @dataclass(frozen=True)
-class GroundHabits:
+class GroundAssumptions:
     """What ground and the things on it are like; the same for every kind of survey.
 
     Attributes
@@ -76,7 +76,7 @@ class GroundSurface:
     """
 
     grid: CellGrid
-    band: Band
+    band: GroundBand
     measured: NDArray[np.bool_]
 
     def is_ground(self, xyz: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -98,7 +98,7 @@ class GroundSurface:
 
 
 def find_ground(
-    blocks: Blocks, habits: GroundHabits, monitor: Monitor, grid: CellGrid | None = None
+    blocks: Blocks, habits: GroundAssumptions, monitor: Monitor, grid: CellGrid | None = None
 ) -> GroundSurface:
     """The ground of a whole cloud, in some twenty passes over its blocks.
 
@@ -128,15 +128,15 @@ def find_ground(
     levels, ground = _ground_cells(passes, grid, habits)
     if grid.size_m > _COARSE_CELL_M:
         ground = _agreed(passes, grid, habits, levels.lowest, ground)
-    surface = filled(levels.lowest, ground)
+    surface = fill_heights(levels.lowest, ground)
     band = ground_band(passes, grid, surface, ground, habits.tolerances)
     return GroundSurface(grid, band, _without_small_gaps(ground))
 
 
 def _ground_cells(
-    blocks: Blocks, grid: CellGrid, habits: GroundHabits
-) -> tuple[Levels, NDArray[np.bool_]]:
-    shape = Shape(
+    blocks: Blocks, grid: CellGrid, habits: GroundAssumptions
+) -> tuple[LevelsAboveFloor, NDArray[np.bool_]]:
+    shape = ObjectShape(
         widest_m=habits.widest_m,
         rise_m=habits.rise_m + habits.rise_share * grid.size_m,
         flank=habits.flank,
@@ -156,7 +156,7 @@ def _ground_cells(
 def _agreed(
     blocks: Blocks,
     grid: CellGrid,
-    habits: GroundHabits,
+    habits: GroundAssumptions,
     lowest: NDArray[np.float32],
     ground: NDArray[np.bool_],
 ) -> NDArray[np.bool_]:
@@ -167,16 +167,16 @@ def _agreed(
     """
     votes = ground.astype(np.uint8)
     row, column = np.nonzero(np.isfinite(lowest))
-    places = grid.origin[:2] + grid.size_m * (np.column_stack([column, row]) + 0.5)
+    positions = grid.origin[:2] + grid.size_m * (np.column_stack([column, row]) + 0.5)
     for share in _OTHER_SIZES:
         size_m = grid.size_m * share
         rows = int(np.ceil(grid.rows / share)) + 1
         columns = int(np.ceil(grid.columns / share)) + 1
         other = CellGrid(grid.origin, size_m, rows, columns)
         levels, is_ground = _ground_cells(blocks, other, habits)
-        surface = filled(levels.lowest, is_ground)
-        slope = heights_at(places, other, steepness_of(surface, size_m)) - grid.origin[2]
-        off = heights_at(places, other, surface) - grid.origin[2] - lowest[row, column]
+        surface = fill_heights(levels.lowest, is_ground)
+        slope = heights_at(positions, other, steepness_of(surface, size_m)) - grid.origin[2]
+        off = heights_at(positions, other, surface) - grid.origin[2] - lowest[row, column]
         reach = habits.rise_m + grid.size_m * (habits.rise_share + 0.5 * slope)
         votes[row, column] += np.abs(off) <= reach
     agreed: NDArray[np.bool_] = votes >= 2
@@ -210,8 +210,8 @@ class _Passes:
 
 
 def _lowest_ground(
-    blocks: Blocks, grid: CellGrid, shape: Shape
-) -> tuple[Levels, NDArray[np.bool_]]:
+    blocks: Blocks, grid: CellGrid, shape: ObjectShape
+) -> tuple[LevelsAboveFloor, NDArray[np.bool_]]:
     """Lowest heights that are not under the ground, and the cells where they lie on things."""
     size_m = grid.size_m
     gap_m = max(0.10, 0.6 * size_m)
@@ -229,7 +229,7 @@ def _lowest_ground(
     for _ in range(_ROUNDS):
         known = np.isfinite(levels.lowest)
         crowded = _crowded(levels)
-        surface = filled(levels.lowest, known)
+        surface = fill_heights(levels.lowest, known)
         standing = standing_cells(levels.lowest, surface, crowded, size_m, shape)
         hidden = ghosts(levels.lowest, levels.second, known & ~standing, size_m)
         if not hidden.any():
@@ -242,7 +242,7 @@ def _lowest_ground(
     return levels, standing | ~np.isfinite(levels.lowest)
 
 
-def _crowded(levels: Levels) -> NDArray[np.bool_]:
+def _crowded(levels: LevelsAboveFloor) -> NDArray[np.bool_]:
     """Cells with something above, no higher than a person reaches; a stray among many is none."""
     is_low = levels.second < levels.lowest + _PERSON_M
     held = levels.above.astype(np.int64) * _NEAR_PER_ABOVE >= levels.near
@@ -251,7 +251,7 @@ def _crowded(levels: Levels) -> NDArray[np.bool_]:
 
 
 def _raise_floor(
-    floor: NDArray[np.float32], levels: Levels, hidden: NDArray[np.bool_], size_m: float
+    floor: NDArray[np.float32], levels: LevelsAboveFloor, hidden: NDArray[np.bool_], size_m: float
 ) -> None:
     """Let cells of points under the ground begin a little below the ground around them."""
     import cv2
@@ -260,5 +260,5 @@ def _raise_floor(
     trusted = np.isfinite(levels.lowest) & ~near_hidden
     if not trusted.any():
         return
-    expected = filled(levels.lowest, trusted) - (_MARGIN_SHARE * size_m + _MARGIN_M)
+    expected = fill_heights(levels.lowest, trusted) - (_MARGIN_SHARE * size_m + _MARGIN_M)
     floor[hidden] = np.maximum(expected, levels.lowest + 1e-3)[hidden]

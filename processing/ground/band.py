@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.ground.cell_positions import Blocks
 from processing.ground.cells import CellGrid
-from processing.ground.feet import held_feet
+from processing.ground.feet import attached_feet
 from processing.ground.morphology import steepness_of
-from processing.ground.places import Blocks
 from processing.ground.walls import column_tops, faces
 from processing.kernels import kernel
 
@@ -26,7 +26,7 @@ _FINE_CELL_M = 0.5
 
 
 @dataclass(frozen=True)
-class Band:
+class GroundBand:
     """Where ground lies, cell by cell.
 
     Attributes
@@ -87,7 +87,7 @@ def ground_band(
     surface: NDArray[np.float32],
     ground: NDArray[np.bool_],
     tolerances: Tolerances,
-) -> Band:
+) -> GroundBand:
     """Fit the surface to the ground's points and measure how far they scatter.
 
     Parameters
@@ -126,7 +126,7 @@ def ground_band(
     face_low = np.where(face, lowest - thick, np.where(is_level, np.inf, lowest))
     face_high = np.where(is_level, -np.inf, highest)
     face_high = np.where(face, np.maximum(upper + thick, face_high), face_high)
-    return Band(
+    return GroundBand(
         surface,
         thick,
         above.astype(np.float32),
@@ -166,10 +166,10 @@ def _held_feet(
             yield xyz, xyz[:, 2] - grid.origin[2] - heights_at(xyz[:, :2], level, surface)
 
     level = replace(grid, origin=np.append(grid.origin[:2], 0.0))
-    return held_feet(offsets(), grid, thick, thick + np.float32(_FOOT_REACH_M), feet)
+    return attached_feet(offsets(), grid, thick, thick + np.float32(_FOOT_REACH_M), feet)
 
 
-def classify(xyz: NDArray[np.float64], grid: CellGrid, band: Band) -> NDArray[np.bool_]:
+def classify(xyz: NDArray[np.float64], grid: CellGrid, band: GroundBand) -> NDArray[np.bool_]:
     """Which points lie in the band: (n,) bool; those that aren't finite do not."""
     is_ground = np.zeros(len(xyz), np.bool_)
     _classify_kernel(
@@ -353,11 +353,11 @@ def _heights_kernel(
     surface: NDArray[np.float32],
     heights: NDArray[np.float64],
 ) -> None:
-    for place in range(xy.shape[0]):
-        x = (xy[place, 0] - origin[0]) / size_m
-        y = (xy[place, 1] - origin[1]) / size_m
+    for position in range(xy.shape[0]):
+        x = (xy[position, 0] - origin[0]) / size_m
+        y = (xy[position, 1] - origin[1]) / size_m
         if 0.0 <= x < surface.shape[1] and 0.0 <= y < surface.shape[0]:
-            heights[place] = origin[2] + _at(surface, y, x)
+            heights[position] = origin[2] + _at(surface, y, x)
 
 
 def warm_up() -> None:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.ground.places import Blocks, require_three_places
+from processing.ground.cell_positions import Blocks, require_three_positions
 from processing.kernels import kernel
 
 MOST_CELLS = 48_000_000
@@ -47,7 +47,7 @@ class CellGrid:
 
 
 @dataclass(frozen=True)
-class Levels:
+class LevelsAboveFloor:
     """What the cells hold above a floor.
 
     Attributes
@@ -86,7 +86,7 @@ def choose_cells(
     OutOfRange
         Points at fewer than three places.
     """
-    require_three_places(blocks)
+    require_three_positions(blocks)
     low, high, count = _extent(blocks)
     low, high = _without_far_points(blocks, low, high, count)
     extent = high[:2] - low[:2]
@@ -117,7 +117,7 @@ def _spacing(
 
 def levels_above(
     blocks: Blocks, grid: CellGrid, floor: NDArray[np.float32], gap_m: float
-) -> Levels:
+) -> LevelsAboveFloor:
     """Lowest height of each cell above its ``floor``, and the lowest ``gap_m`` above that."""
     shape = (grid.rows, grid.columns)
     lowest = np.full(shape, np.inf, np.float32)
@@ -131,7 +131,7 @@ def levels_above(
             np.ascontiguousarray(xyz), grid.origin, grid.size_m, gap_m, lowest, second, near, above
         )
     lowest[np.isinf(lowest)] = np.nan
-    return Levels(lowest, second, near, above)
+    return LevelsAboveFloor(lowest, second, near, above)
 
 
 def _extent(blocks: Blocks) -> tuple[NDArray[np.float64], NDArray[np.float64], int]:
@@ -208,9 +208,9 @@ def _profile_kernel(
         if not np.isfinite(xyz[point, 0] + xyz[point, 1] + xyz[point, 2]):
             continue
         for axis in range(3):
-            place = (xyz[point, axis] - low[axis]) / step[axis]
-            if 0.0 <= place <= counts.shape[1] - 1:
-                counts[axis, int(place)] += 1
+            position = (xyz[point, axis] - low[axis]) / step[axis]
+            if 0.0 <= position <= counts.shape[1] - 1:
+                counts[axis, int(position)] += 1
 
 
 @kernel

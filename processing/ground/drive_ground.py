@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.ground.adaptive import GroundHabits, GroundSurface, find_ground
+from processing.ground.adaptive import GroundAssumptions, GroundSurface, find_ground
 from processing.ground.band import heights_at
 from processing.ground.cells import CellGrid, choose_cells
 from processing.ground.drive_points import DrivePoints
@@ -29,7 +29,7 @@ _LOOKING = Text("Looking for the ground", "地面を探しています")
 
 def adaptive_ground(
     points: DrivePoints,
-    habits: GroundHabits,
+    habits: GroundAssumptions,
     folders: Sequence[Path],
     surface: Path,
     monitor: Monitor,
@@ -122,7 +122,7 @@ class _TileSearch:
     """Looks for the ground of tiles; threads may share it."""
 
     def __init__(
-        self, points: DrivePoints, habits: GroundHabits, grid: CellGrid, columns: GroundColumns
+        self, points: DrivePoints, habits: GroundAssumptions, grid: CellGrid, columns: GroundColumns
     ) -> None:
         self._points = points
         self._habits = habits

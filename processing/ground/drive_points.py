@@ -1,4 +1,4 @@
-"""The points of drives that were recorded together, a stretch at a time, without their noise."""
+"""The points of drives that were recorded together, a chunk at a time, without their noise."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from processing.kernels import kernel
 from processing.labels.label_column import LABEL
 from processing.monitor import Monitor
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 
 NOISE_CODES = (7, 18)
 _CLASS = "classification"
@@ -127,7 +127,7 @@ class DrivePoints:
     def measured_xyz(self, chunk: Chunk) -> NDArray[np.float64]:
         """Coordinates of a chunk's points, (n, 3) float64, m; noise too."""
         drive = self.drives[chunk.drive]
-        integers = read_stretch(drive.folder, "xyz", chunk.start, chunk.stop)
+        integers = read_chunk(drive.folder, "xyz", chunk.start, chunk.stop)
         xyz = np.empty(integers.shape)
         _metres_kernel(integers, np.array(drive.info.scale), np.array(drive.info.offset), xyz)
         return xyz
@@ -141,7 +141,7 @@ class DrivePoints:
     ) -> tuple[int, int, int, NDArray[np.float64], NDArray[np.float64], bool]:
         number, start, stop = span
         drive = self.drives[number]
-        integers = read_stretch(drive.folder, "xyz", start, stop)
+        integers = read_chunk(drive.folder, "xyz", start, stop)
         scale, offset = np.array(drive.info.scale[:2]), np.array(drive.info.offset[:2])
         ends = np.array([[part.min(), part.max()] for part in (integers[:, 0], integers[:, 1])])
         low, high = ends[:, 0] * scale + offset, ends[:, 1] * scale + offset
@@ -154,7 +154,7 @@ def classes_now(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:
     """Labels where points have one, delivered classes elsewhere: (n,) uint8."""
     codes = np.zeros(stop - start, np.uint8)
     if drive.columns.has(_CLASS):
-        codes = read_stretch(drive.folder, _CLASS, start, stop)
+        codes = read_chunk(drive.folder, _CLASS, start, stop)
     if drive.columns.has(LABEL):
         labels = np.asarray(drive.columns[LABEL])[start:stop]
         codes = np.where(labels > 0, labels, codes)

@@ -8,16 +8,18 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.ground.cell_positions import require_three_positions
 from processing.ground.drive_points import Chunk, DrivePoints
 from processing.ground.ground_columns import GroundColumns
 from processing.ground.lowest_points import lowest_ground
-from processing.ground.places import require_three_places
-from processing.ground.published import PublishedSteps, published_surface
+from processing.ground.published_method import PublishedSteps, published_surface
 from processing.monitor import Monitor, PartMonitor
 
 _FINDING = 0.5
 
-Judge = Callable[[Chunk, NDArray[np.float64]], tuple[NDArray[np.bool_], NDArray[np.float64]]]
+ChunkClassifier = Callable[
+    [Chunk, NDArray[np.float64]], tuple[NDArray[np.bool_], NDArray[np.float64]]
+]
 
 
 def published_ground_of(
@@ -57,7 +59,7 @@ def lowest_ground_of(
         Points that are no noise at fewer than three places.
     NoSpace, Cancelled
     """
-    require_three_places(points.blocks)
+    require_three_positions(points.blocks)
     found = lowest_ground(points.blocks, cell_m, tolerance_m)
 
     def judge(
@@ -68,7 +70,9 @@ def lowest_ground_of(
     _write(points, judge, folders, monitor)
 
 
-def _write(points: DrivePoints, judge: Judge, folders: Sequence[Path], monitor: Monitor) -> None:
+def _write(
+    points: DrivePoints, judge: ChunkClassifier, folders: Sequence[Path], monitor: Monitor
+) -> None:
     done = 0
     with GroundColumns(points, folders, monitor) as columns:
         for chunk in points.chunks:

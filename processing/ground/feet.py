@@ -14,7 +14,7 @@ _PARTS = 16
 _BAND_PER_FOOT = 5
 
 
-def held_feet(
+def attached_feet(
     offsets: Iterable[tuple[NDArray[np.float64], NDArray[np.float64]]],
     grid: CellGrid,
     thick: NDArray[np.float32],
@@ -84,4 +84,4 @@ def warm_up() -> None:
     grid = CellGrid(np.zeros(3), 1.0, 1, 1)
     one = np.ones((1, 1), np.float32)
     xyz = np.array([[0.5, 0.5, 1.5]])
-    held_feet([(xyz, xyz[:, 2])], grid, one, 2 * one, np.ones((1, 1), np.uint16))
+    attached_feet([(xyz, xyz[:, 2])], grid, one, 2 * one, np.ones((1, 1), np.uint16))

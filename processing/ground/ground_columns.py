@@ -13,7 +13,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.ground.drive_points import NOISE_CODES, Chunk, DrivePoints
 from processing.monitor import Monitor
 from processing.points.columns import COLUMN_TYPES, column_path
@@ -44,7 +44,7 @@ class GroundColumns:
         self._files: list[dict[str, BufferedRandom]] = []
         try:
             for folder in folders:
-                with told_as_user_error(folder):
+                with report_as_user_error(folder):
                     opened = {n: column_path(folder, n).open("wb+") for n in (CLASS, HEIGHT)}
                 self._files.append(opened)
             for chunk in points.chunks:
@@ -91,7 +91,7 @@ class GroundColumns:
         """Close the files; may be called again."""
         for opened in self._files:
             for file in opened.values():
-                with told_as_user_error(Path(file.name)):
+                with report_as_user_error(Path(file.name)):
                     file.close()
         self._files.clear()
 
@@ -111,14 +111,14 @@ class GroundColumns:
         file = self._files[chunk.drive][name]
         dtype = np.dtype(COLUMN_TYPES[name][0])
         values = np.empty(chunk.stop - chunk.start, dtype)
-        with told_as_user_error(Path(file.name)):
+        with report_as_user_error(Path(file.name)):
             file.seek(chunk.start * dtype.itemsize)
             file.readinto(values.data)
         return values
 
     def _write(self, chunk: Chunk, name: str, values: NDArray[Any]) -> None:
         file = self._files[chunk.drive][name]
-        with told_as_user_error(Path(file.name)):
+        with report_as_user_error(Path(file.name)):
             file.seek(chunk.start * values.itemsize, os.SEEK_SET)
             file.write(values.data)
             file.flush()

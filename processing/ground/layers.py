@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.ground.cells import CellGrid, Levels
-from processing.ground.places import Blocks
+from processing.ground.cell_positions import Blocks
+from processing.ground.cells import CellGrid, LevelsAboveFloor
 from processing.kernels import kernel
 
 _DENSE = 50
@@ -21,7 +21,9 @@ _REACH_M = 3.0
 _SHARE = 0.2
 
 
-def begin_of_ground(blocks: Blocks, grid: CellGrid, levels: Levels) -> NDArray[np.float32]:
+def begin_of_ground(
+    blocks: Blocks, grid: CellGrid, levels: LevelsAboveFloor
+) -> NDArray[np.float32]:
     """Height under which no layer of a cell can be ground: (rows, columns), m; −inf where unknown.
 
     Parameters
@@ -106,5 +108,7 @@ def warm_up() -> None:
     """Compile the kernels of this file."""
     grid = CellGrid(np.zeros(3), 1.0, 1, 1)
     one = np.ones((1, 1), np.uint16)
-    levels = Levels(np.zeros((1, 1), np.float32), np.ones((1, 1), np.float32), one * 50, one)
+    levels = LevelsAboveFloor(
+        np.zeros((1, 1), np.float32), np.ones((1, 1), np.float32), one * 50, one
+    )
     begin_of_ground(lambda: [np.array([[0.5, 0.5, 0.0]])], grid, levels)

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.ground.places import Blocks
+from processing.ground.cell_positions import Blocks
 
 _Some = tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.int64]]
 
@@ -122,10 +122,10 @@ class LowestGround:
         width, held = self._held_cells
         cells = _cells(xyz[finite], self.start, self.cell_m)
         wanted = cells[:, 1] * width + cells[:, 0]
-        place = np.minimum(np.searchsorted(held, wanted), len(held) - 1)
-        known = np.all(self.lowest.keys[place] == cells, axis=1)
-        kept, place = finite[known], place[known]
-        above[kept] = xyz[kept, 2] - self.lowest.xyz[place, 2]
+        position = np.minimum(np.searchsorted(held, wanted), len(held) - 1)
+        known = np.all(self.lowest.keys[position] == cells, axis=1)
+        kept, position = finite[known], position[known]
+        above[kept] = xyz[kept, 2] - self.lowest.xyz[position, 2]
         return above
 
     @cached_property
@@ -148,9 +148,9 @@ def lowest_ground(blocks: Blocks, cell_m: float, tolerance_m: float = 0.0) -> Lo
     """
     start = np.full(2, np.inf)
     for xyz in blocks():
-        places = xyz[np.isfinite(xyz).all(axis=1), :2]
-        if len(places):
-            start = np.minimum(start, places.min(axis=0))
+        positions = xyz[np.isfinite(xyz).all(axis=1), :2]
+        if len(positions):
+            start = np.minimum(start, positions.min(axis=0))
     lowest = LowestPoints(2)
     first = 0
     for xyz in blocks():

@@ -13,7 +13,7 @@ _SWEEPS = 24
 _RELAXED_CELLS = 16
 
 
-def filled(heights: NDArray[np.float32], known: NDArray[np.bool_]) -> NDArray[np.float32]:
+def fill_heights(heights: NDArray[np.float32], known: NDArray[np.bool_]) -> NDArray[np.float32]:
     """Heights everywhere: the known ones, and between them a skin without own bumps.
 
     Parameters
@@ -32,7 +32,7 @@ def filled(heights: NDArray[np.float32], known: NDArray[np.bool_]) -> NDArray[np
     surface = np.where(known, heights, np.float32(0.0)).astype(np.float32)
     if known.shape[0] > 1 or known.shape[1] > 1:
         coarse_heights, coarse_known = _halved(surface, known)
-        coarse = filled(coarse_heights, coarse_known)
+        coarse = fill_heights(coarse_heights, coarse_known)
         _prolong_kernel(coarse, known, surface)
         _relax_kernel(_near_known(known), _SWEEPS, surface)
     return surface
@@ -161,14 +161,14 @@ def _relax_kernel(lists: _Lists, sweeps: int, surface: NDArray[np.float32]) -> N
     for _ in range(sweeps):
         _relax_inside(even, columns, heights)
         _relax_inside(odd, columns, heights)
-        for place in range(border.shape[0]):
-            _relax_at_border(border[place] // columns, border[place] % columns, surface)
+        for position in range(border.shape[0]):
+            _relax_at_border(border[position] // columns, border[position] % columns, surface)
 
 
 @kernel
 def _relax_inside(cells: NDArray[np.int32], columns: int, heights: NDArray[np.float32]) -> None:
-    for place in range(cells.shape[0]):
-        cell = cells[place]
+    for position in range(cells.shape[0]):
+        cell = cells[position]
         beside = heights[cell - 1] + heights[cell + 1]
         beyond = heights[cell - columns] + heights[cell + columns]
         heights[cell] = np.float32(0.25) * (beside + beyond)
@@ -192,4 +192,4 @@ def warm_up() -> None:
     """Compile the kernels of this file."""
     known = np.zeros((4, 4), np.bool_)
     known[0, 0] = known[3, 3] = True
-    filled(np.ones((4, 4), np.float32), known)
+    fill_heights(np.ones((4, 4), np.float32), known)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.ground.morphology import filled, steepness_of
+from processing.ground.morphology import fill_heights, steepness_of
 
 _NEAR_CELLS = 2.0
 _LOW_M = 0.4
@@ -47,7 +47,7 @@ def off_neighbours(
     free = ground & ~crowded
     if not free.any() or free.all():
         return np.zeros(ground.shape, np.bool_)
-    surface = filled(heights, free)
+    surface = fill_heights(heights, free)
     near = cv2.distanceTransform((~free).astype(np.uint8), cv2.DIST_L2, 5) <= _NEAR_CELLS
     slope = steepness_of(surface, size_m)
     around = np.ones((_AROUND, _AROUND), np.uint8)

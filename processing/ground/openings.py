@@ -11,7 +11,7 @@ _SQUARE_SHARE = 0.414
 _FEW_CROSSES = 10
 
 
-def opened(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
+def open_heights(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
     """The highest surface below ``heights`` that an octagon of ``radius`` cells can touch.
 
     Beyond its border the grid goes on with the border's heights.
@@ -25,7 +25,7 @@ def opened(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
     return _opened(heights, radius, cv2.BORDER_REPLICATE)
 
 
-def opened_within(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
+def open_heights_within(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
     """The same, but beyond its border the grid goes on with its own mirror image."""
     import cv2
 
@@ -65,9 +65,9 @@ def _sink(surface: NDArray[np.float32], radius: int, scratch: NDArray[np.float32
 def _least_of_two(
     first: NDArray[np.float32], second: NDArray[np.float32], least: NDArray[np.float32]
 ) -> None:
-    for place in range(least.shape[0]):
-        a, b = first[place], second[place]
-        least[place] = a if a < b else b
+    for position in range(least.shape[0]):
+        a, b = first[position], second[position]
+        least[position] = a if a < b else b
 
 
 @kernel
@@ -102,24 +102,24 @@ def _least_along_kernel(
     near, far = half - half * east, half + half * east
     for first in range(0, rows, length):
         _take_row(heights, first + half, half, to_end[length - 1])
-        for place in range(length - 2, -1, -1):
-            own, after = to_end[place], to_end[place + 1]
-            _take_row(heights, first + place - half, half, own)
+        for position in range(length - 2, -1, -1):
+            own, after = to_end[position], to_end[position + 1]
+            _take_row(heights, first + position - half, half, own)
             after = after[back_low + east : back_high + east]
             _least_of_two(own[back_low:back_high], after, own[back_low:back_high])
         least[first] = to_end[0, near : near + columns]
-        for place in range(1, min(length, rows - first)):
-            now, before = from_start[place % 2], from_start[1 - place % 2]
-            _take_row(heights, first + place + half, half, taken)
+        for position in range(1, min(length, rows - first)):
+            now, before = from_start[position % 2], from_start[1 - position % 2]
+            _take_row(heights, first + position + half, half, taken)
             now[:] = taken
-            if place > 1:
+            if position > 1:
                 # What lies at the end without a cell before it is asked for by no line.
                 before = before[low - east : high - east]
                 _least_of_two(taken[low:high], before, now[low:high])
             ending = now[far : far + columns]
-            _least_of_two(to_end[place, near : near + columns], ending, least[first + place])
+            _least_of_two(to_end[position, near : near + columns], ending, least[first + position])
 
 
 def warm_up() -> None:
     """Compile the kernels of this file."""
-    opened(np.zeros((4, 4), np.float32), 2 * _FEW_CROSSES)
+    open_heights(np.zeros((4, 4), np.float32), 2 * _FEW_CROSSES)

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.ground.cell_positions import Blocks
 from processing.ground.cells import CellGrid
-from processing.ground.places import Blocks
 from processing.kernels import kernel
 
 MOST_CELLS = 2_000_000

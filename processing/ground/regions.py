@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.ground.morphology import nearest_known
-from processing.ground.openings import opened, opened_within
+from processing.ground.openings import open_heights, open_heights_within
 from processing.kernels import kernel
 
 _WINDOWS = 8
@@ -26,7 +26,7 @@ _LEVEL = 0.1
 
 
 @dataclass(frozen=True)
-class Shape:
+class ObjectShape:
     """What a thing that stands on the ground looks like, in numbers a surveyor can judge.
 
     Attributes
@@ -64,7 +64,7 @@ def standing_cells(
     surface: NDArray[np.float32],
     crowded: NDArray[np.bool_],
     size_m: float,
-    shape: Shape,
+    shape: ObjectShape,
 ) -> NDArray[np.bool_]:
     """Cells whose lowest point lies on a thing and not on the ground.
 
@@ -99,7 +99,7 @@ def standing_cells(
             break
         rise = share_of * np.float32(shape.flank * radius * size_m + shape.rise_m)
         steep = share_of * np.float32(shape.steep if radius > _SMALL else shape.small_steep)
-        lower = opened(surface, radius)
+        lower = open_heights(surface, radius)
         free = (measured & ~standing, nearest)
         is_wide = size_m <= _FINE_CELL_M and 2 * radius * size_m >= _WIDE_M
         needed = replace(shape, rim_share=_ALL_ROUND) if is_wide else shape
@@ -107,7 +107,7 @@ def standing_cells(
         standing |= found
         surface[found] = lower[found]
         if 2 * radius * size_m >= _HALL_M:
-            lower = opened_within(surface, radius)
+            lower = open_heights_within(surface, radius)
             raised = surface - lower > np.maximum(rise, np.float32(_STOREY_M))
             free = (measured & ~standing, nearest)
             shares = rim_shares(
@@ -125,7 +125,7 @@ def _things(
     heights: NDArray[np.float32],
     measured: tuple[NDArray[np.bool_], NDArray[np.int32]],
     size_m: float,
-    sides: tuple[NDArray[np.float32], Shape],
+    sides: tuple[NDArray[np.float32], ObjectShape],
 ) -> NDArray[np.bool_]:
     """Raised regions with steep rims: whole ones, parts of others, parts beside other things."""
     free, nearest = measured
@@ -232,7 +232,7 @@ def rim_shares(
 
 
 @kernel
-def _place_of(nearest: NDArray[np.int32], row: int, column: int) -> tuple[int, int]:
+def _position_of(nearest: NDArray[np.int32], row: int, column: int) -> tuple[int, int]:
     """Row and column of the measured cell that is nearest to a cell; mostly the cell itself."""
     columns = nearest.shape[1]
     cell = nearest[row, column]
@@ -258,8 +258,8 @@ def _fall_beyond(
         return 0.0
     if labels[far_row, far_column] != 0:
         return 0.0
-    a, b = _place_of(nearest, r, c)
-    d, e = _place_of(nearest, far_row, far_column)
+    a, b = _position_of(nearest, r, c)
+    d, e = _position_of(nearest, far_row, far_column)
     run = np.sqrt((a - d) ** 2.0 + (b - e) ** 2.0)
     if run == 0.0:
         return 0.0
@@ -295,8 +295,8 @@ def _rim_kernel(
                     continue
                 if labels[r, c] == label:
                     continue
-                from_row, from_column = _place_of(nearest, row, column)
-                to_row, to_column = _place_of(nearest, r, c)
+                from_row, from_column = _position_of(nearest, row, column)
+                to_row, to_column = _position_of(nearest, r, c)
                 run = size_m * np.sqrt(
                     (from_row - to_row) ** 2.0 + (from_column - to_column) ** 2.0
                 )
@@ -343,7 +343,7 @@ def _label_kernel(
         while held:
             held -= 1
             row, column = stack[held] // columns, stack[held] % columns
-            from_row, from_column = _place_of(nearest, row, column)
+            from_row, from_column = _position_of(nearest, row, column)
             for side in range(4):
                 r = row + (side == 0) - (side == 1)
                 c = column + (side == 2) - (side == 3)
@@ -351,7 +351,7 @@ def _label_kernel(
                     continue
                 if labels[r, c] >= 0:
                     continue
-                to_row, to_column = _place_of(nearest, r, c)
+                to_row, to_column = _position_of(nearest, r, c)
                 run = size_m * np.sqrt(
                     (from_row - to_row) ** 2.0 + (from_column - to_column) ** 2.0
                 )
@@ -368,4 +368,4 @@ def warm_up() -> None:
     heights = np.zeros((8, 8), np.float32)
     heights[3:5, 3:5] = 2.0
     crowded = np.zeros((8, 8), np.bool_)
-    standing_cells(heights, heights, crowded, 1.0, Shape(4.0, 0.1, 0.1, 0.8, 0.45))
+    standing_cells(heights, heights, crowded, 1.0, ObjectShape(4.0, 0.1, 0.1, 0.8, 0.45))

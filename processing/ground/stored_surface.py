@@ -20,7 +20,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile, report_as_user_error
 from processing.ground.band import heights_at
 from processing.ground.cells import CellGrid
 from processing.points.drive import Drive
@@ -82,17 +82,17 @@ class SurfaceWriter:
         self._grid = grid
         self._crs = crs
         self._tiles: list[list[int]] = []
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             self._file = path.open("wb")
             self._file.write(_START.pack(_MAGIC, 0))
 
     def add(self, tile: SurfaceTile) -> None:
         """Append a tile."""
-        with told_as_user_error(self._path):
-            place = [tile.row, tile.column, *tile.heights.shape, self._file.tell()]
+        with report_as_user_error(self._path):
+            position = [tile.row, tile.column, *tile.heights.shape, self._file.tell()]
             self._file.write(np.ascontiguousarray(tile.heights, "<f4").data)
             self._file.write(np.ascontiguousarray(tile.filled, np.uint8).data)
-        self._tiles.append(place)
+        self._tiles.append(position)
 
     def close(self) -> None:
         """Write what the tiles are and close the file."""
@@ -105,7 +105,7 @@ class SurfaceWriter:
             "crs": self._crs,
             "tiles": self._tiles,
         }
-        with told_as_user_error(self._path), self._file as file:
+        with report_as_user_error(self._path), self._file as file:
             at = file.tell()
             file.write(json.dumps(facts).encode())
             file.seek(0)
@@ -149,7 +149,7 @@ class StoredSurface:
 
     def __init__(self, path: Path) -> None:
         self._path = path
-        with told_as_user_error(path), path.open("rb") as file:
+        with report_as_user_error(path), path.open("rb") as file:
             start = file.read(_START.size)
             size = os.fstat(file.fileno()).st_size
             magic, at = _START.unpack(start) if len(start) == _START.size else (b"", 0)
@@ -161,7 +161,7 @@ class StoredSurface:
             self._take(json.loads(text))
         except (ValueError, TypeError, KeyError) as error:
             raise _damaged(path, at) from error
-        if any(one.at + 5 * one.rows * one.columns > at for one in self._places):
+        if any(one.at + 5 * one.rows * one.columns > at for one in self._positions):
             raise _damaged(path, at)
         self._held: OrderedDict[int, SurfaceTile] = OrderedDict()
 
@@ -171,7 +171,7 @@ class StoredSurface:
         size_m = float(facts["cell_m"])
         self.grid = CellGrid(origin, size_m, int(facts["rows"]), int(facts["columns"]))
         self.crs = str(facts["crs"])
-        self._places = [_Place(*(int(value) for value in tile)) for tile in facts["tiles"]]
+        self._positions = [_Place(*(int(value) for value in tile)) for tile in facts["tiles"]]
 
     def heights_at(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
         """Ground height at places, m: (n,) float64; NaN where there is no surface.
@@ -203,7 +203,7 @@ class StoredSurface:
         """Rows and columns of each tile."""
         return tuple(
             (range(one.row, one.row + one.rows), range(one.column, one.column + one.columns))
-            for one in self._places
+            for one in self._positions
         )
 
     def window(
@@ -244,7 +244,7 @@ class StoredSurface:
         high = row[is_free].max(), column[is_free].max()
         # Tiles overlap by a cell on either side: where two have a place, the inner one knows more.
         for edge in (1, 0):
-            for number, tile in enumerate(self._places):
+            for number, tile in enumerate(self._positions):
                 top, right = tile.row + tile.rows, tile.column + tile.columns
                 if low[0] >= top or low[1] >= right:
                     continue
@@ -270,17 +270,17 @@ class StoredSurface:
         return self._held[number]
 
     def _read(self, number: int) -> SurfaceTile:
-        place = self._places[number]
-        shape, count = (place.rows, place.columns), place.rows * place.columns
-        with told_as_user_error(self._path), self._path.open("rb") as file:
-            file.seek(place.at)
+        position = self._positions[number]
+        shape, count = (position.rows, position.columns), position.rows * position.columns
+        with report_as_user_error(self._path), self._path.open("rb") as file:
+            file.seek(position.at)
             heights = np.fromfile(file, "<f4", count)
             filled = np.fromfile(file, np.uint8, count)
         if filled.size != count:
-            raise _damaged(self._path, place.at)
+            raise _damaged(self._path, position.at)
         return SurfaceTile(
-            place.row,
-            place.column,
+            position.row,
+            position.column,
             heights.astype(np.float32, copy=False).reshape(shape),
             filled.astype(np.bool_).reshape(shape),
         )
@@ -319,7 +319,7 @@ def keep_surface(path: Path, drives: tuple[Drive, ...]) -> None:
     for drive in drives:
         target = drive.folder / FILE_NAME
         temporary = target.with_suffix(".part")
-        with told_as_user_error(target):
+        with report_as_user_error(target):
             try:
                 temporary.unlink(missing_ok=True)
                 try:

@@ -52,21 +52,23 @@ class Triangles:
         """Triangle that holds each place, one only; −1 outside the hull: (m,) int64."""
         if self.mesh is None:
             return np.full(len(xy), -1, np.int64)
-        places = xy - self.origin[:2]
+        positions = xy - self.origin[:2]
         found = [
-            self._one_triangle(places[start : start + _BLOCK])
-            for start in range(0, len(places), _BLOCK)
+            self._one_triangle(positions[start : start + _BLOCK])
+            for start in range(0, len(positions), _BLOCK)
         ]
         return np.concatenate(found) if found else np.empty(0, np.int64)
 
     # scipy's mesh has no types.
-    def _one_triangle(self, places: NDArray[np.float64]) -> NDArray[np.int64]:
+    def _one_triangle(self, positions: NDArray[np.float64]) -> NDArray[np.int64]:
         """The triangle that was found, or on an edge or a corner always the same of those there."""
         mesh: Any = self.mesh
-        triangle = np.empty(len(places), np.int64)
-        shares = np.zeros((len(places), 3))
-        order = self._along_the_plan(places)
-        _walk_kernel(self.xyz, mesh.simplices, mesh.neighbors, (places, order), (triangle, shares))
+        triangle = np.empty(len(positions), np.int64)
+        shares = np.zeros((len(positions), 3))
+        order = self._along_the_plan(positions)
+        _walk_kernel(
+            self.xyz, mesh.simplices, mesh.neighbors, (positions, order), (triangle, shares)
+        )
         inside = np.flatnonzero(triangle >= 0)
         of, shares = triangle[inside], shares[inside]
         for corner in range(3):
@@ -79,15 +81,15 @@ class Triangles:
             triangle[inside[at_corner]] = mesh.vertex_to_simplex[vertex]
         return triangle
 
-    def _along_the_plan(self, places: NDArray[np.float64]) -> NDArray[np.int64]:
+    def _along_the_plan(self, positions: NDArray[np.float64]) -> NDArray[np.int64]:
         """An order in which each place is near the one before it: a short walk from triangle to it.
 
         Strips of a few triangles' width, every second one backwards.
         """
         size = self.xyz[:, :2].max(axis=0)
         wide = _STRIP_TRIANGLES * float(np.sqrt(size.prod() / len(self.corners)))
-        strip = np.floor(places[:, 1] / max(wide, 1e-6))
-        along = np.where(strip % 2 == 0, places[:, 0], -places[:, 0])
+        strip = np.floor(positions[:, 1] / max(wide, 1e-6))
+        along = np.where(strip % 2 == 0, positions[:, 0], -positions[:, 0])
         return np.lexsort((along, strip))
 
     @cached_property
@@ -102,25 +104,25 @@ class Triangles:
 
     def located(self, xy: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
         """Heights as :meth:`heights_at`, and which places are outside the hull: (m,) bool."""
-        places = xy - self.origin[:2]
+        positions = xy - self.origin[:2]
         triangle = self.triangle_of(xy)
         heights = np.empty(len(xy))
         inside = triangle >= 0
         a, b, c = (self.xyz[self.corners[triangle[inside], k]] for k in range(3))
-        u, v, w = b[:, :2] - a[:, :2], c[:, :2] - a[:, :2], places[inside] - a[:, :2]
+        u, v, w = b[:, :2] - a[:, :2], c[:, :2] - a[:, :2], positions[inside] - a[:, :2]
         area = u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]
         area = np.where(area == 0.0, np.inf, area)
         share_b = (w[:, 0] * v[:, 1] - w[:, 1] * v[:, 0]) / area
         share_c = (u[:, 0] * w[:, 1] - u[:, 1] * w[:, 0]) / area
         heights[inside] = a[:, 2] + share_b * (b[:, 2] - a[:, 2]) + share_c * (c[:, 2] - a[:, 2])
         if not inside.all():
-            nearest = self._corner_tree.query(places[~inside])[1]
+            nearest = self._corner_tree.query(positions[~inside])[1]
             heights[~inside] = self.xyz[nearest, 2]
         heights += float(self.origin[2])
         return heights, ~inside
 
 
-def triangulated(xyz: NDArray[np.float64]) -> Triangles:
+def triangulate_points(xyz: NDArray[np.float64]) -> Triangles:
     """Triangles over points; of points at one place in plan the lowest is taken.
 
     Parameters
@@ -161,12 +163,12 @@ def _walk_kernel(
     ----------
     Devillers, Pion & Teillaud 2002, the remembering walk.
     """
-    places, order = asked
+    positions, order = asked
     held, shares = found
     now = 0
     most = triangles.shape[0] + 3
     for number in order:
-        x, y = places[number, 0], places[number, 1]
+        x, y = positions[number, 0], positions[number, 1]
         before = -2
         is_outside = False
         for _ in range(most):
@@ -199,4 +201,4 @@ def _turn(start: NDArray[np.float64], end: NDArray[np.float64], x: float, y: flo
 def warm_up() -> None:
     """Compile the kernels of this file."""
     corners = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-    triangulated(corners).triangle_of(np.array([[0.2, 0.2]]))
+    triangulate_points(corners).triangle_of(np.array([[0.2, 0.2]]))

@@ -17,20 +17,20 @@ from processing.image.colour_maps import (
     EMPTY_COLOUR,
     UNKNOWN_COLOUR,
     class_colours,
+    error_map_colours,
     grey_ramp,
     height_ramp,
-    judgement_colours,
     normal_ramp,
     segment_colours,
-    stretched,
+    stretch_values,
 )
 from processing.image.drive_sample import value_at_percent
 from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.normals import RowLayout, SurfaceShapes, surface_shapes
 from processing.points.counted_classes import class_columns
-from processing.points.judgement import JUDGED
-from processing.points.ordering import read_stretch, stretches
+from processing.points.error_map import ERROR_MAP
+from processing.points.ordering import chunk_ranges, read_chunk
 from processing.text import Text
 
 if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a circle
@@ -90,7 +90,7 @@ ATTRIBUTES: Mapping[str, Attribute] = {
         Attribute(
             "judged",
             Text("Right and wrong", "正誤"),
-            (JUDGED,),
+            (ERROR_MAP,),
             Text(
                 "Show the points of a run in the evaluation first.",
                 "先に評価パネルで実行結果の正誤を表示してください。",
@@ -100,7 +100,7 @@ ATTRIBUTES: Mapping[str, Attribute] = {
 }
 """By id, those of the thesis first, in its order."""
 
-SHOWS_LABELS = frozenset({"label", "class", JUDGED})
+SHOWS_LABELS = frozenset({"label", "class", ERROR_MAP})
 """Attributes that show what was painted, or found by a tool that classifies."""
 
 
@@ -152,7 +152,7 @@ def available(drive: Drive) -> tuple[str, ...]:
     )
 
 
-def telling_attribute(drive: Drive, wanted: str) -> str:
+def most_telling_attribute(drive: Drive, wanted: str) -> str:
     """What a drive is shown by: what is wanted, unless it lacks that or is the same everywhere.
 
     Colour-only clouds have an intensity of 0 throughout; others have nothing but their shape.
@@ -180,10 +180,10 @@ def _varies(drive: Drive, attribute: str) -> bool:
 
 @lru_cache(maxsize=256)
 def _varies_in(folder: Path, attribute: str, count: int) -> bool:
-    first = read_stretch(folder, attribute, 0, 1)
+    first = read_chunk(folder, attribute, 0, 1)
     starts = np.linspace(0, max(0, count - _PIECE_POINTS), _PIECES).astype(np.int64)
     pieces = (
-        read_stretch(folder, attribute, start, start + _PIECE_POINTS) for start in starts.tolist()
+        read_chunk(folder, attribute, start, start + _PIECE_POINTS) for start in starts.tolist()
     )
     return any((piece != first).any() for piece in pieces)
 
@@ -200,8 +200,8 @@ def _is_classified(drive: Drive) -> bool:
 def _has_classes(folder: Path, count: int) -> bool:
     """Whether a delivered class is above 1; as delivered, a column never changes."""
     return any(
-        (read_stretch(folder, "classification", start, stop) > _UNCLASSIFIED).any()
-        for start, stop in stretches(count, _STRETCH_POINTS)
+        (read_chunk(folder, "classification", start, stop) > _UNCLASSIFIED).any()
+        for start, stop in chunk_ranges(count, _STRETCH_POINTS)
     )
 
 
@@ -236,7 +236,7 @@ def _intensity(drive: Drive, points: _Points, low: float, high: float) -> _Colou
         for percent in (low, high)
     ]
     values = np.asarray(drive.columns["intensity"][points], np.float32)
-    return grey_ramp()[stretched(values, *ends)]
+    return grey_ramp()[stretch_values(values, *ends)]
 
 
 def _height(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
@@ -244,7 +244,7 @@ def _height(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
         value_at_percent(drive.folder, "xyz", drive.count, 2, percent) for percent in (low, high)
     ]
     values = np.asarray(drive.columns["xyz"][points, 2], np.float64)
-    return height_ramp()[stretched(values, *ends)]
+    return height_ramp()[stretch_values(values, *ends)]
 
 
 def _normal(drive: Drive, points: _Points) -> _Colours:
@@ -252,7 +252,7 @@ def _normal(drive: Drive, points: _Points) -> _Colours:
         normals = np.asarray(drive.columns["normal"][points], np.float32) / np.float32(127)
     else:
         normals = _surfaces(drive, points).normals
-    shown = normal_ramp()[stretched(np.abs(normals[:, 2]), 0.0, 1.0)]
+    shown = normal_ramp()[stretch_values(np.abs(normals[:, 2]), 0.0, 1.0)]
     shown[~normals.any(axis=1)] = UNKNOWN_COLOUR
     return shown
 
@@ -326,7 +326,7 @@ def _label(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
 
 
 def _judged(drive: Drive, points: _Points) -> _Colours:
-    return np.asarray(judgement_colours()[drive.columns[JUDGED][points]])
+    return np.asarray(error_map_colours()[drive.columns[ERROR_MAP][points]])
 
 
 def _class(drive: Drive, points: _Points) -> _Colours:

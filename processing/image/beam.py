@@ -15,7 +15,7 @@ from processing.image.point_image import PointCloudImage
 from processing.points.drive import Drive
 
 Floats = NDArray[np.float64]
-Place = tuple[float, float, float]
+BeamPoint = tuple[float, float, float]
 
 _FEWEST_POINTS = 30
 _FEWEST_DEGREES = 40.0
@@ -51,22 +51,22 @@ class _Sweep:
 
 def beam_at(
     drive: Drive, image: PointCloudImage, row: int, column: int
-) -> tuple[Place, Place] | None:
+) -> tuple[BeamPoint, BeamPoint] | None:
     """Where the laser was and which way it looked for a pixel.
 
     Parameters
     ----------
     image : PointCloudImage
-        Of the drive; of any kind that has turns.
+        Of the drive; of any kind that has revolutions.
 
     Returns
     -------
     tuple of two (3,) tuples, or None
-        Origin (m, project CRS) and unit direction. None without turns, outside the image, and
+        Origin (m, project CRS) and unit direction. None without revolutions, outside the image, and
         where a turn has too few points to say.
     """
-    turns = drive.turns
-    if turns is None or not (0 <= row < image.rows and 0 <= column < image.width):
+    revolutions = drive.revolutions
+    if revolutions is None or not (0 <= row < image.rows and 0 <= column < image.width):
         return None
     start, stop = int(image.row_starts[row]), int(image.row_starts[row + 1])
     if stop - start < _FEWEST_POINTS:
@@ -78,20 +78,20 @@ def beam_at(
     pulses = np.asarray(drive.columns["pulse"][points], dtype=np.float64) - pulse
     xyz, trajectory = drive.xyz(points), drive.trajectory
     if trajectory is None:
-        sweep = _sweep_of(xyz - xyz[0], pulses, 2 * np.pi / turns.pulses_per_turn)
-        return None if sweep is None else _as_places(sweep.centre + xyz[0], sweep.direction(0.0))
+        sweep = _sweep_of(xyz - xyz[0], pulses, 2 * np.pi / revolutions.pulses_per_revolution)
+        return None if sweep is None else _as_positions(sweep.centre + xyz[0], sweep.direction(0.0))
     times = np.asarray(drive.columns["time"][points], dtype=np.float64)
     slope = np.polyfit(pulses, times - times[0], 1)
     moment = np.array([times[0] + slope[1]])
     if not (trajectory.covers(times).all() and trajectory.covers(moment).all()):
         return None
     vehicle = trajectory.to_vehicle(xyz, times)
-    sweep = _sweep_of(vehicle, pulses, 2 * np.pi / turns.pulses_per_turn)
+    sweep = _sweep_of(vehicle, pulses, 2 * np.pi / revolutions.pulses_per_revolution)
     if sweep is None:
         return None
     turned = trajectory.rotations_at(moment)[0]
     origin = trajectory.positions_at(moment)[0] + turned @ sweep.centre
-    return _as_places(origin, turned @ sweep.direction(0.0))
+    return _as_positions(origin, turned @ sweep.direction(0.0))
 
 
 def _sweep_of(xyz: Floats, pulses: Floats, rate: float) -> _Sweep | None:
@@ -144,6 +144,6 @@ def _turned_centre(flat: Floats, angles: Floats) -> tuple[Floats, float, float] 
     return centre, phase, float(values[-1]) / length
 
 
-def _as_places(origin: Floats, direction: Floats) -> tuple[Place, Place]:
+def _as_positions(origin: Floats, direction: Floats) -> tuple[BeamPoint, BeamPoint]:
     (x, y, z), (east, north, up) = origin.tolist(), direction.tolist()
     return (x, y, z), (east, north, up)

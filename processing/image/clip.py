@@ -35,9 +35,9 @@ class Clip:
         return Clip(_planes(normals, np.concatenate([low, -high])))
 
     @staticmethod
-    def around(places: Floats, margin_m: float) -> Clip:
+    def around(positions: Floats, margin_m: float) -> Clip:
         """So far about places, (n, 3) float64, m, project CRS; n ≥ 1."""
-        return Clip.box(places.min(axis=0) - margin_m, places.max(axis=0) + margin_m)
+        return Clip.box(positions.min(axis=0) - margin_m, positions.max(axis=0) + margin_m)
 
     @staticmethod
     def upright(outline: Floats) -> Clip:
@@ -59,8 +59,8 @@ class Clip:
         planes = np.array(self.planes, dtype=np.float64).reshape(-1, 4)
         planes_kernel(np.ascontiguousarray(xyz, dtype=np.float64), planes, inside)
         if self.corridor is not None:
-            places = np.flatnonzero(inside)
-            inside[places] = self.corridor.holds(xyz[places])
+            positions = np.flatnonzero(inside)
+            inside[positions] = self.corridor.holds(xyz[positions])
         return inside
 
     def may_hold(self, low: Floats, high: Floats) -> NDArray[np.bool_]:

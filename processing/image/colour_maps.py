@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.points.classes import point_classes
-from processing.points.judgement import Judgement
+from processing.points.error_map import ErrorMapValue
 
 Colours = NDArray[np.uint8]
 
@@ -21,11 +21,11 @@ EMPTY_COLOUR = (8, 24, 88)
 UNKNOWN_COLOUR = (96, 96, 96)
 """Points whose attribute isn't known: too few neighbours, in no camera image."""
 
-JUDGEMENT_COLOURS: Mapping[Judgement, str] = {
-    Judgement.RIGHTLY_KEPT: "#9a9a9a",
-    Judgement.RIGHTLY_REMOVED: "#56b4e9",
-    Judgement.WRONGLY_REMOVED: "#d55e00",
-    Judgement.WRONGLY_KEPT: "#f0e442",
+ERROR_MAP_COLOURS: Mapping[ErrorMapValue, str] = {
+    ErrorMapValue.RIGHTLY_KEPT: "#9a9a9a",
+    ErrorMapValue.RIGHTLY_REMOVED: "#56b4e9",
+    ErrorMapValue.WRONGLY_REMOVED: "#d55e00",
+    ErrorMapValue.WRONGLY_KEPT: "#f0e442",
 }
 """Of Okabe and Ito (2008), and a grey: told apart by every eye, the two mistakes also in print."""
 
@@ -70,10 +70,10 @@ def class_colours() -> Colours:
 
 
 @lru_cache(maxsize=1)
-def judgement_colours() -> Colours:
-    """(256, 3) by `Judgement`: what is right is grey or blue, what is wrong stands out."""
+def error_map_colours() -> Colours:
+    """(256, 3) by `ErrorMapValue`: what is right is grey or blue, what is wrong stands out."""
     table = np.full((256, 3), _NOT_JUDGED, np.uint8)
-    for judgement, colour in JUDGEMENT_COLOURS.items():
+    for judgement, colour in ERROR_MAP_COLOURS.items():
         table[judgement] = tuple(bytes.fromhex(colour[1:]))
     return table
 
@@ -95,7 +95,7 @@ def segment_colours(segments: NDArray[np.int32]) -> Colours:
     return colours
 
 
-def stretched(values: NDArray[np.floating], low: float, high: float) -> NDArray[np.uint8]:
+def stretch_values(values: NDArray[np.floating], low: float, high: float) -> NDArray[np.uint8]:
     """Numbers between low and high as 0 to 255; outside they are clipped.
 
     Where low and high are the same, numbers that are the same too are in the middle.
@@ -121,9 +121,9 @@ def _distinct_colours() -> Colours:
 
 
 def _between(stops: tuple[tuple[int, int, int], ...], count: int) -> Colours:
-    places = np.linspace(0, len(stops) - 1, count)
+    positions = np.linspace(0, len(stops) - 1, count)
     channels = np.array(stops, dtype=np.float64).T
-    mixed = [np.interp(places, np.arange(len(stops)), channel) for channel in channels]
+    mixed = [np.interp(positions, np.arange(len(stops)), channel) for channel in channels]
     return np.asarray(np.rint(np.stack(mixed, axis=1)), dtype=np.uint8)
 
 

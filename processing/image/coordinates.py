@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class Coordinates:
     offset: tuple[float, float, float]
     folder: Path | None = None
 
-    def stretch(self, start: int, stop: int) -> NDArray[np.int32]:
+    def chunk(self, start: int, stop: int) -> NDArray[np.int32]:
         """Integers of the points ``start … stop − 1``: (k, 3) int32."""
         if self.folder is None:
             return np.ascontiguousarray(self.xyz[start:stop])
-        integers: NDArray[np.int32] = read_stretch(self.folder, "xyz", start, stop)
+        integers: NDArray[np.int32] = read_chunk(self.folder, "xyz", start, stop)
         return integers

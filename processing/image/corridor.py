@@ -29,13 +29,13 @@ _USUAL_HEIGHT_M = 2.0  # of a vehicle's reference point, where nothing was measu
 
 
 @dataclass(frozen=True)
-class Slab:
+class CorridorExtent:
     """How far a corridor reaches, m.
 
     Attributes
     ----------
     left_m, right_m : float
-        From the way of the vehicle, in plan.
+        From the vehicle's path, in plan.
     lowest_m, highest_m : float
         Above the road; negative below it.
     """
@@ -59,7 +59,7 @@ class Corridor:
     slab : Slab
     """
 
-    def __init__(self, drive: Drive, slab: Slab) -> None:
+    def __init__(self, drive: Drive, slab: CorridorExtent) -> None:
         if drive.trajectory is None:
             message = "a corridor needs a trajectory"
             raise ValueError(message)
@@ -72,7 +72,7 @@ class Corridor:
         inside = np.empty(len(xyz), np.bool_)
         corridor_kernel(
             np.ascontiguousarray(xyz, dtype=np.float64),
-            index.way,
+            index.vehicle_path,
             index.keys,
             index.nearest,
             np.array([*index.corner, index.cell_m, float(index.columns)]),
@@ -88,7 +88,7 @@ class Corridor:
         reach = _reach_m(slab) + np.hypot(*half.T) + index.cell_m
         away, _ = index.tree.query(middle)
         near: NDArray[np.bool_] = away <= reach
-        heights = index.way[:, 2]
+        heights = index.vehicle_path[:, 2]
         near &= low[:, 2] <= heights.max() + slab.highest_m
         near &= high[:, 2] >= heights.min() + slab.lowest_m
         return near
@@ -104,7 +104,7 @@ class _Index:
 
     Attributes
     ----------
-    way : (m, 3) float64
+    vehicle_path : (m, 3) float64
         On the road, about a cell apart; m ≥ 2.
     corner : (2,) float64
         Lowest easting and northing of all cells.
@@ -118,7 +118,7 @@ class _Index:
         Of the way in plan.
     """
 
-    way: Floats
+    vehicle_path: Floats
     corner: Floats
     cell_m: float
     columns: int
@@ -127,12 +127,12 @@ class _Index:
     tree: cKDTree
 
     @staticmethod
-    def of(way: Floats, reach_m: float) -> _Index:
+    def of(vehicle_path: Floats, reach_m: float) -> _Index:
         cell_m = max(_LEAST_CELL_M, reach_m / _CELLS_PER_REACH)
-        way = _in_steps(way, cell_m)
+        vehicle_path = _in_steps(vehicle_path, cell_m)
         rings = int(np.ceil(reach_m / cell_m)) + 1
-        corner = way[:, :2].min(axis=0) - (rings + 1) * cell_m
-        cells = np.floor((way[:, :2] - corner) / cell_m).astype(np.int64)
+        corner = vehicle_path[:, :2].min(axis=0) - (rings + 1) * cell_m
+        cells = np.floor((vehicle_path[:, :2] - corner) / cell_m).astype(np.int64)
         columns = int(cells[:, 1].max()) + rings + 2
         around = np.arange(-rings, rings + 1)
         offsets = (around[:, None] * columns + around).ravel()
@@ -141,12 +141,12 @@ class _Index:
         middles = corner + (np.column_stack(np.divmod(keys, columns)) + 0.5) * cell_m
         from scipy.spatial import cKDTree
 
-        tree = cKDTree(way[:, :2])
+        tree = cKDTree(vehicle_path[:, :2])
         nearest = np.asarray(tree.query(middles)[1], dtype=np.int64)
-        return _Index(way, corner, cell_m, columns, keys, nearest, tree)
+        return _Index(vehicle_path, corner, cell_m, columns, keys, nearest, tree)
 
 
-def _reach_m(slab: Slab) -> float:
+def _reach_m(slab: CorridorExtent) -> float:
     return max(slab.left_m, slab.right_m, 0.0)
 
 
@@ -160,27 +160,27 @@ def _road_below(drive: Drive) -> Floats:
         return np.zeros((0, 3))
     low, high = np.array(drive.info.lowest), np.array(drive.info.highest)
     inside = ((trajectory.xyz >= low) & (trajectory.xyz <= high))[:, :2].all(axis=1)
-    way = trajectory.xyz[inside] if inside.sum() > 1 else trajectory.xyz
+    vehicle_path = trajectory.xyz[inside] if inside.sum() > 1 else trajectory.xyz
     heights = []
-    for place in way[np.linspace(0, len(way) - 1, _PROBES).astype(np.int64)]:
-        point = nearest_point(drive, place - [0.0, 0.0, _LOWERED_M], _PROBE_REACH_M)
+    for position in vehicle_path[np.linspace(0, len(vehicle_path) - 1, _PROBES).astype(np.int64)]:
+        point = nearest_point(drive, position - [0.0, 0.0, _LOWERED_M], _PROBE_REACH_M)
         if point >= 0:
-            heights.append(float(place[2] - drive.xyz(np.array([point]))[0, 2]))
-    return way - [0.0, 0.0, float(np.median(heights)) if heights else _USUAL_HEIGHT_M]
+            heights.append(float(position[2] - drive.xyz(np.array([point]))[0, 2]))
+    return vehicle_path - [0.0, 0.0, float(np.median(heights)) if heights else _USUAL_HEIGHT_M]
 
 
-def _in_steps(way: Floats, step_m: float) -> Floats:
+def _in_steps(vehicle_path: Floats, step_m: float) -> Floats:
     """The way with a place about every step, however slow the vehicle was; at least two places."""
-    gone = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(way[:, :2], axis=0).T))])
+    gone = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(vehicle_path[:, :2], axis=0).T))])
     count = max(2, int(np.ceil(gone[-1] / step_m)) + 1)
-    places = np.linspace(0.0, max(float(gone[-1]), 1e-6), count)
-    return np.column_stack([np.interp(places, gone, axis) for axis in way.T])
+    positions = np.linspace(0.0, max(float(gone[-1]), 1e-6), count)
+    return np.column_stack([np.interp(positions, gone, axis) for axis in vehicle_path.T])
 
 
 @kernel
 def corridor_kernel(
     xyz: NDArray[np.float64],
-    way: NDArray[np.float64],
+    vehicle_path: NDArray[np.float64],
     keys: NDArray[np.int64],
     nearest: NDArray[np.int64],
     cells: NDArray[np.float64],
@@ -205,18 +205,20 @@ def corridor_kernel(
         if at >= keys.size or keys[at] != key:
             continue
         first = max(nearest[at] - _SEGMENTS_ASIDE, 0)
-        last = min(nearest[at] + _SEGMENTS_ASIDE, way.shape[0] - 1)
+        last = min(nearest[at] + _SEGMENTS_ASIDE, vehicle_path.shape[0] - 1)
         best, side, height = np.inf, 0.0, 0.0
         for step in range(first, last):
-            ax, ay = way[step, 0], way[step, 1]
-            dx, dy = way[step + 1, 0] - ax, way[step + 1, 1] - ay
+            ax, ay = vehicle_path[step, 0], vehicle_path[step, 1]
+            dx, dy = vehicle_path[step + 1, 0] - ax, vehicle_path[step + 1, 1] - ay
             share = ((x - ax) * dx + (y - ay) * dy) / max(dx * dx + dy * dy, 1e-12)
             share = min(max(share, 0.0), 1.0)
             away = (x - ax - share * dx) ** 2 + (y - ay - share * dy) ** 2
             if away < best:
                 best = away
                 side = dx * (y - ay) - dy * (x - ax)
-                height = way[step, 2] + share * (way[step + 1, 2] - way[step, 2])
+                height = vehicle_path[step, 2] + share * (
+                    vehicle_path[step + 1, 2] - vehicle_path[step, 2]
+                )
         above = xyz[i, 2] - height
         limit = limits[0] if side >= 0.0 else limits[1]
         inside[i] = best <= limit * limit and limits[2] <= above <= limits[3]

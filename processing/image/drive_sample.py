@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 
 _PIECES = 64
 _PIECE_POINTS = 4096
@@ -39,6 +39,6 @@ def _sorted_sample(folder: Path, name: str, count: int, axis: int | None) -> NDA
         starts, length = np.zeros(1, np.int64), count
     else:
         length = _PIECE_POINTS
-    pieces = [read_stretch(folder, name, int(start), int(start) + length) for start in starts]
+    pieces = [read_chunk(folder, name, int(start), int(start) + length) for start in starts]
     values = np.concatenate([piece if axis is None else piece[:, axis] for piece in pieces])
     return np.sort(values.astype(np.float64))

@@ -207,10 +207,10 @@ def _bins_of(
     bins, before = 0, -1
     for i in range(by_order.size):
         s = profile[by_order[i], 0] + order * profile[by_order[i], 1]
-        place = int((s - low) / size)
-        if place != before:
+        position = int((s - low) / size)
+        if position != before:
             starts[bins] = i
-            bins, before = bins + 1, place
+            bins, before = bins + 1, position
     starts[bins] = by_order.size
     return bins
 

@@ -41,7 +41,7 @@ _FOLDED = math.radians(110.0)  # sharper bends come from rows that don't fit on 
 
 
 @dataclass(frozen=True)
-class Section:
+class EdgeProfile:
     """The profile across an edge.
 
     Attributes
@@ -70,7 +70,7 @@ class Section:
         return np.asarray(along / np.linalg.norm(along))
 
     @property
-    def places(self) -> _Floats:
+    def positions(self) -> _Floats:
         """(k, 3) the corners, m, project CRS."""
         left = np.array([-math.sin(self.heading_rad), math.cos(self.heading_rad), 0.0])
         up = np.array([0.0, 0.0, 1.0])
@@ -80,7 +80,7 @@ class Section:
         )
 
 
-def section_at(xyz: _Floats, center: _Floats) -> Section | None:
+def section_at(xyz: _Floats, center: _Floats) -> EdgeProfile | None:
     """The profile of points about a place, seen along the edge that runs there.
 
     Parameters
@@ -103,7 +103,7 @@ def section_at(xyz: _Floats, center: _Floats) -> Section | None:
     tried = np.tile(frame, (_TRIED_HEADINGS.size, 1))
     tried[:, 0] += _TRIED_HEADINGS
     costs = _roughness(local, tried)
-    best: Section | None = None
+    best: EdgeProfile | None = None
     starts = (frame, tried[costs.argmin()])
     for start in starts[: 1 if np.array_equal(*starts) else 2]:
         if _runs_with_rows(local, start):
@@ -118,7 +118,7 @@ def section_at(xyz: _Floats, center: _Floats) -> Section | None:
 
 def section_along(
     local: _Floats, frame: _Floats, reach: tuple[float, float], order: int
-) -> Section | None:
+) -> EdgeProfile | None:
     """The profile of points about the origin when the direction of the edge is nearly known."""
     corners = np.empty((MOST_CORNERS, CORNER_COLUMNS))
     noise = _NOISE_M
@@ -133,7 +133,7 @@ def section_along(
         # Rougher ground or another scanner: again, by what was found.
         noise = min(_MOST_NOISE_M, _NOISE_MARGIN * spread)
     is_edge = np.abs(corners[:count, BEND]) <= _FOLDED
-    return Section(
+    return EdgeProfile(
         center=np.zeros(3),
         heading_rad=float(turned[0]),
         grade=float(turned[1]),
@@ -200,9 +200,9 @@ def _roughness(local: _Floats, frames: _Floats) -> _Floats:
     for order in (1, -1):
         # Along the order of the profile, and square to it.
         s, w = (u + order * v) / math.sqrt(2), (v - order * u) / math.sqrt(2)
-        place = ((s / PATCH_M + 1.5) / 3.0 * _ROUGH_BINS).astype(np.int64)
+        position = ((s / PATCH_M + 1.5) / 3.0 * _ROUGH_BINS).astype(np.int64)
         flat = (
-            np.clip(place, 0, _ROUGH_BINS - 1) + np.arange(len(s))[:, None] * _ROUGH_BINS
+            np.clip(position, 0, _ROUGH_BINS - 1) + np.arange(len(s))[:, None] * _ROUGH_BINS
         ).ravel()
         sums = np.stack(
             [

@@ -21,7 +21,7 @@ from processing.image.step_kernels import (
     HEADING,
     JUMP,
     LEFT,
-    PLACE,
+    POSITION,
     RIGHT,
     STEP,
     TWIST,
@@ -41,7 +41,7 @@ LONGER_M = 0.7
 """Half the length on the far side of a street, where that is too short."""
 
 
-class Ground(Enum):
+class StepGround(Enum):
     """What lies about a place that isn't a step."""
 
     FLAT = "flat"
@@ -49,7 +49,7 @@ class Ground(Enum):
 
 
 @dataclass(frozen=True)
-class Step:
+class EdgeStep:
     """A low step.
 
     Attributes
@@ -87,7 +87,7 @@ class Step:
         return (self.lower, lower), (self.upper, upper)
 
 
-def step_at(xyz: _Floats, center: _Floats) -> Step | Ground:
+def step_at(xyz: _Floats, center: _Floats) -> EdgeStep | StepGround:
     """The low step within 18 cm of a place, in any direction.
 
     Parameters
@@ -99,7 +99,7 @@ def step_at(xyz: _Floats, center: _Floats) -> Step | Ground:
     needed = _length_needed(local)
     if needed > LONGEST_M:
         found = _step_along(local, center, LONGER_M)
-        if found is not Ground.OTHER:
+        if found is not StepGround.OTHER:
             return found
     return _step_along(local, center, max(_SHORTEST_M, min(LONGEST_M, needed)))
 
@@ -116,22 +116,22 @@ def _length_needed(local: _Floats) -> float:
     return _WANTED / max(1.0, 4 * ACROSS_M * near / (math.pi * LONGEST_M**2))
 
 
-def _step_along(local: _Floats, center: _Floats, along: float) -> Step | Ground:
+def _step_along(local: _Floats, center: _Floats, along: float) -> EdgeStep | StepGround:
     local = local[(local**2).sum(axis=1) <= along**2 + ACROSS_M**2]
     local = np.ascontiguousarray(local[:: 1 + local.shape[0] // _MOST])
     found = np.zeros(UNKNOWNS)
     kind = step_kernel(local, along, found)
     if kind != STEP:
-        return Ground.FLAT if kind == FLAT else Ground.OTHER
+        return StepGround.FLAT if kind == FLAT else StepGround.OTHER
     return _step(found, center)
 
 
-def _step(found: _Floats, center: _Floats) -> Step:
+def _step(found: _Floats, center: _Floats) -> EdgeStep:
     cos, sin = math.cos(found[HEADING]), math.sin(found[HEADING])
-    far = found[PLACE] + found[WIDTH]
-    lower = np.array([-found[PLACE] * sin, found[PLACE] * cos, found[BASE]])
+    far = found[POSITION] + found[WIDTH]
+    lower = np.array([-found[POSITION] * sin, found[POSITION] * cos, found[BASE]])
     upper = np.array([-far * sin, far * cos, found[BASE] + found[JUMP]])
-    return Step(
+    return EdgeStep(
         center + lower,
         center + upper,
         float(found[HEADING]),

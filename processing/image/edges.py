@@ -24,12 +24,12 @@ from processing.image.edge_kernels import (
 from processing.image.edge_sections import (
     LEAST_STRENGTH_M,
     PATCH_M,
-    Section,
+    EdgeProfile,
     length_needed,
     section_along,
     section_at,
 )
-from processing.image.edge_steps import Ground, Step, reach_needed, step_at
+from processing.image.edge_steps import EdgeStep, StepGround, reach_needed, step_at
 from processing.image.points_around import neighbours
 from processing.points.damaged_pulses import damaged_pulses
 
@@ -56,7 +56,7 @@ _COMPANY, _COMPANY_M = 3, 0.05  # others that lie so near a point bear it out
 
 
 @dataclass(frozen=True)
-class EdgePlace:
+class EdgePosition:
     """A place on an edge of the cloud.
 
     Attributes
@@ -83,7 +83,7 @@ def strongest_bend(drive: Drive, point: int, within_px: int = 8) -> int:
     return _NONE if found is None else found.point
 
 
-def edge_beside(drive: Drive, point: int, within_px: int = 8) -> EdgePlace | None:
+def edge_beside(drive: Drive, point: int, within_px: int = 8) -> EdgePosition | None:
     """The edge of the cloud beside a point: curb edge, wall foot, wall top.
 
     Parameters
@@ -95,7 +95,7 @@ def edge_beside(drive: Drive, point: int, within_px: int = 8) -> EdgePlace | Non
 
     Returns
     -------
-    EdgePlace or None
+    EdgePosition or None
         None where the surface doesn't bend: on a flat road, in leaves, on a wire.
 
     Notes
@@ -115,9 +115,9 @@ def edge_beside(drive: Drive, point: int, within_px: int = 8) -> EdgePlace | Non
     edges: list[_Edge] = []
     for offset in _outward(row.xyz, row.middle):
         ground = step_at(xyz, row.xyz[offset])
-        if isinstance(ground, Step):
+        if isinstance(ground, EdgeStep):
             edges += _edges_of_step(xyz, row, ground, within_px)
-        elif ground is Ground.OTHER:
+        elif ground is StepGround.OTHER:
             edges += _edges_beside(xyz, row, row.xyz[offset], within_px)
         # No edge is twice as strong as these.
         if any(edge.strength_m >= _COMPARABLE * LONGEST_ARM_M for edge in edges):
@@ -129,10 +129,10 @@ def edge_beside(drive: Drive, point: int, within_px: int = 8) -> EdgePlace | Non
         (edge for edge in edges if edge.strength_m >= _COMPARABLE * strongest),
         key=lambda edge: edge.distance_m,
     )
-    place = row.nearest_on(edge.place, edge.direction)
-    nearest = int(np.linalg.norm(xyz - place, axis=1).argmin())
-    easting, northing, height = place.tolist()
-    return EdgePlace(int(around[nearest]), (easting, northing, height))
+    position = row.nearest_on(edge.position, edge.direction)
+    nearest = int(np.linalg.norm(xyz - position, axis=1).argmin())
+    easting, northing, height = position.tolist()
+    return EdgePosition(int(around[nearest]), (easting, northing, height))
 
 
 def lowest_point(drive: Drive, point: int, radius_m: float) -> int:
@@ -186,7 +186,7 @@ def _extreme_point(drive: Drive, point: int, radius_m: float, sign: float) -> in
 class _Edge:
     """An edge that passes a row: place and direction, strength, distance from the row's middle."""
 
-    place: _Floats
+    position: _Floats
     direction: _Floats
     strength_m: float
     distance_m: float
@@ -211,7 +211,7 @@ def _edges_beside(xyz: _Floats, row: _Row, center: _Floats, within_px: int) -> l
     edges = []
     for k, seen in again.items():
         if seen is None and strengths[k] >= _COMPARABLE * LONGEST_ARM_M:
-            seen = section.places[k], section.direction, float(strengths[k])
+            seen = section.positions[k], section.direction, float(strengths[k])
         if seen is not None and (edge := _passing(row, seen, within_px)) is not None:
             edges.append(edge)
     return edges
@@ -228,10 +228,10 @@ def _around_row(drive: Drive, point: int, reach_m: float) -> tuple[_Integers, _F
     return around, xyz
 
 
-def _edges_of_step(xyz: _Floats, row: _Row, step: Step, within_px: int) -> list[_Edge]:
+def _edges_of_step(xyz: _Floats, row: _Row, step: EdgeStep, within_px: int) -> list[_Edge]:
     """Both edges of a step where the row cuts it; tested as a whole, they count like plain ones."""
     again = step_at(xyz, row.nearest_on(*step.edges[0]))
-    step = again if isinstance(again, Step) else step
+    step = again if isinstance(again, EdgeStep) else step
     strength = max(step.height_m, _COMPARABLE * LONGEST_ARM_M)
     passing = [_passing(row, (*edge, strength), within_px) for edge in step.edges]
     return [edge for edge in passing if edge is not None]
@@ -239,24 +239,24 @@ def _edges_of_step(xyz: _Floats, row: _Row, step: Step, within_px: int) -> list[
 
 def _passing(row: _Row, seen: tuple[_Floats, _Floats, float], within_px: int) -> _Edge | None:
     """The edge, if the row cuts it within the pixels; a row that runs along it doesn't."""
-    place, direction, strength = seen
-    off = _off_line(row.xyz, place, direction)
-    nearest = row.nearest_to(place, direction)
+    position, direction, strength = seen
+    off = _off_line(row.xyz, position, direction)
+    nearest = row.nearest_to(position, direction)
     first, last = max(0, nearest - 3), min(off.size - 1, nearest + 3)
     tangent = row.xyz[last, :2] - row.xyz[first, :2]
     sine = abs(tangent[0] * direction[1] - tangent[1] * direction[0])
     is_cut = sine >= _LEAST_CUT * float(np.linalg.norm(row.xyz[last] - row.xyz[first]))
     if not (is_cut or off[nearest] <= _ON_EDGE_M) or abs(row.offsets[nearest]) > within_px + 1:
         return None
-    return _Edge(place, direction, strength, float(off[row.middle]))
+    return _Edge(position, direction, strength, float(off[row.middle]))
 
 
 def _seen_again(
-    xyz: _Floats, row: _Row, section: Section, corner: int
+    xyz: _Floats, row: _Row, section: EdgeProfile, corner: int
 ) -> tuple[_Floats, _Floats, float] | None:
     """The same corner in a narrow profile where the row cuts it; None where it isn't there."""
-    place = row.nearest_on(section.places[corner], section.direction)
-    local = xyz - place
+    position = row.nearest_on(section.positions[corner], section.direction)
+    local = xyz - position
     local = np.ascontiguousarray(local[(local**2).sum(axis=1) <= PATCH_M**2])
     frame = np.array([section.heading_rad, section.grade, section.curvature])
     for across in _ACROSS_AGAIN_M:
@@ -272,7 +272,7 @@ def _seen_again(
         if strengths.max(initial=0.0) > 0:
             k = int(strengths.argmax())
             strength = max(float(strengths[k]), float(section.corners[corner, STRENGTH]))
-            return place + again.places[k], again.direction, strength
+            return position + again.positions[k], again.direction, strength
     return None
 
 
@@ -290,15 +290,15 @@ class _Row:
         away = self.xyz - self.xyz[self.middle]
         return min(_MOST_REACH_M, float(np.linalg.norm(away, axis=1).max()))
 
-    def nearest_to(self, place: _Floats, direction: _Floats) -> int:
+    def nearest_to(self, position: _Floats, direction: _Floats) -> int:
         """The point of the row nearest to a line; near the middle where the row runs along it."""
         aside = np.linalg.norm(self.xyz - self.xyz[self.middle], axis=1)
-        return int((_off_line(self.xyz, place, direction) + _AS_NEAR * aside).argmin())
+        return int((_off_line(self.xyz, position, direction) + _AS_NEAR * aside).argmin())
 
-    def nearest_on(self, place: _Floats, direction: _Floats) -> _Floats:
+    def nearest_on(self, position: _Floats, direction: _Floats) -> _Floats:
         """(3,) where the row comes nearest to a line."""
-        nearest = self.nearest_to(place, direction)
-        return np.asarray(place + ((self.xyz[nearest] - place) @ direction) * direction)
+        nearest = self.nearest_to(position, direction)
+        return np.asarray(position + ((self.xyz[nearest] - position) @ direction) * direction)
 
 
 def _row_around(drive: Drive, point: int, within_px: int) -> _Row:
@@ -323,8 +323,8 @@ def _outward(xyz: _Floats, middle: int) -> list[int]:
     return chosen
 
 
-def _off_line(xyz: _Floats, place: _Floats, direction: _Floats) -> _Floats:
+def _off_line(xyz: _Floats, position: _Floats, direction: _Floats) -> _Floats:
     """(n,) distances of points from a line."""
-    away = xyz - place
+    away = xyz - position
     along = away @ direction
     return np.asarray(np.linalg.norm(away - along[:, None] * direction, axis=1))

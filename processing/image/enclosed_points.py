@@ -74,7 +74,7 @@ def points_enclosed(
     for start, stop in _stretches(image, sight, bands.limits):
         inside = np.empty(stop - start, np.bool_)
         enclosed_kernel(
-            coordinates.stretch(start, stop),
+            coordinates.chunk(start, stop),
             matrix,
             sight.nearest,
             bands.limits,

@@ -54,7 +54,7 @@ class FixedRaster:
 
 
 def fixed_raster_of(image: PixelRows, rows: range) -> FixedRaster:
-    """The raster of `mode_width` columns of a stretch of rows."""
+    """The raster of `mode_width` columns of a chunk of rows."""
     width = min(image.mode_width, image.width)
     points = image.raster(rows, range(width))
     start, stop = int(image.row_starts[rows.start]), int(image.row_starts[rows.stop])

@@ -15,7 +15,7 @@ STOP_S = 1.0
 """A longer time without a point is a stop, a shorter one missing returns."""
 
 
-def closed_up(
+def close_gaps(
     plan: RowPlan,
     row_starts: NDArray[np.int64],
     pulses: NDArray[np.int64],

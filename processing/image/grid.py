@@ -1,4 +1,4 @@
-"""PixelGrid: the pixels of a stretch of rows, the form in which kernels meet the image."""
+"""PixelGrid: the pixels of a chunk of rows, the form in which kernels meet the image."""
 
 from __future__ import annotations
 

@@ -16,14 +16,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.gaps import STOP_S, closed_up
+from processing.image.gaps import STOP_S, close_gaps
 from processing.image.kinds import ImageKind
-from processing.image.rows_of_kind import Revolutions, RowPlan, plan_of_cells, plan_of_turns
+from processing.image.rows_of_kind import (
+    RevolutionSource,
+    RowPlan,
+    plan_of_cells,
+    plan_of_revolutions,
+)
 from processing.owned_files import new_file
 from processing.points.array_files import read_arrays
 from processing.points.columns import column_path
 from processing.points.damaged_pulses import damaged_pulses
-from processing.points.ordering import read_stretch, stretches
+from processing.points.ordering import chunk_ranges, read_chunk
 
 _Integers = NDArray[np.int64]
 
@@ -65,7 +70,7 @@ class ImageRows:
 
 
 def image_rows(
-    kind: ImageKind, pulses: _Integers, folding: Revolutions | int, folder: Path | None = None
+    kind: ImageKind, pulses: _Integers, folding: RevolutionSource | int, folder: Path | None = None
 ) -> ImageRows:
     """The rows of an image.
 
@@ -86,7 +91,7 @@ def image_rows(
     plan = (
         plan_of_cells(folding, pulses, folder)
         if isinstance(folding, int)
-        else plan_of_turns(kind, folding, pulses, folder)
+        else plan_of_revolutions(kind, folding, pulses, folder)
     )
     if folder is None or pulses.size < _FEW_POINTS:
         return _found(plan, pulses, folding, folder)
@@ -112,11 +117,11 @@ def _path(folder: Path, kind: ImageKind) -> Path:
 
 
 def _found(
-    plan: RowPlan, pulses: _Integers, folding: Revolutions | int, folder: Path | None
+    plan: RowPlan, pulses: _Integers, folding: RevolutionSource | int, folder: Path | None
 ) -> ImageRows:
     starts = _row_starts(plan, pulses, folder)
     if not isinstance(folding, int):
-        plan, starts = closed_up(plan, starts, pulses, STOP_S * folding.pulse_rate_hz)
+        plan, starts = close_gaps(plan, starts, pulses, STOP_S * folding.pulse_rate_hz)
     found = ImageRows(
         starts,
         plan.doubled_origins,
@@ -148,14 +153,14 @@ def _row_starts(plan: RowPlan, pulses: _Integers, folder: Path | None) -> _Integ
 
 def _stretches_of(pulses: _Integers, folder: Path | None) -> Iterator[tuple[int, _Integers]]:
     """First point and pulses of consecutive stretches; read, for what is mapped stays in memory."""
-    for start, stop in stretches(pulses.size, _POINTS_AT_ONCE):
+    for start, stop in chunk_ranges(pulses.size, _POINTS_AT_ONCE):
         if folder is None:
             yield start, pulses[start:stop]
         else:
-            yield start, read_stretch(folder, "pulse", start, stop)
+            yield start, read_chunk(folder, "pulse", start, stop)
 
 
-def _made_of(pulses: _Integers, folding: Revolutions | int, folder: Path) -> _Integers:
+def _made_of(pulses: _Integers, folding: RevolutionSource | int, folder: Path) -> _Integers:
     """A few numbers that are others for other pulses or turns, or for pulses written since."""
     path = column_path(folder, "pulse")
     written_ns = path.stat().st_mtime_ns if path.is_file() else 0
@@ -166,7 +171,7 @@ def _made_of(pulses: _Integers, folding: Revolutions | int, folder: Path) -> _In
         int(np.sum(values, dtype=np.int64))
         for values in (folding.fold_pulses, folding.row_ends, folding.segments)
     ]
-    rates = np.array([folding.pulses_per_turn, folding.pulse_rate_hz]).view(np.int64)
+    rates = np.array([folding.pulses_per_revolution, folding.pulse_rate_hz]).view(np.int64)
     return np.array([*ends, folding.fold_pulses.size, *sums, *rates.tolist()], np.int64)
 
 
@@ -212,8 +217,8 @@ def _belongs(kept: ImageRows, plan: RowPlan, pulses: _Integers) -> bool:
     if not kept.origins.size:
         return True
     order = np.argsort(plan.doubled_origins, kind="stable")
-    places = np.searchsorted(plan.doubled_origins, kept.origins, sorter=order)
-    same = order[np.minimum(places, order.size - 1)]
+    positions = np.searchsorted(plan.doubled_origins, kept.origins, sorter=order)
+    same = order[np.minimum(positions, order.size - 1)]
     is_planned = plan.doubled_origins[same] == kept.origins
     is_planned &= plan.doubled_spans[same] == kept.spans
     is_planned &= plan.widths[same] == kept.widths

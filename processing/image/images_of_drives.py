@@ -15,7 +15,7 @@ def image_of(drive: Drive, kind: ImageKind) -> PointCloudImage:
     Raises
     ------
     Unsuitable
-        The drive has no turns and the kind needs them, or the reverse.
+        The drive has no revolutions and the kind needs them, or the reverse.
     """
     if kind not in drive.image_kinds:
         raise Unsuitable(
@@ -25,7 +25,7 @@ def image_of(drive: Drive, kind: ImageKind) -> PointCloudImage:
             ).filled(kind=kind.title),
             Text.same(drive.info.name),
             drive.info.rows_reason
-            if drive.turns is None
+            if drive.revolutions is None
             else Text("Choose one of the other kinds.", "ほかの種類を選んでください。"),
         )
     return drive.kept(kind, lambda: PointCloudImage.of_drive(drive, kind))

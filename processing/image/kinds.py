@@ -22,8 +22,8 @@ class ImageKind(Enum):
     SCAN = "scan"
 
     @property
-    def follows_way(self) -> bool:
-        """Whether its rows follow one another along the way of a vehicle."""
+    def follows_path(self) -> bool:
+        """Whether its rows follow one another along the vehicle's path of a vehicle."""
         return self not in (ImageKind.TOP_VIEW, ImageKind.SCAN)
 
     @property

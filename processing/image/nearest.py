@@ -16,8 +16,8 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 NONE = -1
-_FEW_PLACES = 8
-_PLACES_TOGETHER = 128
+_FEW_POSITIONS = 8
+_POSITIONS_TOGETHER = 128
 """So few that the points about them are looked through while a window waits."""
 _SLACK_M = 2.0
 """How far points may lie outside of bounds that were only sketched."""
@@ -67,25 +67,23 @@ class NearestSearch:
             self._look(mine[self._reaches(self._stretch, mine)])
         return bool(self._parts or self._waiting)
 
-    def _begin(self, stretch: int) -> None:
+    def _begin(self, chunk: int) -> None:
         """Take up the places that come near a stretch, some at a time."""
-        mine = np.flatnonzero(self._reaches(stretch, np.arange(len(self._xyz))))
+        mine = np.flatnonzero(self._reaches(chunk, np.arange(len(self._xyz))))
         if not mine.size:
             return
-        self._stretch = stretch
-        first, starts = stretch * TILE, self._image.row_starts
+        self._stretch = chunk
+        first, starts = chunk * TILE, self._image.row_starts
         self._start = int(starts[first])
         stop = int(starts[min(first + TILE, self._image.rows)])
-        self._integers = self._coordinates.stretch(self._start, stop)
-        self._parts = np.array_split(mine, -(-mine.size // _PLACES_TOGETHER))
+        self._integers = self._coordinates.chunk(self._start, stop)
+        self._parts = np.array_split(mine, -(-mine.size // _POSITIONS_TOGETHER))
 
-    def _reaches(self, stretch: int, places: Integers) -> NDArray[np.bool_]:
+    def _reaches(self, chunk: int, positions: Integers) -> NDArray[np.bool_]:
         """Whether points of a stretch may be nearer to places than what was found."""
-        xyz = self._xyz[places]
-        outside = np.maximum(
-            np.maximum(self._lowest[stretch] - xyz, xyz - self._highest[stretch]), 0
-        )
-        is_near: NDArray[np.bool_] = (outside**2).sum(axis=1) <= self._best[places] ** 2
+        xyz = self._xyz[positions]
+        outside = np.maximum(np.maximum(self._lowest[chunk] - xyz, xyz - self._highest[chunk]), 0)
+        is_near: NDArray[np.bool_] = (outside**2).sum(axis=1) <= self._best[positions] ** 2
         return is_near
 
     def _in_reach(self, within_m: float) -> list[int]:
@@ -94,35 +92,35 @@ class NearestSearch:
         apart = np.maximum(np.maximum(self._lowest - high, low - self._highest), 0.0)
         away = np.sqrt((apart**2).sum(axis=1))
         near = np.flatnonzero(away <= within_m)
-        stretches: list[int] = near[np.argsort(-away[near], kind="stable")].tolist()
-        return stretches
+        chunks: list[int] = near[np.argsort(-away[near], kind="stable")].tolist()
+        return chunks
 
     def _look(self, mine: Integers) -> None:
         if not mine.size:
             return
-        places, limit = self._xyz[mine], float(self._best[mine].max())
-        found, xyz = self._points_about(places, limit)
+        positions, limit = self._xyz[mine], float(self._best[mine].max())
+        found, xyz = self._points_about(positions, limit)
         if not found.size:
             return
-        if mine.size <= _FEW_PLACES:
-            squares = ((places[:, None, :] - xyz) ** 2).sum(axis=2)
+        if mine.size <= _FEW_POSITIONS:
+            squares = ((positions[:, None, :] - xyz) ** 2).sum(axis=2)
             nearest = squares.argmin(axis=1)
             away = np.sqrt(squares[np.arange(mine.size), nearest])
         else:
             from scipy.spatial import cKDTree
 
-            away, nearest = cKDTree(xyz).query(places, distance_upper_bound=limit * (1 + 1e-9))
+            away, nearest = cKDTree(xyz).query(positions, distance_upper_bound=limit * (1 + 1e-9))
         has_none = self.points[mine] == NONE
         is_nearer = (away < self._best[mine]) | (has_none & (away <= self._best[mine]))
         chosen = mine[is_nearer]
         self.points[chosen] = found[nearest[is_nearer]]
         self._best[chosen] = away[is_nearer]
 
-    def _points_about(self, places: Floats, limit: float) -> tuple[Integers, Floats]:
+    def _points_about(self, positions: Floats, limit: float) -> tuple[Integers, Floats]:
         """Points of the stretch in the box about places, and where they are."""
         scale, offset = np.array(self._coordinates.scale), np.array(self._coordinates.offset)
-        low = np.floor((places.min(axis=0) - limit - offset) / scale)
-        high = np.ceil((places.max(axis=0) + limit - offset) / scale)
+        low = np.floor((positions.min(axis=0) - limit - offset) / scale)
+        high = np.ceil((positions.max(axis=0) + limit - offset) / scale)
         easting = self._integers[:, 0]
         chosen = np.flatnonzero((easting >= low[0]) & (easting <= high[0]))
         for axis in (1, 2):
@@ -164,8 +162,8 @@ def nearest_points(drive: Drive, xyz: Floats, within_m: float) -> NearestSearch:
     made = [image_of(drive, kind) for kind in drive.image_kinds if drive.has_kept(kind)]
     made.sort(key=lambda one: not one.pyramid.is_ready)
     image = made[0] if made else image_of(drive, drive.image_kinds[0])
-    places = np.asarray(xyz, dtype=np.float64)
-    return NearestSearch(image, drive.coordinates, places, within_m)
+    positions = np.asarray(xyz, dtype=np.float64)
+    return NearestSearch(image, drive.coordinates, positions, within_m)
 
 
 def _bounds_of_stretches(image: PointCloudImage) -> tuple[Floats, Floats]:

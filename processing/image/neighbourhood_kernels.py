@@ -28,7 +28,7 @@ _FILLED = 0.8  # share of the reach within which the outer rows must lie
 _THINNEST = 0.01  # second to first eigenvalue below which points lie on a line
 
 
-class RowPoints(NamedTuple):
+class PointRows(NamedTuple):
     """Points in their rows; a point's column is ``clocks[point] − origins[row]``.
 
     ``xyz`` times ``scale`` is metres: int32 as delivered, or float64 with a scale of 1; ``clocks``
@@ -61,7 +61,7 @@ class Surfaces(NamedTuple):
 
 @kernel
 def neighbourhood_kernel(
-    rows: RowPoints, points: _Integers, radius: float, surfaces: Surfaces
+    rows: PointRows, points: _Integers, radius: float, surfaces: Surfaces
 ) -> None:
     """Normal, shape and mesh vector of chosen points; −1 among the points is left as zero."""
     sums = np.empty(9)
@@ -89,7 +89,7 @@ def neighbourhood_kernel(
 
 @kernel
 def _gather(
-    rows: RowPoints,
+    rows: PointRows,
     point: int,
     row: int,
     radius: float,
@@ -167,7 +167,7 @@ def _neighbour_row(segments: NDArray[np.int32], row: int, away: int) -> int:
 
 
 @kernel
-def _continued(rows: RowPoints, row: int) -> tuple[int, int]:
+def _continued(rows: PointRows, row: int) -> tuple[int, int]:
     """A row with those before and after it: the scan line goes on where a row ends."""
     before = _neighbour_row(rows.segments, row, -1)
     behind = _neighbour_row(rows.segments, row, 1)
@@ -177,12 +177,12 @@ def _continued(rows: RowPoints, row: int) -> tuple[int, int]:
 
 
 @kernel
-def _difference(rows: RowPoints, one: int, other: int, axis: int) -> float:
+def _difference(rows: PointRows, one: int, other: int, axis: int) -> float:
     return float((float(rows.xyz[one, axis]) - rows.xyz[other, axis]) * rows.scale[axis])
 
 
 @kernel
-def _distance(rows: RowPoints, one: int, other: int) -> float:
+def _distance(rows: PointRows, one: int, other: int) -> float:
     dx = _difference(rows, one, other, 0)
     dy = _difference(rows, one, other, 1)
     dz = _difference(rows, one, other, 2)
@@ -190,7 +190,7 @@ def _distance(rows: RowPoints, one: int, other: int) -> float:
 
 
 @kernel
-def _step_along(rows: RowPoints, point: int, row: int) -> float:
+def _step_along(rows: PointRows, point: int, row: int) -> float:
     """Distance to the nearer of the two next pixels in the row."""
     step, clock = _FAR, rows.clocks[point]
     start, stop = _continued(rows, row)
@@ -208,7 +208,7 @@ def _step_along(rows: RowPoints, point: int, row: int) -> float:
 
 
 @kernel
-def _usual_step(rows: RowPoints, point: int, row: int) -> float:
+def _usual_step(rows: PointRows, point: int, row: int) -> float:
     """Distance of pixels about a point, from the next few on the side where they are nearer."""
     step = _FAR
     for side in (-1, 1):
@@ -226,7 +226,7 @@ def _usual_step(rows: RowPoints, point: int, row: int) -> float:
 
 
 @kernel
-def _step_across(rows: RowPoints, point: int, row: int) -> tuple[float, int]:
+def _step_across(rows: PointRows, point: int, row: int) -> tuple[float, int]:
     """Distance to the next row, and by how many columns one moves along in going there."""
     column = rows.clocks[point] - rows.origins[row]
     for side in (1, -1):
@@ -239,25 +239,25 @@ def _step_across(rows: RowPoints, point: int, row: int) -> tuple[float, int]:
 
 
 @kernel
-def _start_of_search(rows: RowPoints, guess: int, other: int, clock: int) -> int:
+def _start_of_search(rows: PointRows, guess: int, other: int, clock: int) -> int:
     """The first point of a row whose clock isn't less; the last if none is."""
     start, stop = rows.row_starts[other], rows.row_starts[other + 1]
-    place = min(max(guess, start), stop - 1)
+    position = min(max(guess, start), stop - 1)
     step = 1
-    if rows.clocks[place] < clock:
-        low = place
-        while place < stop and rows.clocks[place] < clock:
-            low = place + 1
-            place += step
+    if rows.clocks[position] < clock:
+        low = position
+        while position < stop and rows.clocks[position] < clock:
+            low = position + 1
+            position += step
             step *= 2
-        high = min(place, stop)
+        high = min(position, stop)
     else:
-        high = place
-        while place >= start and rows.clocks[place] >= clock:
-            high = place
-            place -= step
+        high = position
+        while position >= start and rows.clocks[position] >= clock:
+            high = position
+            position -= step
             step *= 2
-        low = max(place + 1, start)
+        low = max(position + 1, start)
     while low < high:
         middle = (low + high) // 2
         if rows.clocks[middle] < clock:
@@ -269,7 +269,7 @@ def _start_of_search(rows: RowPoints, guess: int, other: int, clock: int) -> int
 
 @kernel
 def _nearest_in_row(
-    rows: RowPoints, point: int, row: int, other: int, column: int
+    rows: PointRows, point: int, row: int, other: int, column: int
 ) -> tuple[int, float]:
     """The point of another row nearest in space: downhill from a column, over small bumps."""
     if rows.row_starts[other] == rows.row_starts[other + 1]:
@@ -298,7 +298,7 @@ def _nearest_in_row(
 
 @kernel
 def _add_row(
-    rows: RowPoints,
+    rows: PointRows,
     point: int,
     middle: int,
     row: int,

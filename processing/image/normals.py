@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from processing.image.grid import PixelGrid
 from processing.image.neighbourhood_kernels import (
     MOST_ROWS_ASIDE,
-    RowPoints,
+    PointRows,
     Surfaces,
     neighbourhood_kernel,
 )
@@ -162,7 +162,7 @@ def _surfaces(
     monitor: Monitor,
 ) -> Surfaces:
     surfaces = Surfaces(*(np.empty((points.size, 3), np.float32) for _ in range(3)))
-    rows = RowPoints(
+    rows = PointRows(
         xyz=_read_only(xyz),
         scale=scale,
         clocks=_read_only(layout.clocks),

@@ -35,21 +35,21 @@ def ground_along(drive: Drive) -> Floats:
     trajectory = drive.trajectory
     if trajectory is None or drive.count == 0 or not len(trajectory.xyz):
         return np.empty((0, 3))
-    if drive.turns is not None:
+    if drive.revolutions is not None:
         found = _below_rows(drive, trajectory.xyz)
         if len(found):
             return found
     return _below_samples(drive, trajectory.xyz)
 
 
-def ceilings_above(ground: Floats, places: Floats, limit_m: float) -> Floats:
+def ceilings_above(ground: Floats, positions: Floats, limit_m: float) -> Floats:
     """Heights up to which points are shown.
 
     Parameters
     ----------
     ground : (m, 3) float64
         The road's places; not empty.
-    places : (..., 2) float64
+    positions : (..., 2) float64
         Easting and northing.
     limit_m : float
         Above the nearest place of the road.
@@ -61,44 +61,44 @@ def ceilings_above(ground: Floats, places: Floats, limit_m: float) -> Floats:
     """
     from scipy.spatial import cKDTree
 
-    beside_m, nearest = cKDTree(ground[:, :2]).query(places)
+    beside_m, nearest = cKDTree(ground[:, :2]).query(positions)
     ceilings: Floats = np.where(beside_m <= _FARTHEST_M, ground[nearest, 2] + limit_m, np.inf)
     return ceilings
 
 
-def _below_rows(drive: Drive, way: Floats) -> Floats:
+def _below_rows(drive: Drive, vehicle_path: Floats) -> Floats:
     image = image_of(drive, ImageKind.TRAJECTORY_CENTER)
     filled = np.flatnonzero(np.diff(image.row_starts) >= _POINTS_A_ROW)
     rows = filled[:: max(1, len(filled) // _MOST_ROWS)]
     points = image.row_starts[rows][:, None] + np.arange(_POINTS_A_ROW)
-    places = np.median(drive.xyz(points.ravel()).reshape(*points.shape, 3), axis=1)
+    positions = np.median(drive.xyz(points.ravel()).reshape(*points.shape, 3), axis=1)
     # Where nothing came back from below the vehicle a row begins with something else.
     from scipy.spatial import cKDTree
 
-    beside_m, nearest = cKDTree(way[:, :2]).query(places[:, :2])
-    is_below = (beside_m <= _BESIDE_M) & (places[:, 2] < way[nearest, 2])
-    return _smoothed(places[is_below])
+    beside_m, nearest = cKDTree(vehicle_path[:, :2]).query(positions[:, :2])
+    is_below = (beside_m <= _BESIDE_M) & (positions[:, 2] < vehicle_path[nearest, 2])
+    return _smoothed(positions[is_below])
 
 
-def _smoothed(places: Floats) -> Floats:
+def _smoothed(positions: Floats) -> Floats:
     """Heights as medians of neighbours: a car below the beam is no road."""
-    if len(places) < _SMOOTHED:
-        return places
-    padded = np.pad(places[:, 2], _SMOOTHED // 2, mode="edge")
+    if len(positions) < _SMOOTHED:
+        return positions
+    padded = np.pad(positions[:, 2], _SMOOTHED // 2, mode="edge")
     heights = np.median(np.lib.stride_tricks.sliding_window_view(padded, _SMOOTHED), axis=1)
-    return np.column_stack([places[:, :2], heights])
+    return np.column_stack([positions[:, :2], heights])
 
 
-def _below_samples(drive: Drive, way: Floats) -> Floats:
+def _below_samples(drive: Drive, vehicle_path: Floats) -> Floats:
     low, high = np.array(drive.info.lowest), np.array(drive.info.highest)
-    inside = way[((way >= low) & (way <= high))[:, :2].all(axis=1)]
+    inside = vehicle_path[((vehicle_path >= low) & (vehicle_path <= high))[:, :2].all(axis=1)]
     if not len(inside):
         return np.empty((0, 3))
     chosen = np.linspace(0, len(inside) - 1, min(_SAMPLES, len(inside))).astype(np.int64)
     drops = []
-    for place in inside[chosen]:
-        point = nearest_point(drive, place - [0.0, 0.0, _USUAL_DROP_M], _BESIDE_M)
+    for position in inside[chosen]:
+        point = nearest_point(drive, position - [0.0, 0.0, _USUAL_DROP_M], _BESIDE_M)
         if point >= 0:
-            drops.append(float(place[2] - drive.xyz(np.array([point]))[0, 2]))
+            drops.append(float(position[2] - drive.xyz(np.array([point]))[0, 2]))
     drop_m = float(np.median(drops)) if drops else _USUAL_DROP_M
     return inside - [0.0, 0.0, drop_m]

@@ -25,7 +25,7 @@ _SURFACE_M = 0.1
 
 
 @dataclass(frozen=True)
-class Sought:
+class PointQuery:
     """Where a point is looked for.
 
     Attributes
@@ -71,7 +71,7 @@ class PlanPoints:
         self._hides_noise = hides_noise
         self._read: OrderedDict[tuple[int, TileKey], _TilePoints] = OrderedDict()
 
-    def point_at(self, sought: Sought) -> tuple[Drive, int] | None:
+    def point_at(self, sought: PointQuery) -> tuple[Drive, int] | None:
         """The drive and the point that is seen; None where nothing is in reach."""
         found: list[tuple[Drive, Integers, Floats, Floats]] = []
         for number, key in self._tiles_at(sought):
@@ -92,8 +92,8 @@ class PlanPoints:
             best -= points.size
         return None
 
-    def _tiles_at(self, sought: Sought) -> Iterator[tuple[int, TileKey]]:
-        place = np.array([sought.easting, sought.northing])
+    def _tiles_at(self, sought: PointQuery) -> Iterator[tuple[int, TileKey]]:
+        position = np.array([sought.easting, sought.northing])
         for number, (drive, kind) in enumerate(self._drives):
             pyramid = image_of(drive, kind).pyramid
             if not pyramid.is_ready:  # reading its table would take too long for a click
@@ -101,7 +101,7 @@ class PlanPoints:
             rows, columns = pyramid.shape(0)
             table = pyramid.table[: rows * columns]
             low, high = table[:, LOWEST][:, :2], table[:, HIGHEST][:, :2]
-            is_there = (low <= place + sought.reach_m) & (high >= place - sought.reach_m)
+            is_there = (low <= position + sought.reach_m) & (high >= position - sought.reach_m)
             lowest = table[:, LOWEST][:, 2]
             holds = is_there.all(axis=1) & (table[:, COUNT] > 0) & (lowest <= sought.ceiling_m)
             for tile in np.flatnonzero(holds).tolist():

@@ -62,7 +62,7 @@ class PlanFrame:
 
 
 @dataclass(frozen=True, eq=False)
-class PlanPicture:
+class PlanSnapshot:
     """What a raster shows at a time; nothing in it changes any more.
 
     Attributes
@@ -168,9 +168,9 @@ class PlanRaster:
             self._pixels,
         )
 
-    def picture(self) -> PlanPicture:
+    def picture(self) -> PlanSnapshot:
         """What it shows now, as a copy."""
-        return PlanPicture(
+        return PlanSnapshot(
             self.frame, self._pixels.copy(), self._points.copy(), self._drives.copy()
         )
 
@@ -192,8 +192,8 @@ def square_middles(frame: PlanFrame) -> Floats:
 def warm_up() -> None:
     """Compile the kernel."""
     raster = PlanRaster(PlanFrame(0.0, 1.0, 1.0, 1, 1), np.zeros(3))
-    place = np.full((1, 3), 0.5, dtype=np.float32)
-    raster.add(0, np.zeros(1, np.int64), place, np.zeros((1, 3), np.uint8))
+    position = np.full((1, 3), 0.5, dtype=np.float32)
+    raster.add(0, np.zeros(1, np.int64), position, np.zeros((1, 3), np.uint8))
 
 
 def _within(middle: float, reach: float, size: int) -> slice:

@@ -26,7 +26,7 @@ from processing.image.point_image_kernels import (
     shown_point,
     stretches_kernel,
 )
-from processing.image.rows_of_kind import Revolutions
+from processing.image.rows_of_kind import RevolutionSource
 from processing.image.tiles import TilePyramid
 from processing.points.counted_classes import ClassColumns
 from processing.points.damaged_pulses import damaged_pulses
@@ -76,7 +76,7 @@ class PointCloudImage:
         self,
         kind: ImageKind,
         pulses: _Integers,
-        folding: Revolutions | int,
+        folding: RevolutionSource | int,
         *,
         coordinates: Coordinates | None = None,
     ) -> None:
@@ -106,8 +106,8 @@ class PointCloudImage:
     @classmethod
     def of_drive(cls, drive: Drive, kind: ImageKind) -> Self:
         """The image of a drive that has what the kind needs."""
-        turns = drive.turns
-        folding = drive.info.cells_per_row if turns is None else turns
+        revolutions = drive.revolutions
+        folding = drive.info.cells_per_row if revolutions is None else revolutions
         coordinates = Coordinates(
             drive.columns["xyz"], drive.info.scale, drive.info.offset, folder=drive.folder
         )
@@ -288,7 +288,7 @@ class PointCloudImage:
         return points
 
     def grid(self, rows: range) -> tuple[PixelGrid, slice]:
-        """The pixels of a stretch of rows for tools, and the points they hold.
+        """The pixels of a chunk of rows for tools, and the points they hold.
 
         In the fixed-width kinds the shown point of a pixel need not be its first.
         """
@@ -339,10 +339,12 @@ def _read_only(values: NDArray[_Number]) -> NDArray[_Number]:
     return view
 
 
-def _times_of(pulses: NDArray[np.float64], turns: Revolutions) -> NDArray[np.float64]:
+def _times_of(pulses: NDArray[np.float64], revolutions: RevolutionSource) -> NDArray[np.float64]:
     """Times of pulses by the fold before each."""
-    folds = np.searchsorted(turns.fold_pulses, pulses, side="right") - 1
-    folds = np.clip(folds, 0, turns.fold_pulses.size - 1)
-    since = pulses - turns.fold_pulses[folds]
-    times: NDArray[np.float64] = turns.reference_times[folds] + since / turns.pulse_rate_hz
+    folds = np.searchsorted(revolutions.fold_pulses, pulses, side="right") - 1
+    folds = np.clip(folds, 0, revolutions.fold_pulses.size - 1)
+    since = pulses - revolutions.fold_pulses[folds]
+    times: NDArray[np.float64] = (
+        revolutions.reference_times[folds] + since / revolutions.pulse_rate_hz
+    )
     return times

@@ -52,7 +52,7 @@ def rows_to_take(drive: Drive, point: int, radius_m: float) -> tuple[int, int]:
     """Stride between rows, and how many of them on each side reach as far as the radius."""
     pulses = drive.columns["pulse"]
     period = _pulses_per_row(drive)
-    here, place = int(pulses[point]), drive.xyz(np.array([point]))[0]
+    here, position = int(pulses[point]), drive.xyz(np.array([point]))[0]
     span = max(2, int(period / 8))
     stride = 1
     while stride < 256:
@@ -61,7 +61,7 @@ def rows_to_take(drive: Drive, point: int, radius_m: float) -> tuple[int, int]:
             start, stop = np.searchsorted(pulses, [middle - span, middle + span + 1])
             if stop > start:
                 xyz = drive.xyz(slice(int(start), int(stop)))
-                gap = float(np.linalg.norm(xyz - place, axis=1).min())
+                gap = float(np.linalg.norm(xyz - position, axis=1).min())
                 if gap * _ROWS_ASIDE * 2 >= radius_m:
                     return stride, min(2 * _ROWS_ASIDE, max(2, math.ceil(radius_m / gap)))
         stride *= 2
@@ -69,8 +69,12 @@ def rows_to_take(drive: Drive, point: int, radius_m: float) -> tuple[int, int]:
 
 
 def _pulses_per_row(drive: Drive) -> float:
-    turns = drive.turns
-    return turns.pulses_per_turn if turns is not None else float(drive.info.cells_per_row)
+    revolutions = drive.revolutions
+    return (
+        revolutions.pulses_per_revolution
+        if revolutions is not None
+        else float(drive.info.cells_per_row)
+    )
 
 
 @kernel

@@ -23,18 +23,18 @@ _ABOVE_M = 0.5
 _FEWEST = 5
 
 
-def height_above_road(drive: Drive, way: Pass) -> float:
+def height_above_road(drive: Drive, vehicle_path: Pass) -> float:
     """How high a pass lies above the road, m.
 
     The median over rows spread along the pass of the median over the points of each that lie at
-    most 1.5 m beside the way.
+    most 1.5 m beside the vehicle's path.
     """
-    if drive.turns is None:
+    if drive.revolutions is None:
         return THESIS_HEIGHT_M
-    rows = scan_rows(drive.turns, way, max(way.length_m / _ROWS, 0.02))
+    rows = scan_rows(drive.revolutions, vehicle_path, max(vehicle_path.length_m / _ROWS, 0.02))
     heights = []
     for row in range(len(rows)):
-        points = read_rows(drive, way, rows.part(row, row + 1), rows.half_width)
+        points = read_rows(drive, vehicle_path, rows.part(row, row + 1), rows.half_width)
         _, across, above = points.arrays[2].T
         is_below = (np.abs(across) <= _ASIDE_M) & (above < _ABOVE_M) & ~points.arrays[5]
         if np.count_nonzero(is_below) >= _FEWEST:

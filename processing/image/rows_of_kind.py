@@ -18,7 +18,7 @@ from processing.image.kinds import ImageKind
 from processing.points.damaged_pulses import damaged_pulses
 
 FIXED_WIDTH_SHARE = 0.99
-"""Width of the fixed-width kinds in pulses per turn: a little less, so that no stripes appear."""
+"""Width of the fixed-width kinds in pulses per revolution: a little less, so that no stripes appear."""
 
 _Integers = NDArray[np.int64]
 
@@ -26,8 +26,8 @@ _MOST_ROWS = 1 << 25
 """More than a scanner of 200 Hz makes in a day and a half: no recording has as many."""
 
 
-class Revolutions(Protocol):
-    """What the image needs to know of a recording's revolutions (`processing.points.turns.Turns`).
+class RevolutionSource(Protocol):
+    """What the image needs to know of a recording's revolutions (`processing.points.revolutions.Turns`).
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Revolutions(Protocol):
     """
 
     @property
-    def pulses_per_turn(self) -> float:
+    def pulses_per_revolution(self) -> float:
         """Pulses in a revolution, median."""
 
     @property
@@ -111,8 +111,8 @@ class RowPlan:
         )
 
 
-def plan_of_turns(
-    kind: ImageKind, turns: Revolutions, pulses: _Integers, folder: Path | None = None
+def plan_of_revolutions(
+    kind: ImageKind, revolutions: RevolutionSource, pulses: _Integers, folder: Path | None = None
 ) -> RowPlan:
     """The rows of a recording with revolutions.
 
@@ -131,12 +131,12 @@ def plan_of_turns(
     BadFile
         Pulses fall between stops, or there are more rows than any recording has.
     """
-    pulses_per_turn = max(1, round(turns.pulses_per_turn))
-    stretches = list(_stretches(turns, pulses, pulses_per_turn))
-    if not all(stretch.is_possible(pulses_per_turn) for stretch in stretches):
+    pulses_per_revolution = max(1, round(revolutions.pulses_per_revolution))
+    stretches = list(_stretches(revolutions, pulses, pulses_per_revolution))
+    if not all(stretch.is_possible(pulses_per_revolution) for stretch in stretches):
         raise damaged_pulses(folder)
     parts = [
-        _rows_of_stretch(kind, stretch.covered(pulses_per_turn), pulses_per_turn)
+        _rows_of_stretch(kind, stretch.covered(pulses_per_revolution), pulses_per_revolution)
         for stretch in stretches
     ]
     edges = [part[0] for part in parts]
@@ -148,7 +148,7 @@ def plan_of_turns(
     segments = np.concatenate(numbers or [np.empty(0, np.int32)])
     if kind in (ImageKind.REVERSIBLE, ImageKind.TRAJECTORY_REVERSIBLE):
         return RowPlan(firsts, ends, origins, np.full_like(spans, 2), 1, segments, spans // 2)
-    width = max(1, round(FIXED_WIDTH_SHARE * turns.pulses_per_turn))
+    width = max(1, round(FIXED_WIDTH_SHARE * revolutions.pulses_per_revolution))
     return RowPlan(firsts, ends, origins, spans, width, segments, np.full_like(spans, width))
 
 
@@ -190,53 +190,55 @@ class _Stretch:
     stop: int
     folds: _Integers
 
-    def is_possible(self, pulses_per_turn: int) -> bool:
+    def is_possible(self, pulses_per_revolution: int) -> bool:
         """Whether pulses don't fall in it, and no more rows cover it than a recording has."""
         first, last = min(self.start, int(self.folds[0])), max(self.stop, int(self.folds[-1]))
-        return self.start < self.stop and (last - first) // pulses_per_turn < _MOST_ROWS
+        return self.start < self.stop and (last - first) // pulses_per_revolution < _MOST_ROWS
 
-    def covered(self, pulses_per_turn: int) -> _Stretch:
+    def covered(self, pulses_per_revolution: int) -> _Stretch:
         """The same with folds at the usual distance before and after, as far as it goes."""
         folds = self.folds
-        before = max(0, -(-(int(folds[0]) - self.start) // pulses_per_turn))
-        after = max(0, -(-(self.stop - int(folds[-1])) // pulses_per_turn))
-        firsts = folds[0] - pulses_per_turn * np.arange(before, 0, -1, dtype=np.int64)
-        lasts = folds[-1] + pulses_per_turn * np.arange(1, after + 1, dtype=np.int64)
+        before = max(0, -(-(int(folds[0]) - self.start) // pulses_per_revolution))
+        after = max(0, -(-(self.stop - int(folds[-1])) // pulses_per_revolution))
+        firsts = folds[0] - pulses_per_revolution * np.arange(before, 0, -1, dtype=np.int64)
+        lasts = folds[-1] + pulses_per_revolution * np.arange(1, after + 1, dtype=np.int64)
         return _Stretch(self.start, self.stop, np.concatenate([firsts, folds, lasts]))
 
 
-def _stretches(turns: Revolutions, pulses: _Integers, pulses_per_turn: int) -> Iterator[_Stretch]:
+def _stretches(
+    revolutions: RevolutionSource, pulses: _Integers, pulses_per_revolution: int
+) -> Iterator[_Stretch]:
     """Parts of the recording between stops; together they hold every pulse with a point."""
-    rows = turns.row_ends.size
-    starts = np.flatnonzero(np.diff(turns.segments, prepend=turns.segments[:1] - 1))
+    rows = revolutions.row_ends.size
+    starts = np.flatnonzero(np.diff(revolutions.segments, prepend=revolutions.segments[:1] - 1))
     stops = np.append(starts[1:], rows)
     after = 0  # points before this one are in earlier stretches
     for first_row, end_row in zip(starts, stops, strict=True):
         is_last = end_row == rows
-        limit = int(turns.row_ends[end_row - 1])
+        limit = int(revolutions.row_ends[end_row - 1])
         end = pulses.size if is_last else int(np.searchsorted(pulses, limit))
         if end <= after:
             continue
-        folds = np.array(turns.fold_pulses[first_row : end_row + 1])
+        folds = np.array(revolutions.fold_pulses[first_row : end_row + 1])
         if limit < folds[-1]:
             # The laser stopped in this revolution; the next fold belongs to after the stop.
-            folds[-1] = max(int(folds[-2]) + pulses_per_turn, limit)
+            folds[-1] = max(int(folds[-2]) + pulses_per_revolution, limit)
         start, stop = int(pulses[after]), int(pulses[end - 1]) + 1
         yield _Stretch(start, stop, np.unique(folds))
         after = end
 
 
 def _rows_of_stretch(
-    kind: ImageKind, stretch: _Stretch, pulses_per_turn: int
+    kind: ImageKind, stretch: _Stretch, pulses_per_revolution: int
 ) -> tuple[_Integers, _Integers, _Integers]:
     """Doubled row edges (rows + 1,), first and end pulses (rows,) of a stretch."""
     folds = stretch.folds
     if kind is ImageKind.REVERSIBLE:
-        rows = -(-(stretch.stop - stretch.start) // pulses_per_turn)
-        edges = 2 * (stretch.start + pulses_per_turn * np.arange(rows + 1, dtype=np.int64))
+        rows = -(-(stretch.stop - stretch.start) // pulses_per_revolution)
+        edges = 2 * (stretch.start + pulses_per_revolution * np.arange(rows + 1, dtype=np.int64))
     elif kind is ImageKind.TRAJECTORY_CENTER:
         middles = folds[:-1] + folds[1:]
-        first, last = 2 * folds[:1] - pulses_per_turn, 2 * folds[-1:] + pulses_per_turn
+        first, last = 2 * folds[:1] - pulses_per_revolution, 2 * folds[-1:] + pulses_per_revolution
         edges = np.concatenate([first, middles, last])
     else:
         edges = 2 * folds

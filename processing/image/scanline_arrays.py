@@ -57,15 +57,15 @@ Pixels = NDArray[Any]
 Crossings = NDArray[Any]
 
 
-class Band(NamedTuple):
+class MeshLimits(NamedTuple):
     """What counts.
 
     Attributes
     ----------
     reach_m, half_width_m : float
-        How far from the vehicle along the way, and from the way across.
+        How far from the vehicle along the vehicle's path, and from the vehicle's path across.
     lowest_m, highest_m : float
-        Heights about the way.
+        Heights about the vehicle's path.
     spacing_m : float
         Of the sections.
     first, last : int

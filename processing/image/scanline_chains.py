@@ -10,7 +10,9 @@ from processing.kernels import kernel
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
-Given = tuple[Integers, Floats, Floats, Floats, NDArray[np.float32], Integers, NDArray[np.bool_]]
+ChainInput = tuple[
+    Integers, Floats, Floats, Floats, NDArray[np.float32], Integers, NDArray[np.bool_]
+]
 
 
 @kernel
@@ -95,7 +97,9 @@ def kept_kernel(crossings: Crossings, count: int, last_level: int, moved: Intege
 
 
 @kernel
-def gather_kernel(crossings: Crossings, order: Integers, chains: Integers, given: Given) -> None:
+def gather_kernel(
+    crossings: Crossings, order: Integers, chains: Integers, given: ChainInput
+) -> None:
     """Copy the crossings chain by chain; ``chains`` (k, 2) are their ends in the order.
 
     ``given`` are level, across, height, time, intensity, point, and whether the line breaks before.

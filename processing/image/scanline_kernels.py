@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.scanline_arrays import Band, Crossings, Pixels, PointArrays
+from processing.image.scanline_arrays import Crossings, MeshLimits, Pixels, PointArrays
 from processing.kernels import kernel
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
-Rule = tuple[float, float, int]
-Levels = tuple[int, int, int, int]
+MeshRule = tuple[float, float, int]
+CrossingLevels = tuple[int, int, int, int]
 
 
 @kernel
@@ -21,7 +21,7 @@ def fill_row(
     points: PointArrays,
     ends: Integers,
     row_station: float,
-    band: Band,
+    band: MeshLimits,
 ) -> None:
     """Put the points of a row into its pixels (w,), the last return of each pulse.
 
@@ -30,7 +30,7 @@ def fill_row(
     ``ends`` the first and end point, the number in the drive of point 0, and the pulse of column
     0; ``row_station`` is the vehicle's.
     """
-    pulse, place, found, time, intensity, is_noise = points
+    pulse, position, found, time, intensity, is_noise = points
     for column in range(extent[0], extent[1]):
         pixel = pixels[column]
         pixel.point, pixel.crossing, pixel.is_short = -1, -1, False
@@ -47,7 +47,7 @@ def fill_row(
             continue
         pixel = pixels[column]
         pixel.point = i + ends[2]
-        pixel.east, pixel.north, pixel.up = place[i, 0], place[i, 1], place[i, 2]
+        pixel.east, pixel.north, pixel.up = position[i, 0], position[i, 1], position[i, 2]
         pixel.station, pixel.across = station, across
         pixel.time, pixel.intensity = time[i], intensity[i]
         level = np.floor(station / band.spacing_m)
@@ -151,7 +151,9 @@ def _vertex(one: int, other: int, base: int, level: int) -> int:
 
 
 @kernel
-def _link_cell(levels: Levels, bases: Levels, cut: int, crossings: Crossings) -> None:
+def _link_cell(
+    levels: CrossingLevels, bases: CrossingLevels, cut: int, crossings: Crossings
+) -> None:
     """Join the crossings of a cell with two triangles, across its diagonal.
 
     ``levels`` are those of the pixels old left, old right, new left, new right; ``bases`` the
@@ -205,7 +207,7 @@ def _spans(pixels: Pixels, a: int, c: int, third: int, most: int) -> bool:
 
 @kernel
 def _triangles(
-    pixels: Pixels, old: int, c: int, sides: tuple[bool, bool], rule: Rule
+    pixels: Pixels, old: int, c: int, sides: tuple[bool, bool], rule: MeshRule
 ) -> tuple[bool, bool, bool]:
     """How a cell is cut, and whether the triangles with its old and its new edge are there.
 
@@ -276,7 +278,7 @@ def _mesh_cell(
 
 @kernel
 def mesh_strip(
-    pixels: Pixels, extents: Integers, old: int, rule: Rule, crossings: Crossings, count: int
+    pixels: Pixels, extents: Integers, old: int, rule: MeshRule, crossings: Crossings, count: int
 ) -> int:
     """Cross the triangles between two rows; gives how many crossings there are then.
 
@@ -306,7 +308,7 @@ def mesh_rows(
     state: Integers,
     points: PointArrays,
     rows: tuple[Integers, Floats],
-    band: Band,
+    band: MeshLimits,
     crossings: Crossings,
 ) -> None:
     """Mesh rows from ``state[0]`` on, as long as there is room for crossings.

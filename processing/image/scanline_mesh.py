@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.scanline_arrays import CROSSING, PIXEL, Band, Crossings, PointArrays
+from processing.image.scanline_arrays import CROSSING, PIXEL, Crossings, MeshLimits, PointArrays
 from processing.image.scanline_chains import chains_kernel, gather_kernel, kept_kernel
 from processing.image.scanline_kernels import mesh_rows
 from processing.image.scanline_rows import RowPoints
@@ -56,7 +56,7 @@ class SectionMesh:
         What counts, and which sections are asked for.
     """
 
-    def __init__(self, width: int, band: Band) -> None:
+    def __init__(self, width: int, band: MeshLimits) -> None:
         self._band = band
         self._pixels = np.zeros((2, width), PIXEL)
         self._pixels["point"] = -1
@@ -134,14 +134,14 @@ def _in_order(held: Crossings, order: Integers, chains: Integers) -> SectionVert
 
 def warm_up() -> None:
     """Compile the kernels of the mesh and of its chains."""
-    band = Band(9.0, 9.0, -9.0, 9.0, 0.5, -9, 9, 5.0)
+    band = MeshLimits(9.0, 9.0, -9.0, 9.0, 0.5, -9, 9, 5.0)
     mesh = SectionMesh(4, band)
     pulses = np.array([0, 1, 10, 11])
-    places = np.array([[0.0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0]])
+    positions = np.array([[0.0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0]])
     arrays: PointArrays = (
         pulses,
-        places,
-        places,
+        positions,
+        positions,
         np.arange(4.0),
         np.zeros(4, np.uint16),
         np.zeros(4, np.bool_),

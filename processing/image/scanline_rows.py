@@ -17,17 +17,17 @@ from processing.image.scanline_arrays import PointArrays
 from processing.points.counted_classes import class_columns
 from processing.points.damaged_pulses import damaged_pulses
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 from processing.points.pass_kernels import advanced_kernel, local_kernel
-from processing.points.passes import Beside, Pass
-from processing.points.turns import Turns
+from processing.points.passes import Pass, PathSurroundings
+from processing.points.revolutions import Revolutions
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 PULSES_AT_ONCE = 600_000
 
-_SHARE_OF_TURN = 1 / 3
+_SHARE_OF_REVOLUTION = 1 / 3
 """To either side: what is nearer to the zenith hangs above the vehicle."""
 
 
@@ -106,7 +106,7 @@ class RowPoints:
     rows: Integers
 
 
-def scan_rows(turns: Turns, way: Pass, least_advance_m: float) -> ScanRows:
+def scan_rows(revolutions: Revolutions, vehicle_path: Pass, least_advance_m: float) -> ScanRows:
     """The rows of a pass in which the vehicle has gone on since the row before.
 
     Parameters
@@ -114,25 +114,29 @@ def scan_rows(turns: Turns, way: Pass, least_advance_m: float) -> ScanRows:
     least_advance_m : float
         How far; rows between are left out.
     """
-    folds, times = turns.fold_pulses, turns.reference_times
-    inside = np.flatnonzero((times >= way.times[0]) & (times <= way.times[-1]))
+    folds, times = revolutions.fold_pulses, revolutions.reference_times
+    inside = np.flatnonzero((times >= vehicle_path.times[0]) & (times <= vehicle_path.times[-1]))
     if not inside.size:
         inside = np.empty(0, np.int64)
-    stations = way.station_at(times[inside])
+    stations = vehicle_path.station_at(times[inside])
     marked = np.zeros(inside.size, np.bool_)
     advanced_kernel(stations, least_advance_m, marked)
     kept = inside[marked]
-    aside = int(turns.pulses_per_turn * _SHARE_OF_TURN)
+    aside = int(revolutions.pulses_per_revolution * _SHARE_OF_REVOLUTION)
     middles = (folds[:-1] + folds[1:]) // 2
     lows = np.maximum(folds - aside, np.concatenate([[folds[0] - aside], middles]))
     highs = np.minimum(folds + aside, np.concatenate([middles, [folds[-1] + aside]]))
-    segments = turns.segments[np.minimum(kept, turns.segments.size - 1)]
+    segments = revolutions.segments[np.minimum(kept, revolutions.segments.size - 1)]
     are_breaks = np.concatenate([[True], np.diff(segments) != 0])[: kept.size]
     return ScanRows(folds[kept], np.column_stack([lows, highs])[kept], stations[marked], are_breaks)
 
 
 def read_rows(
-    drive: Drive, way: Pass, rows: ScanRows, half_width: int, asked: Beside | None = None
+    drive: Drive,
+    vehicle_path: Pass,
+    rows: ScanRows,
+    half_width: int,
+    asked: PathSurroundings | None = None,
 ) -> RowPoints:
     """The points of rows that follow each other.
 
@@ -149,14 +153,14 @@ def read_rows(
     if start > stop:
         raise damaged_pulses(drive.folder)
     read = {
-        name: read_stretch(drive.folder, name, start, stop)
+        name: read_chunk(drive.folder, name, start, stop)
         for name in ("pulse", "xyz", "time", "intensity")
     }
-    shift = np.array(drive.info.offset) - way.origin
+    shift = np.array(drive.info.offset) - vehicle_path.origin
     local = np.empty((stop - start, 3))
     local_kernel(read["xyz"], np.array(drive.info.scale), shift, local)
     ends = np.searchsorted(read["pulse"], rows.ends)
-    found = way.stations_of_local(local, read["time"], asked)
+    found = vehicle_path.stations_of_local(local, read["time"], asked)
     is_noise = class_columns(drive.columns).noise_between(start, stop)
     count = len(rows)
     table = np.column_stack(

@@ -1,4 +1,4 @@
-"""Normalised scanlines: sections square to the way at a constant spacing, whatever the scanner.
+"""Normalised scanlines: sections square to the vehicle's path at a constant spacing, whatever the scanner.
 
 They are the iso-lines of the station on the triangle mesh of neighbouring pixels, so their spacing
 does not depend on speed, turn rate or mounting angle (Takahashi 2022, section 6.2).
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from processing.image.road_height import height_above_road
-from processing.image.scanline_arrays import Band
+from processing.image.scanline_arrays import MeshLimits
 from processing.image.scanline_mesh import SectionMesh, SectionVertices
 from processing.image.scanline_rows import (
     PULSES_AT_ONCE,
@@ -38,7 +38,7 @@ class ScanlineSettings:
     Attributes
     ----------
     spacing_m : float
-        Between sections along the way; they lie at its multiples. The thesis doesn't say its own.
+        Between sections along the vehicle's path; they lie at its multiples. The thesis doesn't say its own.
     half_width_m : float
         How far to either side of the way.
     longest_edge_m : float
@@ -71,7 +71,7 @@ class Scanlines:
         Of the pass in the drive.
     stations_m : (s,) float64
         Along the pass, rising.
-    places : (s, 3) float64
+    positions : (s, 3) float64
         The way there at the height of the road, m, project CRS.
     rights : (s, 2) float64
         Unit vector in plan to the right of the way.
@@ -79,7 +79,7 @@ class Scanlines:
     across_m : (n,) float64
         To the right of the way.
     height_m : (n,) float64
-        Above ``places[i, 2]``.
+        Above ``positions[i, 2]``.
     is_break : (n,) bool
         Nothing was measured between the vertex before and this one; also the first of a section.
     time_s : (n,) float64
@@ -92,7 +92,7 @@ class Scanlines:
 
     number: int
     stations_m: Floats
-    places: Floats
+    positions: Floats
     rights: Floats
     starts: Integers
     across_m: Floats
@@ -112,8 +112,8 @@ class Scanlines:
         sections = self.section_of(vertices)
         across, right = self.across_m[vertices], self.rights[sections]
         shift = np.column_stack([across[:, None] * right, self.height_m[vertices]])
-        places: Floats = self.places[sections] + shift
-        return places
+        positions: Floats = self.positions[sections] + shift
+        return positions
 
 
 @dataclass(frozen=True)
@@ -152,7 +152,7 @@ def scanlines_of(
     1. Rows in which the vehicle has hardly gone on are left out.
     2. Neighbouring pixels of the rows make a mesh: two triangles of four filled pixels, one of
        three, none with a long edge; the last return of each pulse counts, noise doesn't.
-    3. A section is where the station of the mesh, told from the way about the time of each point,
+    3. A section is where the station of the mesh, told from the vehicle's path about the time of each point,
        is a multiple of the spacing; triangles that follow each other make it a line.
 
     References
@@ -160,14 +160,16 @@ def scanlines_of(
     Takahashi 2022, section 6.2.
     """
     passes = passes_of(drive)
-    parts = parts_of(monitor, [way.length_m for way in passes])
-    for way, part in zip(passes, parts, strict=True):
-        yield from scanlines_of_pass(drive, way, settings, part, pulses_at_once=pulses_at_once)
+    parts = parts_of(monitor, [vehicle_path.length_m for vehicle_path in passes])
+    for vehicle_path, part in zip(passes, parts, strict=True):
+        yield from scanlines_of_pass(
+            drive, vehicle_path, settings, part, pulses_at_once=pulses_at_once
+        )
 
 
 def scanlines_of_pass(
     drive: Drive,
-    way: Pass,
+    vehicle_path: Pass,
     settings: ScanlineSettings,
     monitor: Monitor,
     *,
@@ -176,19 +178,19 @@ def scanlines_of_pass(
     """The same for one of the drive's passes; sections go on beyond its ends by the half width."""
     spacing, beyond = settings.spacing_m, settings.half_width_m
     first = int(np.ceil(-beyond / spacing))
-    last = int(np.floor((way.length_m + beyond) / spacing))
+    last = int(np.floor((vehicle_path.length_m + beyond) / spacing))
     asked = _Asked(first, last, pulses_at_once)
-    yield from _sections(drive, way, settings, asked, monitor)
+    yield from _sections(drive, vehicle_path, settings, asked, monitor)
 
 
 def scanline_through(
-    drive: Drive, place: ArrayLike, settings: ScanlineSettings, time_s: float | None = None
+    drive: Drive, position: ArrayLike, settings: ScanlineSettings, time_s: float | None = None
 ) -> Scanlines | None:
     """The scanline nearest to a place, the same to the last bit as `scanlines_of` gives.
 
     Parameters
     ----------
-    place : (3,) float64
+    position : (3,) float64
         m, project CRS.
     time_s : float, optional
         When the place was measured: which of several passes is meant, and where in a bend.
@@ -203,60 +205,62 @@ def scanline_through(
     MissingInput
         The drive has no trajectory.
     """
-    passed = _nearest_pass(passes_of(drive), np.asarray(place, dtype=np.float64), settings, time_s)
+    passed = _nearest_pass(
+        passes_of(drive), np.asarray(position, dtype=np.float64), settings, time_s
+    )
     if passed is None:
         return None
-    way, station = passed
+    vehicle_path, station = passed
     level = round(station / settings.spacing_m)
-    for section in _sections(drive, way, settings, _Asked(level, level), SilentMonitor()):
+    for section in _sections(drive, vehicle_path, settings, _Asked(level, level), SilentMonitor()):
         return section
     return None
 
 
 def scanlines_about(
-    drive: Drive, place: ArrayLike, within_m: float, settings: ScanlineSettings
+    drive: Drive, position: ArrayLike, within_m: float, settings: ScanlineSettings
 ) -> Iterator[Scanlines]:
     """The scanlines about a place, so far before and behind; none as in `scanline_through`."""
-    passed = _nearest_pass(passes_of(drive), np.asarray(place, dtype=np.float64), settings, None)
+    passed = _nearest_pass(passes_of(drive), np.asarray(position, dtype=np.float64), settings, None)
     if passed is None:
         return
-    way, station = passed
+    vehicle_path, station = passed
     level, more = round(station / settings.spacing_m), round(within_m / settings.spacing_m)
     asked = _Asked(level - more, level + more)
-    yield from _sections(drive, way, settings, asked, SilentMonitor())
+    yield from _sections(drive, vehicle_path, settings, asked, SilentMonitor())
 
 
 def _nearest_pass(
-    passes: tuple[Pass, ...], place: Floats, settings: ScanlineSettings, time_s: float | None
+    passes: tuple[Pass, ...], position: Floats, settings: ScanlineSettings, time_s: float | None
 ) -> tuple[Pass, float] | None:
     """The pass that came nearest by a place, and the station of the place."""
     nearest, found = settings.half_width_m, None
-    for way in passes:
-        if time_s is not None and not way.times[0] <= time_s <= way.times[-1]:
+    for vehicle_path in passes:
+        if time_s is not None and not vehicle_path.times[0] <= time_s <= vehicle_path.times[-1]:
             continue
-        times = np.array([way.time_nearest(place) if time_s is None else time_s])
-        station, across = way.stations_of(place[None], times)
+        times = np.array([vehicle_path.time_nearest(position) if time_s is None else time_s])
+        station, across = vehicle_path.stations_of(position[None], times)
         if abs(float(across[0])) <= nearest:
-            nearest, found = abs(float(across[0])), (way, float(station[0]))
+            nearest, found = abs(float(across[0])), (vehicle_path, float(station[0]))
     return found
 
 
 def _sections(
     drive: Drive,
-    way: Pass,
+    vehicle_path: Pass,
     settings: ScanlineSettings,
     asked: _Asked,
     monitor: Monitor,
 ) -> Iterator[Scanlines]:
-    if drive.turns is None:
+    if drive.revolutions is None:
         return
     spacing, first, last = settings.spacing_m, asked.first, asked.last
-    rows = scan_rows(drive.turns, way, settings.least_advance_m)
+    rows = scan_rows(drive.revolutions, vehicle_path, settings.least_advance_m)
     rows = rows.between(first * spacing - REACH_M, last * spacing + REACH_M)
     if not len(rows):
         return
-    height = height_above_road(drive, way)
-    band = Band(
+    height = height_above_road(drive, vehicle_path)
+    band = MeshLimits(
         REACH_M,
         settings.half_width_m,
         settings.lowest_m - height,
@@ -266,13 +270,13 @@ def _sections(
         last,
         settings.longest_edge_m,
     )
-    beside = way.beside(band.half_width_m, band.lowest_m, band.highest_m)
+    beside = vehicle_path.beside(band.half_width_m, band.lowest_m, band.highest_m)
 
     def read() -> Iterator[tuple[tuple[int, int], ScanRows, RowPoints]]:
         for start, end in rows.batches(asked.pulses_at_once):
             monitor.check()
             part = rows.part(start, end)
-            yield (start, end), part, read_rows(drive, way, part, rows.half_width, beside)
+            yield (start, end), part, read_rows(drive, vehicle_path, part, rows.half_width, beside)
 
     mesh = SectionMesh(rows.width, band)
     for (start, end), part, points in one_ahead(read()):
@@ -284,24 +288,28 @@ def _sections(
         reached = last if end == len(rows) else min(reached, last)
         if reached >= first:
             vertices = mesh.finished(reached)
-            yield _scanlines(way, height, (first, reached), spacing, vertices)
+            yield _scanlines(vehicle_path, height, (first, reached), spacing, vertices)
             first = reached + 1
 
 
 def _scanlines(
-    way: Pass, height: float, levels: tuple[int, int], spacing: float, vertices: SectionVertices
+    vehicle_path: Pass,
+    height: float,
+    levels: tuple[int, int],
+    spacing: float,
+    vertices: SectionVertices,
 ) -> Scanlines:
     sections = np.arange(levels[0], levels[1] + 1)
     stations = sections.astype(np.float64) * spacing
-    places = way.places_at(stations)
-    places[:, 2] -= height
+    positions = vehicle_path.positions_at(stations)
+    positions[:, 2] -= height
     own = vertices.levels - levels[0]
-    above = vertices.height + way.origin[2] - places[own, 2]
+    above = vertices.height + vehicle_path.origin[2] - positions[own, 2]
     return Scanlines(
-        number=way.number,
+        number=vehicle_path.number,
         stations_m=stations,
-        places=places,
-        rights=way.rights_at(stations),
+        positions=positions,
+        rights=vehicle_path.rights_at(stations),
         starts=np.searchsorted(vertices.levels, np.append(sections, levels[1] + 1)),
         across_m=vertices.across,
         height_m=above,

@@ -102,10 +102,10 @@ def connected_segments(
         monitor.check()
         join_rows_kernel(rows, first, end)
     roots_kernel(rows.parents)
-    return numbered_by_first(rows.parents)
+    return number_by_first(rows.parents)
 
 
-def numbered_by_first(roots: NDArray[np.int64]) -> NDArray[np.int32]:
+def number_by_first(roots: NDArray[np.int64]) -> NDArray[np.int32]:
     """Components numbered in the order of their first points.
 
     Parameters

@@ -20,7 +20,7 @@ _Floats = NDArray[np.float64]
 OTHER, FLAT, STEP = 0, 1, 2
 """What a patch of points is: neither of the two; a surface without a step; a step."""
 
-BASE, GRADE, LEFT, RIGHT, JUMP, TWIST, PLACE, WIDTH, HEADING = range(9)
+BASE, GRADE, LEFT, RIGHT, JUMP, TWIST, POSITION, WIDTH, HEADING = range(9)
 """The unknowns of a step: height at the lower end, m; grade along; slopes before and beyond;
 height of the face, m, and its rise along; where the face begins across, and how wide it is, m;
 heading, rad."""
@@ -46,7 +46,7 @@ _LEAST_KINK = 0.2  # what bends more is left to the profile
 _LEAST_JUMP, _LEAST_SURE = 2.5, 5.5  # in noises; in standard deviations of the jump
 _FACE_M, _FACE_SURE_M = 0.025, 0.015  # widths of low faces in plan
 _NARROWEST_M, _WIDEST_M, _BESIDE_FACE_M = 0.003, 0.15, 0.05
-_PLACE_SURE_M, _HEADING_SURE, _TWIST_SURE = 0.03, 0.10, 0.3
+_POSITION_SURE_M, _HEADING_SURE, _TWIST_SURE = 0.03, 0.10, 0.3
 _COARSENESS = (3.0, 2.0, 1.5, 1.0, 1.0, 1.0, 1.0, 1.0)
 _STEEPEST = 0.30  # of the surfaces beside a step
 _LEAST_FACE = 0.35  # rise per metre of a face beyond that of its surfaces
@@ -83,7 +83,7 @@ def step_kernel(local: _Floats, along: float, step: _Floats) -> int:
     if step[JUMP] < _TRIED * LEAST_STEP_M or step[WIDTH] < _TRIED * _LEAST_SURE:
         return FLAT if is_flat else OTHER
     step[WIDTH] = _FACE_M
-    step[PLACE] -= _FACE_M / 2
+    step[POSITION] -= _FACE_M / 2
     fit = np.empty(3)
     fit_step(surface, along, step, fit)
     if is_step(step, fit):
@@ -164,7 +164,7 @@ def _scan(surface: _Floats, along: float, step: _Floats) -> float:
                     step[:_LINEAR] = unknowns
     if count == 0:
         return -1.0
-    step[PLACE], step[HEADING] = best_cut * _BIN_M - ACROSS_M, best_heading
+    step[POSITION], step[HEADING] = best_cut * _BIN_M - ACROSS_M, best_heading
     # For a jump in the middle of two sloping surfaces: variance 16 σ²/n.
     step[WIDTH] = abs(step[JUMP]) * math.sqrt(count / (16 * least))
     if step[JUMP] < 0:
@@ -192,7 +192,7 @@ def _turn_round(step: _Floats) -> None:
     step[GRADE] = -step[GRADE] - step[TWIST]
     step[JUMP] = -step[JUMP]
     step[LEFT], step[RIGHT] = -step[RIGHT], -step[LEFT]
-    step[PLACE] = -step[PLACE]
+    step[POSITION] = -step[POSITION]
     step[HEADING] += math.pi
 
 
@@ -265,12 +265,12 @@ def fit_step(surface: _Floats, along: float, step: _Floats, fit: _Floats) -> Non
         How far points lie off the step, m; how sure the jump is, in its standard
         deviations; the mean weight of the points, or of those near the face if it is less.
     """
-    begin, heading, noise = step[PLACE], step[HEADING], _NOISE_M
+    begin, heading, noise = step[POSITION], step[HEADING], _NOISE_M
     system, change, sums = np.zeros((UNKNOWNS + 1, UNKNOWNS)), np.zeros(UNKNOWNS), np.zeros(5)
     matrix, right = system[:UNKNOWNS], system[UNKNOWNS]
     for coarseness in _COARSENESS:
         _sum_rows(surface, (along, noise, coarseness), step, system, sums)
-        _hold(matrix, right, PLACE, begin - step[PLACE], _PLACE_SURE_M)
+        _hold(matrix, right, POSITION, begin - step[POSITION], _POSITION_SURE_M)
         _hold(matrix, right, WIDTH, _FACE_M - step[WIDTH], max(_FACE_SURE_M, step[JUMP] / 2))
         _hold(matrix, right, HEADING, heading - step[HEADING], _HEADING_SURE)
         _hold(matrix, right, TWIST, -step[TWIST], _TWIST_SURE)
@@ -312,13 +312,13 @@ def _sum_rows(
         if abs(a) > along or abs(u) > ACROSS_M:
             continue
         slope = _row_of(step, a, u, surface[i, 2], row)
-        off, steepness = surface[i, 2] - row[PLACE], 1 + slope * slope
-        row[PLACE] = -slope
+        off, steepness = surface[i, 2] - row[POSITION], 1 + slope * slope
+        row[POSITION] = -slope
         weight = 1 / (1 + off * off / (steepness * (2 * noise * coarseness) ** 2))
         sums[0] += 1
         sums[1] += weight
         sums[2] += weight * off * off / steepness
-        if -_BESIDE_FACE_M < u - step[PLACE] < step[WIDTH] + _BESIDE_FACE_M:
+        if -_BESIDE_FACE_M < u - step[POSITION] < step[WIDTH] + _BESIDE_FACE_M:
             sums[3] += 1
             sums[4] += weight
         factor = weight / (noise * noise * steepness)
@@ -346,7 +346,7 @@ def _row_of(step: _Floats, a: float, u: float, v: float, row: _Floats) -> float:
     That of the place holds the height. Noise moves points of an upright face across, where they
     lie far above or below the surfaces beside it, so those go to the face.
     """
-    beyond, width = u - step[PLACE], step[WIDTH]
+    beyond, width = u - step[POSITION], step[WIDTH]
     row[:] = 0.0
     row[BASE], row[GRADE] = 1.0, a
     base, jump = step[BASE] + step[GRADE] * a, step[JUMP] + step[TWIST] * a
@@ -367,7 +367,7 @@ def _row_of(step: _Floats, a: float, u: float, v: float, row: _Floats) -> float:
         row[JUMP], row[TWIST], row[RIGHT] = 1.0, a, beyond - width
         row[WIDTH] = -slope
     row[HEADING] = -slope * a
-    row[PLACE] = height
+    row[POSITION] = height
     return float(slope)
 
 

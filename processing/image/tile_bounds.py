@@ -172,7 +172,7 @@ class TileBounds:
         for some in _row_stretches(image.row_starts, rows, PORTION_POINTS):
             start, stop = int(image.row_starts[some.start]), int(image.row_starts[some.stop])
             tile_kernel(
-                self._coordinates.stretch(start, stop),
+                self._coordinates.chunk(start, stop),
                 image.columns_of(start, stop),
                 image.row_starts[some.start : some.stop + 1] - start,
                 np.array(self._coordinates.scale),
@@ -251,8 +251,8 @@ class TileBounds:
             return _nowhere((tiles, columns))
         every = -(-tiles // _MOST_SAMPLES)
         wanted = np.append(np.arange(0, tiles, every) * TILE, self._image.rows - 1)
-        places = np.minimum(np.searchsorted(filled, wanted), filled.size - 1)
-        samples = np.stack([self._bounds_of_row(int(row)) for row in filled[places]])
+        positions = np.minimum(np.searchsorted(filled, wanted), filled.size - 1)
+        samples = np.stack([self._bounds_of_row(int(row)) for row in filled[positions]])
         empty = ~np.isfinite(samples[:, :, 0])
         whole = np.concatenate(
             [samples[:, :, :3].min(axis=1), samples[:, :, 3:].max(axis=1)], axis=1

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from processing.errors import UNCHANGED, NoSpace, UserError
 from processing.image import point_image
-from processing.image.attributes import SHOWS_LABELS, colours, telling_attribute
+from processing.image.attributes import SHOWS_LABELS, colours, most_telling_attribute
 from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.tile_reading import expect_tile
@@ -68,13 +68,13 @@ class TilePixels:
         return self.points.nbytes + self.colours.nbytes
 
 
-Done = Callable[[TileRequest, TilePixels], None]
+TileReceiver = Callable[[TileRequest, TilePixels], None]
 """Told of a finished tile, from a loader's thread."""
 
-Refused = Callable[[TileRequest, UserError], None]
+TileErrorReceiver = Callable[[TileRequest, UserError], None]
 """Told why a tile can't be shown, from a loader's thread."""
 
-_Listeners = dict[Done, Refused | None]
+_Listeners = dict[TileReceiver, TileErrorReceiver | None]
 
 
 class TileCache:
@@ -148,7 +148,9 @@ class TileCache:
             is_kept = self._tiles.get(request) is pixels
             return is_kept or pixels.age == self._ages.get(request.drive_id, 0)
 
-    def request(self, request: TileRequest, done: Done, refused: Refused | None = None) -> None:
+    def request(
+        self, request: TileRequest, done: TileReceiver, refused: TileErrorReceiver | None = None
+    ) -> None:
         """Load a tile, before all that was asked for earlier, and tell ``done``.
 
         A tile that is there already is told at once, from this thread. That a drive can't be
@@ -172,7 +174,7 @@ class TileCache:
                 return
         done(request, pixels)
 
-    def keep_only(self, done: Done, wanted: Collection[TileRequest]) -> None:
+    def keep_only(self, done: TileReceiver, wanted: Collection[TileRequest]) -> None:
         """Give up what a listener asked for and no longer wants, as far as it isn't loading."""
         with self._changed:
             for request in list(self._waiting):
@@ -337,7 +339,10 @@ class TileCache:
     def _pixels_of(self, request: TileRequest, drive_of: Callable[[str], Drive]) -> TilePixels:
         drive = drive_of(request.drive_id)
         image = image_of(drive, request.kind)
-        hides_noise, attribute = request.hides_noise, telling_attribute(drive, request.attribute)
+        hides_noise, attribute = (
+            request.hides_noise,
+            most_telling_attribute(drive, request.attribute),
+        )
         if attribute != request.attribute and request.attribute in SHOWS_LABELS:
             with self._changed:
                 self._stand_ins.add(drive.id)

@@ -160,8 +160,8 @@ def _met(pyramid: TilePyramid, eye: Floats, planes: Floats) -> Floats:
 def _eye(camera: Camera3D) -> Floats:
     is_parallel = camera.parallel_height_m is not None
     across = camera.parallel_height_m or 2 * math.tan(math.radians(camera.angle_deg) / 2)
-    place = np.array(camera.origin) + np.array(camera.position)
-    return np.array([*place, camera.height_px / across, float(is_parallel), FINE_ENOUGH_PX])
+    position = np.array(camera.origin) + np.array(camera.position)
+    return np.array([*position, camera.height_px / across, float(is_parallel), FINE_ENOUGH_PX])
 
 
 def _frustum(camera: Camera3D) -> Floats:

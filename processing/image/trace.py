@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from processing.image.trace_edges import EdgeFollower
 from processing.image.trace_markings import MarkingFollower
 from processing.image.trace_points import PointsBetween
-from processing.image.trace_search import Follower, Place, find_again, find_way, off_line
+from processing.image.trace_search import Follower, TracePoint, find_again, find_trace, off_line
 from processing.text import Text
 
 if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
@@ -38,7 +38,7 @@ _UNSEEN_M = 0.10  # a line that isn't found at one click passes it by so much, m
 
 
 @dataclass(frozen=True)
-class Traced:
+class TraceResult:
     """A line that was followed.
 
     Attributes
@@ -61,7 +61,7 @@ class Traced:
     reason: Text
 
 
-def trace(drive: Drive, start: int, end: int, *, across_gaps: bool = False) -> Traced:
+def trace(drive: Drive, start: int, end: int, *, across_gaps: bool = False) -> TraceResult:
     """Follow the edge or the marking on which two measured points lie.
 
     Parameters
@@ -86,24 +86,24 @@ def trace(drive: Drive, start: int, end: int, *, across_gaps: bool = False) -> T
     line = _line_at_both((EdgeFollower(cloud), _marking_follower(drive, cloud)), goal)
     if line is None:
         return _only(drive, start, _NO_LINE)
-    places, is_complete = _places_between(line, goal, across_gaps=across_gaps)
-    if not places:
+    positions, is_complete = _positions_between(line, goal, across_gaps=across_gaps)
+    if not positions:
         return _only(drive, start, _reason(cloud, np.zeros(3)))
-    beside = [_beside(places[0], np.zeros(3))]
-    last = [_beside(places[-1], goal)] if is_complete else []
-    line_xyz = np.array(beside + _between(places, beside[0], goal) + last)
+    beside = [_beside(positions[0], np.zeros(3))]
+    last = [_beside(positions[-1], goal)] if is_complete else []
+    line_xyz = np.array(beside + _between(positions, beside[0], goal) + last)
     line_xyz = line_xyz[_thinned(line_xyz)]
     points = np.array([cloud.nearest(xyz) for xyz in line_xyz], dtype=np.int64)
     points[0] = start
     if is_complete:
         points[-1] = end
-    reason = _NOTHING if is_complete else _reason(cloud, places[-1].ahead(_LOOKED_AHEAD_M).xyz)
-    return Traced(points, line_xyz + cloud.origin, is_complete, reason)
+    reason = _NOTHING if is_complete else _reason(cloud, positions[-1].ahead(_LOOKED_AHEAD_M).xyz)
+    return TraceResult(points, line_xyz + cloud.origin, is_complete, reason)
 
 
-def _only(drive: Drive, start: int, reason: Text) -> Traced:
+def _only(drive: Drive, start: int, reason: Text) -> TraceResult:
     points = np.array([start])
-    return Traced(points, drive.xyz(points), reason is _NOTHING, reason)
+    return TraceResult(points, drive.xyz(points), reason is _NOTHING, reason)
 
 
 @dataclass(frozen=True)
@@ -111,8 +111,8 @@ class _Line:
     """How a line is followed, and where it begins and ends."""
 
     follower: Follower
-    starts: tuple[Place, ...]
-    ends: tuple[Place, ...]
+    starts: tuple[TracePoint, ...]
+    ends: tuple[TracePoint, ...]
 
 
 def _marking_follower(drive: Drive, cloud: PointsBetween) -> MarkingFollower:
@@ -124,9 +124,9 @@ def _line_at_both(followers: Sequence[Follower], goal: _Floats) -> _Line | None:
     """What passes both points; or one of them, where nothing is found at the other."""
     here = np.zeros(3)
     for follower in followers:
-        starts, ends = follower.places_at(here), follower.places_at(goal)
-        either_way = [*ends, *(follower.turned(place) for place in ends)]
-        kinds = sorted({place.look[0] for place in (*starts, *either_way)})
+        starts, ends = follower.positions_at(here), follower.positions_at(goal)
+        either_way = [*ends, *(follower.turned(position) for position in ends)]
+        kinds = sorted({position.look[0] for position in (*starts, *either_way)})
         if kinds:
             kind = min(
                 kinds, key=lambda kind: _off(starts, kind, here) + _off(either_way, kind, goal)
@@ -135,52 +135,60 @@ def _line_at_both(followers: Sequence[Follower], goal: _Floats) -> _Line | None:
     return None
 
 
-def _off(places: Sequence[Place], kind: float, xyz: _Floats) -> float:
+def _off(positions: Sequence[TracePoint], kind: float, xyz: _Floats) -> float:
     """How far the nearest line of a kind passes a place."""
-    of_kind = (off_line(xyz, place) for place in places if place.look[0] == kind)
+    of_kind = (off_line(xyz, position) for position in positions if position.look[0] == kind)
     return min(of_kind, default=_UNSEEN_M)
 
 
-def _of_kind(follower: Follower, places: Sequence[Place], kind: float) -> tuple[Place, ...]:
+def _of_kind(
+    follower: Follower, positions: Sequence[TracePoint], kind: float
+) -> tuple[TracePoint, ...]:
     """Some of the places, to be left in either direction."""
-    chosen = [place for place in places if place.look[0] == kind][:_MOST_STARTS]
-    return tuple(way for place in chosen for way in (place, follower.turned(place)))
+    chosen = [position for position in positions if position.look[0] == kind][:_MOST_STARTS]
+    return tuple(
+        vehicle_path
+        for position in chosen
+        for vehicle_path in (position, follower.turned(position))
+    )
 
 
-def _places_between(line: _Line, goal: _Floats, *, across_gaps: bool) -> tuple[list[Place], bool]:
+def _positions_between(
+    line: _Line, goal: _Floats, *, across_gaps: bool
+) -> tuple[list[TracePoint], bool]:
     """Places from the start on, and whether they lead to the end."""
-    way = find_way(line.follower, line.starts, goal)
-    if not way.is_complete and line.ends:
+    vehicle_path = find_trace(line.follower, line.starts, goal)
+    if not vehicle_path.is_complete and line.ends:
         # Where two lines part, the way back may be plain.
-        back = find_way(line.follower, line.ends, np.zeros(3))
+        back = find_trace(line.follower, line.ends, np.zeros(3))
         if back.is_complete:
-            turned = [line.follower.turned(place) for place in reversed(back.places)]
+            turned = [line.follower.turned(position) for position in reversed(back.positions)]
             return turned, True
-    places, is_complete = list(way.places), way.is_complete
-    while places and across_gaps and not is_complete:
-        again = find_again(line.follower, places[-1], goal)
+    positions, is_complete = list(vehicle_path.positions), vehicle_path.is_complete
+    while positions and across_gaps and not is_complete:
+        again = find_again(line.follower, positions[-1], goal)
         if again is None:
-            return places, True
-        way = find_way(line.follower, [again], goal)
-        places += way.places
-        is_complete = way.is_complete
-    return places, is_complete
+            return positions, True
+        vehicle_path = find_trace(line.follower, [again], goal)
+        positions += vehicle_path.positions
+        is_complete = vehicle_path.is_complete
+    return positions, is_complete
 
 
-def _beside(place: Place, xyz: _Floats) -> _Floats:
+def _beside(position: TracePoint, xyz: _Floats) -> _Floats:
     """(3,) where the line through a place passes another, if it isn't far."""
-    along = float((xyz - place.xyz) @ place.direction)
-    return place.ahead(max(-_REACHED_M, min(_REACHED_M, along))).xyz
+    along = float((xyz - position.xyz) @ position.direction)
+    return position.ahead(max(-_REACHED_M, min(_REACHED_M, along))).xyz
 
 
-def _between(places: Sequence[Place], start: _Floats, goal: _Floats) -> list[_Floats]:
+def _between(positions: Sequence[TracePoint], start: _Floats, goal: _Floats) -> list[_Floats]:
     """Places that lie ahead of the start and before the end."""
-    first, last = places[0].direction, places[-1].direction
+    first, last = positions[0].direction, positions[-1].direction
     return [
-        place.xyz
-        for place in places
-        if (_is_far(place.xyz - start) or (place.xyz - start) @ first > 0)
-        and (_is_far(goal - place.xyz) or (goal - place.xyz) @ last > 0)
+        position.xyz
+        for position in positions
+        if (_is_far(position.xyz - start) or (position.xyz - start) @ first > 0)
+        and (_is_far(goal - position.xyz) or (goal - position.xyz) @ last > 0)
     ]
 
 

@@ -18,14 +18,14 @@ from processing.image.edge_kernels import (
 from processing.image.edge_sections import (
     LEAST_STRENGTH_M,
     PATCH_M,
-    Section,
+    EdgeProfile,
     length_needed,
     section_along,
     section_at,
 )
-from processing.image.edge_steps import LONGER_M, Step, step_at
+from processing.image.edge_steps import LONGER_M, EdgeStep, step_at
 from processing.image.trace_points import PointsBetween
-from processing.image.trace_search import Place, off_line
+from processing.image.trace_search import TracePoint, off_line
 
 _Floats = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ class EdgeFollower:
     def __init__(self, cloud: PointsBetween) -> None:
         self._cloud = cloud
 
-    def places_at(self, xyz: _Floats) -> Sequence[Place]:
+    def positions_at(self, xyz: _Floats) -> Sequence[TracePoint]:
         """Edges that pass a place within 12 cm, the nearest first.
 
         A place may be the very end of an edge, or a car may stand there: then what passes it is
@@ -62,10 +62,12 @@ class EdgeFollower:
                 center = xyz + distance * np.array([math.cos(angle), math.sin(angle), 0.0])
                 found += self._edges_about(center, xyz)
             if found:
-                return sorted(found, key=lambda place: off_line(xyz, place))
+                return sorted(found, key=lambda position: off_line(xyz, position))
         return []
 
-    def places_near(self, expected: Place, slack_m: float) -> Sequence[tuple[Place, float]]:
+    def positions_near(
+        self, expected: TracePoint, slack_m: float
+    ) -> Sequence[tuple[TracePoint, float]]:
         """Edges of the same kind within so much of an expected one, with how unlike they look."""
         local = self._around(expected.xyz)
         if not local.size:
@@ -75,13 +77,13 @@ class EdgeFollower:
         for across in _ACROSS_M:
             reach = (length_needed(local, frame, LONGER_M), across + slack_m)
             section = section_along(local, frame, reach, 0)
-            found = [] if section is None else _like(_places_of(section), expected, slack_m)
+            found = [] if section is None else _like(_positions_of(section), expected, slack_m)
             if found:
                 break
         if not found or min(unlike for _, unlike in found) > _ALIKE:
             step = step_at(local, np.zeros(3))
-            if isinstance(step, Step):
-                found += _like(_places_of_step(step, expected.heading_rad), expected, slack_m)
+            if isinstance(step, EdgeStep):
+                found += _like(_positions_of_step(step, expected.heading_rad), expected, slack_m)
         # A long piece would lead on beyond the last points.
         return [one for one in found if self._cloud.near(one[0].xyz, _SEEN_M).size]
 
@@ -93,53 +95,55 @@ class EdgeFollower:
         local = self._cloud.xyz[near] - xyz
         return np.ascontiguousarray(local[:: max(1, local.shape[0] // _MOST_POINTS)])
 
-    def _edges_about(self, center: _Floats, xyz: _Floats) -> list[Place]:
+    def _edges_about(self, center: _Floats, xyz: _Floats) -> list[TracePoint]:
         step = step_at(self._cloud.xyz[self._cloud.near(center, LONGER_M)], center)
-        if isinstance(step, Step):
-            places = _places_of_step(step, step.heading_rad)
+        if isinstance(step, EdgeStep):
+            positions = _positions_of_step(step, step.heading_rad)
         else:
             section = section_at(self._cloud.xyz[self._cloud.near(center, PATCH_M)], center)
-            places = [] if section is None else _places_of(section)
+            positions = [] if section is None else _positions_of(section)
         near = 2 * _BESIDE_M + float(np.linalg.norm(center - xyz))
         return [
-            place
-            for place in places
-            if off_line(xyz, place) <= _BESIDE_M and np.linalg.norm(place.xyz - xyz) <= near
+            position
+            for position in positions
+            if off_line(xyz, position) <= _BESIDE_M and np.linalg.norm(position.xyz - xyz) <= near
         ]
 
-    def turned(self, place: Place) -> Place:
+    def turned(self, position: TracePoint) -> TracePoint:
         """The same edge for the opposite direction."""
-        return _turned(place)
+        return _turned(position)
 
 
-def _places_of(section: Section) -> list[Place]:
-    places = []
-    for corner, xyz in zip(section.corners, section.places, strict=True):
+def _positions_of(section: EdgeProfile) -> list[TracePoint]:
+    positions = []
+    for corner, xyz in zip(section.corners, section.positions, strict=True):
         if corner[STRENGTH] >= LEAST_STRENGTH_M:
             look = (math.copysign(1.0, corner[BEND]), float(corner[BEFORE]), float(corner[AFTER]))
-            places.append(Place(xyz, section.heading_rad, section.grade, section.curvature, look))
-    return places
+            positions.append(
+                TracePoint(xyz, section.heading_rad, section.grade, section.curvature, look)
+            )
+    return positions
 
 
-def _places_of_step(step: Step, heading_rad: float) -> list[Place]:
+def _positions_of_step(step: EdgeStep, heading_rad: float) -> list[TracePoint]:
     """Both edges of a step, in that one of its directions that is nearer to a heading."""
     is_turned = math.cos(step.heading_rad - heading_rad) < 0
     lower, face, upper = step.slopes_rad
     looks = ((1.0, lower, face), (-1.0, face, upper))
-    places = []
+    positions = []
     for xyz, grade, look in zip((step.lower, step.upper), step.grades, looks, strict=True):
-        place = Place(xyz, step.heading_rad, grade, 0.0, look)
-        places.append(_turned(place) if is_turned else place)
-    return places
+        position = TracePoint(xyz, step.heading_rad, grade, 0.0, look)
+        positions.append(_turned(position) if is_turned else position)
+    return positions
 
 
-def _turned(place: Place) -> Place:
-    kind, before, after = place.look
-    return Place(
-        place.xyz,
-        place.heading_rad + math.pi,
-        -place.grade,
-        -place.curvature,
+def _turned(position: TracePoint) -> TracePoint:
+    kind, before, after = position.look
+    return TracePoint(
+        position.xyz,
+        position.heading_rad + math.pi,
+        -position.grade,
+        -position.curvature,
         (kind, -after, -before),
     )
 
@@ -153,10 +157,12 @@ def _difference(look: tuple[float, ...], other: tuple[float, ...]) -> float:
     return float(sum(turned) / _UNLIKE) ** 2 / 2
 
 
-def _like(places: Sequence[Place], expected: Place, slack_m: float) -> list[tuple[Place, float]]:
+def _like(
+    positions: Sequence[TracePoint], expected: TracePoint, slack_m: float
+) -> list[tuple[TracePoint, float]]:
     found = []
-    for place in places:
-        unlike = _difference(place.look, expected.look)
-        if np.linalg.norm(place.xyz) <= slack_m and unlike <= _MOST_UNLIKE:
-            found.append((replace(place, xyz=place.xyz + expected.xyz), unlike))
+    for position in positions:
+        unlike = _difference(position.look, expected.look)
+        if np.linalg.norm(position.xyz) <= slack_m and unlike <= _MOST_UNLIKE:
+            found.append((replace(position, xyz=position.xyz + expected.xyz), unlike))
     return found

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.trace_points import PointsBetween
-from processing.image.trace_search import Place
+from processing.image.trace_search import TracePoint
 
 _Floats = NDArray[np.float64]
 
@@ -43,13 +43,13 @@ class MarkingFollower:
         self._cloud = cloud
         self._intensity = intensity
 
-    def places_at(self, xyz: _Floats) -> Sequence[Place]:
+    def positions_at(self, xyz: _Floats) -> Sequence[TracePoint]:
         """The line of a stripe nearest to a place within 12 cm of it; none on plain ground."""
         near = self._cloud.near(xyz, _REACH_M)
         heading = _first_heading(self._cloud.xyz[near] - xyz, self._intensity[near])
         if heading is None:
             return []
-        start = Place(xyz, heading, 0.0, 0.0, (MIDDLE, math.nan))
+        start = TracePoint(xyz, heading, 0.0, 0.0, (MIDDLE, math.nan))
         stripe = self._stripe(start, _REACH_M)
         if stripe is None:
             return []
@@ -58,7 +58,9 @@ class MarkingFollower:
         nearest = min(lines, key=lambda line: float(np.linalg.norm(line.xyz - xyz)))
         return [nearest] if np.linalg.norm(nearest.xyz - xyz) <= _BESIDE_M else []
 
-    def places_near(self, expected: Place, slack_m: float) -> Sequence[tuple[Place, float]]:
+    def positions_near(
+        self, expected: TracePoint, slack_m: float
+    ) -> Sequence[tuple[TracePoint, float]]:
         """The line again near an expected place, with how unlike the stripe's width is."""
         side, width = expected.look
         stripe = self._stripe(_middle(expected), width / 2 + slack_m + 0.15)
@@ -69,14 +71,18 @@ class MarkingFollower:
         off = float(np.linalg.norm(found.xyz - expected.xyz))
         return [(found, unlike)] if off <= slack_m and unlike <= 1.0 else []
 
-    def turned(self, place: Place) -> Place:
+    def turned(self, position: TracePoint) -> TracePoint:
         """The same line for the opposite direction."""
-        side, width = place.look
-        return Place(
-            place.xyz, place.heading_rad + math.pi, -place.grade, -place.curvature, (-side, width)
+        side, width = position.look
+        return TracePoint(
+            position.xyz,
+            position.heading_rad + math.pi,
+            -position.grade,
+            -position.curvature,
+            (-side, width),
         )
 
-    def _stripe(self, expected: Place, across_m: float) -> Place | None:
+    def _stripe(self, expected: TracePoint, across_m: float) -> TracePoint | None:
         """The brightest stripe across an expected direction: its middle, better directed."""
         near = self._cloud.near(expected.xyz, math.hypot(across_m, _ALONG_M))
         local = self._cloud.xyz[near] - expected.xyz
@@ -97,9 +103,9 @@ class MarkingFollower:
         middle, width = (borders[0] + borders[1]) / 2, borders[1] - borders[0]
         on_stripe = is_bright & (across >= borders[0]) & (across <= borders[1])
         turn = _slope(along[on_stripe], across[on_stripe])
-        place = np.array([-sin * middle, cos * middle, plane[1] * middle + plane[2]])
-        return Place(
-            expected.xyz + place,
+        position = np.array([-sin * middle, cos * middle, plane[1] * middle + plane[2]])
+        return TracePoint(
+            expected.xyz + position,
             expected.heading_rad + math.atan(turn),
             float(plane[0] + turn * plane[1]),
             0.0,
@@ -159,16 +165,16 @@ def _slope(along: _Floats, across: _Floats) -> float:
     return float(((along - along.mean()) * (across - across.mean())).sum()) / spread
 
 
-def _line(stripe: Place, side: float) -> Place:
+def _line(stripe: TracePoint, side: float) -> TracePoint:
     """A border of a stripe from its middle."""
     return replace(stripe, xyz=stripe.xyz + _aside(stripe, side), look=(side, stripe.look[1]))
 
 
-def _middle(line: Place) -> Place:
+def _middle(line: TracePoint) -> TracePoint:
     side, width = line.look
     return replace(line, xyz=line.xyz - _aside(line, side), look=(MIDDLE, width))
 
 
-def _aside(place: Place, side: float) -> _Floats:
-    left = np.array([-math.sin(place.heading_rad), math.cos(place.heading_rad), 0.0])
-    return np.asarray(side * place.look[1] / 2 * left) if side else np.zeros(3)
+def _aside(position: TracePoint, side: float) -> _Floats:
+    left = np.array([-math.sin(position.heading_rad), math.cos(position.heading_rad), 0.0])
+    return np.asarray(side * position.look[1] / 2 * left) if side else np.zeros(3)

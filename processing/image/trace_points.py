@@ -42,9 +42,9 @@ class PointsBetween:
     """
 
     def __init__(self, drive: Drive, start: int, end: int) -> None:
-        places = drive.xyz(np.array([start, end]))
-        self.origin = places[0]
-        points, xyz = _gathered(drive, start, end, places)
+        positions = drive.xyz(np.array([start, end]))
+        self.origin = positions[0]
+        points, xyz = _gathered(drive, start, end, positions)
         cells = np.floor(xyz[:, :2] / _CELL_M).astype(np.int64)
         self._lowest = cells.min(axis=0)
         cells -= self._lowest
@@ -92,23 +92,27 @@ class PointsBetween:
         return np.asarray(candidates[squares <= radius_m**2])
 
 
-def _gathered(drive: Drive, start: int, end: int, places: _Floats) -> tuple[_Integers, _Floats]:
+def _gathered(drive: Drive, start: int, end: int, positions: _Floats) -> tuple[_Integers, _Floats]:
     pulses = drive.columns["pulse"]
-    turns = drive.turns
-    period = turns.pulses_per_turn if turns is not None else float(drive.info.cells_per_row)
+    revolutions = drive.revolutions
+    period = (
+        revolutions.pulses_per_revolution
+        if revolutions is not None
+        else float(drive.info.cells_per_row)
+    )
     first, last = min(start, end), max(start, end)
     margins = [np.prod(rows_to_take(drive, point, _BESIDE_M)) * period for point in (first, last)]
     low = int(np.searchsorted(pulses, int(pulses[first]) - round(margins[0])))
     high = int(np.searchsorted(pulses, int(pulses[last]) + round(margins[1]) + 1))
-    longest = _DETOUR * float(np.linalg.norm(places[1] - places[0])) + _DETOUR_M
+    longest = _DETOUR * float(np.linalg.norm(positions[1] - positions[0])) + _DETOUR_M
     points, xyz, classes = [], [], class_columns(drive.columns)
     for begin in range(low, high, _AT_ONCE):
         part = drive.xyz(slice(begin, min(high, begin + _AT_ONCE)))
-        ways = sum(np.linalg.norm(part - place, axis=1) for place in places)
+        ways = sum(np.linalg.norm(part - position, axis=1) for position in positions)
         kept = np.flatnonzero(ways <= longest)
         # Noise is no line, whatever one clicked on.
         near = kept + begin
         kept = kept[~classes.are_noise(near) | (near == start) | (near == end)]
         points.append(kept + begin)
-        xyz.append(part[kept] - places[0])
+        xyz.append(part[kept] - positions[0])
     return np.concatenate(points), np.concatenate(xyz)

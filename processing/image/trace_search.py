@@ -31,11 +31,11 @@ _CELL_M = 0.08
 _DETOUR, _DETOUR_M = 1.3, 4.0
 _HOLE_PRICE = 3.0  # a metre without the line is as dear as three more with it
 _DEAREST = 3.0
-_MOST_PLACES = 20_000
+_MOST_POSITIONS = 20_000
 
 
 @dataclass(frozen=True)
-class Place:
+class TracePoint:
     """Where a line was found.
 
     Attributes
@@ -60,12 +60,12 @@ class Place:
         along = np.array([math.cos(self.heading_rad), math.sin(self.heading_rad), self.grade])
         return np.asarray(along / np.linalg.norm(along))
 
-    def ahead(self, distance_m: float) -> Place:
+    def ahead(self, distance_m: float) -> TracePoint:
         """Where it would be so much farther on."""
         turn = self.curvature * distance_m
         middle = self.heading_rad + turn / 2
         step = distance_m * np.array([math.cos(middle), math.sin(middle), self.grade])
-        return Place(
+        return TracePoint(
             self.xyz + step, self.heading_rad + turn, self.grade, self.curvature, self.look
         )
 
@@ -73,25 +73,27 @@ class Place:
 class Follower(Protocol):
     """Finds one kind of line in the points."""
 
-    def places_at(self, xyz: _Floats) -> Sequence[Place]:
+    def positions_at(self, xyz: _Floats) -> Sequence[TracePoint]:
         """Lines that pass near a place, in either direction."""
 
-    def places_near(self, expected: Place, slack_m: float) -> Sequence[tuple[Place, float]]:
+    def positions_near(
+        self, expected: TracePoint, slack_m: float
+    ) -> Sequence[tuple[TracePoint, float]]:
         """The line again near an expected place, with how unlike it looks: 0 the same."""
 
-    def turned(self, place: Place) -> Place:
+    def turned(self, position: TracePoint) -> TracePoint:
         """The same place for the opposite direction."""
 
 
 @dataclass(frozen=True)
-class Way:
+class TracePath:
     """Places from the start on; whether they lead to the end."""
 
-    places: tuple[Place, ...]
+    positions: tuple[TracePoint, ...]
     is_complete: bool
 
 
-def find_way(follower: Follower, starts: Sequence[Place], end: _Floats) -> Way:
+def find_trace(follower: Follower, starts: Sequence[TracePoint], end: _Floats) -> TracePath:
     """The cheapest way from one of some places to the end, or the way that comes nearest to it.
 
     Parameters
@@ -107,7 +109,7 @@ def find_way(follower: Follower, starts: Sequence[Place], end: _Floats) -> Way:
     search = _Search(follower, end)
     for start in starts:
         search.wait(_Waiting(0.0, start, -1, STEP_M), _distance(start.xyz, end))
-    return search.way()
+    return search.vehicle_path()
 
 
 @dataclass(frozen=True)
@@ -115,7 +117,7 @@ class _Waiting:
     """A place and what the way to it costs, where it was reached from, how far to look ahead."""
 
     cost: float
-    place: Place
+    position: TracePoint
     before: int
     look_m: float
 
@@ -127,7 +129,7 @@ class _Search:
         self._follower, self._end = follower, end
         self._waiting: list[tuple[float, int, _Waiting]] = []
         self._numbers = itertools.count()
-        self._reached: list[tuple[Place, int]] = []
+        self._reached: list[tuple[TracePoint, int]] = []
         self._seen: set[tuple[int, ...]] = set()
         self._dearest = 0.0
 
@@ -138,34 +140,34 @@ class _Search:
         if waiting.cost + left_m <= self._dearest:
             heapq.heappush(self._waiting, (waiting.cost + left_m, next(self._numbers), waiting))
 
-    def way(self) -> Way:
+    def vehicle_path(self) -> TracePath:
         nearest, least = -1, math.inf
-        while self._waiting and len(self._reached) < _MOST_PLACES:
+        while self._waiting and len(self._reached) < _MOST_POSITIONS:
             waiting = heapq.heappop(self._waiting)[2]
-            left = _distance(waiting.place.xyz, self._end)
+            left = _distance(waiting.position.xyz, self._end)
             if waiting.look_m <= STEP_M:
-                if not self._is_new(waiting.place):
+                if not self._is_new(waiting.position):
                     continue
-                self._reached.append((waiting.place, waiting.before))
+                self._reached.append((waiting.position, waiting.before))
                 waiting = replace(waiting, before=len(self._reached) - 1)
-                if _passes(waiting.place, self._end):
-                    return Way(_back(self._reached, waiting.before), is_complete=True)
+                if _passes(waiting.position, self._end):
+                    return TracePath(_back(self._reached, waiting.before), is_complete=True)
                 if left < least:
                     nearest, least = waiting.before, left
             self._look_ahead(waiting, left)
         if nearest < 0:
-            return Way((), is_complete=False)
+            return TracePath((), is_complete=False)
         is_near = _leads_to(self._reached[nearest][0], self._end)
-        return Way(_back(self._reached, nearest), is_complete=is_near)
+        return TracePath(_back(self._reached, nearest), is_complete=is_near)
 
-    def _is_new(self, place: Place) -> bool:
-        cell = (*np.floor(place.xyz / _CELL_M).astype(int), _way_round(place))
+    def _is_new(self, position: TracePoint) -> bool:
+        cell = (*np.floor(position.xyz / _CELL_M).astype(int), _way_round(position))
         is_new = cell not in self._seen
         self._seen.add(cell)
         return is_new
 
     def _look_ahead(self, waiting: _Waiting, left_m: float) -> None:
-        for after, price in _found_at(self._follower, waiting.place, waiting.look_m):
+        for after, price in _found_at(self._follower, waiting.position, waiting.look_m):
             found = _Waiting(waiting.cost + price, after, waiting.before, STEP_M)
             self.wait(found, _distance(after.xyz, self._end))
         farther = waiting.look_m + STEP_M
@@ -174,30 +176,32 @@ class _Search:
             self.wait(replace(waiting, look_m=farther), left_m + _hole_price(farther))
 
 
-def find_again(follower: Follower, place: Place, end: _Floats) -> Place | None:
+def find_again(follower: Follower, position: TracePoint, end: _Floats) -> TracePoint | None:
     """Where a line goes on beyond a hole: the first place ahead from which it can be followed."""
-    left = _distance(place.xyz, end)
+    left = _distance(position.xyz, end)
     distance = HOLE_M + STEP_M
     while distance < left:
-        expected = place.ahead(distance)
+        expected = position.ahead(distance)
         slack = _SLACK_M + _SLACK_RATIO * distance
-        for found, _ in follower.places_near(expected, slack):
+        for found, _ in follower.positions_near(expected, slack):
             if _found_at(follower, found, STEP_M):
                 return found
         distance += STEP_M
     return None
 
 
-def _found_at(follower: Follower, place: Place, distance_m: float) -> list[tuple[Place, float]]:
+def _found_at(
+    follower: Follower, position: TracePoint, distance_m: float
+) -> list[tuple[TracePoint, float]]:
     """Where the line is found again so far ahead, with prices."""
-    expected = place.ahead(distance_m)
+    expected = position.ahead(distance_m)
     slack = _SLACK_M + _SLACK_RATIO * distance_m
     found = []
-    for after, unlike in follower.places_near(expected, slack):
-        turn = _angle(after.heading_rad - place.heading_rad)
+    for after, unlike in follower.positions_near(expected, slack):
+        turn = _angle(after.heading_rad - position.heading_rad)
         if abs(turn) <= _SHARPEST_TURN * distance_m / STEP_M:
             off = _distance(after.xyz, expected.xyz) / slack
-            turned = abs(turn - place.curvature * distance_m) / _SHARPEST_TURN
+            turned = abs(turn - position.curvature * distance_m) / _SHARPEST_TURN
             worse = off**2 + turned**2 + unlike
             found.append((after, distance_m * (1 + worse) + _hole_price(distance_m)))
     return found
@@ -207,35 +211,35 @@ def _hole_price(distance_m: float) -> float:
     return _HOLE_PRICE * (distance_m - STEP_M)
 
 
-def _passes(place: Place, end: _Floats) -> bool:
+def _passes(position: TracePoint, end: _Floats) -> bool:
     """Whether the end lies beside a place."""
-    along = float((end - place.xyz) @ place.direction)
-    return off_line(end, place) <= _SLACK_M + _SLACK_RATIO and abs(along) <= STEP_M
+    along = float((end - position.xyz) @ position.direction)
+    return off_line(end, position) <= _SLACK_M + _SLACK_RATIO and abs(along) <= STEP_M
 
 
-def off_line(xyz: _Floats, place: Place) -> float:
+def off_line(xyz: _Floats, position: TracePoint) -> float:
     """Distance of a place from the straight line through another in its direction, m."""
-    away = xyz - place.xyz
-    return float(np.linalg.norm(away - (away @ place.direction) * place.direction))
+    away = xyz - position.xyz
+    return float(np.linalg.norm(away - (away @ position.direction) * position.direction))
 
 
-def _leads_to(place: Place, end: _Floats) -> bool:
+def _leads_to(position: TracePoint, end: _Floats) -> bool:
     """Whether the end lies ahead, no farther than a hole is wide."""
-    ahead = float((end - place.xyz) @ place.direction)
+    ahead = float((end - position.xyz) @ position.direction)
     slack = _SLACK_M + _SLACK_RATIO * HOLE_M
-    return -STEP_M <= ahead <= HOLE_M and off_line(end, place) <= slack
+    return -STEP_M <= ahead <= HOLE_M and off_line(end, position) <= slack
 
 
-def _back(reached: Sequence[tuple[Place, int]], last: int) -> tuple[Place, ...]:
-    places = []
+def _back(reached: Sequence[tuple[TracePoint, int]], last: int) -> tuple[TracePoint, ...]:
+    positions = []
     while last >= 0:
-        place, last = reached[last]
-        places.append(place)
-    return tuple(reversed(places))
+        position, last = reached[last]
+        positions.append(position)
+    return tuple(reversed(positions))
 
 
-def _way_round(place: Place) -> int:
-    return round(place.heading_rad / (math.pi / 2)) % 4
+def _way_round(position: TracePoint) -> int:
+    return round(position.heading_rad / (math.pi / 2)) % 4
 
 
 def _angle(turned: float) -> float:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.points.columns import column_path
 from processing.points.drive import Drive
 
@@ -74,7 +74,7 @@ def write_codes(path: Path, points: NDArray[np.int64], codes: NDArray[np.uint8])
     MissingInput, NoSpace
         The file can't be written; some of the points may have been.
     """
-    with told_as_user_error(path), path.open("rb+", buffering=0) as file:
+    with report_as_user_error(path), path.open("rb+", buffering=0) as file:
         for start, part in _by_block(points):
             file.seek(start)
             block = bytearray(file.read(_BLOCK))
@@ -92,7 +92,7 @@ def flush(drive: Drive) -> None:
         It can't be written.
     """
     path = column_path(drive.folder, LABEL)
-    with told_as_user_error(path), path.open("rb+") as file:
+    with report_as_user_error(path), path.open("rb+") as file:
         os.fsync(file.fileno())
 
 

@@ -12,7 +12,7 @@ _NARROW, _WIDE = 4, 8
 _DTYPES = {_NARROW: "<u4", _WIDE: "<u8"}
 
 
-def packed_points(points: NDArray[np.int64]) -> bytes:
+def pack_points(points: NDArray[np.int64]) -> bytes:
     """Indices of points as compressed gaps and lengths of their runs.
 
     Parameters
@@ -41,8 +41,8 @@ def packed_points(points: NDArray[np.int64]) -> bytes:
     return bytes([width]) + zlib.compress(table.tobytes(), _LEVEL)
 
 
-def unpacked_points(packed: bytes) -> NDArray[np.int64]:
-    """The points of :func:`packed_points`.
+def unpack_points(packed: bytes) -> NDArray[np.int64]:
+    """The points of :func:`pack_points`.
 
     Returns
     -------
@@ -74,13 +74,13 @@ def unpacked_points(packed: bytes) -> NDArray[np.int64]:
     return points
 
 
-def packed_codes(codes: NDArray[np.uint8]) -> bytes:
+def pack_codes(codes: NDArray[np.uint8]) -> bytes:
     """Codes of points, compressed."""
     return zlib.compress(np.ascontiguousarray(codes, np.uint8).tobytes(), _LEVEL)
 
 
-def unpacked_codes(packed: bytes) -> NDArray[np.uint8]:
-    """The (n,) uint8 codes of :func:`packed_codes`.
+def unpack_codes(packed: bytes) -> NDArray[np.uint8]:
+    """The (n,) uint8 codes of :func:`pack_codes`.
 
     Raises
     ------

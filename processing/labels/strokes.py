@@ -53,10 +53,10 @@ def points_under_brush(drive: Drive, start: _Floats, end: _Floats, radius_m: flo
     # The way in the integers' own units, so that no coordinate is computed for a point far off.
     way = (np.stack([start, end]) - np.array(drive.info.offset)) / scale
     room = np.empty(_FIRST_ROOM, np.int64)
-    count = _near_way_kernel(integers, scale, stretches, (way, radius_m), room)
+    count = _near_stroke_kernel(integers, scale, stretches, (way, radius_m), room)
     if count > room.size:
         room = np.empty(count, np.int64)
-        _near_way_kernel(integers, scale, stretches, (way, radius_m), room)
+        _near_stroke_kernel(integers, scale, stretches, (way, radius_m), room)
     return room[:count]
 
 
@@ -81,13 +81,15 @@ def points_in_slab(drive: Drive, cut: Cut, way: _Floats, radius_m: float) -> _In
     half_m = float(np.ptp(offsets)) / 2 + radius_m
     around = replace(cut, middle=(east, north, cut.middle[2]), half_length_m=half_m)
     points = points_in_cut(drive, around, drive.count)
-    places = cut.to_section(drive.xyz(points))[:, :2]
+    positions = cut.to_section(drive.xyz(points))[:, :2]
     along = way[1] - way[0]
     length = float(along @ along)
     share = (
-        np.clip((places - way[0]) @ along / length, 0.0, 1.0) if length else np.zeros(len(places))
+        np.clip((positions - way[0]) @ along / length, 0.0, 1.0)
+        if length
+        else np.zeros(len(positions))
     )
-    away = places - way[0] - share[:, None] * along
+    away = positions - way[0] - share[:, None] * along
     is_near = (away**2).sum(axis=1) <= radius_m**2
     return np.asarray(points[is_near])
 
@@ -156,7 +158,7 @@ def _stretches_near(image: PointCloudImage, way: _Floats, radius_m: float) -> _I
 
 
 @kernel
-def _near_way_kernel(
+def _near_stroke_kernel(
     integers: NDArray[np.int32],
     scale: _Floats,
     stretches: _Integers,
@@ -188,7 +190,7 @@ def _near_way_kernel(
     return count
 
 
-def way_is_short(start: _Floats, end: _Floats, radius_m: float) -> bool:
+def stroke_is_short(start: _Floats, end: _Floats, radius_m: float) -> bool:
     """Whether a brush went over the surface between two places, and did not jump off it."""
     return math.dist(start, end) <= max(10 * radius_m, 2.0)
 
@@ -196,4 +198,4 @@ def way_is_short(start: _Floats, end: _Floats, radius_m: float) -> bool:
 def warm_up() -> None:
     """Compile the kernel."""
     near, room = (np.zeros((2, 3)), 1.0), np.empty(1, np.int64)
-    _near_way_kernel(np.zeros((1, 3), np.int32), np.ones(3), np.array([[0, 1]]), near, room)
+    _near_stroke_kernel(np.zeros((1, 3), np.int32), np.ones(3), np.array([[0, 1]]), near, room)

@@ -19,7 +19,7 @@ _Integers = NDArray[np.int64]
 SURE, SQUARE = 1, 2
 
 
-class Beams(NamedTuple):
+class PointBeams(NamedTuple):
     """Points with their beams, in rows.
 
     ``xyz`` and ``origins`` (n, 3) local m, ``ranges`` (n,) m, ``columns`` (n,), ``row_starts``
@@ -36,28 +36,28 @@ class Beams(NamedTuple):
 
 
 @kernel
-def spacing_kernel(beams: Beams, first: int, stop: int, spacings: _Floats) -> None:
+def spacing_kernel(beams: PointBeams, first: int, stop: int, spacings: _Floats) -> None:
     """Distance from each point's beam to the nearest of the next row, at the point's range."""
     for row in range(first, stop):
         other = _row_beside(beams.segments, row, 1)
         if other < 0 or beams.row_starts[other] == beams.row_starts[other + 1]:
             other = _row_beside(beams.segments, row, -1)
-        place = beams.row_starts[other] if other >= 0 else 0
+        position = beams.row_starts[other] if other >= 0 else 0
         for point in range(beams.row_starts[row], beams.row_starts[row + 1]):
             reach = beams.ranges[point]
             best = reach * beams.turn
             if other >= 0:
                 end = beams.row_starts[other + 1]
                 column = beams.columns[point]
-                while place + 1 < end and beams.columns[place + 1] <= column:
-                    place += 1
-                if place < end and abs(beams.columns[place] - column) <= 8:
-                    share = reach / max(beams.ranges[place], 1e-6)
-                    shift = (column - beams.columns[place]) * reach * beams.turn
+                while position + 1 < end and beams.columns[position + 1] <= column:
+                    position += 1
+                if position < end and abs(beams.columns[position] - column) <= 8:
+                    share = reach / max(beams.ranges[position], 1e-6)
+                    shift = (column - beams.columns[position]) * reach * beams.turn
                     square = 0.0
                     for axis in range(3):
-                        there = beams.origins[place, axis]
-                        there += share * (beams.xyz[place, axis] - there)
+                        there = beams.origins[position, axis]
+                        there += share * (beams.xyz[position, axis] - there)
                         square += (there - beams.xyz[point, axis]) ** 2
                     best = max(best, math.sqrt(max(square - shift * shift, 0.0)))
                 else:
@@ -67,7 +67,7 @@ def spacing_kernel(beams: Beams, first: int, stop: int, spacings: _Floats) -> No
 
 @kernel
 def surface_kernel(
-    beams: Beams, spacings: _Floats, first: int, stop: int, found: NDArray[np.uint8]
+    beams: PointBeams, spacings: _Floats, first: int, stop: int, found: NDArray[np.uint8]
 ) -> None:
     """Mark the points from which a surface goes on to both sides and to the rows beside.
 
@@ -94,7 +94,7 @@ def surface_kernel(
 
 
 @kernel
-def _goes_on_along(beams: Beams, point: int) -> int:
+def _goes_on_along(beams: PointBeams, point: int) -> int:
     """Whether the two pulses on either side met the same line: 0, `SURE` or `SQUARE`."""
     step = beams.ranges[point] * beams.turn
     left, right = point - 1, point + 1
@@ -116,18 +116,18 @@ def _goes_on_along(beams: Beams, point: int) -> int:
 
 
 @kernel
-def _advance(beams: Beams, place: int, row: int, column: int) -> int:
+def _advance(beams: PointBeams, position: int, row: int, column: int) -> int:
     """The point of a row whose column is nearest, from a place at or before it."""
     end = beams.row_starts[row + 1]
-    while place + 1 < end and abs(beams.columns[place + 1] - column) <= abs(
-        beams.columns[place] - column
+    while position + 1 < end and abs(beams.columns[position + 1] - column) <= abs(
+        beams.columns[position] - column
     ):
-        place += 1
-    return place
+        position += 1
+    return position
 
 
 @kernel
-def _is_near(beams: Beams, point: int, other: int, limit: float) -> bool:
+def _is_near(beams: PointBeams, point: int, other: int, limit: float) -> bool:
     if other >= beams.xyz.shape[0] or abs(beams.columns[other] - beams.columns[point]) > 3:
         return False
     square = 0.0
@@ -148,6 +148,6 @@ def warm_up() -> None:
     """Compile the kernels."""
     zeros = np.zeros((4, 3))
     starts, segments = np.arange(5), np.zeros(4, np.int32)
-    beams = Beams(zeros, zeros, np.ones(4), segments, starts, segments, 0.01)
+    beams = PointBeams(zeros, zeros, np.ones(4), segments, starts, segments, 0.01)
     spacing_kernel(beams, 0, 4, np.empty(4))
     surface_kernel(beams, np.ones(4), 0, 4, np.empty(4, np.uint8))

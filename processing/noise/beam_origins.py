@@ -18,7 +18,7 @@ from processing.points.trajectory import Trajectory
 
 _Floats = NDArray[np.float64]
 
-_STRETCHES = 24
+_CHUNKS = 24
 _MOST_POINTS = 4_000
 _FEWEST_POINTS = 60
 _FEWEST_RADIANS = 0.7
@@ -37,14 +37,14 @@ class BeamOrigins:
     drive : Drive
     in_vehicle : (3,) float64 or None
         Forward, left, up of the trajectory's reference point, m; None without a trajectory.
-    points, places : (k,) int64, (k, 3) float64
+    points, positions : (k,) int64, (k, 3) float64
         Where there is no trajectory: centres at some points of the recording, m, project CRS.
     """
 
     drive: Drive
     in_vehicle: _Floats | None
     points: NDArray[np.int64]
-    places: _Floats
+    positions: _Floats
 
     def of(self, points: NDArray[np.int64]) -> _Floats:
         """(n, 3) float64: the origins of the beams of points, m, project CRS."""
@@ -58,7 +58,7 @@ class BeamOrigins:
             carried = _carried(trajectory, knots, self.in_vehicle)
             return np.column_stack([np.interp(times, knots, axis) for axis in carried.T])
         return np.column_stack(
-            [np.interp(points, self.points, self.places[:, axis]) for axis in range(3)]
+            [np.interp(points, self.points, self.positions[:, axis]) for axis in range(3)]
         )
 
 
@@ -69,39 +69,42 @@ def _carried(trajectory: Trajectory, times: _Floats, in_vehicle: _Floats) -> _Fl
 
 
 def beam_origins(drive: Drive) -> BeamOrigins | None:
-    """Find the origins; None where there are no turns or the points don't tell.
+    """Find the origins; None where there are no revolutions or the points don't tell.
 
     A standing scanner's own grid has rows, too, and its file says where it stood.
     """
-    place = drive.info.scanner_place
-    if place is not None and ImageKind.SCAN in drive.image_kinds and drive.count:
-        return BeamOrigins(drive, None, np.zeros(1, np.int64), np.array([place]))
-    if drive.turns is None or drive.count < _FEWEST_POINTS:
+    position = drive.info.scanner_position
+    if position is not None and ImageKind.SCAN in drive.image_kinds and drive.count:
+        return BeamOrigins(drive, None, np.zeros(1, np.int64), np.array([position]))
+    if drive.revolutions is None or drive.count < _FEWEST_POINTS:
         return None
-    fits = [_fit(drive, drive.turns.pulses_per_turn, middle) for middle in _middles(drive.count)]
+    fits = [
+        _fit(drive, drive.revolutions.pulses_per_revolution, middle)
+        for middle in _middles(drive.count)
+    ]
     known = [(point, centre) for point, centre in fits if centre is not None]
     if not known:
         return None
     points = np.array([point for point, _ in known], np.int64)
-    places = np.array([centre for _, centre in known])
+    positions = np.array([centre for _, centre in known])
     if drive.trajectory is None:
-        return BeamOrigins(drive, None, points, places)
-    middle = np.median(places, axis=0)
-    spread = float(np.median(np.linalg.norm(places - middle, axis=1)))
+        return BeamOrigins(drive, None, points, positions)
+    middle = np.median(positions, axis=0)
+    spread = float(np.median(np.linalg.norm(positions - middle, axis=1)))
     if spread > _MOST_MISFIT_M or np.linalg.norm(middle) > _FARTHEST_M:
         return None
-    return BeamOrigins(drive, middle, points, places)
+    return BeamOrigins(drive, middle, points, positions)
 
 
 def _middles(count: int) -> NDArray[np.int64]:
-    shares = (np.arange(_STRETCHES) + 0.5) / _STRETCHES
+    shares = (np.arange(_CHUNKS) + 0.5) / _CHUNKS
     return np.unique((shares * count).astype(np.int64))
 
 
-def _fit(drive: Drive, per_turn: float, middle: int) -> tuple[int, _Floats | None]:
+def _fit(drive: Drive, per_revolution: float, middle: int) -> tuple[int, _Floats | None]:
     """The centre of the turns around a point, in the vehicle's frame where there is one."""
     pulses = drive.columns["pulse"]
-    half = _TURNS / 2 * per_turn
+    half = _TURNS / 2 * per_revolution
     start = int(np.searchsorted(pulses, pulses[middle] - half))
     stop = int(np.searchsorted(pulses, pulses[middle] + half))
     if stop - start < _FEWEST_POINTS:
@@ -113,7 +116,7 @@ def _fit(drive: Drive, per_turn: float, middle: int) -> tuple[int, _Floats | Non
         if not drive.trajectory.covers(times).all():
             return middle, None
         xyz = drive.trajectory.to_vehicle(xyz, times)
-    angles = (np.asarray(pulses[points]) - pulses[start]) * (2 * np.pi / per_turn)
+    angles = (np.asarray(pulses[points]) - pulses[start]) * (2 * np.pi / per_revolution)
     return middle, _centre(xyz, angles)
 
 
@@ -136,8 +139,8 @@ def _centre(xyz: _Floats, angles: _Floats) -> _Floats | None:
     (centre, misfit) = min(found, key=lambda one: one[1])
     if misfit > _MOST_MISFIT_M:
         return None
-    place: _Floats = mean + centre @ axes[:2]
-    return place
+    position: _Floats = mean + centre @ axes[:2]
+    return position
 
 
 def _turned_centre(flat: _Floats, angles: _Floats) -> tuple[_Floats, float]:

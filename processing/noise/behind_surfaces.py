@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from processing.kernels import kernel
 from processing.monitor import Monitor
-from processing.noise.standing_places import standing_place
+from processing.noise.scanner_positions import scanner_position_of
 from processing.points.drive import Drive
 
 Floats = NDArray[np.float64]
@@ -39,7 +39,7 @@ def echoes_of(drive: Drive, monitor: Monitor) -> NDArray[np.bool_] | None:
     ------
     Cancelled
     """
-    stand = standing_place(drive)
+    stand = scanner_position_of(drive)
     if stand is None:
         return None
     behind = np.zeros(drive.count, np.bool_)

@@ -33,10 +33,10 @@ class CellLevel(NamedTuple):
 def number_kernel(codes: _Integers, numbers: NDArray[np.int32]) -> int:
     """Number codes that don't decrease, equal ones alike; how many there are."""
     number = -1
-    for place in range(codes.size):
-        if place == 0 or codes[place] != codes[place - 1]:
+    for position in range(codes.size):
+        if position == 0 or codes[position] != codes[position - 1]:
             number += 1
-        numbers[place] = number
+        numbers[position] = number
     return number + 1
 
 
@@ -130,27 +130,27 @@ def point_features_kernel(
     around: _Floats,
     cells: _Integers,
     local_xyz: _Floats,
-    places: _Integers,
-    ways: _Floats,
+    positions: _Integers,
+    directions: _Floats,
     found: NDArray[np.float32],
 ) -> None:
     """Numbers of points from what lies around their cells.
 
-    ``around`` (k, 9) as from :func:`around_kernel`; ``cells`` (m,) into it; ``places`` (m,) into
-    ``local_xyz``; ``ways`` (m, 3), or no rows where beams aren't known. ``found`` (m, 8): log2 of
+    ``around`` (k, 9) as from :func:`around_kernel`; ``cells`` (m,) into it; ``positions`` (m,) into
+    ``local_xyz``; ``directions`` (m, 3), or no rows where beams aren't known. ``found`` (m, 8): log2 of
     points and of sure points, linearity, planarity, thickness, distance from the plane in cells,
     how level the plane is, and how squarely the beam met it.
     """
-    for i in range(places.size):
-        mine, xyz = around[cells[i]], local_xyz[places[i]]
+    for i in range(positions.size):
+        mine, xyz = around[cells[i]], local_xyz[positions[i]]
         nx, ny, nz = mine[5], mine[6], mine[7]
         found[i, 0] = math.log2(1 + mine[0])
         found[i, 1] = math.log2(1 + mine[1])
         found[i, 2], found[i, 3], found[i, 4] = mine[2], mine[3], mine[4]
         found[i, 5] = abs(nx * xyz[0] + ny * xyz[1] + nz * xyz[2] - mine[8]) / level.side
         found[i, 6] = abs(nz)
-        if ways.shape[0]:
-            found[i, 7] = abs(nx * ways[i, 0] + ny * ways[i, 1] + nz * ways[i, 2])
+        if directions.shape[0]:
+            found[i, 7] = abs(nx * directions[i, 0] + ny * directions[i, 1] + nz * directions[i, 2])
         else:
             found[i, 7] = 0.0
 
@@ -355,8 +355,10 @@ def warm_up() -> None:
     level = CellLevel(codes, sums, 1.0, slots)
     around, found = np.zeros((2, AROUND)), np.empty((2, 8), np.float32)
     around_kernel(level, codes, around)
-    for ways in (np.zeros((0, 3)), np.zeros((2, 3))):
-        point_features_kernel(level, around, codes // 3, np.zeros((2, 3)), codes // 3, ways, found)
+    for directions in (np.zeros((0, 3)), np.zeros((2, 3))):
+        point_features_kernel(
+            level, around, codes // 3, np.zeros((2, 3)), codes // 3, directions, found
+        )
     mean_around_kernel(level, codes, sums[:, 0].copy(), np.empty(2, np.float32))
     column_kernel(level, codes, np.empty((2, COLUMN), np.float32))
     parents = np.arange(2)

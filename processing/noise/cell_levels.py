@@ -41,21 +41,21 @@ def cell_levels(
         The cell of level 0 of each point along the curve; then, for each cell of a level, the one
         of the next that holds it.
     """
-    codes, places = cells.codes, np.empty(cells.codes.size, np.int32)
-    used = number_kernel(codes, places)
+    codes, positions = cells.codes, np.empty(cells.codes.size, np.int32)
+    used = number_kernel(codes, positions)
     sums, kept = np.zeros((used, SUMS)), np.empty(used, np.int64)
-    point_sums_kernel(cells.local_xyz, is_sure, places, sums)
-    kept[places] = codes
-    levels, numbers = [_level_of(kept, sums, cells.cell_m)], [places]
+    point_sums_kernel(cells.local_xyz, is_sure, positions, sums)
+    kept[positions] = codes
+    levels, numbers = [_level_of(kept, sums, cells.cell_m)], [positions]
     for _ in range(1, count):
         below = levels[-1]
-        parents, places = below.codes >> 3, np.empty(below.codes.size, np.int32)
-        used = number_kernel(parents, places)
+        parents, positions = below.codes >> 3, np.empty(below.codes.size, np.int32)
+        used = number_kernel(parents, positions)
         sums, kept = np.zeros((used, SUMS)), np.empty(used, np.int64)
-        cell_sums_kernel(below.sums, places, sums)
-        kept[places] = parents
+        cell_sums_kernel(below.sums, positions, sums)
+        kept[positions] = parents
         levels.append(_level_of(kept, sums, below.side * 2))
-        numbers.append(places)
+        numbers.append(positions)
     return levels, numbers
 
 

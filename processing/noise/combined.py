@@ -21,11 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import Monitor, SilentMonitor
-from processing.noise.beam_kernels import Beams
+from processing.noise.beam_kernels import PointBeams
 from processing.noise.far_points import heights_of_far, is_far
 from processing.noise.features import Candidates, candidates_in_space, search_with_beams
 from processing.noise.noise_codes import HIGH_NOISE, codes_by_height
-from processing.noise.second_look import OPEN_ODDS
+from processing.noise.second_pass import OPEN_ODDS
 from processing.noise.tree_files import read_trees
 from processing.noise.trees import Trees, log_odds
 from resources import path_of
@@ -42,7 +42,7 @@ _FEWEST_IN_SPACE = 1_000  # fewer don't tell what is usual around them
 
 
 def noise_codes_with_beams(
-    beams: Beams,
+    beams: PointBeams,
     intensity: NDArray[np.uint16],
     strictness: float = 0.5,
     *,
@@ -129,7 +129,7 @@ def _codes(
     return codes
 
 
-def _without(beams: Beams, left_out: NDArray[np.bool_]) -> Beams:
+def _without(beams: PointBeams, left_out: NDArray[np.bool_]) -> PointBeams:
     kept = ~left_out
     before = np.concatenate([[0], np.cumsum(kept)])
     return beams._replace(

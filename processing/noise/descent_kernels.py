@@ -63,7 +63,7 @@ def _sum_by_descent(
     found: _Floats,
 ) -> None:
     """Sum of the distances and the farthest; ``heap`` holds squares that none of them reaches."""
-    place = points.xyz[point]
+    position = points.xyz[point]
     stack[0, 0], stack[0, 1], stack[0, 2] = _TOP + 1, 0, points.codes.size
     bounds[0] = 0.0
     depth = 1
@@ -76,11 +76,11 @@ def _sum_by_descent(
             for other in range(start, end):
                 square = 0.0
                 for axis in range(3):
-                    square += (points.xyz[other, axis] - place[axis]) ** 2
+                    square += (points.xyz[other, axis] - position[axis]) ** 2
                 if square < heap[0]:
                     _replace_largest(heap, square)
             continue
-        depth = _push_parts(points, place, level - 1, start, end, depth, stack, bounds)
+        depth = _push_parts(points, position, level - 1, start, end, depth, stack, bounds)
     total = 0.0
     for k in range(heap.size):
         total += math.sqrt(heap[k])
@@ -90,7 +90,7 @@ def _sum_by_descent(
 @kernel
 def _push_parts(
     points: CellPoints,
-    place: _Floats,
+    position: _Floats,
     level: int,
     start: int,
     end: int,
@@ -107,7 +107,7 @@ def _push_parts(
         square = 0.0
         for axis in range(3):
             low = _packed((code >> axis) & _X) * side
-            gap = max(low - place[axis], place[axis] - low - side, 0.0)
+            gap = max(low - position[axis], position[axis] - low - side, 0.0)
             square += gap * gap
         square *= 1 - 1e-9
         at = depth

@@ -20,12 +20,12 @@ from processing.noise.beam_origins import beam_origins
 from processing.noise.beams_of_drives import along_rows, beams_of
 from processing.noise.combined import noise_codes_in_space, noise_codes_with_beams
 from processing.noise.noise_codes import part_noise_by_ground
-from processing.noise.sharing import shared_out
-from processing.noise.stretches import POINTS, stretches_of
+from processing.noise.row_chunks import POINTS, row_chunks_of
+from processing.noise.sharing import share_out
 from processing.noise.tiles_of_space import TiledCloud
 from processing.noise.whole_clouds import radius_outliers_by_parts, statistical_outliers_by_parts
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 
 _TILE_M = 1.0
 _SORTING, _FINDING = 0.1, 0.9
@@ -47,7 +47,7 @@ class NoiseSearch:
         A folder for files meanwhile; the caller deletes it.
     points_at_once : int
         What the methods of the study hold in memory at a time.
-    points_per_stretch : int
+    points_per_chunk : int
         The combined method's own; its results near the cuts depend a little on it.
     """
 
@@ -55,7 +55,7 @@ class NoiseSearch:
     codes: NDArray[np.uint8]
     scratch: Path
     points_at_once: int
-    points_per_stretch: int = POINTS
+    points_per_chunk: int = POINTS
 
     def by_radius(self, radius_m: float, neighbours: int, monitor: Monitor) -> None:
         """Radius outlier removal."""
@@ -94,22 +94,22 @@ class NoiseSearch:
         image = image_of(drive, drive.pixel_kind)
         starts = image.row_starts
         along = along_rows(origins, starts)
-        stretches = list(stretches_of(starts, along, self.points_per_stretch))
+        chunks = list(row_chunks_of(starts, along, self.points_per_chunk))
         told, ended = Lock(), count(1)
 
         def look(number: int, _: int) -> None:
-            stretch = stretches[number]
+            chunk = chunks[number]
             drive.columns.give_back()
-            beams, points = beams_of(drive, image, stretch.with_overlap, origins)
-            intensity = read_stretch(drive.folder, "intensity", points.start, points.stop)
+            beams, points = beams_of(drive, image, chunk.with_overlap, origins)
+            intensity = read_chunk(drive.folder, "intensity", points.start, points.stop)
             codes = noise_codes_with_beams(beams, intensity, strictness, monitor=monitor)
-            first, end = int(starts[stretch.rows.start]), int(starts[stretch.rows.stop])
-            skipped = first - int(starts[stretch.with_overlap.start])
+            first, end = int(starts[chunk.rows.start]), int(starts[chunk.rows.stop])
+            skipped = first - int(starts[chunk.with_overlap.start])
             self.codes[first:end] = codes[skipped : skipped + end - first]
             with told:
-                monitor.report(next(ended) / len(stretches))
+                monitor.report(next(ended) / len(chunks))
 
-        shared_out(look, len(stretches), 1, monitor)
+        share_out(look, len(chunks), 1, monitor)
 
     def _combined_in_space(self, strictness: float, monitor: Monitor) -> None:
         cloud = self._tiled(monitor)

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import Monitor
-from processing.noise.beam_kernels import SQUARE, SURE, Beams, spacing_kernel, surface_kernel
+from processing.noise.beam_kernels import SQUARE, SURE, PointBeams, spacing_kernel, surface_kernel
 from processing.noise.local_spacing import local_spacings
 from processing.noise.morton import nested_cells
-from processing.noise.second_look import FirstJudgement, suspicions_beside
-from processing.noise.sharing import shared_out
-from processing.noise.surroundings import PART_SIZES, Surroundings
+from processing.noise.second_pass import FirstEstimate, suspicions_beside
+from processing.noise.sharing import share_out
+from processing.noise.surroundings import PART_SIZES, CloudNeighbourhood
 from processing.noise.window_kernels import (
     NEAR_FEATURES,
     WIDE_FEATURES,
@@ -58,14 +58,14 @@ class Candidates:
 
     points: _Integers
     features: NDArray[np.float32]
-    around: Surroundings
+    around: CloudNeighbourhood
     levels: list[int]
-    beams: Beams | None = None
+    beams: PointBeams | None = None
     rows: _Integers | None = None
 
     def seen_again(self, odds: _Floats, chosen: _Integers, monitor: Monitor) -> NDArray[np.float32]:
         """(c, g): features of chosen ones, with what was first said of all, (k,) log-odds."""
-        judgement = FirstJudgement(self.around, self.points, odds)
+        judgement = FirstEstimate(self.around, self.points, odds)
         blocks = [self.features[chosen], judgement.features(chosen, self.levels, monitor)]
         if self.beams is not None and self.rows is not None:
             blocks.append(suspicions_beside(self.beams, self.rows, judgement, chosen, monitor))
@@ -85,9 +85,9 @@ class BeamSearch:
         Points that may be noise, and their rows.
     """
 
-    beams: Beams
+    beams: PointBeams
     is_sure: NDArray[np.bool_]
-    around: Surroundings
+    around: CloudNeighbourhood
     points: _Integers
     rows: _Integers
 
@@ -101,10 +101,10 @@ class BeamSearch:
                 self.beams, self.is_sure, self.points[part], self.rows[part], found[part]
             )
 
-        shared_out(look, self.points.size, _POINTS_AT_ONCE, monitor)
-        places = self.around.place_features(self.points)
-        steepness = self._ways(self.points)[:, 2:].astype(np.float32)
-        return np.concatenate([found, places, steepness], axis=1)
+        share_out(look, self.points.size, _POINTS_AT_ONCE, monitor)
+        positions = self.around.place_features(self.points)
+        steepness = self._directions(self.points)[:, 2:].astype(np.float32)
+        return np.concatenate([found, positions, steepness], axis=1)
 
     def candidates(
         self,
@@ -124,9 +124,9 @@ class BeamSearch:
             part = slice(start, stop)
             wide_beams_kernel(self.beams, self.is_sure, points[part], rows[part], found[part])
 
-        shared_out(look, points.size, _POINTS_AT_ONCE, monitor)
+        share_out(look, points.size, _POINTS_AT_ONCE, monitor)
         blocks = [
-            self.around.scale_features(points, self._ways(points), monitor),
+            self.around.scale_features(points, self._directions(points), monitor),
             self.around.part_features(points, self.around.link),
             cheap[is_doubtful],
             found,
@@ -137,13 +137,13 @@ class BeamSearch:
             points, features, self.around, [self.around.link], beams=self.beams, rows=rows
         )
 
-    def _ways(self, points: _Integers) -> _Floats:
+    def _directions(self, points: _Integers) -> _Floats:
         away = self.beams.xyz[points] - self.beams.origins[points]
-        ways: _Floats = away / np.maximum(self.beams.ranges[points], 1e-6)[:, None]
-        return ways
+        directions: _Floats = away / np.maximum(self.beams.ranges[points], 1e-6)[:, None]
+        return directions
 
 
-def search_with_beams(beams: Beams, monitor: Monitor) -> BeamSearch:
+def search_with_beams(beams: PointBeams, monitor: Monitor) -> BeamSearch:
     """Set aside what a surface explains that goes on to all sides of a beam."""
     count, rows = beams.xyz.shape[0], beams.segments.size
     spacings, goes_on = np.zeros(count), np.zeros(count, np.uint8)
@@ -154,13 +154,13 @@ def search_with_beams(beams: Beams, monitor: Monitor) -> BeamSearch:
     def surfaces(start: int, stop: int) -> None:
         surface_kernel(beams, spacings, start, stop, goes_on)
 
-    shared_out(space, rows, _ROWS_AT_ONCE, monitor)
+    share_out(space, rows, _ROWS_AT_ONCE, monitor)
     known = spacings > 0
     middle = np.median(spacings[known] / beams.ranges[known]) if known.any() else beams.turn
     spacings[~known] = beams.ranges[~known] * max(middle, beams.turn)
-    shared_out(surfaces, rows, _ROWS_AT_ONCE, monitor)
+    share_out(surfaces, rows, _ROWS_AT_ONCE, monitor)
     is_sure = goes_on == SURE
-    around = Surroundings.of(beams.xyz, spacings, is_sure)
+    around = CloudNeighbourhood.of(beams.xyz, spacings, is_sure)
     is_ground = (goes_on == SQUARE) & (np.abs(around.heights) < _FLAT_BAND_M)
     points = np.flatnonzero(~((is_sure | is_ground) & around.is_main))
     rows_of = np.searchsorted(beams.row_starts, points, "right") - 1
@@ -182,7 +182,7 @@ def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
     spacings = np.empty(xyz.shape[0])
     spacings[fine.order] = np.clip(local_spacings(fine), _FINEST_M, None)
     is_sure = _planar_points(xyz, spacings, monitor)
-    around = Surroundings.of(xyz, spacings, is_sure)
+    around = CloudNeighbourhood.of(xyz, spacings, is_sure)
     is_ground = np.abs(around.heights) < _GROUND_BAND_M
     points = np.flatnonzero(~(is_sure & around.is_main & is_ground))
     middle = float(np.median(spacings))
@@ -201,7 +201,7 @@ def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
 def _planar_points(xyz: _Floats, spacings: _Floats, monitor: Monitor) -> NDArray[np.bool_]:
     """Points in the middle of a densely measured plane, eight spacings wide."""
     count = xyz.shape[0]
-    bare = Surroundings.bare(xyz, spacings, np.zeros(count, np.bool_))
+    bare = CloudNeighbourhood.bare(xyz, spacings, np.zeros(count, np.bool_))
     around = bare.scale_features(np.arange(count), None, monitor, (1,))
     found: NDArray[np.bool_] = (
         (around[:, 0] > np.log2(1 + _PLANE_POINTS))

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from processing.kernels import kernel
 from processing.monitor import Monitor, SilentMonitor
-from processing.noise.key_order import ordered_by_key
-from processing.noise.sharing import shared_out
+from processing.noise.key_order import order_by_key
+from processing.noise.sharing import share_out
 
 _CLIP = 2**19 - 4
 _APART = 2  # cells that a search looks to either side
@@ -63,7 +63,7 @@ def flat_cells(xyz: NDArray[np.float64], side_m: float, monitor: Monitor) -> Fla
     def look(start: int, stop: int) -> None:
         ranges_kernel(xyz, middle, side_m, start, stop, ranges[start // _AT_ONCE])
 
-    shared_out(look, xyz.shape[0], _AT_ONCE, monitor)
+    share_out(look, xyz.shape[0], _AT_ONCE, monitor)
     low, high = ranges[:, ::2].min(axis=0) - _APART, ranges[:, 1::2].max(axis=0) + _APART
     sizes = np.maximum(high - low + 1, 1)
     keys = np.empty(xyz.shape[0], np.int64)
@@ -71,8 +71,8 @@ def flat_cells(xyz: NDArray[np.float64], side_m: float, monitor: Monitor) -> Fla
     def number(start: int, stop: int) -> None:
         keys_kernel(xyz, middle, side_m, low, sizes, start, stop, keys)
 
-    shared_out(number, xyz.shape[0], _AT_ONCE, monitor)
-    keys, order = ordered_by_key(keys, monitor)
+    share_out(number, xyz.shape[0], _AT_ONCE, monitor)
+    keys, order = order_by_key(keys, monitor)
     finite = int(np.searchsorted(keys, int(sizes.prod())))
     keys, order = keys[:finite], order[:finite]
     firsts = np.flatnonzero(np.r_[True, keys[1:] != keys[:-1]]) if finite else np.zeros(0, np.int64)
@@ -107,9 +107,9 @@ def ranges_kernel(
     """Lowest and highest index along each axis, (6,), of the finite points of a range."""
     for point in range(start, stop):
         for axis in range(3):
-            place = np.floor((xyz[point, axis] - middle[axis]) / side)
-            if np.isfinite(place):
-                index = int(min(max(place, -_CLIP), _CLIP))
+            position = np.floor((xyz[point, axis] - middle[axis]) / side)
+            if np.isfinite(position):
+                index = int(min(max(position, -_CLIP), _CLIP))
                 ranges[2 * axis] = min(ranges[2 * axis], index)
                 ranges[2 * axis + 1] = max(ranges[2 * axis + 1], index)
 
@@ -130,9 +130,9 @@ def keys_kernel(
         key = 0
         is_finite = True
         for axis in range(3):
-            place = np.floor((xyz[point, axis] - middle[axis]) / side)
-            is_finite &= np.isfinite(place)
-            index = int(min(max(place, -_CLIP), _CLIP)) if is_finite else 0
+            position = np.floor((xyz[point, axis] - middle[axis]) / side)
+            is_finite &= np.isfinite(position)
+            index = int(min(max(position, -_CLIP), _CLIP)) if is_finite else 0
             key = key * sizes[axis] + index - low[axis]
         keys[point] = key if is_finite else sizes[0] * sizes[1] * sizes[2]
 

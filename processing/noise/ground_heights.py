@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import SilentMonitor
-from processing.noise.key_order import ordered_by_key
+from processing.noise.key_order import order_by_key
 
 GROUND_FEATURES = 4
 _LOW_SHARE = 0.1
@@ -24,7 +24,7 @@ _NEAR_M, _SMOOTHEST_M, _MOST_RATIO = 0.5, 0.005, 50.0
 
 
 @dataclass(frozen=True)
-class Ground:
+class GroundGrid:
     """The ground below a cloud, in square cells.
 
     Attributes
@@ -79,12 +79,12 @@ class Ground:
         return around
 
     @classmethod
-    def none(cls) -> Ground:
+    def none(cls) -> GroundGrid:
         """Of no points."""
         return cls(np.zeros(0), np.zeros(0, np.int32), np.zeros((0, 0)))
 
 
-def ground_below(xyz: NDArray[np.float64], is_sure: NDArray[np.bool_], cell_m: float) -> Ground:
+def ground_below(xyz: NDArray[np.float64], is_sure: NDArray[np.bool_], cell_m: float) -> GroundGrid:
     """The low surfaces around every point, and its height above them.
 
     1. In every square cell, the height below which a tenth of its sure points lie.
@@ -102,7 +102,7 @@ def ground_below(xyz: NDArray[np.float64], is_sure: NDArray[np.bool_], cell_m: f
         Points on surfaces that go on; where there are too few, all points are taken.
     """
     if not xyz.shape[0]:
-        return Ground.none()
+        return GroundGrid.none()
     used = np.flatnonzero(is_sure)
     if used.size < _FEWEST:
         used = np.arange(xyz.shape[0])
@@ -120,7 +120,7 @@ def ground_below(xyz: NDArray[np.float64], is_sure: NDArray[np.bool_], cell_m: f
     inclined = xyz[:, 2] - sum(one.ravel()[cells] * aside[:, i] for i, one in enumerate(steps))
     ground = _known_ground(inclined[used], cells[used], shape)
     slopes = np.hypot(steps[0] / side[0], steps[1] / side[1])
-    return Ground(inclined - ground.ravel()[cells], cells, slopes)
+    return GroundGrid(inclined - ground.ravel()[cells], cells, slopes)
 
 
 def _known_ground(
@@ -166,7 +166,7 @@ def low_heights(
     """
     lowest = heights.min(initial=0.0)
     steps = np.minimum((heights - lowest) / _STEP_M, _STEPS - 1).astype(np.int64)
-    keys, order = ordered_by_key(numbers * _STEPS + steps, SilentMonitor())
+    keys, order = order_by_key(numbers * _STEPS + steps, SilentMonitor())
     numbers = keys // _STEPS
     firsts = np.flatnonzero(np.r_[True, numbers[1:] != numbers[:-1]][: numbers.size])
     sizes = np.diff(np.r_[firsts, numbers.size])

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from processing.kernels import kernel
 from processing.monitor import Monitor
-from processing.noise.sharing import shared_out
+from processing.noise.sharing import share_out
 
 _BITS = 11
 _DIGITS = 1 << _BITS
@@ -18,7 +18,7 @@ _POINTS_PER_SHARE = 100_000
 _Integers = NDArray[np.int64]
 
 
-def ordered_by_key(keys: _Integers, monitor: Monitor) -> tuple[_Integers, _Integers]:
+def order_by_key(keys: _Integers, monitor: Monitor) -> tuple[_Integers, _Integers]:
     """Keys not decreasing, and where they came from; equal ones keep their order.
 
     Each pass orders by 11 binary digits, from the lowest; digits that all keys have in common
@@ -58,10 +58,10 @@ def ordered_by_key(keys: _Integers, monitor: Monitor) -> tuple[_Integers, _Integ
         ) -> None:
             move_kernel(source, shift, cuts[share], cuts[share + 1], counts[share], target)
 
-        shared_out(count, shares, 1, monitor)
+        share_out(count, shares, 1, monitor)
         starts = np.cumsum(counts.T.ravel()) - counts.T.ravel()
         counts[:] = starts.reshape(_DIGITS, shares).T
-        shared_out(move, shares, 1, monitor)
+        share_out(move, shares, 1, monitor)
         (keys, order), (other_keys, other_order) = target, source
     return keys, order
 
@@ -70,8 +70,8 @@ def ordered_by_key(keys: _Integers, monitor: Monitor) -> tuple[_Integers, _Integ
 def counts_kernel(keys: _Integers, shift: int, start: int, stop: int, counts: _Integers) -> None:
     """How many keys of a range have each digit."""
     counts[:] = 0
-    for place in range(start, stop):
-        counts[(keys[place] >> shift) & (_DIGITS - 1)] += 1
+    for position in range(start, stop):
+        counts[(keys[position] >> shift) & (_DIGITS - 1)] += 1
 
 
 @kernel
@@ -84,13 +84,13 @@ def move_kernel(
     target: tuple[_Integers, _Integers],
 ) -> None:
     """Bring the keys of a range, with their numbers, to the places of their digits."""
-    for place in range(start, stop):
-        key = source[0][place]
+    for position in range(start, stop):
+        key = source[0][position]
         digit = (key >> shift) & (_DIGITS - 1)
         to = nexts[digit]
         nexts[digit] = to + 1
         target[0][to] = key
-        target[1][to] = source[1][place]
+        target[1][to] = source[1][position]
 
 
 def warm_up() -> None:

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from processing.kernels import kernel
 from processing.monitor import Monitor, SilentMonitor
-from processing.noise.key_order import ordered_by_key
-from processing.noise.sharing import shared_out
+from processing.noise.key_order import order_by_key
+from processing.noise.sharing import share_out
 
 _BITS = 20
 _SMALLEST_M = 1e-3
@@ -64,8 +64,8 @@ def nested_cells(xyz: NDArray[np.float64], cell_m: float) -> NestedCells:
     def number(start: int, stop: int) -> None:
         codes_kernel(xyz[start:stop], origin, side, codes[start:stop])
 
-    shared_out(number, xyz.shape[0], _AT_ONCE, monitor)
-    codes, order = ordered_by_key(codes, monitor)
+    share_out(number, xyz.shape[0], _AT_ONCE, monitor)
+    codes, order = order_by_key(codes, monitor)
     finite = int(np.searchsorted(codes, _NOWHERE))
     codes, order = codes[:finite], order[:finite]
     local_xyz = np.empty((finite, 3))
@@ -73,7 +73,7 @@ def nested_cells(xyz: NDArray[np.float64], cell_m: float) -> NestedCells:
     def bring(start: int, stop: int) -> None:
         bring_kernel(xyz, origin, order[start:stop], local_xyz[start:stop])
 
-    shared_out(bring, finite, _AT_ONCE, monitor)
+    share_out(bring, finite, _AT_ONCE, monitor)
     return NestedCells(order, codes, local_xyz, origin, side)
 
 
@@ -88,7 +88,7 @@ def _origin_and_extent(
         share = start // _AT_ONCE
         extent_kernel(xyz[start:stop], lows[share], highs[share])
 
-    shared_out(look, xyz.shape[0], _AT_ONCE, monitor)
+    share_out(look, xyz.shape[0], _AT_ONCE, monitor)
     low, high = lows.min(axis=0), highs.max(axis=0)
     return (low, float((high - low).max())) if (low <= high).all() else (np.zeros(3), 0.0)
 
@@ -134,9 +134,9 @@ def bring_kernel(
     local_xyz: NDArray[np.float64],
 ) -> None:
     """Points in an order, from an origin."""
-    for place in range(order.size):
+    for position in range(order.size):
         for axis in range(3):
-            local_xyz[place, axis] = xyz[order[place], axis] - origin[axis]
+            local_xyz[position, axis] = xyz[order[position], axis] - origin[axis]
 
 
 def warm_up() -> None:

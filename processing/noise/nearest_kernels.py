@@ -209,10 +209,10 @@ def _copy(xyz: _Floats, runs: _Integers, width: int, near: _Floats) -> None:
     count = 0
     for run in range(runs.shape[0]):
         for point in range(runs[run, 0], runs[run, 1]):
-            place = count % _BLOCK * width + count // _BLOCK
-            near[0, place] = xyz[point, 0]
-            near[1, place] = xyz[point, 1]
-            near[2, place] = xyz[point, 2]
+            position = count % _BLOCK * width + count // _BLOCK
+            near[0, position] = xyz[point, 0]
+            near[1, position] = xyz[point, 1]
+            near[2, position] = xyz[point, 2]
             count += 1
 
 
@@ -222,15 +222,15 @@ def _margin(points: CellPoints, point: int, level: int) -> float:
     side = points.side * (1 << level)
     margin = 2 * side
     for axis in range(3):
-        place = points.xyz[point, axis]
-        inside = place - math.floor(place / side) * side
+        position = points.xyz[point, axis]
+        inside = position - math.floor(position / side) * side
         margin = min(margin, side + min(inside, side - inside))
     return margin * (1 - 1e-9)
 
 
 @kernel
 def _sum_within(
-    place: _Floats,
+    position: _Floats,
     near: _Floats,
     count: int,
     reaches: tuple[float, float],
@@ -247,7 +247,7 @@ def _sum_within(
     probable = reaches[1] * reaches[1]
     guess = min(limit, probable * _PROBABLY)
     surely = min(guess, probable / _PROBABLY)
-    _measure(place, near, width, room)
+    _measure(position, near, width, room)
     low, apart = _sort_out(room, width, surely, guess)
     while low + apart < nearest and guess < limit:
         surely, guess = guess, min(limit, max(guess * _WIDER, limit * _LEAST))
@@ -270,9 +270,9 @@ def _width(count: int) -> int:
 
 
 @kernel
-def _measure(place: _Floats, near: _Floats, width: int, room: _Room) -> None:
+def _measure(position: _Floats, near: _Floats, width: int, room: _Room) -> None:
     """Squares of the distances to all candidates, and the least of each block."""
-    x, y, z = place[0], place[1], place[2]
+    x, y, z = position[0], position[1], position[2]
     count = width * _BLOCK
     eastings, northings, heights = near[0, :count], near[1, :count], near[2, :count]
     squares = room.squares[:count]

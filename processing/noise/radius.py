@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from processing.kernels import kernel
 from processing.monitor import Monitor, SilentMonitor
 from processing.noise.flat_cells import FlatCells, flat_cells
-from processing.noise.sharing import shared_out
+from processing.noise.sharing import share_out
 
 RADIUS_M = 0.5
 NEIGHBOURS = 113
@@ -66,7 +66,7 @@ def radius_outliers(
     def judge(start: int, stop: int) -> None:
         radius_kernel(cells, columns, radius_m, limit, start, stop, outliers)
 
-    shared_out(judge, cells.keys.size, _CELLS_AT_ONCE, monitor)
+    share_out(judge, cells.keys.size, _CELLS_AT_ONCE, monitor)
     return outliers
 
 
@@ -91,7 +91,7 @@ def radius_kernel(
 ) -> None:
     """Mark the outliers of the cells ``first … stop − 1``."""
     runs = np.empty((columns.size, 2), np.int64)
-    places = np.searchsorted(cells.keys, cells.keys[first] + columns - _REACH)
+    positions = np.searchsorted(cells.keys, cells.keys[first] + columns - _REACH)
     near = np.empty((3, _MOST_NEAR), np.float32)
     for cell in range(first, stop):
         start, end = cells.starts[cell], cells.starts[cell + 1]
@@ -99,7 +99,7 @@ def radius_kernel(
             for point in range(start, end):
                 outliers[cells.order[point]] = False
             continue
-        total = _find_runs(cells, cells.keys[cell], columns, places, runs)
+        total = _find_runs(cells, cells.keys[cell], columns, positions, runs)
         if total <= limit:
             continue
         count = 0 if cells.is_border[cell] else _gather(cells.xyz, start, runs, near)
@@ -115,25 +115,25 @@ def _find_runs(
     cells: FlatCells,
     key: int,
     columns: NDArray[np.int64],
-    places: NDArray[np.int64],
+    positions: NDArray[np.int64],
     runs: NDArray[np.int64],
 ) -> int:
     """Note the points of the columns around a cell; gives how many they are.
 
-    ``places`` goes up through the cells as ``key`` does, so that nothing is searched for.
+    ``positions`` goes up through the cells as ``key`` does, so that nothing is searched for.
     """
     total = 0
     last = cells.keys.size
     for k in range(columns.size):
         wanted = key + columns[k] - _REACH
-        place = places[k]
-        while place < last and cells.keys[place] < wanted:
-            place += 1
-        places[k] = place
-        runs[k, 0] = cells.starts[place]
-        while place < last and cells.keys[place] <= wanted + 2 * _REACH:
-            place += 1
-        runs[k, 1] = cells.starts[place]
+        position = positions[k]
+        while position < last and cells.keys[position] < wanted:
+            position += 1
+        positions[k] = position
+        runs[k, 0] = cells.starts[position]
+        while position < last and cells.keys[position] <= wanted + 2 * _REACH:
+            position += 1
+        runs[k, 1] = cells.starts[position]
         total += runs[k, 1] - runs[k, 0]
     return total
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 
 _BLOCK = 1 << 24
 
@@ -26,7 +26,7 @@ def scratch_array(file: Path, dtype: DTypeLike, count: int) -> NDArray[Any]:
     if count == 0:
         return np.zeros(0, dtype)
     size = count * np.dtype(dtype).itemsize
-    with told_as_user_error(file):
+    with report_as_user_error(file):
         with file.open("wb") as made:
             if hasattr(os, "posix_fallocate"):
                 os.posix_fallocate(made.fileno(), 0, size)

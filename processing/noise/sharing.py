@@ -14,9 +14,7 @@ _counting = threading.Lock()
 _at_work = 0  # threads that have taken a share
 
 
-def shared_out(
-    work: Callable[[int, int], None], count: int, at_once: int, monitor: Monitor
-) -> None:
+def share_out(work: Callable[[int, int], None], count: int, at_once: int, monitor: Monitor) -> None:
     """Call ``work(start, stop)`` until the range 0 … count − 1 is done.
 
     Work that is shared out again from within a share takes only cores that no share is left for.

@@ -18,7 +18,7 @@ from processing.noise.descent_kernels import descent_kernel
 from processing.noise.far_points import is_far
 from processing.noise.morton import nested_cells
 from processing.noise.nearest_kernels import CellPoints, nearest_kernel
-from processing.noise.sharing import shared_out
+from processing.noise.sharing import share_out
 
 NEIGHBOURS = 113
 DEVIATIONS = 1.5
@@ -109,8 +109,8 @@ def distances_of(
         finite = np.sort(cells.order)
         far = finite[is_far(xyz[finite])]
         if far.size:
-            wish = (neighbours, counts_itself)
-            return _distances_beside_far(xyz, wanted, far, wish, monitor or SilentMonitor())
+            options = (neighbours, counts_itself)
+            return _distances_beside_far(xyz, wanted, far, options, monitor or SilentMonitor())
     points = CellPoints(cells.codes, cells.local_xyz, cells.cell_m)
     asked = neighbours if counts_itself else neighbours + 1
     nearest = min(cells.order.size, asked)
@@ -124,7 +124,7 @@ def distances_of(
         nearest_kernel(points, is_wanted, nearest, start, stop, found)
         descent_kernel(points, is_wanted, nearest, start, stop, found)
 
-    shared_out(measure, cells.order.size, _POINTS_AT_ONCE, monitor or SilentMonitor())
+    share_out(measure, cells.order.size, _POINTS_AT_ONCE, monitor or SilentMonitor())
     by_point = np.empty((xyz.shape[0], 2))
     by_point[cells.order] = found
     farthest = by_point[wanted, 1] if nearest == asked else np.full(wanted.size, np.inf)
@@ -135,7 +135,7 @@ def _distances_beside_far(
     xyz: NDArray[np.float64],
     wanted: NDArray[np.int64],
     far: NDArray[np.int64],
-    wish: tuple[int, bool],
+    options: tuple[int, bool],
     monitor: Monitor,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """As :func:`distances_of`, where far points would make the cells too coarse for the others.
@@ -145,7 +145,7 @@ def _distances_beside_far(
     """
     from scipy.spatial import cKDTree
 
-    neighbours, counts_itself = wish
+    neighbours, counts_itself = options
     others = xyz.copy()
     others[far] = np.nan
     is_open = np.isin(wanted, far)

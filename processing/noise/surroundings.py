@@ -23,9 +23,9 @@ from processing.noise.cell_kernels import (
 )
 from processing.noise.cell_levels import cell_levels
 from processing.noise.connected import Parts, parts_of, sure_counts
-from processing.noise.ground_heights import Ground, ground_below
+from processing.noise.ground_heights import GroundGrid, ground_below
 from processing.noise.morton import NestedCells, nested_cells
-from processing.noise.sharing import shared_out
+from processing.noise.sharing import share_out
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
@@ -47,13 +47,13 @@ _WIDER = 2  # levels, for the second size of what hangs together
 
 
 @dataclass(frozen=True)
-class Surroundings:
+class CloudNeighbourhood:
     """The cells of a cloud and what was found from them.
 
     Attributes
     ----------
     cells : NestedCells
-    place : (n,) int64
+    position : (n,) int64
         Where each point is along the cells' curve.
     spacings : (n,) float64
         m, of the points as given.
@@ -73,29 +73,31 @@ class Surroundings:
     """
 
     cells: NestedCells
-    place: _Integers
+    position: _Integers
     spacings: _Floats
     levels: list[CellLevel]
     numbers: list[NDArray[np.int32]]
     is_main: NDArray[np.bool_]
-    ground: Ground
+    ground: GroundGrid
     connected: tuple[_Floats, ...] = ()
     link: int = 0
     parts: dict[int, Parts] = field(default_factory=dict)
 
     @classmethod
-    def bare(cls, xyz: _Floats, spacings: _Floats, is_sure: NDArray[np.bool_]) -> Surroundings:
+    def bare(
+        cls, xyz: _Floats, spacings: _Floats, is_sure: NDArray[np.bool_]
+    ) -> CloudNeighbourhood:
         """Without what hangs together and without heights."""
         finest = max(_FINEST_M, float(np.percentile(spacings, 2)))
         cells = nested_cells(xyz, finest)
-        place = np.empty(cells.order.size, np.int64)
-        place[cells.order] = np.arange(cells.order.size)
+        position = np.empty(cells.order.size, np.int64)
+        position[cells.order] = np.arange(cells.order.size)
         levels, numbers = cell_levels(cells, is_sure[cells.order], _LEVELS)
         none = np.zeros(0, np.bool_)
-        return cls(cells, place, spacings, levels, numbers, none, Ground.none())
+        return cls(cells, position, spacings, levels, numbers, none, GroundGrid.none())
 
     @classmethod
-    def of(cls, xyz: _Floats, spacings: _Floats, is_sure: NDArray[np.bool_]) -> Surroundings:
+    def of(cls, xyz: _Floats, spacings: _Floats, is_sure: NDArray[np.bool_]) -> CloudNeighbourhood:
         """With everything."""
         bare = cls.bare(xyz, spacings, is_sure)
         middle = float(np.median(spacings))
@@ -143,26 +145,26 @@ class Surroundings:
     def scale_features(
         self,
         points: _Integers,
-        ways: _Floats | None,
+        directions: _Floats | None,
         monitor: Monitor,
         scales: Sequence[int] = range(SCALES),
     ) -> _Rows:
         """(k, scales × PER_SCALE): how points lie around, in 27 cells of 2 ** scale spacings.
 
-        Per scale: points, sure points, line, plane, scatter, offset, level, incidence; ``ways``
+        Per scale: points, sure points, line, plane, scatter, offset, level, incidence; ``directions``
         (k, 3) are the points' beams.
         """
         found = np.empty((points.size, len(scales) * PER_SCALE), np.float32)
-        own, places = self.own_levels(points), self.place[points]
+        own, positions = self.own_levels(points), self.position[points]
         for level in range(_LEVELS):
             of_scale = [np.flatnonzero(self.level_at(own, scale) == level) for scale in scales]
             if not any(chosen.size for chosen in of_scale):
                 continue
-            around, positions = self._around(level, [points[one] for one in of_scale], monitor)
-            for number, (chosen, cells) in enumerate(zip(of_scale, positions, strict=True)):
+            around, slots = self._around(level, [points[one] for one in of_scale], monitor)
+            for number, (chosen, cells) in enumerate(zip(of_scale, slots, strict=True)):
                 block = np.empty((chosen.size, PER_SCALE), np.float32)
-                beams = np.empty((0, 3)) if ways is None else ways[chosen]
-                self._tell(level, around, (cells, places[chosen], beams), block, monitor)
+                beams = np.empty((0, 3)) if directions is None else directions[chosen]
+                self._report(level, around, (cells, positions[chosen], beams), block, monitor)
                 found[chosen, number * PER_SCALE : (number + 1) * PER_SCALE] = block
         return found
 
@@ -189,16 +191,16 @@ class Surroundings:
                 found[chosen, block] = columns[back[0]]
         return found
 
-    def held_by(self, level: int, places: _Integers | slice) -> NDArray[np.int32]:
+    def held_by(self, level: int, positions: _Integers | slice) -> NDArray[np.int32]:
         """The cell of a level that holds each of some places along the curve."""
-        cells = self.numbers[0][places]
+        cells = self.numbers[0][positions]
         for above in range(1, level + 1):
             cells = self.numbers[above][cells]
         return cells
 
     def cells_of(self, level: int, points: _Integers) -> NDArray[np.int32]:
         """The cell of a level that holds each of some points."""
-        return self.held_by(level, self.place[points])
+        return self.held_by(level, self.position[points])
 
     def own_levels(self, points: _Integers) -> _Integers:
         """(k,) level whose cells are about a spacing wide, below zero where none is so fine."""
@@ -217,8 +219,8 @@ class Surroundings:
         is_used = np.zeros(self.levels[level].codes.size, np.bool_)
         for one in cells:
             is_used[one] = True
-        places = np.cumsum(is_used) - 1
-        return np.flatnonzero(is_used), [places[one] for one in cells]
+        positions = np.cumsum(is_used) - 1
+        return np.flatnonzero(is_used), [positions[one] for one in cells]
 
     def _around(
         self, level: int, groups: list[_Integers], monitor: Monitor
@@ -231,10 +233,10 @@ class Surroundings:
         def add_up(start: int, stop: int) -> None:
             around_kernel(cells, codes[start:stop], around[start:stop])
 
-        shared_out(add_up, used.size, _CELLS_AT_ONCE, monitor)
+        share_out(add_up, used.size, _CELLS_AT_ONCE, monitor)
         return around, positions
 
-    def _tell(
+    def _report(
         self,
         level: int,
         around: _Floats,
@@ -242,7 +244,7 @@ class Surroundings:
         found: _Rows,
         monitor: Monitor,
     ) -> None:
-        cells, places, ways = of_points
+        cells, positions, directions = of_points
 
         def tell(start: int, stop: int) -> None:
             part = slice(start, stop)
@@ -251,9 +253,9 @@ class Surroundings:
                 around,
                 cells[part],
                 self.cells.local_xyz,
-                places[part],
-                ways[part],
+                positions[part],
+                directions[part],
                 found[part],
             )
 
-        shared_out(tell, cells.size, _POINTS_AT_ONCE, monitor)
+        share_out(tell, cells.size, _POINTS_AT_ONCE, monitor)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from processing.monitor import Monitor
 from processing.noise.scratch_files import scratch_array
 
-Read = Callable[[NDArray[np.int64] | slice], NDArray[np.float64]]
+XyzReader = Callable[[NDArray[np.int64] | slice], NDArray[np.float64]]
 
 POINTS_PER_PART = 2_000_000
 _CHUNK = 1_000_000
@@ -75,7 +75,7 @@ class TiledCloud:
     """
 
     def __init__(
-        self, read: Read, count: int, file: Path, tile_m: float, *, monitor: Monitor
+        self, read: XyzReader, count: int, file: Path, tile_m: float, *, monitor: Monitor
     ) -> None:
         self.read = read
         self.count = count
@@ -129,8 +129,8 @@ class TiledCloud:
 
     def tiles_of(self, xyz: NDArray[np.float64]) -> NDArray[np.int64]:
         """(n,) int64: numbers of the tiles of places, row by row of the tiles' `shape`."""
-        places = np.nan_to_num((xyz[:, :2] - self._low) / self._side, nan=0.0)
-        tiles = np.clip(places, 0, np.array(self.shape) - 1).astype(np.int64)
+        positions = np.nan_to_num((xyz[:, :2] - self._low) / self._side, nan=0.0)
+        tiles = np.clip(positions, 0, np.array(self.shape) - 1).astype(np.int64)
         numbers: NDArray[np.int64] = tiles[:, 0] * self.shape[1] + tiles[:, 1]
         return numbers
 
@@ -176,7 +176,7 @@ class TiledCloud:
             tiles = self.tiles_of(self.read(chunk))
             order = np.argsort(tiles, kind="stable")
             found, firsts, counts = np.unique(tiles[order], return_index=True, return_counts=True)
-            places = np.repeat(nexts[found] - firsts, counts) + np.arange(order.size)
-            self._order[places] = order + chunk.start
+            positions = np.repeat(nexts[found] - firsts, counts) + np.arange(order.size)
+            self._order[positions] = order + chunk.start
             nexts[found] += counts
             monitor.report(0.5 + 0.5 * chunk.stop / self.count)

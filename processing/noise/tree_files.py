@@ -146,40 +146,40 @@ def _floats_of(attribute: bytes) -> NDArray[np.float64]:
 
 def _fields(message: bytes, wanted: int) -> list[bytes]:
     """The contents of a message's fields of one number, bytes as they stand."""
-    found, place = [], 0
-    while place < len(message):
-        key, place = _varint_at(message, place)
-        start = place
+    found, position = [], 0
+    while position < len(message):
+        key, position = _varint_at(message, position)
+        start = position
         wire = key & 7
         if wire == _VARINT:
-            _, place = _varint_at(message, place)
+            _, position = _varint_at(message, position)
         elif wire == _BYTES:
-            size, start = _varint_at(message, place)
-            place = start + size
+            size, start = _varint_at(message, position)
+            position = start + size
         elif wire in (_EIGHT_BYTES, _FOUR_BYTES):
-            place += 8 if wire == _EIGHT_BYTES else 4
+            position += 8 if wire == _EIGHT_BYTES else 4
         else:
             raise ValueError(f"wire type {wire} at byte {start}")
         if key >> 3 == wanted:
-            found.append(message[start:place])
+            found.append(message[start:position])
     return found
 
 
 def _varints(packed: bytes) -> Iterator[int]:
-    place = 0
-    while place < len(packed):
-        value, place = _varint_at(packed, place)
+    position = 0
+    while position < len(packed):
+        value, position = _varint_at(packed, position)
         yield value
 
 
-def _varint_at(message: bytes, place: int) -> tuple[int, int]:
+def _varint_at(message: bytes, position: int) -> tuple[int, int]:
     value, shift = 0, 0
     while True:
-        byte = message[place]
-        place += 1
+        byte = message[position]
+        position += 1
         value |= (byte & 0x7F) << shift
         if byte < 0x80:
-            return value, place
+            return value, position
         shift += 7
 
 

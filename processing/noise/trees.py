@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from processing.kernels import kernel
 from processing.monitor import Monitor
-from processing.noise.sharing import shared_out
+from processing.noise.sharing import share_out
 
 _HOPELESS = -4.0
 _AT_ONCE = 16_384
@@ -39,7 +39,7 @@ def log_odds(trees: Trees, rows: NDArray[np.float32], monitor: Monitor) -> NDArr
     def weigh(start: int, stop: int) -> None:
         log_odds_kernel(trees, rows, start, stop, found)
 
-    shared_out(weigh, found.size, _AT_ONCE, monitor)
+    share_out(weigh, found.size, _AT_ONCE, monitor)
     return found
 
 

@@ -97,12 +97,12 @@ def statistical_outliers_by_parts(
 def _measure(
     cloud: TiledCloud,
     part: SpacePart,
-    wish: tuple[int, float],
+    options: tuple[int, float],
     state: tuple[NDArray[np.float64], NDArray[np.bool_]],
     monitor: Monitor,
 ) -> int:
     """Settle the open points of a part whose neighbours are all known to be near enough."""
-    (neighbours, reach), (means, is_open) = wish, state
+    (neighbours, reach), (means, is_open) = options, state
     own = cloud.read(part.own)
     wanted = np.flatnonzero(is_open[part.own])
     is_finite = np.isfinite(own[wanted]).all(axis=1)

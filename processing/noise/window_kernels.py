@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.kernels import kernel
-from processing.noise.beam_kernels import Beams
+from processing.noise.beam_kernels import PointBeams
 
 _Integers = NDArray[np.int64]
 _Rows = NDArray[np.float32]
@@ -26,7 +26,7 @@ _A_FEW = 16
 
 @kernel
 def near_beams_kernel(
-    beams: Beams, is_sure: NDArray[np.bool_], points: _Integers, rows: _Integers, found: _Rows
+    beams: PointBeams, is_sure: NDArray[np.bool_], points: _Integers, rows: _Integers, found: _Rows
 ) -> None:
     """What the beams around points met; ``points`` (k,) rise, ``found`` (k, NEAR_FEATURES).
 
@@ -35,7 +35,7 @@ def near_beams_kernel(
     of sure ones in front.
     """
     counts = np.zeros((2, _PER_WINDOW + 1), np.int64)
-    places = np.zeros((_ROWS.size, 4), np.int64)
+    positions = np.zeros((_ROWS.size, 4), np.int64)
     for i in range(points.size):
         point, row = points[i], rows[i]
         column = beams.columns[point]
@@ -46,9 +46,9 @@ def near_beams_kernel(
             if not _is_beside(beams.segments, row, other):
                 continue
             if is_new:
-                places[number] = beams.row_starts[other]
+                positions[number] = beams.row_starts[other]
             end = beams.row_starts[other + 1]
-            at = places[number]
+            at = positions[number]
             if abs(_ROWS[number]) <= 2:
                 at[0] = _first_from(beams.columns, at[0], end, column - _NEAR)
                 at[1] = _first_from(beams.columns, at[1], end, column + _NEAR + 1)
@@ -64,7 +64,7 @@ def near_beams_kernel(
 
 @kernel
 def wide_beams_kernel(
-    beams: Beams, is_sure: NDArray[np.bool_], points: _Integers, rows: _Integers, found: _Rows
+    beams: PointBeams, is_sure: NDArray[np.bool_], points: _Integers, rows: _Integers, found: _Rows
 ) -> None:
     """The same for a wide window (10 rows in steps of 5, every second of 64 pulses), and the range.
 
@@ -90,7 +90,7 @@ def wide_beams_kernel(
 
 @kernel
 def suspicion_kernel(
-    beams: Beams,
+    beams: PointBeams,
     suspicions: NDArray[np.float32],
     points: _Integers,
     rows: _Integers,
@@ -112,7 +112,7 @@ def suspicion_kernel(
 
 @kernel
 def _suspicion(
-    beams: Beams,
+    beams: PointBeams,
     suspicions: NDArray[np.float32],
     point: int,
     row: int,
@@ -126,22 +126,22 @@ def _suspicion(
             continue
         end = beams.row_starts[other + 1]
         first = _first_from(beams.columns, beams.row_starts[other], end, column - aside)
-        for place in range(first, end, stride):
-            if beams.columns[place] > column + aside:
+        for position in range(first, end, stride):
+            if beams.columns[position] > column + aside:
                 break
-            if place == point:
+            if position == point:
                 continue
-            total += suspicions[place]
+            total += suspicions[position]
             count += 1
-            if abs(beams.ranges[place] - beams.ranges[point]) < _FAIR_M:
-                like += suspicions[place]
+            if abs(beams.ranges[position] - beams.ranges[point]) < _FAIR_M:
+                like += suspicions[position]
                 likes += 1
     return total, count, like, likes
 
 
 @kernel
 def _count(
-    beams: Beams,
+    beams: PointBeams,
     is_sure: NDArray[np.bool_],
     reach: float,
     first: int,
@@ -151,14 +151,14 @@ def _count(
 ) -> None:
     """Add the pixels ``first … stop − 1`` of a row to the counts of a window."""
     near, fair, wide, front, behind, sure = 0, 0, 0, 0, 0, 0
-    for place in range(first, stop, stride):
-        gap = beams.ranges[place] - reach
+    for position in range(first, stop, stride):
+        gap = beams.ranges[position] - reach
         near += abs(gap) < _CLOSE_M
         fair += abs(gap) < _FAIR_M
         wide += abs(gap) < _FAR_M
         front += gap < -_FAIR_M
         behind += gap > _FAIR_M
-        sure += is_sure[place] and gap < -_FAIR_M
+        sure += is_sure[position] and gap < -_FAIR_M
     counts[0] += (stop - first + stride - 1) // stride
     counts[1] += near
     counts[2] += fair
@@ -184,20 +184,20 @@ def _is_beside(segments: NDArray[np.int32], row: int, other: int) -> bool:
 
 
 @kernel
-def _first_from(columns: NDArray[np.int32], place: int, end: int, wanted: int) -> int:
+def _first_from(columns: NDArray[np.int32], position: int, end: int, wanted: int) -> int:
     """The first place of a row, from one on, whose column isn't below the wanted."""
-    if place + _A_FEW < end and columns[place + _A_FEW] < wanted:
-        return place + int(np.searchsorted(columns[place:end], wanted))
-    while place < end and columns[place] < wanted:
-        place += 1
-    return place
+    if position + _A_FEW < end and columns[position + _A_FEW] < wanted:
+        return position + int(np.searchsorted(columns[position:end], wanted))
+    while position < end and columns[position] < wanted:
+        position += 1
+    return position
 
 
 def warm_up() -> None:
     """Compile the kernels."""
     zeros = np.zeros((4, 3))
     starts, segments = np.arange(5), np.zeros(4, np.int32)
-    beams = Beams(zeros, zeros, np.ones(4), segments, starts, segments, 0.01)
+    beams = PointBeams(zeros, zeros, np.ones(4), segments, starts, segments, 0.01)
     four = np.arange(4)
     near_beams_kernel(beams, segments > 0, four, four, np.empty((4, NEAR_FEATURES), np.float32))
     wide_beams_kernel(beams, segments > 0, four, four, np.empty((4, WIDE_FEATURES), np.float32))

@@ -1,1 +1,1 @@
-"""Recordings: columns, trajectories, turns and pulses."""
+"""Recordings: columns, trajectories, revolutions and pulses."""

@@ -9,7 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile, report_as_user_error
 from processing.text import Text
 from resources import path_of
 
@@ -65,7 +65,7 @@ def read_classes(path: Path) -> tuple[PointClass, ...]:
     MissingInput, BadFile
         There is no such file; it is not TOML; an entry is not as it should be.
     """
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         content = path.read_bytes()
     try:
         entries = tomllib.loads(content.decode("utf-8")).get("class", [])
@@ -75,10 +75,10 @@ def read_classes(path: Path) -> tuple[PointClass, ...]:
         raise _bad(path, "class")
     classes: dict[int, PointClass] = {}
     for number, entry in enumerate(entries, start=1):
-        place = f"[[class]] {number}"
+        position = f"[[class]] {number}"
         one = _point_class(entry)
         if one is None or one.code in classes:
-            raise _bad(path, place)
+            raise _bad(path, position)
         classes[one.code] = one
     return tuple(classes[code] for code in sorted(classes))
 
@@ -97,10 +97,10 @@ def _point_class(entry: Any) -> PointClass | None:
     return PointClass(code, Text(name["en"], name["ja"]), colour)
 
 
-def _bad(path: Path, place: str) -> BadFile:
+def _bad(path: Path, position: str) -> BadFile:
     return BadFile(
         Text("The table of point classes is damaged.", "点クラス表の内容が正しくありません。"),
-        Text.same(f"{path}: {place}"),
+        Text.same(f"{path}: {position}"),
         Text(
             "Each class needs its own code (0 to 255), names in en and ja, and a #rrggbb colour.",
             "各クラスには重複しないコード（0～255）、英語と日本語の名称、#rrggbb形式の色が必要です。",

@@ -234,7 +234,7 @@ def _not_covered(
 ) -> OutOfRange:
     points = _in_words(float(times.min()), float(times.max()), kind_of(times))
     first, last = float(trajectory.time[0]), float(trajectory.time[-1])
-    way = _in_words(first, last, kind_of(trajectory.time))
+    vehicle_path = _in_words(first, last, kind_of(trajectory.time))
     remedy = Text(
         "Give the trajectory of this drive. {unchanged}",
         "この走行の走行軌跡を指定してください。{unchanged}",
@@ -250,7 +250,7 @@ def _not_covered(
         Text(
             "The times of the points, {points}, lie outside those of the trajectory, {way}.",
             "点の時刻 {points} が走行軌跡の時刻 {way} の範囲外です。",
-        ).filled(points=points, way=way),
+        ).filled(points=points, way=vehicle_path),
         Text.same(what),
         remedy.filled(unchanged=UNCHANGED),
     )

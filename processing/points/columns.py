@@ -15,7 +15,7 @@ from typing import Any, BinaryIO, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UNCHANGED, BadFile, told_as_user_error
+from processing.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.owned_files import new_file
 from processing.points.mapped_pages import MappedPages
 from processing.text import Text
@@ -85,7 +85,7 @@ class ColumnWriter:
         NoSpace
             The disk is full or refuses the write.
         """
-        with told_as_user_error(self._folder):
+        with report_as_user_error(self._folder):
             for name, values in columns.items():
                 if name not in self._files:
                     self._files[name] = column_path(self._folder, name).open("wb")
@@ -95,7 +95,7 @@ class ColumnWriter:
 
     def close(self) -> None:
         """Close the files; may be called again."""
-        with told_as_user_error(self._folder):
+        with report_as_user_error(self._folder):
             for file in self._files.values():
                 file.close()
         self._files.clear()
@@ -197,7 +197,7 @@ class Columns:
             raise ValueError(message)
         path = column_path(self._folder, name)
         temporary = path.with_suffix(".part")
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             try:
                 with new_file(temporary) as part:
                     part.write(np.ascontiguousarray(values, dtype=dtype).data)
@@ -221,7 +221,7 @@ class Columns:
         """
         dtype, width = COLUMN_TYPES[name]
         path = column_path(self._folder, name)
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             if file.stat().st_size != self._count * width * np.dtype(dtype).itemsize:
                 message = f"column {name}: a file for other points than {self._count}"
                 raise ValueError(message)
@@ -249,7 +249,7 @@ class Columns:
         dtype, width = COLUMN_TYPES[name]
         shape = (self._count,) if width == 1 else (self._count, width)
         path = column_path(self._folder, name)
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             size = path.stat().st_size
             if size != self._count * width * np.dtype(dtype).itemsize:
                 raise BadFile(

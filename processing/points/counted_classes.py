@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from processing.points.columns import Columns
 
 Codes = NDArray[np.uint8]
-Points = NDArray[np.int64]
+PointIndices = NDArray[np.int64]
 
 NOISE_CODES = 7, 18
 """Noise below the ground, and elsewhere."""
@@ -30,7 +30,7 @@ class ClassColumns(NamedTuple):
     delivered: Codes
     labels: Codes
 
-    def codes_of(self, points: Points) -> Codes:
+    def codes_of(self, points: PointIndices) -> Codes:
         """The classes that count of points of any shape, a copy; 0 where nothing was said."""
         codes = np.zeros(points.shape, np.uint8)
         if self.delivered.size:
@@ -45,7 +45,7 @@ class ClassColumns(NamedTuple):
         part = ClassColumns(self.delivered[start:stop], self.labels[start:stop])
         return part.are_noise(np.arange(stop - start))
 
-    def are_noise(self, points: Points) -> NDArray[np.bool_]:
+    def are_noise(self, points: PointIndices) -> NDArray[np.bool_]:
         """Which points are noise, of the points' shape."""
         low, high = NOISE_CODES
         codes = self.codes_of(points)
@@ -64,7 +64,7 @@ def class_columns(columns: Columns) -> ClassColumns:
     return ClassColumns(_column(columns, _DELIVERED), _column(columns, _LABEL))
 
 
-def seen_points(columns: Columns, points: Points, *, hides_noise: bool) -> Points:
+def seen_points(columns: Columns, points: PointIndices, *, hides_noise: bool) -> PointIndices:
     """The points that are seen: all of them, or those that are no noise where noise is hidden.
 
     Parameters

@@ -11,32 +11,32 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.cameras.calibration import CameraOffset, with_offsets
+from processing.cameras.calibration import CameraOffset, apply_offsets
 from processing.cameras.image_list import ImageList
 from processing.cameras.image_store import read_images
 from processing.cameras.offset_store import read_offsets, write_offsets
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile, report_as_user_error
 from processing.image.coordinates import Coordinates
 from processing.image.kinds import ImageKind
 from processing.points.array_files import read_array
 from processing.points.columns import Columns
 from processing.points.drive_info import DriveInfo, SourceFile, read_drive_info
-from processing.points.file_places import FolderMove, folder_of, path_now
+from processing.points.file_locations import FolderMove, folder_of, path_now
 from processing.points.mapped_pages import MappedPages
+from processing.points.revolutions import Revolutions
+from processing.points.revolutions_file import read_revolutions
 from processing.points.source_order import sources_of
 from processing.points.trajectory import Trajectory
-from processing.points.turns import Turns
-from processing.points.turns_file import read_turns
 from processing.text import Text
 
-Points = NDArray[np.int64] | slice
+PointSelection = NDArray[np.int64] | slice
 
 _Part = TypeVar("_Part")
 
 SCAN = "scan"
 """What :class:`DriveInfo` says of rows that are the sweeps of a standing scanner."""
 
-_WITH_TURNS = (
+_WITH_REVOLUTIONS = (
     ImageKind.TRAJECTORY_CENTER,
     ImageKind.FEATURE_CENTER,
     ImageKind.REVERSIBLE,
@@ -75,7 +75,7 @@ class Drive:
         self._delivered_images = self.noted_images
         self._images: ImageList | None = None
         self._check_columns()
-        self.turns: Turns | None = read_turns(folder)
+        self.revolutions: Revolutions | None = read_revolutions(folder)
         self._trajectory: Trajectory | None = None
         self._kept: dict[Hashable, Any] = {}  # Any: parts of any type, each known by its key
         self._making = threading.Lock()
@@ -146,7 +146,7 @@ class Drive:
     def images(self) -> ImageList | None:
         """Camera images taken on this drive, with the offsets of their cameras; None without."""
         if self._images is None and self.delivered_images is not None:
-            self._images = with_offsets(self.delivered_images, self._offsets, self.trajectory)
+            self._images = apply_offsets(self.delivered_images, self._offsets, self.trajectory)
         return self._images
 
     @property
@@ -169,8 +169,8 @@ class Drive:
     @property
     def image_kinds(self) -> tuple[ImageKind, ...]:
         """The kinds of image that this drive can be shown as."""
-        if self.turns is not None:
-            return _WITH_TURNS
+        if self.revolutions is not None:
+            return _WITH_REVOLUTIONS
         return (ImageKind.SCAN if self.info.rows_by == SCAN else ImageKind.TOP_VIEW,)
 
     @property
@@ -178,7 +178,7 @@ class Drive:
         """The kind whose pixels hold one pulse or cell each, so that neighbours are true ones."""
         return self.image_kinds[-1]
 
-    def xyz(self, points: Points) -> NDArray[np.float64]:
+    def xyz(self, points: PointSelection) -> NDArray[np.float64]:
         """Coordinates of points.
 
         Returns
@@ -189,7 +189,7 @@ class Drive:
         integers = self.columns["xyz"][points]
         return np.asarray(integers * np.array(self.info.scale) + np.array(self.info.offset))
 
-    def local_xyz(self, points: Points, origin: NDArray[np.float64]) -> NDArray[np.float32]:
+    def local_xyz(self, points: PointSelection, origin: NDArray[np.float64]) -> NDArray[np.float32]:
         """Coordinates about a local origin, exact enough for drawing.
 
         Parameters
@@ -277,12 +277,12 @@ def write_trajectory(folder: Path, trajectory: Trajectory) -> None:
         [trajectory.time, trajectory.xyz, trajectory.roll_pitch_heading_deg]
     ).astype(np.float64)
     path = folder / TRAJECTORY_FILE
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         np.save(path, table)
 
 
 def _read_trajectory(path: Path) -> Trajectory:
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         try:
             table = read_array(path)
             _check_trajectory(table)

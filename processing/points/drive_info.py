@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile, report_as_user_error
 from processing.owned_files import new_file
 from processing.points.source_order import SourceRun
 from processing.text import Text
@@ -60,13 +60,13 @@ class DriveInfo:
         How rows were found: ``trajectory``, ``origins``, ``scan-angle``, ``periodicity``; ``scan``
         for the sweeps of a standing scanner's own grid; or ``top-view`` where there are none.
     rows_reason : Text
-        Why there are no turns; empty when there are.
+        Why there are no revolutions; empty when there are.
     cell_m, cells_per_row
-        Without turns only: size of a cell of the top view, 0 for a scan; cells in a row or sweep.
+        Without revolutions only: size of a cell of the top view, 0 for a scan; cells in a row or sweep.
     source_runs : tuple of SourceRun
         Where in the files the points were; empty where the columns ``source_file`` and
         ``source_index`` say it.
-    scanner_place : tuple of float or None
+    scanner_position : tuple of float or None
         Where a standing scanner was, m, project CRS; None for others and where it is not known.
     """
 
@@ -86,14 +86,14 @@ class DriveInfo:
     cell_m: float = 0.0
     cells_per_row: int = 0
     source_runs: tuple[SourceRun, ...] = ()
-    scanner_place: Triple | None = None
+    scanner_position: Triple | None = None
 
 
 def write_drive_info(folder: Path, info: DriveInfo) -> None:
     """Write a drive's facts into its folder, whole or not at all."""
     path = folder / FILE_NAME
     temporary = path.with_suffix(".part")
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         text = json.dumps(dataclasses.asdict(info), ensure_ascii=False, indent=1)
         with new_file(temporary) as file:
             # Names of files may be no text; JSON reads them back.
@@ -110,7 +110,7 @@ def read_drive_info(folder: Path) -> DriveInfo:
         There is no such file, or it isn't what was written.
     """
     path = folder / FILE_NAME
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         text = path.read_text(encoding="utf-8")
     try:
         return _from_json(json.loads(text))
@@ -139,13 +139,15 @@ def _from_json(values: dict[str, Any]) -> DriveInfo:
     )
     runs = tuple(SourceRun(**run) for run in values["source_runs"])
     reason = Text(**values["rows_reason"])
-    place = values.get("scanner_place")
-    stood = None if place is None else (float(place[0]), float(place[1]), float(place[2]))
+    position = values.get("scanner_position")
+    stood = (
+        None if position is None else (float(position[0]), float(position[1]), float(position[2]))
+    )
     read = {
         "sources": sources,
         "rows_reason": reason,
         "source_runs": runs,
-        "scanner_place": stood,
+        "scanner_position": stood,
     }
     rest = {**values, **triples, **read}
     _check(rest)

@@ -15,26 +15,26 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.monitor import Monitor
 from processing.points.columns import COLUMN_TYPES, ColumnWriter
 from processing.points.drive import TRAJECTORY_FILE, Drive
 from processing.points.drive_info import write_drive_info
-from processing.points.ordering import read_stretch
-from processing.points.turns_file import write_turns
+from processing.points.ordering import read_chunk
+from processing.points.revolutions_file import write_revolutions
 
 _AT_ONCE = 1_000_000
 
-Chosen = Callable[[int, int], NDArray[np.bool_]]
+PointFilter = Callable[[int, int], NDArray[np.bool_]]
 """Which of the points ``start … stop − 1`` are wanted: (k,) bool."""
 
 
-Beside = Callable[[int, int], Mapping[str, NDArray[Any]]]
+ExtraColumns = Callable[[int, int], Mapping[str, NDArray[Any]]]
 """More columns of the points ``start … stop − 1``, by name; each of a type of its own."""
 
 
 def write_part(
-    drive: Drive, chosen: Chosen, into: Path, monitor: Monitor, *, beside: Beside
+    drive: Drive, chosen: PointFilter, into: Path, monitor: Monitor, *, beside: ExtraColumns
 ) -> Drive:
     """Write chosen points of a drive as a drive folder, and open it.
 
@@ -55,7 +55,7 @@ def write_part(
     ------
     NoSpace, Cancelled
     """
-    with told_as_user_error(into):
+    with report_as_user_error(into):
         into.mkdir(parents=True)
     names = [name for name in COLUMN_TYPES if drive.columns.has(name)]
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
@@ -64,7 +64,7 @@ def write_part(
             monitor.check()
             stop = min(start + _AT_ONCE, drive.count)
             wanted = chosen(start, stop)
-            read = {name: read_stretch(drive.folder, name, start, stop)[wanted] for name in names}
+            read = {name: read_chunk(drive.folder, name, start, stop)[wanted] for name in names}
             more = {name: values[wanted] for name, values in beside(start, stop).items()}
             writer.append({**read, **more})
             if len(read["xyz"]):
@@ -78,10 +78,10 @@ def write_part(
         lowest, highest = (low * scale + offset).tolist(), (high * scale + offset).tolist()
         info = replace(info, lowest=tuple(lowest), highest=tuple(highest))
     write_drive_info(into, replace(info, count=count, source_runs=()))
-    if drive.turns is not None:
-        write_turns(into, drive.turns)
+    if drive.revolutions is not None:
+        write_revolutions(into, drive.revolutions)
     trajectory = drive.folder / TRAJECTORY_FILE
     if trajectory.is_file():
-        with told_as_user_error(into):
+        with report_as_user_error(into):
             shutil.copyfile(trajectory, into / TRAJECTORY_FILE)
     return Drive(into)

@@ -33,5 +33,5 @@ def _first_day(drive: Drive) -> date | None:
     times = drive.columns["time"][points]
     times = times[np.isfinite(times)]
     # One time for all points is a filler.
-    is_told = bool(times.size) and (len(points) == 1 or times.min() < times.max())
-    return day_of(float(times.min()), _HOURS_AHEAD) if is_told else None
+    is_reported = bool(times.size) and (len(points) == 1 or times.min() < times.max())
+    return day_of(float(times.min()), _HOURS_AHEAD) if is_reported else None

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.monitor import Monitor
 from processing.points.columns import COLUMN_TYPES, ColumnWriter, column_path
 from processing.points.replacing import new_columns, replace_columns
@@ -17,12 +17,12 @@ from processing.points.replacing import new_columns, replace_columns
 POINTS_AT_ONCE = 8_000_000
 """Points sorted in memory at a time: some 0.6 GiB with all columns."""
 
-Keys = Callable[[Mapping[str, NDArray[Any]]], tuple[NDArray[Any], NDArray[Any]]]
+SortKeys = Callable[[Mapping[str, NDArray[Any]]], tuple[NDArray[Any], NDArray[Any]]]
 """Gives the first and the second sort key of a stretch of points, each (n,)."""
 
 
 def sort_points(
-    folder: Path, names: tuple[str, ...], count: int, keys: Keys, monitor: Monitor
+    folder: Path, names: tuple[str, ...], count: int, keys: SortKeys, monitor: Monitor
 ) -> None:
     """Order the columns of a folder by two keys; equal points keep their order.
 
@@ -59,7 +59,7 @@ def sort_points(
         for done, bucket in enumerate(buckets, 1):
             monitor.check()
             if bucket.exists():
-                with told_as_user_error(bucket):
+                with report_as_user_error(bucket):
                     points = np.fromfile(bucket, record)
                     bucket.unlink()
                 first, second = keys(_Fields(points))
@@ -68,14 +68,14 @@ def sort_points(
     replace_columns(folder)
 
 
-def read_stretch(folder: Path, name: str, start: int, stop: int) -> NDArray[Any]:
+def read_chunk(folder: Path, name: str, start: int, stop: int) -> NDArray[Any]:
     """The points ``start … stop − 1`` of a column, read into memory.
 
     Unlike a map, what is read does not stay resident when it is no longer used.
     """
     dtype, width = COLUMN_TYPES[name]
     item = np.dtype(dtype).itemsize * width
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         values: NDArray[Any] = np.fromfile(
             column_path(folder, name),
             dtype=dtype,
@@ -85,17 +85,17 @@ def read_stretch(folder: Path, name: str, start: int, stop: int) -> NDArray[Any]
     return values if width == 1 else values.reshape(-1, width)
 
 
-def stretches(count: int, size: int = POINTS_AT_ONCE) -> list[tuple[int, int]]:
+def chunk_ranges(count: int, size: int = POINTS_AT_ONCE) -> list[tuple[int, int]]:
     """Start and stop of consecutive stretches of at most ``size`` points."""
     return [(start, min(start + size, count)) for start in range(0, count, size)]
 
 
-def sampled(folder: Path, name: str, count: int, step: int) -> NDArray[Any]:
+def sample_column(folder: Path, name: str, count: int, step: int) -> NDArray[Any]:
     """Every so-many-th point of a column from the first on; what lies between does not stay."""
     parts = []
-    for start, stop in stretches(count):
+    for start, stop in chunk_ranges(count):
         first = -start % step
-        parts.append(read_stretch(folder, name, start, stop)[first::step].copy())
+        parts.append(read_chunk(folder, name, start, stop)[first::step].copy())
     return np.concatenate(parts)
 
 
@@ -106,7 +106,7 @@ class _Stretch(Mapping[str, NDArray[Any]]):
         self._folder, self._start, self._stop = folder, start, stop
 
     def __getitem__(self, name: str) -> NDArray[Any]:
-        return read_stretch(self._folder, name, self._start, self._stop)
+        return read_chunk(self._folder, name, self._start, self._stop)
 
     def __iter__(self) -> Iterator[str]:
         return (path.stem for path in self._folder.glob("*.bin"))
@@ -141,13 +141,13 @@ def _record_of(names: tuple[str, ...]) -> np.dtype[Any]:
     return np.dtype(fields)
 
 
-def _bucket_limits(folder: Path, count: int, keys: Keys) -> NDArray[Any]:
+def _bucket_limits(folder: Path, count: int, keys: SortKeys) -> NDArray[Any]:
     buckets = -(-count // POINTS_AT_ONCE)
     if buckets <= 1:
         return np.empty(0)
     sample = [
         keys(_Stretch(folder, start, stop))[0][::64]
-        for start, stop in stretches(count, POINTS_AT_ONCE // 4)
+        for start, stop in chunk_ranges(count, POINTS_AT_ONCE // 4)
     ]
     # Twice as many buckets as needed, since a sample's quantiles are not the points' own.
     shares = np.linspace(0, 1, 2 * buckets + 1)[1:-1]
@@ -159,13 +159,13 @@ def _deal(
     record: np.dtype[Any],
     count: int,
     *,
-    keys: Keys,
+    keys: SortKeys,
     limits: NDArray[Any],
     buckets: list[Path],
     monitor: Monitor,
 ) -> None:
     """Append the points to their buckets' files, as records; one file is open at a time."""
-    for start, stop in stretches(count, POINTS_AT_ONCE // 4):
+    for start, stop in chunk_ranges(count, POINTS_AT_ONCE // 4):
         monitor.check()
         columns = _Stretch(folder, start, stop)
         bucket = np.searchsorted(limits, keys(columns)[0], side="right")
@@ -177,6 +177,6 @@ def _deal(
         ends = np.searchsorted(bucket[order], np.arange(len(buckets) + 1))
         for path, low, high in zip(buckets, ends[:-1], ends[1:], strict=True):
             if low < high:
-                with told_as_user_error(path), path.open("ab") as file:
+                with report_as_user_error(path), path.open("ab") as file:
                     file.write(points[low:high].view(np.uint8).data)
         monitor.report(0.5 * stop / count)

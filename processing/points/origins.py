@@ -1,4 +1,4 @@
-"""The vehicle's way from scanner origins, which some files have for every point."""
+"""The vehicle's path from scanner origins, which some files have for every point."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from processing.errors import MissingInput
 from processing.points.columns import Columns
-from processing.points.ordering import stretches
+from processing.points.ordering import chunk_ranges
 from processing.points.point_source import PointColumns, PointSource
 from processing.points.trajectory import Trajectory
 from processing.text import Text
@@ -42,7 +42,7 @@ def trajectory_from_origins(columns: Columns | PointColumns | PointSource) -> Tr
     of turns without returns don't pull the mean.
     """
     times: list[float] = []
-    places: list[Floats] = []
+    positions: list[Floats] = []
     velocities: list[Floats] = []
     rate_hz: float | None = None
     first_time = last_time = np.nan
@@ -51,11 +51,11 @@ def trajectory_from_origins(columns: Columns | PointColumns | PointSource) -> Tr
         last_time = time[-1]
         if rate_hz is None:
             rate_hz = _circling_rate(time, origin)
-        middle, place, velocity = _steady(time, origin, rate_hz)
+        middle, position, velocity = _steady(time, origin, rate_hz)
         if times and middle <= times[-1]:
             continue
         times.append(middle)
-        places.append(place)
+        positions.append(position)
         velocities.append(velocity)
     if not times or not last_time > first_time:
         raise MissingInput(
@@ -70,18 +70,18 @@ def trajectory_from_origins(columns: Columns | PointColumns | PointSource) -> Tr
             ),
         )
     # From the ends of the recording on, the vehicle is taken to move as in the nearest window.
-    before = places[0] + (first_time - 1e-3 - times[0]) * velocities[0]
-    after = places[-1] + (last_time + 1e-3 - times[-1]) * velocities[-1]
+    before = positions[0] + (first_time - 1e-3 - times[0]) * velocities[0]
+    after = positions[-1] + (last_time + 1e-3 - times[-1]) * velocities[-1]
     return Trajectory.from_positions(
         np.concatenate([[first_time - 1e-3], times, [last_time + 1e-3]]),
-        np.vstack([before, *places, after]),
+        np.vstack([before, *positions, after]),
     )
 
 
 def _windows(columns: Columns | PointColumns | PointSource) -> list[tuple[Floats, Floats]]:
     """Times and origins of some points of each tenth of a second."""
     windows: list[tuple[Floats, Floats]] = []
-    for start, stop in stretches(columns.count, _READ_POINTS):
+    for start, stop in chunk_ranges(columns.count, _READ_POINTS):
         time, origin = _read(columns, start, stop)
         if time.size == 0:
             break
@@ -100,7 +100,7 @@ def _read(
 ) -> tuple[Floats, Floats]:
     if isinstance(columns, Columns):
         return columns["time"][start:stop], columns["origin"][start:stop]
-    part = columns.stretch(start, stop)
+    part = columns.chunk(start, stop)
     if part.origin is None:
         return part.time[:0], np.empty((0, 3))
     return part.time, part.origin

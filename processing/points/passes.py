@@ -1,7 +1,7 @@
 """Passes: stretches of a drive in which the vehicle goes on, measured along its smoothed way.
 
 A pass ends where the vehicle turns back and where its trajectory has a gap. A stop is part of a
-pass: time goes on there and the station stays. What lies beside the way is told by the way that
+pass: time goes on there and the station stays. What lies beside the vehicle's path is told by the way that
 was driven about the time of its measurement, so a street that is passed twice is told apart.
 """
 
@@ -18,7 +18,7 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from processing.errors import MissingInput
 from processing.points.drive import Drive
 from processing.points.pass_kernels import records_kernel, stations_kernel
-from processing.points.smooth_way import SmoothWay, apart, monotone_runs, smooth_way
+from processing.points.smooth_path import SmoothPath, apart, monotone_runs, smooth_way
 from processing.points.trajectory import LONGEST_GAP_S, Trajectory
 from processing.text import Text
 
@@ -35,7 +35,7 @@ _MARGIN_M = 0.01
 
 
 @dataclass(frozen=True)
-class Beside:
+class PathSurroundings:
     """Which places beside a way are asked for; of others nothing need be told.
 
     Attributes
@@ -60,7 +60,7 @@ class Pass:
         Among the passes of its drive.
     origin : (3,) float64
         The local origin, m, project CRS.
-    way : SmoothWay
+    vehicle_path : SmoothPath
         About the origin.
     times : (m,) float64
         Of the vehicle's records, rising strictly, s on the trajectory's clock.
@@ -70,14 +70,14 @@ class Pass:
 
     number: int
     origin: Floats
-    way: SmoothWay
+    vehicle_path: SmoothPath
     times: Floats
     stations_m: Floats
 
     @property
     def length_m(self) -> float:
         """Its length in plan; stations go from 0 to it, and straight on beyond."""
-        return self.way.length_m
+        return self.vehicle_path.length_m
 
     def station_at(self, times: ArrayLike) -> Floats:
         """The vehicle's own station at times, that of the nearer end outside: like ``times``, m."""
@@ -91,15 +91,21 @@ class Pass:
         passed: Floats = np.interp(np.asarray(stations_m, dtype=np.float64), known, times)
         return passed
 
-    def time_nearest(self, place: ArrayLike) -> float:
+    def time_nearest(self, position: ArrayLike) -> float:
         """When the vehicle was nearest to a place in plan, s."""
-        away = self.way.places[:, :2] + self.origin[:2] - np.asarray(place, dtype=np.float64)[:2]
+        away = (
+            self.vehicle_path.positions[:, :2]
+            + self.origin[:2]
+            - np.asarray(position, dtype=np.float64)[:2]
+        )
         nearest = int((away**2).sum(axis=1).argmin())
-        return float(self.time_at(nearest * self.way.step_m))
+        return float(self.time_at(nearest * self.vehicle_path.step_m))
 
     def directions_at(self, stations_m: ArrayLike) -> Floats:
-        """Unit vectors in plan along the way: (n, 2) float64."""
-        along = self._interpolated(self.way.directions, np.asarray(stations_m, dtype=np.float64))
+        """Unit vectors in plan along the vehicle's path: (n, 2) float64."""
+        along = self._interpolated(
+            self.vehicle_path.directions, np.asarray(stations_m, dtype=np.float64)
+        )
         units: Floats = along / np.hypot(along[:, 0], along[:, 1])[:, None]
         return units
 
@@ -108,20 +114,20 @@ class Pass:
         along = self.directions_at(stations_m)
         return np.column_stack([along[:, 1], -along[:, 0]])
 
-    def places_at(self, stations_m: ArrayLike) -> Floats:
+    def positions_at(self, stations_m: ArrayLike) -> Floats:
         """Where the way is, straight on and level beyond its ends: (n, 3) float64, project CRS."""
         stations = np.asarray(stations_m, dtype=np.float64)
-        places = self._interpolated(self.way.places, stations)
+        positions = self._interpolated(self.vehicle_path.positions, stations)
         beyond = stations - np.clip(stations, 0.0, self.length_m)
-        places[:, :2] += beyond[:, None] * self.directions_at(stations)
-        return places + self.origin
+        positions[:, :2] += beyond[:, None] * self.directions_at(stations)
+        return positions + self.origin
 
     def xyz_at(self, stations_m: ArrayLike, across_m: ArrayLike) -> Floats:
-        """Places beside the way at its height: (n, 3) float64, m, project CRS."""
-        places = self.places_at(stations_m)
+        """Places beside the vehicle's path at its height: (n, 3) float64, m, project CRS."""
+        positions = self.positions_at(stations_m)
         across = np.asarray(across_m, dtype=np.float64)
-        places[:, :2] += across[:, None] * self.rights_at(stations_m)
-        return places
+        positions[:, :2] += across[:, None] * self.rights_at(stations_m)
+        return positions
 
     def stations_of(self, xyz: ArrayLike, time: ArrayLike) -> tuple[Floats, Floats]:
         """Where measured points lie along and aside of the way.
@@ -137,7 +143,7 @@ class Pass:
         Returns
         -------
         station : (n,) float64
-            m; NaN for points outside the times of the pass, farther than `REACH_M` along the way
+            m; NaN for points outside the times of the pass, farther than `REACH_M` along the vehicle's path
             from the vehicle, and about the centre of a bend, where sections cross.
         across : (n,) float64
             m to the right of the way; NaN likewise.
@@ -146,14 +152,18 @@ class Pass:
         found = self.stations_of_local(local, np.asarray(time, dtype=np.float64))
         return np.ascontiguousarray(found[:, 0]), np.ascontiguousarray(found[:, 1])
 
-    def stations_of_local(self, local: Floats, time: Floats, asked: Beside | None = None) -> Floats:
+    def stations_of_local(
+        self, local: Floats, time: Floats, asked: PathSurroundings | None = None
+    ) -> Floats:
         """The same for places about the origin, with the height above the way: (n, 3) float64.
 
         Where only some places are ``asked`` for, the others may be NaN too.
         """
         found = np.empty((len(local), 3))
         if asked is None:
-            asked = Beside(_FAR_M, np.tile([-np.inf, np.inf], (len(self.way.places), 1)))
+            asked = PathSurroundings(
+                _FAR_M, np.tile([-np.inf, np.inf], (len(self.vehicle_path.positions), 1))
+            )
         stations_kernel(
             np.ascontiguousarray(local),
             np.ascontiguousarray(time),
@@ -164,20 +174,20 @@ class Pass:
         )
         return found
 
-    def beside(self, half_width_m: float, lowest_m: float, highest_m: float) -> Beside:
+    def beside(self, half_width_m: float, lowest_m: float, highest_m: float) -> PathSurroundings:
         """What holds all places so near to the way and between two heights above it."""
-        step_m, z = self.way.step_m, self.way.places[:, 2]
+        step_m, z = self.vehicle_path.step_m, self.vehicle_path.positions[:, 2]
         size = 2 * (int(REACH_M / step_m) + 2) + 1
         low, high = minimum_filter1d(z, size), maximum_filter1d(z, size)
         heights = np.column_stack([low + lowest_m - _MARGIN_M, high + highest_m + _MARGIN_M])
-        return Beside(min(_FAR_M, REACH_M + half_width_m + 2 * step_m), heights)
+        return PathSurroundings(min(_FAR_M, REACH_M + half_width_m + 2 * step_m), heights)
 
     @property
     def _kernel_way(self) -> tuple[float, Floats, Floats]:
-        return self.way.step_m, self.way.places, self.way.directions
+        return self.vehicle_path.step_m, self.vehicle_path.positions, self.vehicle_path.directions
 
     def _interpolated(self, values: NDArray[Any], stations: Floats) -> Floats:
-        known = np.arange(len(values)) * self.way.step_m
+        known = np.arange(len(values)) * self.vehicle_path.step_m
         return np.column_stack([np.interp(stations, known, axis) for axis in values.T])
 
 
@@ -220,19 +230,24 @@ def _pass_of(number: int, time: Floats, xyz: Floats) -> Pass | None:
         return None
     origin = np.floor(xyz.min(axis=0))
     local = np.ascontiguousarray(xyz - origin)
-    way = smooth_way(local)
-    if way is None or way.length_m < _SHORTEST_M:
+    vehicle_path = smooth_way(local)
+    if vehicle_path is None or vehicle_path.length_m < _SHORTEST_M:
         return None
     stations = np.empty(time.size)
-    guesses = _guesses(local, way)
-    records_kernel(local, guesses, (way.step_m, way.places, way.directions), stations)
-    return Pass(number, origin, way, np.ascontiguousarray(time), stations)
+    guesses = _guesses(local, vehicle_path)
+    records_kernel(
+        local,
+        guesses,
+        (vehicle_path.step_m, vehicle_path.positions, vehicle_path.directions),
+        stations,
+    )
+    return Pass(number, origin, vehicle_path, np.ascontiguousarray(time), stations)
 
 
-def _guesses(local: Floats, way: SmoothWay) -> Floats:
+def _guesses(local: Floats, vehicle_path: SmoothPath) -> Floats:
     """About where on the way each record is, by what was driven apart from all trembling."""
     marks = apart(local)
     driven = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(local[marks, :2], axis=0).T))])
-    driven *= way.length_m / max(float(driven[-1]), way.length_m / 2)
+    driven *= vehicle_path.length_m / max(float(driven[-1]), vehicle_path.length_m / 2)
     guesses: Floats = np.interp(np.arange(len(local)), marks, driven)
     return guesses

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import Monitor
-from processing.points.ordering import stretches
+from processing.points.ordering import chunk_ranges
 from processing.points.point_source import PointColumns, PointSource
 from processing.points.rotation_fit import PlanePoints, RotationFit, fit_rotation
 from processing.points.scan_plane import ScanPlane, find_plane
@@ -40,8 +40,8 @@ def trajectory_from_points(points: PointSource, monitor: Monitor) -> Trajectory 
     finder = _CentreFinder()
     next_time = -np.inf
     tried = 0
-    for start, stop in stretches(points.count, _READ_POINTS):
-        part = points.stretch(start, stop)
+    for start, stop in chunk_ranges(points.count, _READ_POINTS):
+        part = points.chunk(start, stop)
         time = float(part.time[0])
         while True:
             time = max(time, next_time)
@@ -53,13 +53,13 @@ def trajectory_from_points(points: PointSource, monitor: Monitor) -> Trajectory 
             next_time = time + _EVERY_S
             monitor.check()
             if last - first >= _LEAST_POINTS:
-                finder.add(part.stretch(first, last))
+                finder.add(part.chunk(first, last))
                 tried += 1
             if tried >= 8 and not finder.times:
                 return None
     if not finder.times or len(finder.times) < 0.3 * tried:
         return None
-    ends = (float(points.stretch(0, 1).time[0]), float(part.time[-1]))
+    ends = (float(points.chunk(0, 1).time[0]), float(part.time[-1]))
     return finder.trajectory(ends)
 
 
@@ -76,13 +76,13 @@ class _CentreFinder:
 
     def add(self, window: PointColumns) -> None:
         """Take one window of points; nothing is added when it doesn't tell."""
-        part = window.stretch(0, window.count)
+        part = window.chunk(0, window.count)
         every = max(1, part.count // _MOST_POINTS)
         middle = 0.5 * float(part.time[0] + part.time[-1])
         time = part.time[::every] - middle
-        places = part.xyz[::every] * np.array(part.scale) + np.array(part.offset)
-        base = np.median(places, axis=0)
-        local = places - base
+        positions = part.xyz[::every] * np.array(part.scale) + np.array(part.offset)
+        base = np.median(positions, axis=0)
+        local = positions - base
         steady = np.column_stack([np.ones(time.size), time])
         plane = find_plane(local, steady)
         if plane.flatness > _FLATTEST:
@@ -125,7 +125,7 @@ class _CentreFinder:
         self, plane: ScanPlane, local: Floats, time: Floats, middle: float, base: Floats
     ) -> RotationFit:
         flat = PlanePoints(plane.project(local), time, np.zeros(time.size, dtype=np.int64))
-        starts = [np.median(flat.place, axis=0)]
+        starts = [np.median(flat.position, axis=0)]
         starts += [starts[0] + np.array(step) for step in _STARTS_M]
         rates = None
         if self._rate_hz is not None:

@@ -11,14 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.points.columns import column_path
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 
 Triple = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class PointColumns:
-    """What turns and pulses are found from: one scanner's points in acquisition order.
+    """What revolutions and pulses are found from: one scanner's points in acquisition order.
 
     Attributes
     ----------
@@ -58,7 +58,7 @@ class PointColumns:
         """Whether every point says how the mirror stood."""
         return self.scan_angle_deg is not None
 
-    def stretch(self, start: int, stop: int) -> PointColumns:
+    def chunk(self, start: int, stop: int) -> PointColumns:
         """The points ``start … stop − 1``: views."""
         part = slice(start, stop)
         return replace(
@@ -74,7 +74,7 @@ class PointColumns:
 
 @dataclass(frozen=True)
 class RecordedPoints:
-    """The columns of a drive folder that is being made, read stretch by stretch.
+    """The columns of a drive folder that is being made, read chunk by chunk.
 
     Attributes
     ----------
@@ -98,7 +98,7 @@ class RecordedPoints:
         """Whether every point says how the mirror stood."""
         return column_path(self.folder, "scan_angle_deg").is_file()
 
-    def stretch(self, start: int, stop: int) -> PointColumns:
+    def chunk(self, start: int, stop: int) -> PointColumns:
         """The points ``start … stop − 1``, read into memory.
 
         Raises
@@ -108,7 +108,7 @@ class RecordedPoints:
         """
 
         def read(name: str) -> NDArray[np.generic]:
-            values: NDArray[np.generic] = read_stretch(self.folder, name, start, stop)
+            values: NDArray[np.generic] = read_chunk(self.folder, name, start, stop)
             return values
 
         return PointColumns(
@@ -140,14 +140,14 @@ class PointSource(Protocol):
     def has_scan_angles(self) -> bool:
         """Whether every point says how the mirror stood."""
 
-    def stretch(self, start: int, stop: int) -> PointColumns:
+    def chunk(self, start: int, stop: int) -> PointColumns:
         """The points ``start … stop − 1``."""
 
 
 def samples_of(points: PointSource, number: int, size: int) -> Iterator[PointColumns]:
     """Contiguous stretches, spread evenly over a recording; all of it when it is short."""
     if points.count <= number * size:
-        yield points.stretch(0, points.count)
+        yield points.chunk(0, points.count)
         return
     for start in np.linspace(0, points.count - size, number).astype(np.int64):
-        yield points.stretch(int(start), int(start) + size)
+        yield points.chunk(int(start), int(start) + size)

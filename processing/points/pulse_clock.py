@@ -61,26 +61,26 @@ def estimate_clock(samples: Iterable[PointColumns]) -> PulseClock | None:
     2. Where pulses share times, that step is the quantum of the times, and the interval follows
        from how many pulses share a quantum in stretches without losses.
     """
-    stretches = [_pulse_times(sample) for sample in samples]
-    stretches = [times for times in stretches if times.size >= 64]
-    if not stretches:
+    chunks = [_pulse_times(sample) for sample in samples]
+    chunks = [times for times in chunks if times.size >= 64]
+    if not chunks:
         return None
-    steps = np.concatenate([np.diff(times) for times in stretches])
+    steps = np.concatenate([np.diff(times) for times in chunks])
     apart = steps[(steps > 0) & (steps < LONGEST_MISSING_S)]
     if apart.size < 32:
         return None
-    distinct = [np.unique(times) for times in stretches]
+    distinct = [np.unique(times) for times in chunks]
     interval = _refined(distinct, _common_step(apart))
     coherence = _coherence(distinct, interval)
     if coherence < _LEAST_COHERENCE:
         return None
     if np.mean(steps == 0) < _TIES_OF_ROUNDED_TIMES:
         return PulseClock(interval, 0.0, coherence)
-    return PulseClock(_interval_of_shared_times(stretches, interval), interval, coherence)
+    return PulseClock(_interval_of_shared_times(chunks, interval), interval, coherence)
 
 
 class PulseNumbering:
-    """Numbers pulses stretch by stretch, locked to the clock, which it follows as it drifts."""
+    """Numbers pulses chunk by chunk, locked to the clock, which it follows as it drifts."""
 
     def __init__(self, clock: PulseClock, first_time: float, first_number: int) -> None:
         self._clock = clock
@@ -163,11 +163,11 @@ def _common_step(steps: Floats) -> float:
     return next(step for strength, step in best if strength >= 0.9 * most)
 
 
-def _refined(stretches: list[Floats], step: float) -> float:
+def _refined(chunks: list[Floats], step: float) -> float:
     for size in _STAGES:
         slopes = [
             _slopes(times, starts, size, step)
-            for times in stretches
+            for times in chunks
             if (starts := np.arange(0, times.size - size + 1, max(size, times.size // 60))).size
         ]
         if slopes:
@@ -191,23 +191,23 @@ def _slopes(times: Floats, starts: NDArray[np.int64], size: int, step: float) ->
     return slopes
 
 
-def _coherence(stretches: list[Floats], step: float) -> float:
+def _coherence(chunks: list[Floats], step: float) -> float:
     """How well stretches of some hundred pulses lie on the lattice, 0..1."""
     parts = [
         np.abs(np.mean(np.exp(2j * np.pi * (times[at : at + 256] / step))))
-        for times in stretches
+        for times in chunks
         for at in range(0, max(1, times.size - 255), 2048)
     ]
     return float(np.median(parts))
 
 
-def _interval_of_shared_times(stretches: list[Floats], quantum: float) -> float:
+def _interval_of_shared_times(chunks: list[Floats], quantum: float) -> float:
     """The pulse interval where several pulses share a time.
 
     A quantum holds the integer part of quantum / interval pulses, or one more; how often it holds
     one more beats with the fraction, and the beat is a sharp line in the spectrum of the counts.
     """
-    counts = [np.bincount(np.rint(times / quantum).astype(np.int64)) for times in stretches]
+    counts = [np.bincount(np.rint(times / quantum).astype(np.int64)) for times in chunks]
     often = np.concatenate(counts)
     often = often[often > 0]
     most = int(np.percentile(often, 95))

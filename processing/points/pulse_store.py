@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.points.columns import ColumnWriter
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 
 
 class PulseStore(Protocol):
@@ -23,7 +23,7 @@ class PulseStore(Protocol):
     def finish(self) -> None:
         """All pulses were appended."""
 
-    def stretch(self, start: int, stop: int) -> NDArray[np.int64]:
+    def chunk(self, start: int, stop: int) -> NDArray[np.int64]:
         """The pulses of the points ``start … stop − 1``."""
 
 
@@ -42,7 +42,7 @@ class ArrayPulses:
     def finish(self) -> None:
         """All pulses were appended."""
 
-    def stretch(self, start: int, stop: int) -> NDArray[np.int64]:
+    def chunk(self, start: int, stop: int) -> NDArray[np.int64]:
         """The pulses of the points ``start … stop − 1``: a view."""
         return self.pulses[start:stop]
 
@@ -81,9 +81,9 @@ class FolderPulses:
         self._wait()
         self._writer.close()
 
-    def stretch(self, start: int, stop: int) -> NDArray[np.int64]:
+    def chunk(self, start: int, stop: int) -> NDArray[np.int64]:
         """The pulses of the points ``start … stop − 1``, read into memory."""
-        pulses: NDArray[np.int64] = read_stretch(self._folder, "pulse", start, stop)
+        pulses: NDArray[np.int64] = read_chunk(self._folder, "pulse", start, stop)
         return pulses
 
     def __enter__(self) -> Self:

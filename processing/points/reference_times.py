@@ -15,9 +15,9 @@ SEARCHED_SHARE = 0.2
 """Share of a turn before and after the prediction in which the crossing is looked for."""
 
 _LONG_CHORD_PULSES = 20
-_CLOSE_TURNS = 0.01
-_FAR_TURNS = 0.04
-_LEAST_MISS_TURNS = 0.003
+_CLOSE_REVOLUTIONS = 0.01
+_FAR_REVOLUTIONS = 0.04
+_LEAST_MISS_REVOLUTIONS = 0.003
 _MEDIAN_OVER = 31
 _LEAST_SHARE = 0.1
 
@@ -78,7 +78,7 @@ def find_crossings(
     return crossed, chord
 
 
-def repaired(
+def repair_reference_times(
     predicted: Floats, crossed: Floats, chord: NDArray[np.int64], period_s: float
 ) -> Floats:
     """Reference times from predictions and crossings, all turns included.
@@ -107,8 +107,8 @@ def repaired(
         return predicted.copy()
     usual = np.interp(np.arange(predicted.size), found, _running_median(shift[found]))
     miss = np.abs(shift - usual)
-    usual_miss = max(_LEAST_MISS_TURNS, 6.0 * float(np.median(miss[found])))
-    allowed = np.where(chord > _LONG_CHORD_PULSES, _CLOSE_TURNS, _FAR_TURNS)
+    usual_miss = max(_LEAST_MISS_REVOLUTIONS, 6.0 * float(np.median(miss[found])))
+    allowed = np.where(chord > _LONG_CHORD_PULSES, _CLOSE_REVOLUTIONS, _FAR_REVOLUTIONS)
     allowed = np.minimum(allowed, usual_miss)
     good = np.isfinite(shift) & (miss <= allowed)
     times: Floats = predicted + period_s * np.where(good, shift, usual)
@@ -159,10 +159,10 @@ def _crossings_kernel(
                 continue
             offset = 0.0
             for axis in range(2):
-                place = xyz[i, axis] * scale_offset[0, axis] + scale_offset[1, axis]
+                position = xyz[i, axis] * scale_offset[0, axis] + scale_offset[1, axis]
                 step = pose_xyz[j + 1, axis] - pose_xyz[j, axis]
                 turn = left[j, axis] + share * (left[j + 1, axis] - left[j, axis])
-                offset += (place - pose_xyz[j, axis] - share * step) * turn
+                offset += (position - pose_xyz[j, axis] - share * step) * turn
             if before >= 0 and (offset_before < 0) != (offset < 0):
                 a, b = abs(offset_before), abs(offset)
                 at = (b * time[before] + a * time[i]) / (a + b)

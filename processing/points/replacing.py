@@ -11,7 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.owned_files import refuse_link, remove_folder
 
 _UNFINISHED, _WHOLE = "unfinished", "whole"
@@ -29,7 +29,7 @@ def new_columns(folder: Path) -> Path:
     NoSpace
     """
     unfinished = folder / _UNFINISHED
-    with told_as_user_error(unfinished):
+    with report_as_user_error(unfinished):
         refuse_link(unfinished)
         remove_folder(unfinished)
         unfinished.mkdir()
@@ -52,7 +52,7 @@ def replace_columns(
     ------
     NoSpace
     """
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         if is_flushed:
             flush_folder(folder / _UNFINISHED)
         (folder / _UNFINISHED).rename(folder / _WHOLE)
@@ -69,11 +69,11 @@ def finish_replacing(folder: Path, note: Callable[[], object] = _nothing) -> boo
     if not whole.is_dir():
         return False
     refuse_link(whole)
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         for path in sorted(whole.iterdir()):
             path.replace(folder / path.name)
     note()
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         whole.rmdir()
     return True
 

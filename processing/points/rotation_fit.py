@@ -58,7 +58,7 @@ class PlanePoints:
 
     Attributes
     ----------
-    place : (n, 2) float64
+    position : (n, 2) float64
         m.
     time : (n,) float64
         s since the middle of the window.
@@ -66,7 +66,7 @@ class PlanePoints:
         0 … w − 1.
     """
 
-    place: Floats
+    position: Floats
     time: Floats
     window: NDArray[np.int64]
 
@@ -77,7 +77,7 @@ class PlanePoints:
 
     def thinned(self, every: int) -> PlanePoints:
         """Every so many of the points."""
-        return PlanePoints(self.place[::every], self.time[::every], self.window[::every])
+        return PlanePoints(self.position[::every], self.time[::every], self.window[::every])
 
 
 def fit_rotation(
@@ -103,7 +103,7 @@ def fit_rotation(
     some = points.thinned(max(1, points.time.size // _MOST_COMPARED))
     fits: list[RotationFit] = []
     for start in starts:
-        angle = _angles(points.place - start)
+        angle = _angles(points.position - start)
         candidates = rates_hz or _candidate_rates(angle, points)
         fits.extend(
             _refined(some, (rate, start), moves=moves, rounds=_ROUNDS_TO_CHOOSE)
@@ -113,8 +113,8 @@ def fit_rotation(
     return _refined(points, (best.rate_hz, best.centre), moves=moves, rounds=_ROUNDS)
 
 
-def _angles(place: Floats) -> Floats:
-    angle: Floats = np.arctan2(place[:, 1], place[:, 0])
+def _angles(position: Floats) -> Floats:
+    angle: Floats = np.arctan2(position[:, 1], position[:, 0])
     return angle
 
 
@@ -192,7 +192,7 @@ def _refined(
     phases = np.zeros(windows)
     member = (points.window[:, None] == np.arange(windows)).astype(np.float64)
     for turn in range(rounds + 1):
-        rays = points.place - centre - points.time[:, None] * velocity
+        rays = points.position - centre - points.time[:, None] * velocity
         distance = np.maximum(np.hypot(rays[:, 0], rays[:, 1]), 0.3)
         waves = np.exp(1j * (_angles(rays) - rate * points.time))
         phases = np.angle(_sums_by_window(waves, points))

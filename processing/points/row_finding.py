@@ -1,4 +1,4 @@
-"""Rows of a whole drive, stretch by stretch: pulses, the mirror's phase, and where rows begin."""
+"""Rows of a whole drive, chunk by chunk: pulses, the mirror's phase, and where rows begin."""
 
 from __future__ import annotations
 
@@ -8,32 +8,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import Monitor
-from processing.points.ordering import stretches
+from processing.points.ordering import chunk_ranges
 from processing.points.point_source import PointSource
 from processing.points.pulse_clock import LONGEST_MISSING_S, PulseClock, PulseNumbering
 from processing.points.pulse_store import PulseStore
-from processing.points.reference_times import SEARCHED_SHARE, find_crossings, repaired
-from processing.points.scan_angle import SeenAngle, Spin
-from processing.points.turn_tracking import TurnPhase, TurnTracker
+from processing.points.reference_times import SEARCHED_SHARE, find_crossings, repair_reference_times
+from processing.points.revolution_tracking import RevolutionPhase, RevolutionTracker
+from processing.points.scan_angle import MirrorRotation, SeenAngle
 
 Floats = NDArray[np.float64]
 
 READ_POINTS = 500_000
 """Points read at a time."""
 
-_TRACKED_PER_TURN = 64
+_TRACKED_PER_REVOLUTION = 64
 _BELOW_CENTRE_M = 0.3
 
 
 @dataclass(frozen=True)
 class FoundRows:
-    """Rows as :class:`processing.points.turns.Turns` has them, and the rates found on the way."""
+    """Rows as :class:`processing.points.revolutions.Turns` has them, and the rates found on the way."""
 
     reference_times: Floats
     fold_pulses: NDArray[np.int64]
     segments: NDArray[np.int32]
     row_ends: NDArray[np.int64]
-    turn_rate_hz: float
+    revolution_rate_hz: float
     interval_s: float
     coherence: float
 
@@ -44,7 +44,7 @@ class _Segment:
 
     first_time: float
     last_time: float
-    phase: TurnPhase
+    phase: RevolutionPhase
 
 
 @dataclass
@@ -59,7 +59,11 @@ class _Turns:
 
 
 def find_rows(
-    points: PointSource, clock: PulseClock, spin: Spin, pulses: PulseStore, monitor: Monitor
+    points: PointSource,
+    clock: PulseClock,
+    mirror_rotation: MirrorRotation,
+    pulses: PulseStore,
+    monitor: Monitor,
 ) -> FoundRows:
     """Number the pulses of all points and find where rows begin.
 
@@ -68,32 +72,36 @@ def find_rows(
     pulses : PulseStore
         Empty; holds all pulses afterwards.
     """
-    segments, interval_s = _first_pass(points, clock, spin, pulses, monitor)
+    segments, interval_s = _first_pass(points, clock, mirror_rotation, pulses, monitor)
     monitor.report(0.6)
-    turns = [(segment, _expected(segment, spin)) for segment in segments]
-    _second_pass(points, spin, pulses, turns, monitor)
+    revolutions = [(segment, _expected(segment, mirror_rotation)) for segment in segments]
+    _second_pass(points, mirror_rotation, pulses, revolutions, monitor)
     monitor.report(0.95)
-    return _assembled(turns, interval_s)
+    return _assembled(revolutions, interval_s)
 
 
 def _first_pass(
-    points: PointSource, clock: PulseClock, spin: Spin, pulses: PulseStore, monitor: Monitor
+    points: PointSource,
+    clock: PulseClock,
+    mirror_rotation: MirrorRotation,
+    pulses: PulseStore,
+    monitor: Monitor,
 ) -> tuple[list[_Segment], float]:
-    first_time = float(points.stretch(0, 1).time[0])
+    first_time = float(points.chunk(0, 1).time[0])
     # Room for the turn that has begun before the first point, and one more.
-    per_turn = 1.0 / (clock.interval_s * abs(spin.rate_hz))
-    numbering = PulseNumbering(clock, first_time, int(2.0 * per_turn) + 1)
-    every = max(1, int(_points_per_turn(points, spin) / _TRACKED_PER_TURN))
-    segments = _Segments(spin, first_time)
+    per_revolution = 1.0 / (clock.interval_s * abs(mirror_rotation.rate_hz))
+    numbering = PulseNumbering(clock, first_time, int(2.0 * per_revolution) + 1)
+    every = max(1, int(_points_per_revolution(points, mirror_rotation) / _TRACKED_PER_REVOLUTION))
+    segments = _Segments(mirror_rotation, first_time)
     start, last_time = 0, first_time
     while start < points.count:
         monitor.check()
         stop = min(start + READ_POINTS, points.count)
-        part = points.stretch(start, stop)
+        part = points.chunk(start, stop)
         numbers = numbering.number(part, is_last=stop == points.count)
         pulses.append(numbers)
-        part = part.stretch(0, numbers.size)
-        time, angle = spin.mirror.angles(part, every)
+        part = part.chunk(0, numbers.size)
+        time, angle = mirror_rotation.mirror.angles(part, every)
         steps = np.diff(part.time, prepend=last_time)
         stops = [
             (float(part.time[at - 1]) if at else last_time, float(part.time[at]))
@@ -107,20 +115,20 @@ def _first_pass(
     return segments.finished(last_time), numbering.interval_s
 
 
-def _points_per_turn(points: PointSource, spin: Spin) -> float:
+def _points_per_revolution(points: PointSource, mirror_rotation: MirrorRotation) -> float:
     size = min(points.count, 20_000)
     start = (points.count - size) // 2
-    time = points.stretch(start, start + size).time
-    return size / (max(float(time[-1] - time[0]), 1e-9) * abs(spin.rate_hz))
+    time = points.chunk(start, start + size).time
+    return size / (max(float(time[-1] - time[0]), 1e-9) * abs(mirror_rotation.rate_hz))
 
 
 class _Segments:
     """The segments of a drive, followed as its points come."""
 
-    def __init__(self, spin: Spin, first_time: float) -> None:
-        self._spin = spin
+    def __init__(self, mirror_rotation: MirrorRotation, first_time: float) -> None:
+        self._mirror_rotation = mirror_rotation
         self._start = first_time
-        self._tracker = TurnTracker(spin.rate_hz)
+        self._tracker = RevolutionTracker(mirror_rotation.rate_hz)
         self._ended: list[_Segment] = []
 
     def add(self, time: Floats, angle: Floats, stops: list[tuple[float, float]]) -> None:
@@ -129,7 +137,7 @@ class _Segments:
             last, first = np.searchsorted(time, [end + 1e-9, start])
             self._tracker.add(time[:last], angle[:last])
             self._end(end)
-            self._start, self._tracker = start, TurnTracker(self._spin.rate_hz)
+            self._start, self._tracker = start, RevolutionTracker(self._mirror_rotation.rate_hz)
             time, angle = time[first:], angle[first:]
         self._tracker.add(time, angle)
 
@@ -143,16 +151,18 @@ class _Segments:
             phase = self._tracker.phase()
         else:
             middle = np.array([0.5 * (self._start + end)])
-            phase = TurnPhase(middle, np.zeros(1), abs(self._spin.rate_hz), 0.0)
+            phase = RevolutionPhase(middle, np.zeros(1), abs(self._mirror_rotation.rate_hz), 0.0)
         self._ended.append(_Segment(self._start, end, phase))
 
 
-def _expected(segment: _Segment, spin: Spin) -> _Turns:
+def _expected(segment: _Segment, mirror_rotation: MirrorRotation) -> _Turns:
     """The turns that may hold points of the segment, with one to spare at both ends."""
-    fold = spin.fold_angle * np.sign(spin.rate_hz) / (2 * np.pi)
-    first, last = segment.phase.turns_at(np.array([segment.first_time, segment.last_time])) - fold
-    turns = np.arange(np.floor(first) - 1, np.ceil(last) + 2) + fold
-    predicted = segment.phase.times_of(turns)
+    fold = mirror_rotation.fold_angle * np.sign(mirror_rotation.rate_hz) / (2 * np.pi)
+    first, last = (
+        segment.phase.revolutions_at(np.array([segment.first_time, segment.last_time])) - fold
+    )
+    revolutions = np.arange(np.floor(first) - 1, np.ceil(last) + 2) + fold
+    predicted = segment.phase.times_of(revolutions)
     return _Turns(
         predicted=predicted,
         crossed=np.full(predicted.size, np.nan),
@@ -164,16 +174,16 @@ def _expected(segment: _Segment, spin: Spin) -> _Turns:
 
 def _second_pass(
     points: PointSource,
-    spin: Spin,
+    mirror_rotation: MirrorRotation,
     pulses: PulseStore,
-    turns: list[tuple[_Segment, _Turns]],
+    revolutions: list[tuple[_Segment, _Turns]],
     monitor: Monitor,
 ) -> None:
-    for start, stop in _overlapping(points, 1.0 / abs(spin.rate_hz)):
+    for start, stop in _overlapping(points, 1.0 / abs(mirror_rotation.rate_hz)):
         monitor.check()
-        part = points.stretch(start, stop)
-        numbers = pulses.stretch(start, stop)
-        for segment, mine in turns:
+        part = points.chunk(start, stop)
+        numbers = pulses.chunk(start, stop)
+        for segment, mine in revolutions:
             period = 1.0 / segment.phase.rate_hz
             low = -np.inf if start == 0 else part.time[0] + SEARCHED_SHARE * period
             first = int(np.searchsorted(mine.predicted, max(low, segment.first_time - 3 * period)))
@@ -184,14 +194,14 @@ def _second_pass(
                 continue
             asked = slice(first, last)
             _anchor(mine, asked, segment, part.time, numbers)
-            if isinstance(spin.mirror, SeenAngle):
+            if isinstance(mirror_rotation.mirror, SeenAngle):
                 mine.crossed[asked], mine.chord[asked] = find_crossings(
                     part,
                     numbers,
-                    spin.mirror.poses,
+                    mirror_rotation.mirror.poses,
                     mine.predicted[asked],
                     period_s=period,
-                    below_m=spin.mirror.height_m - _BELOW_CENTRE_M,
+                    below_m=mirror_rotation.mirror.height_m - _BELOW_CENTRE_M,
                 )
         monitor.report(0.6 + 0.35 * stop / points.count)
 
@@ -199,38 +209,38 @@ def _second_pass(
 def _overlapping(points: PointSource, period_s: float) -> list[tuple[int, int]]:
     """Stretches that share two turns with the one before, so that each turn lies in one of them."""
     found = []
-    for start, stop in stretches(points.count, READ_POINTS):
+    for start, stop in chunk_ranges(points.count, READ_POINTS):
         lead = max(0, start - READ_POINTS // 4)
         if start:
-            time = points.stretch(lead, start).time
+            time = points.chunk(lead, start).time
             lead += int(np.searchsorted(time, time[-1] - 2 * period_s))
         found.append((lead, stop))
     return found
 
 
 def _anchor(
-    turns: _Turns, asked: slice, segment: _Segment, time: Floats, numbers: NDArray[np.int64]
+    revolutions: _Turns, asked: slice, segment: _Segment, time: Floats, numbers: NDArray[np.int64]
 ) -> None:
     """Note a point of known pulse near each expected row start."""
     first = int(np.searchsorted(time, segment.first_time))
     last = int(np.searchsorted(time, segment.last_time, side="right")) - 1
     if last < first:
         return
-    after = np.clip(np.searchsorted(time, turns.predicted[asked]), first, last)
+    after = np.clip(np.searchsorted(time, revolutions.predicted[asked]), first, last)
     before = np.clip(after - 1, first, last)
-    wanted = turns.predicted[asked]
+    wanted = revolutions.predicted[asked]
     nearer = np.where(np.abs(time[before] - wanted) < np.abs(time[after] - wanted), before, after)
-    turns.anchor_time[asked] = time[nearer]
-    turns.anchor_pulse[asked] = numbers[nearer]
+    revolutions.anchor_time[asked] = time[nearer]
+    revolutions.anchor_pulse[asked] = numbers[nearer]
 
 
-def _assembled(turns: list[tuple[_Segment, _Turns]], interval_s: float) -> FoundRows:
-    segments = [segment for segment, _ in turns]
+def _assembled(revolutions: list[tuple[_Segment, _Turns]], interval_s: float) -> FoundRows:
+    segments = [segment for segment, _ in revolutions]
     times, folds, ends, numbers = [], [], [], []
     last_time, last_fold = 0.0, 0
-    for number, (segment, mine) in enumerate(turns):
+    for number, (segment, mine) in enumerate(revolutions):
         period = 1.0 / segment.phase.rate_hz
-        begins = repaired(mine.predicted, mine.crossed, mine.chord, period)
+        begins = repair_reference_times(mine.predicted, mine.crossed, mine.chord, period)
         first = max(0, int(np.searchsorted(begins, segment.first_time, side="right")) - 1)
         last = int(np.searchsorted(begins, segment.last_time, side="right"))
         kept = slice(first, last + 1)
@@ -247,7 +257,7 @@ def _assembled(turns: list[tuple[_Segment, _Turns]], interval_s: float) -> Found
         fold_pulses=np.append(np.concatenate(folds), last_fold),
         segments=np.concatenate(numbers),
         row_ends=np.concatenate(ends),
-        turn_rate_hz=float(np.median([segment.phase.rate_hz for segment in segments])),
+        revolution_rate_hz=float(np.median([segment.phase.rate_hz for segment in segments])),
         interval_s=interval_s,
         coherence=float(
             np.average([segment.phase.coherence for segment in segments], weights=weights)

@@ -68,7 +68,7 @@ class DeliveredAngle:
 
 
 @dataclass(frozen=True)
-class Spin:
+class MirrorRotation:
     """A mirror found to turn.
 
     Attributes
@@ -85,7 +85,7 @@ class Spin:
     coherence: float
 
 
-def find_seen_spin(points: PointSource, poses: Poses) -> Spin | None:
+def find_seen_spin(points: PointSource, poses: Poses) -> MirrorRotation | None:
     """The turning mirror as seen from the vehicle; None when none is.
 
     Notes
@@ -107,12 +107,12 @@ def find_seen_spin(points: PointSource, poses: Poses) -> Spin | None:
     level = float(np.median(beams @ plane.normal)) * plane.normal[2]
     height = level + float(plane.axes[:, 2] @ fit.centre)
     mirror = SeenAngle(poses, plane, fit.centre, height)
-    rays = flat.place - fit.centre
+    rays = flat.position - fit.centre
     fold = 0.0 if plane.knows_down else _opposite_of_gap(np.arctan2(rays[:, 1], rays[:, 0]))
-    return Spin(mirror, fit.rate_hz, fold, fit.coherence)
+    return MirrorRotation(mirror, fit.rate_hz, fold, fit.coherence)
 
 
-def find_delivered_spin(points: PointSource) -> Spin | None:
+def find_delivered_spin(points: PointSource) -> MirrorRotation | None:
     """The turning mirror from delivered scan angles; None when they don't make full turns."""
     mirror = DeliveredAngle()
     times, angles, windows, heights = [], [], [], []
@@ -137,7 +137,7 @@ def find_delivered_spin(points: PointSource) -> Spin | None:
     height = np.concatenate(heights)
     low = height < np.quantile(height, 0.4)
     fold = float(np.angle(np.mean(np.exp(1j * angle[low]))))
-    return Spin(mirror, fit.rate_hz, fold, fit.coherence)
+    return MirrorRotation(mirror, fit.rate_hz, fold, fit.coherence)
 
 
 def _windows(points: PointSource, poses: Poses) -> tuple[Floats, NDArray[np.int64], Floats]:
@@ -162,7 +162,7 @@ def _window_of(sample: PointColumns) -> PointColumns:
     starts = np.linspace(0, max(0, time.size - 2), 32).astype(np.int64)
     stops = np.searchsorted(time, time[starts] + _WINDOW_S)
     best = int(np.argmax(stops - starts))
-    return sample.stretch(int(starts[best]), int(stops[best]))
+    return sample.chunk(int(starts[best]), int(stops[best]))
 
 
 def _opposite_of_gap(angle: Floats) -> float:

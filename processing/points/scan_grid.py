@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.monitor import Monitor, PartMonitor
 from processing.points.columns import ColumnWriter, column_path
-from processing.points.ordering import read_stretch, sort_points, stretches
+from processing.points.ordering import chunk_ranges, read_chunk, sort_points
 from processing.text import Text
 
 COLUMN = "grid"
@@ -52,24 +52,24 @@ class ScanGrid:
 
     Attributes
     ----------
-    first_sweep, first_place : int
+    first_sweep, first_position : int
         The file's numbers of the first sweep and place with a point.
     sweeps, sweep_length : int
     """
 
     first_sweep: int
-    first_place: int
+    first_position: int
     sweeps: int
     sweep_length: int
 
     def cells_of(self, grid: NDArray[np.int32]) -> NDArray[np.int64]:
         """(n,) int64: the cell of every point, of its (n, 2) sweep and place."""
         sweeps = grid[:, 0].astype(np.int64) - self.first_sweep
-        return np.asarray(sweeps * self.sweep_length + (grid[:, 1] - self.first_place))
+        return np.asarray(sweeps * self.sweep_length + (grid[:, 1] - self.first_position))
 
     @property
-    def told(self) -> Text:
-        """Why the drive has no turns, and what is shown instead."""
+    def reported(self) -> Text:
+        """Why the drive has no revolutions, and what is shown instead."""
         return SHOWN_AS_SCAN.filled(sweeps=f"{self.sweeps:,}", length=f"{self.sweep_length:,}")
 
 
@@ -131,15 +131,15 @@ def order_by_grid(
 def remove_grid_column(folder: Path) -> None:
     """Remove `COLUMN`: the cells are pulses by now."""
     path = column_path(folder, COLUMN)
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         path.unlink(missing_ok=True)
 
 
 def _bounds_of(folder: Path, count: int, monitor: Monitor) -> ScanGrid | NoGrid:
     lowest, highest = np.full(2, np.iinfo(np.int64).max), np.full(2, -1)
-    for start, stop in stretches(count, _POINTS_AT_ONCE):
+    for start, stop in chunk_ranges(count, _POINTS_AT_ONCE):
         monitor.check()
-        grid = read_stretch(folder, COLUMN, start, stop)
+        grid = read_chunk(folder, COLUMN, start, stop)
         lowest = np.minimum(lowest, grid.min(axis=0))
         highest = np.maximum(highest, grid.max(axis=0))
     if lowest.min() < 0:
@@ -155,10 +155,10 @@ def _bounds_of(folder: Path, count: int, monitor: Monitor) -> ScanGrid | NoGrid:
 def _cells(
     folder: Path, grid: ScanGrid, count: int
 ) -> Iterator[tuple[NDArray[np.int64], NDArray[np.uint8]]]:
-    """Cells and return numbers of all points, stretch by stretch."""
-    for start, stop in stretches(count, _POINTS_AT_ONCE):
-        cells = grid.cells_of(read_stretch(folder, COLUMN, start, stop))
-        yield cells, read_stretch(folder, "return_number", start, stop)
+    """Cells and return numbers of all points, chunk by chunk."""
+    for start, stop in chunk_ranges(count, _POINTS_AT_ONCE):
+        cells = grid.cells_of(read_chunk(folder, COLUMN, start, stop))
+        yield cells, read_chunk(folder, "return_number", start, stop)
 
 
 def _is_in_order(folder: Path, grid: ScanGrid, count: int, monitor: Monitor) -> bool:
@@ -191,8 +191,8 @@ def _has_neighbours(folder: Path, grid: ScanGrid, count: int) -> bool:
     steps, strides = [], []
     for start in np.unique(np.linspace(0, max(count - _PIECE_POINTS, 0), _PIECES).astype(int)):
         stop = min(int(start) + _PIECE_POINTS, count)
-        xyz = read_stretch(folder, "xyz", int(start), stop).astype(np.float64)
-        cells = grid.cells_of(read_stretch(folder, COLUMN, int(start), stop))
+        xyz = read_chunk(folder, "xyz", int(start), stop).astype(np.float64)
+        cells = grid.cells_of(read_chunk(folder, COLUMN, int(start), stop))
         follows = np.flatnonzero(np.diff(cells) == 1)
         steps.append(np.linalg.norm(xyz[follows + 1] - xyz[follows], axis=1))
         strides.append(np.linalg.norm(xyz[random.permutation(xyz.shape[0])] - xyz, axis=1))

@@ -37,18 +37,18 @@ class ScanPlane:
     flatness: float
     knows_down: bool
 
-    def project(self, places: Floats) -> Floats:
+    def project(self, positions: Floats) -> Floats:
         """(n, 3) to (n, 2) coordinates in the plane, m."""
-        flat: Floats = places @ self.axes.T
+        flat: Floats = positions @ self.axes.T
         return flat
 
 
-def find_plane(places: Floats, along: Floats, *, reference: Floats | None = None) -> ScanPlane:
+def find_plane(positions: Floats, along: Floats, *, reference: Floats | None = None) -> ScanPlane:
     """The plane of points that may move steadily along its normal.
 
     Parameters
     ----------
-    places : (n, 3) float64
+    positions : (n, 3) float64
     along : (n, k) float64
         What the plane may shift with, one column each: the constant, and time if it moves.
     reference : (3,) float64, optional
@@ -61,8 +61,8 @@ def find_plane(places: Floats, along: Floats, *, reference: Floats | None = None
     2. Least squares with points weighted by 1 / distance², so that far ones don't rule, trimmed and
        repeated.
     """
-    distance = np.maximum(np.linalg.norm(places - np.median(places, axis=0), axis=1), 0.5)
-    centred = places - along @ np.linalg.lstsq(along, places)[0]
+    distance = np.maximum(np.linalg.norm(positions - np.median(positions, axis=0), axis=1), 0.5)
+    centred = positions - along @ np.linalg.lstsq(along, positions)[0]
     normal = _normal_of_most(centred, distance)
     offset = centred @ normal
     miss = np.abs(offset - np.median(offset))
@@ -70,9 +70,9 @@ def find_plane(places: Floats, along: Floats, *, reference: Floats | None = None
         limit = max(3.0 * float(np.median(miss)), 1e-3)
         weight = np.where(miss < limit, 1.0, (limit / np.maximum(miss, 1e-12)) ** 2) / distance**2
         trend = np.linalg.lstsq(
-            (along * weight[:, None]).T @ along, (along * weight[:, None]).T @ places
+            (along * weight[:, None]).T @ along, (along * weight[:, None]).T @ positions
         )[0]
-        centred = places - along @ trend
+        centred = positions - along @ trend
         moments = (centred * weight[:, None]).T @ centred
         if reference is not None:
             aside = reference - trend[0]

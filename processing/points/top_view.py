@@ -105,13 +105,13 @@ def _without_odd_points(
     return np.maximum(lowest, ends[0] - margin), np.minimum(highest, ends[1] + margin)
 
 
-def _covered_area(places: NDArray[np.float64], width: float, height: float) -> float:
+def _covered_area(positions: NDArray[np.float64], width: float, height: float) -> float:
     """m² of a plan that points cover, from a sample of them."""
     area = width * height
     for level in range(_COARSEST, _FINEST):
         side = max(width, height) / 2**level
         columns = int(width / side) + 1
-        across, down = (np.floor(axis / side).astype(np.int64) for axis in places.T)
+        across, down = (np.floor(axis / side).astype(np.int64) for axis in positions.T)
         inside = (across >= 0) & (down >= 0) & (across * side <= width) & (down * side <= height)
         filled = np.unique(down[inside] * columns + across[inside]).size
         if level > _COARSEST and inside.sum() < _POINTS_TO_GO_FINER * filled:

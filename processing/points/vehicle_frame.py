@@ -52,11 +52,11 @@ class Poses:
         last = int(np.searchsorted(points.time, self.time[-1], side="right"))
         chosen = slice(first, last, every)
         time = np.ascontiguousarray(points.time[chosen])
-        places = points.xyz[chosen] * np.array(points.scale) + np.array(points.offset)
+        positions = points.xyz[chosen] * np.array(points.scale) + np.array(points.offset)
         origins = np.empty((0, 3)) if points.origin is None else points.origin[chosen]
         beam = np.empty((time.size, 3))
         _beams_kernel(
-            time, places, np.ascontiguousarray(origins), self.time, self.xyz, self.rotation, beam
+            time, positions, np.ascontiguousarray(origins), self.time, self.xyz, self.rotation, beam
         )
         return time, beam
 
@@ -64,7 +64,7 @@ class Poses:
 @kernel
 def _beams_kernel(
     time: Floats,
-    places: Floats,
+    positions: Floats,
     origins: Floats,
     pose_time: Floats,
     pose_xyz: Floats,
@@ -87,7 +87,7 @@ def _beams_kernel(
                 base = origins[i, k]
             else:
                 base = pose_xyz[j, k] + share * (pose_xyz[j + 1, k] - pose_xyz[j, k])
-            offset = places[i, k] - base
+            offset = positions[i, k] - base
             for axis in range(3):
                 start = pose_rotation[j, k, axis]
                 beam[i, axis] += offset * (start + share * (pose_rotation[j + 1, k, axis] - start))

@@ -15,7 +15,7 @@ from processing.errors import UNCHANGED, OutOfRange
 from processing.formats.image_list import read_image_list
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import SCAN, Drive
-from processing.points.ordering import sampled
+from processing.points.ordering import sample_column
 from processing.project.drive_completion import CompletedDrive, complete_drive
 from processing.project.import_request import ImportRequest
 from processing.project.importing import import_drives
@@ -243,7 +243,7 @@ def _has(drive: Drive, xyz: NDArray[np.float64]) -> bool:
 
 
 def _times_of(drive: Drive) -> NDArray[np.float64]:
-    times = sampled(drive.folder, "time", drive.count, max(1, drive.count // _SAMPLE_POINTS))
+    times = sample_column(drive.folder, "time", drive.count, max(1, drive.count // _SAMPLE_POINTS))
     return np.append(times, drive.columns["time"][-1])
 
 

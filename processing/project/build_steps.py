@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.points.replacing import finish_replacing
-from processing.project.import_journal import Facts, ImportJournal
+from processing.project.import_journal import ImportJournal, JournalEntries
 
 CLOCK, SHIFTED, NAMED = "clock", "shifted", "named"
 
@@ -45,15 +45,15 @@ class BuildSteps:
             return None
         final = self.home / str(known["id"])
         if not final.is_dir():
-            with told_as_user_error(final):
+            with report_as_user_error(final):
                 self.folder.rename(final)
         return final
 
-    def known(self, step: str) -> Facts | None:
+    def known(self, step: str) -> JournalEntries | None:
         """What was noted of a step; None when it was not done."""
         return self._journal.known(f"{self._name} {step}")
 
-    def note(self, step: str, facts: Facts) -> None:
+    def note(self, step: str, facts: JournalEntries) -> None:
         """Note that a step is done, before anything rests on it.
 
         Raises

@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.monitor import Monitor
 from processing.points.columns import COLUMN_TYPES, column_path
 from processing.points.drive import Drive
-from processing.points.ordering import stretches
+from processing.points.ordering import chunk_ranges
 
 _COLUMNS = ("label", "judged", "seen_color", "is_seen", "height_above_ground")
 _WHOLE = ("camera_offsets.json", "ground_surface.tiles")
@@ -27,30 +27,30 @@ def results_mark(drive: Drive) -> tuple[tuple[str, int, int], ...]:
     """By what it is seen that labels or results of a drive have changed: sizes and times."""
     marks = []
     for path in _files(drive):
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             status = path.stat()
         name = path.relative_to(drive.folder).as_posix()
         marks.append((name, status.st_size, status.st_mtime_ns))
     return tuple(marks)
 
 
-def carry_results(drive: Drive, folder: Path, places: Path | None, monitor: Monitor) -> None:
+def carry_results(drive: Drive, folder: Path, positions: Path | None, monitor: Monitor) -> None:
     """Give a drive's labels and results to the folder that is to take its place.
 
     Parameters
     ----------
-    places : Path or None
+    positions : Path or None
         Where each point of the folder is in the drive, int64; None where all are in their places.
 
     Raises
     ------
     NoSpace, Cancelled
     """
-    before = None if places is None else np.memmap(places, "<i8", "r", shape=(drive.count,))
+    before = None if positions is None else np.memmap(positions, "<i8", "r", shape=(drive.count,))
     for path in _files(drive):
         monitor.check()
         target = folder / path.relative_to(drive.folder)
-        with told_as_user_error(target):
+        with report_as_user_error(target):
             target.parent.mkdir(parents=True, exist_ok=True)
             if before is None or path.name in _WHOLE:
                 shutil.copy2(path, target)
@@ -74,7 +74,7 @@ def _carry_column(path: Path, target: Path, before: NDArray[np.int64]) -> None:
     shape = (before.size,) if width == 1 else (before.size, width)
     values = np.memmap(path, dtype, "r", shape=shape)
     with target.open("wb") as file:
-        for start, stop in stretches(before.size):
+        for start, stop in chunk_ranges(before.size):
             file.write(np.ascontiguousarray(values[before[start:stop]]).data)
 
 
@@ -82,7 +82,9 @@ def _carry_bits(path: Path, target: Path, before: NDArray[np.int64]) -> None:
     """Bits that say yes or no about each point; stretches are whole bytes but for the last."""
     packed = np.memmap(path, np.uint8, "r")
     with target.open("wb") as file:
-        for start, stop in stretches(before.size):
-            places = np.asarray(before[start:stop])
-            bits = packed[places // _BYTE] >> (_BYTE - 1 - places % _BYTE).astype(np.uint8) & 1
+        for start, stop in chunk_ranges(before.size):
+            positions = np.asarray(before[start:stop])
+            bits = (
+                packed[positions // _BYTE] >> (_BYTE - 1 - positions % _BYTE).astype(np.uint8) & 1
+            )
             file.write(np.packbits(bits).tobytes())

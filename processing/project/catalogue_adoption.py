@@ -7,7 +7,7 @@ from pathlib import Path
 
 from processing.errors import UserError
 from processing.project.catalogue import Catalogue
-from processing.project.catalogue_change import CatalogueComparison, compare, with_used_kinds
+from processing.project.catalogue_change import CatalogueComparison, compare, keep_used_kinds
 from processing.project.catalogue_file import read_catalogue
 from processing.project.catalogue_writing import catalogue_replaced
 from processing.project.database import Database
@@ -50,7 +50,7 @@ class CatalogueFile:
         new = read_catalogue(path)
         comparison = compare(self.current, new, features.all())
         comparison.refuse_losses(path, keep_used=keep_used)
-        adopted = with_used_kinds(new, comparison)
+        adopted = keep_used_kinds(new, comparison)
         # An office's file is never written; the project's own, edited by hand, is.
         never = () if path.resolve() == self.path.resolve() else (path,)
         try:

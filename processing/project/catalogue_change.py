@@ -154,7 +154,7 @@ def compare(old: Catalogue, new: Catalogue, features: Iterable[Feature]) -> Cata
     )
 
 
-def with_used_kinds(new: Catalogue, comparison: CatalogueComparison) -> Catalogue:
+def keep_used_kinds(new: Catalogue, comparison: CatalogueComparison) -> Catalogue:
     """The new catalogue and, behind its own kinds, those of the old one that features use.
 
     A number key that the new one gives to a kind of its own stays there.
@@ -188,6 +188,6 @@ def _counted(counts: Mapping[str, int], names: Mapping[str, Text]) -> Text | Non
 def _listed(names: list[Text]) -> Text | None:
     if not names:
         return None
-    told, rest = names[:_MOST_KINDS_TOLD], len(names) - _MOST_KINDS_TOLD
-    en, ja = ", ".join(name.en for name in told), "、".join(name.ja for name in told)
+    reported, rest = names[:_MOST_KINDS_TOLD], len(names) - _MOST_KINDS_TOLD
+    en, ja = ", ".join(name.en for name in reported), "、".join(name.ja for name in reported)
     return Text(f"{en} and {rest} more", f"{ja} ほか{rest}種別") if rest > 0 else Text(en, ja)

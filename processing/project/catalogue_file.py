@@ -322,7 +322,7 @@ _LAYER_MEANT = Text(
 
 
 def _not_toml(whole: _Table, error: ValueError | RecursionError) -> BadFile:
-    place = re.search(r"\(at line (\d+), column \d+\)", str(error))
+    position = re.search(r"\(at line (\d+), column \d+\)", str(error))
     at_end = len(whole.lines) if "end of document" in str(error) else 1
     reason = re.sub(r"\s*\(at .*\)$", "", str(error))
     return whole.refusal(
@@ -330,7 +330,7 @@ def _not_toml(whole: _Table, error: ValueError | RecursionError) -> BadFile:
         Text("The catalogue is not TOML: {reason}.", "TOMLとして読めません（{reason}）。").filled(
             reason=_short(reason)
         ),
-        line=int(place[1]) if place else at_end,
+        line=int(position[1]) if position else at_end,
     )
 
 

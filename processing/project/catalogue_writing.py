@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.project.catalogue import AttributeField, Catalogue, FeatureKind
 from processing.project.catalogue_file import read_catalogue
 from processing.text import Text
@@ -44,7 +44,7 @@ def catalogue_replaced(
     path: Path, catalogue: Catalogue, *, never: Iterable[Path] = ()
 ) -> Iterator[None]:
     """As :func:`write_catalogue`; the file takes its name when the body is through."""
-    with written_safely(path, never=never) as temporary:
+    with write_safely(path, never=never) as temporary:
         temporary.write_text(catalogue_text(catalogue), encoding="utf-8", newline="\n")
         read_catalogue(temporary)
         yield

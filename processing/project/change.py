@@ -27,14 +27,14 @@ class ListedDrive:
     Attributes
     ----------
     id : str
-    place : int
+    position : int
         By which drives are in their order.
     folder : str
         Name of its folder.
     """
 
     id: str
-    place: int
+    position: int
     folder: str
 
 

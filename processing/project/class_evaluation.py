@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 from processing.monitor import Monitor, PartMonitor
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
-from processing.points.judgement import JUDGED, judged
+from processing.points.error_map import ERROR_MAP, map_errors
 from processing.project.run_findings import has_finding, read_finding
 from processing.project.runs import Run
 from processing.project.scratch_folder import whole_folder
 from processing.project.truth_making import classes_as_they_stand
 from processing.project.truth_store import has_truth, read_truth
 from processing.score.asked_classes import ASKED
-from processing.score.point_classes import TwoByTwo, is_one_of
+from processing.score.confusion_matrix import ConfusionMatrix, is_one_of
 from processing.tools.tool import FinishedColumns
 
 _AT_ONCE = 1 << 20
@@ -37,14 +37,14 @@ class ClassEvaluation:
         None: the classes as they stand now, corrections by hand and all.
     drives : tuple of str
         On which it was counted.
-    counts : TwoByTwo
+    counts : ConfusionMatrix
         Of the points whose truth is known; positive are those that the tool looks for.
     """
 
     tool: str
     run: Run | None
     drives: tuple[str, ...]
-    counts: TwoByTwo
+    counts: ConfusionMatrix
 
 
 def evaluate_classes(
@@ -79,16 +79,16 @@ def evaluate_classes(
     known = [drive for drive in drives if has_truth(drive, truth)]
     wanted: list[tuple[str, Run | None, list[Drive]]] = []
     for tool in ASKED:
-        judged_runs = []
+        evaluated_runs = []
         for run in runs:
             on = [
                 one for one in known if one.id in run.drives and has_finding(one, run.tool, run.id)
             ]
             if run.tool == tool and on:
-                judged_runs.append((tool, run, on))
-        if judged_runs:
-            wanted += judged_runs
-            wanted.append((tool, None, [one for one in known if _is_on(one, judged_runs)]))
+                evaluated_runs.append((tool, run, on))
+        if evaluated_runs:
+            wanted += evaluated_runs
+            wanted.append((tool, None, [one for one in known if _is_on(one, evaluated_runs)]))
     known_counts = {(one.run.id, one.drives): one.counts for one in counted if one.run is not None}
     found = []
     for number, (tool, which, on) in enumerate(wanted):
@@ -97,17 +97,17 @@ def evaluate_classes(
             found.append(ClassEvaluation(tool, which, ids, known_counts[which.id, ids]))
             continue
         part = PartMonitor(monitor, number / len(wanted), (number + 1) / len(wanted))
-        counts = TwoByTwo(0, 0, 0, 0)
+        counts = ConfusionMatrix(0, 0, 0, 0)
         for drive in on:
             counts += _counted(drive, truth, tool, which, part)
         found.append(ClassEvaluation(tool, which, ids, counts))
     return tuple(found)
 
 
-def judged_columns(
+def error_map_columns(
     drive: Drive, truth: str, evaluation: ClassEvaluation, into: Path, monitor: Monitor
 ) -> FinishedColumns:
-    """A picture of one evaluation: the column ``judged`` of a drive.
+    """A picture of one evaluation: the column ``map_errors`` of a drive.
 
     Parameters
     ----------
@@ -119,16 +119,16 @@ def judged_columns(
     MissingInput, NoSpace, Cancelled
     """
     with whole_folder(into), ColumnWriter(into) as writer:
-        writer.append({JUDGED: np.empty(0, np.uint8)})
+        writer.append({ERROR_MAP: np.empty(0, np.uint8)})
         for start in range(0, drive.count, _AT_ONCE):
             monitor.check()
             monitor.report(start / drive.count)
             stop = min(start + _AT_ONCE, drive.count)
-            writer.append({JUDGED: judgements_of(drive, truth, evaluation, start, stop)})
-    return FinishedColumns(into, (JUDGED,), drive.count)
+            writer.append({ERROR_MAP: evaluations_of(drive, truth, evaluation, start, stop)})
+    return FinishedColumns(into, (ERROR_MAP,), drive.count)
 
 
-def judgements_of(
+def evaluations_of(
     drive: Drive, truth: str, evaluation: ClassEvaluation, start: int, stop: int
 ) -> NDArray[np.uint8]:
     """What is thought of the points ``start … stop − 1``: (k,) uint8 of `Judgement`.
@@ -143,15 +143,17 @@ def judgements_of(
     is_true, is_found = is_one_of(codes, asked.codes), _found(drive, tool, run, start, stop)
     if not asked.removes:
         is_true, is_found = ~is_true, ~is_found
-    return judged(codes > 0, is_true, is_found)
+    return map_errors(codes > 0, is_true, is_found)
 
 
 def _is_on(drive: Drive, wanted: Sequence[tuple[str, Run | None, list[Drive]]]) -> bool:
     return any(drive in on for _, _, on in wanted)
 
 
-def _counted(drive: Drive, truth: str, tool: str, run: Run | None, monitor: Monitor) -> TwoByTwo:
-    counts = TwoByTwo(0, 0, 0, 0)
+def _counted(
+    drive: Drive, truth: str, tool: str, run: Run | None, monitor: Monitor
+) -> ConfusionMatrix:
+    counts = ConfusionMatrix(0, 0, 0, 0)
     for start in range(0, drive.count, _AT_ONCE):
         monitor.check()
         monitor.report(start / drive.count)
@@ -160,7 +162,7 @@ def _counted(drive: Drive, truth: str, tool: str, run: Run | None, monitor: Moni
         is_known = codes > 0
         if is_known.any():
             is_found = _found(drive, tool, run, start, stop)[is_known]
-            counts += TwoByTwo.of(is_one_of(codes[is_known], ASKED[tool].codes), is_found)
+            counts += ConfusionMatrix.of(is_one_of(codes[is_known], ASKED[tool].codes), is_found)
     return counts
 
 

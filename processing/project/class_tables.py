@@ -11,12 +11,12 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.project.class_evaluation import ClassEvaluation
 from processing.score.asked_classes import ASKED
+from processing.score.confusion_matrix import ConfusionMatrix
 from processing.score.parameter_study import ParameterStudy
-from processing.score.point_classes import TwoByTwo
-from processing.tools.parameters import Value
+from processing.tools.parameters import ParameterValue
 
 _DIGITS = 6
 
@@ -40,7 +40,7 @@ def write_class_evaluations(
     Raises
     ------
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises.
+        What :func:`processing.formats.safe_write.write_safely` raises.
     """
     rows = []
     for one in evaluations:
@@ -63,7 +63,7 @@ def write_study(path: Path, study: ParameterStudy, *, never: Iterable[Path] = ()
     Raises
     ------
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises.
+        What :func:`processing.formats.safe_write.write_safely` raises.
     """
     names = [one.parameter for one in study.varied]
     rows = [
@@ -78,7 +78,7 @@ def write_study(path: Path, study: ParameterStudy, *, never: Iterable[Path] = ()
     _write(path, rows, never)
 
 
-def _scores(tool: str, counts: TwoByTwo) -> dict[str, str]:
+def _scores(tool: str, counts: ConfusionMatrix) -> dict[str, str]:
     asked, turned = ASKED[tool], counts.turned()
     found, other = _id(asked.found.en), _id(asked.other.en)
     return {
@@ -98,7 +98,7 @@ def _scores(tool: str, counts: TwoByTwo) -> dict[str, str]:
     }
 
 
-def _named(parameters: Mapping[str, Value | None]) -> dict[str, str]:
+def _named(parameters: Mapping[str, ParameterValue | None]) -> dict[str, str]:
     return {name: "" if value is None else str(value) for name, value in parameters.items()}
 
 
@@ -113,7 +113,7 @@ def _number(value: float) -> str:
 def _write(path: Path, rows: Sequence[Mapping[str, str]], never: Iterable[Path]) -> None:
     columns = list(dict.fromkeys(name for row in rows for name in row))
     with (
-        written_safely(path, never=never) as temporary,
+        write_safely(path, never=never) as temporary,
         temporary.open("w", encoding="utf-8-sig", newline="") as file,
     ):
         table = csv.DictWriter(file, columns or ["tool"], restval="")

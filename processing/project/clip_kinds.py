@@ -28,7 +28,7 @@ class KindDescription:
     layer: str
 
 
-def described_kinds(features: Iterable[Feature], catalogue: Catalogue) -> JsonObject:
+def describe_kinds(features: Iterable[Feature], catalogue: Catalogue) -> JsonObject:
     """The kinds of features as JSON, by id; those that the catalogue knows."""
     used = dict.fromkeys(feature.kind for feature in features)
     return {
@@ -44,7 +44,7 @@ def described_kinds(features: Iterable[Feature], catalogue: Catalogue) -> JsonOb
 
 
 def read_descriptions(kinds: object) -> dict[str, KindDescription]:
-    """The kinds of :func:`described_kinds`; what is no description is left out."""
+    """The kinds of :func:`describe_kinds`; what is no description is left out."""
     read = {}
     for id_, words in kinds.items() if isinstance(kinds, dict) else ():
         match words:

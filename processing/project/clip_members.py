@@ -16,7 +16,7 @@ from processing.project.feature import (
     Vertex,
     new_feature_id,
 )
-from processing.project.geojson_shapes import JsonObject, Shape, refusal, short
+from processing.project.geojson_shapes import GeoJsonGeometry, JsonObject, refusal, short
 from processing.text import Text
 
 OURS = "zuka"
@@ -56,7 +56,9 @@ def member_of(feature: Feature) -> JsonObject:
     }
 
 
-def features_of(member: JsonObject, shapes: Sequence[Shape], number: int) -> Iterator[Feature]:
+def features_of(
+    member: JsonObject, shapes: Sequence[GeoJsonGeometry], number: int
+) -> Iterator[Feature]:
     """The features of a member, one for each of its shapes, with new ids.
 
     Parameters
@@ -84,7 +86,7 @@ def features_of(member: JsonObject, shapes: Sequence[Shape], number: int) -> Ite
     if not all(name in properties for name in _OWN_PROPERTIES):
         attributes = {name: _attribute(value) for name, value in properties.items()}
         for shape in shapes:
-            vertices = tuple(map(Vertex, shape.places))
+            vertices = tuple(map(Vertex, shape.positions))
             yield Feature(new_feature_id(), "", shape.geometry, vertices, attributes)
         return
     own = member.get(OURS, {})
@@ -112,28 +114,28 @@ def features_of(member: JsonObject, shapes: Sequence[Shape], number: int) -> Ite
 
 
 def _geometry(feature: Feature) -> JsonObject:
-    places = [vertex.xyz for vertex in feature.vertices]
+    positions = [vertex.xyz for vertex in feature.vertices]
     match feature.geometry:
         case Geometry.POINT:
-            return {"type": "Point", "coordinates": places[0]}
+            return {"type": "Point", "coordinates": positions[0]}
         case Geometry.LINE:
-            return {"type": "LineString", "coordinates": places}
+            return {"type": "LineString", "coordinates": positions}
         case Geometry.AREA:
-            return {"type": "Polygon", "coordinates": [[*places, places[0]]]}
+            return {"type": "Polygon", "coordinates": [[*positions, positions[0]]]}
 
 
-def _vertices(shape: Shape, own: JsonObject, number: int) -> tuple[Vertex, ...]:
+def _vertices(shape: GeoJsonGeometry, own: JsonObject, number: int) -> tuple[Vertex, ...]:
     measured, occluded = own.get("measured", []), own.get("occluded", [])
     if not isinstance(measured, list) or not isinstance(occluded, list):
         raise _damaged("measured", number)
     references = [_reference(one, number) for one in measured]
-    if len(references) != len(shape.places):
+    if len(references) != len(shape.positions):
         # Another program added or removed vertices: nobody knows what they rest on.
-        return tuple(map(Vertex, shape.places))
+        return tuple(map(Vertex, shape.positions))
     hidden = {one for one in occluded if isinstance(one, int)}
     return tuple(
-        Vertex(place, reference, is_occluded=at in hidden)
-        for at, (place, reference) in enumerate(zip(shape.places, references, strict=True))
+        Vertex(position, reference, is_occluded=at in hidden)
+        for at, (position, reference) in enumerate(zip(shape.positions, references, strict=True))
     )
 
 

@@ -8,13 +8,13 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from processing.errors import told_as_user_error
-from processing.project.database_errors import damaged, told_of_database
+from processing.errors import report_as_user_error
+from processing.project.database_errors import damaged, report_database_errors
 from processing.project.geometry_blob import SQL_FUNCTIONS
 from processing.project.reading_connection import connect, connect_for_reading
 from processing.project.schema import (
     MIGRATIONS,
-    Step,
+    Migration,
     migrate,
     refuse_newer,
     refuse_older,
@@ -42,9 +42,11 @@ class Database:
         It can't be written; another program holds it.
     """
 
-    def __init__(self, path: Path, *, writing: bool, steps: Sequence[Step] = MIGRATIONS) -> None:
+    def __init__(
+        self, path: Path, *, writing: bool, steps: Sequence[Migration] = MIGRATIONS
+    ) -> None:
         self.path = path
-        with ExitStack() as stack, told_of_database(path):
+        with ExitStack() as stack, report_database_errors(path):
             if writing:
                 self._connection = connect(path, "rw")
             else:
@@ -64,7 +66,7 @@ class Database:
             self._closing = stack.pop_all()
 
     @staticmethod
-    def create(path: Path, *, steps: Sequence[Step] = MIGRATIONS) -> None:
+    def create(path: Path, *, steps: Sequence[Migration] = MIGRATIONS) -> None:
         """Make the database of a new project; there must be no such file.
 
         Raises
@@ -72,7 +74,7 @@ class Database:
         NoSpace
             It can't be written.
         """
-        with told_of_database(path), contextlib.closing(connect(path, "rwc")) as connection:
+        with report_database_errors(path), contextlib.closing(connect(path, "rwc")) as connection:
             connection.execute("PRAGMA encoding = 'UTF-8'")
             connection.execute("BEGIN IMMEDIATE")
             migrate(connection, 0, steps)
@@ -87,7 +89,7 @@ class Database:
         NoSpace, InUse, BadFile
             Nothing was changed.
         """
-        with told_of_database(self.path):
+        with report_database_errors(self.path):
             self._connection.execute("BEGIN IMMEDIATE")
             try:
                 yield self._connection
@@ -106,7 +108,7 @@ class Database:
         ------
         InUse, BadFile
         """
-        with told_of_database(self.path):
+        with report_database_errors(self.path):
             if self._connection.in_transaction:
                 yield self._connection
                 return
@@ -124,7 +126,7 @@ class Database:
         ------
         BadFile, InUse
         """
-        with told_of_database(self.path):
+        with report_database_errors(self.path):
             return list(self._connection.execute(query, values))
 
     def was_changed_elsewhere(self) -> bool:
@@ -158,7 +160,7 @@ class Database:
             (page_size,) = connection.execute("PRAGMA page_size").fetchone()
             (journal,) = connection.execute("PRAGMA journal_mode").fetchone()
             (_, _, name) = connection.execute("PRAGMA database_list").fetchone()
-            with told_as_user_error(self.path):
+            with report_as_user_error(self.path):
                 size = Path(name).stat().st_size
         # The newest pages of a write-ahead log are not in the file yet.
         if journal != "wal" and size < pages * page_size:

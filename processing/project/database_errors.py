@@ -26,7 +26,7 @@ _UNREADABLE = frozenset({sqlite3.SQLITE_IOERR_READ, sqlite3.SQLITE_IOERR_SHORT_R
 
 
 @contextmanager
-def told_of_database(path: Path) -> Iterator[None]:
+def report_database_errors(path: Path) -> Iterator[None]:
     """Turn what SQLite says about a project's database into a `UserError`.
 
     Raises

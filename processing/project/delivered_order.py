@@ -15,22 +15,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.monitor import Monitor
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch, stretches
+from processing.points.ordering import chunk_ranges, read_chunk
 from processing.points.source_order import FILE, INDEX, SourceRun, check_sources
 
 # Any: each column has its own type.
 Values = dict[str, NDArray[Any]]
-Read = Callable[[Drive, int, int], Values]
+ValueReader = Callable[[Drive, int, int], Values]
 
 PART_POINTS = 2_000_000
 _AT = "at"
 
 
 class DeliveredOrder:
-    """Values of the points of delivered files, a stretch at a time.
+    """Values of the points of delivered files, a chunk at a time.
 
     Parameters
     ----------
@@ -46,7 +46,12 @@ class DeliveredOrder:
     """
 
     def __init__(
-        self, drives: Sequence[Drive], read: Read, scratch: Path, *, part_points: int = PART_POINTS
+        self,
+        drives: Sequence[Drive],
+        read: ValueReader,
+        scratch: Path,
+        *,
+        part_points: int = PART_POINTS,
     ) -> None:
         self._read = read
         self._none = read(drives[0], 0, 0) if drives else {}
@@ -73,12 +78,12 @@ class DeliveredOrder:
         done = 0
         for drive in self._unordered:
             paths = [drive.source_path(source) for source in drive.info.sources]
-            for start, stop in stretches(drive.count, PART_POINTS):
+            for start, stop in chunk_ranges(drive.count, PART_POINTS):
                 monitor.check()
                 monitor.report(done / total)
                 done += stop - start
-                files = read_stretch(drive.folder, FILE, start, stop)
-                indices = read_stretch(drive.folder, INDEX, start, stop)
+                files = read_chunk(drive.folder, FILE, start, stop)
+                indices = read_chunk(drive.folder, INDEX, start, stop)
                 check_sources(drive.folder, files, indices, len(paths))
                 self._dealt.add(paths, files, indices, self._read(drive, start, stop))
 
@@ -155,7 +160,7 @@ class _DealtValues:
         for end in ends.tolist():
             source, part = divmod(int(keys[start]), width)
             path = self._path(source, part)
-            with told_as_user_error(path), path.open("ab") as file:
+            with report_as_user_error(path), path.open("ab") as file:
                 file.write(records[start:end].tobytes())
             start = end
 
@@ -186,7 +191,7 @@ class _DealtValues:
             }
             values[_AT] = np.zeros(self._part_points, np.uint8)
             if path.is_file():
-                with told_as_user_error(path):
+                with report_as_user_error(path):
                     records = np.fromfile(path, self._record)
                 for name in self._none:
                     values[name][records[_AT]] = records[name]

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from processing.errors import NoSpace, UserError, told_as_user_error
+from processing.errors import NoSpace, UserError, report_as_user_error
 from processing.text import Text
 
 _FULL = (errno.ENOSPC, errno.EDQUOT)
@@ -27,7 +27,7 @@ def refuse_small_disk(folder: Path, wanted: int) -> None:
     ------
     NoSpace
     """
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         free = shutil.disk_usage(folder).free
     if wanted + _SPARE_BYTES <= free:
         return
@@ -46,7 +46,7 @@ def refuse_small_disk(folder: Path, wanted: int) -> None:
 
 
 @contextmanager
-def full_disk_told(wanted_bytes: Callable[[], int], keep: Callable[[], bool]) -> Iterator[None]:
+def report_full_disk(wanted_bytes: Callable[[], int], keep: Callable[[], bool]) -> Iterator[None]:
     """Say of a full disk how the import goes on.
 
     Parameters

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from processing.cameras.image_list import ImageList
 from processing.cameras.image_store import write_images
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.image.images_of_drives import image_of
 from processing.monitor import Monitor, PartMonitor
 from processing.points.columns import Columns, ColumnWriter
@@ -23,22 +23,27 @@ from processing.points.drive import SCAN, Drive, write_trajectory
 from processing.points.drive_info import DriveInfo, SourceFile, write_drive_info
 from processing.points.ordering import (
     POINTS_AT_ONCE,
-    Keys,
-    read_stretch,
-    sampled,
+    SortKeys,
+    chunk_ranges,
+    read_chunk,
+    sample_column,
     sort_points,
-    stretches,
 )
 from processing.points.replacing import new_columns, replace_columns
+from processing.points.revolutions import (
+    NoRevolutions,
+    RecordedPoints,
+    find_revolutions,
+    trajectory_from_origins,
+)
+from processing.points.revolutions_file import write_revolutions
 from processing.points.scan_grid import COLUMN, ScanGrid, order_by_grid, remove_grid_column
-from processing.points.scan_place import Place, checked_place
+from processing.points.scanner_position import ScannerPosition, check_scanner_position
 from processing.points.top_view import TopView, top_view_of
 from processing.points.trajectory import Trajectory
-from processing.points.turns import NoTurns, RecordedPoints, find_turns, trajectory_from_origins
-from processing.points.turns_file import write_turns
 from processing.project.build_steps import CLOCK, NAMED, SHIFTED, BuildSteps
 from processing.project.disk_room import refuse_small_disk
-from processing.project.import_journal import Facts
+from processing.project.import_journal import JournalEntries
 from processing.project.import_layout import bytes_of
 from processing.project.import_request import digest_of
 from processing.project.recording import Recording
@@ -71,7 +76,7 @@ class BuildPlan:
         Camera images, noted in each drive.
     shared_sources : frozenset of int
         Files that hold the points of several recordings.
-    scanner_places : mapping
+    scanner_positions : mapping
         By file and scanner: where a standing scanner was, m, as the file says.
     identity : tuple of str
         What else of the request makes its drives what they are.
@@ -83,7 +88,7 @@ class BuildPlan:
     images: ImageList | None
     is_adjusted_standard: bool | None = None
     shared_sources: frozenset[int] = frozenset()
-    scanner_places: Mapping[tuple[int, int], Place] = field(default_factory=dict)
+    scanner_positions: Mapping[tuple[int, int], ScannerPosition] = field(default_factory=dict)
     identity: tuple[str, ...] = ()
 
 
@@ -101,7 +106,7 @@ def build_drive(
     -----
     1. Points go into time order if the files lost it.
     2. The trajectory is chosen and the points' clock set to its; origins per point make their own.
-    3. A standing scanner's grid is taken as it is, else turns and pulses are found; where there
+    3. A standing scanner's grid is taken as it is, else revolutions and pulses are found; where there
        are neither, points are ordered for the top view.
     4. The facts are written.
 
@@ -138,7 +143,7 @@ def build_drive(
         monitor.report(0.4, _FINDING.filled(name=name))
         finding = PartMonitor(monitor, 0.4, 1.0)
         found = _rows_of(recording, trajectory, steps, name, finding)
-        found = replace(found, offset_s=offset, place=_scanner_place(recording, plan, found))
+        found = replace(found, offset_s=offset, position=_scanner_position(recording, plan, found))
         steps.note(_ROWS, asdict(found))
     else:
         found = _found_from(rows_known)
@@ -160,7 +165,7 @@ def _finished(
     folder = recording.folder
     if plan.images is not None:
         write_images(folder, plan.images)
-    scale, shift = np.array(recording.lattice.scale), np.array(recording.lattice.offset)
+    scale, shift = np.array(recording.quantisation.scale), np.array(recording.quantisation.offset)
     points = recording.points_of_source
     name = _name_of(recording, plan)
     info = DriveInfo(
@@ -168,8 +173,8 @@ def _finished(
         name=name,
         scanner=recording.scanner,
         count=recording.count,
-        scale=recording.lattice.scale,
-        offset=recording.lattice.offset,
+        scale=recording.quantisation.scale,
+        offset=recording.quantisation.offset,
         lowest=_triple(recording.lowest * scale + shift),
         highest=_triple(recording.highest * scale + shift),
         crs=plan.crs,
@@ -180,20 +185,20 @@ def _finished(
         cell_m=found.view.cell_m if found.view is not None else 0.0,
         cells_per_row=found.cells_per_row,
         source_runs=recording.source_runs,
-        scanner_place=found.place,
+        scanner_position=found.position,
     )
     write_drive_info(folder, info)
     _find_rows_of_first_image(folder)
     steps.note(NAMED, {"id": info.id})
     final = steps.home / info.id
-    with told_as_user_error(final):
+    with report_as_user_error(final):
         folder.rename(final)
     return final
 
 
 def _find_rows_of_first_image(folder: Path) -> None:
     """Keep where the rows of the image begin that is shown first, so that it opens at once."""
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         for unfinished in folder.glob("image_rows_*.part"):
             unfinished.unlink()
     drive = Drive(folder)
@@ -203,7 +208,13 @@ def _find_rows_of_first_image(folder: Path) -> None:
 def _identity(recording: Recording, plan: BuildPlan) -> str:
     """Eight letters by which a drive is known: the same whenever the same is imported."""
     parts = [(plan.sources[part.source].sha256, part.at) for part in recording.parts]
-    facts = [parts, recording.scanner, recording.count, asdict(recording.lattice), *plan.identity]
+    facts = [
+        parts,
+        recording.scanner,
+        recording.count,
+        asdict(recording.quantisation),
+        *plan.identity,
+    ]
     return digest_of(facts)[:8]
 
 
@@ -244,7 +255,7 @@ def _restore_time_order(
     steps.note(_SORTED, {})
 
 
-def _sort(recording: Recording, steps: BuildSteps, keys: Keys, monitor: Monitor) -> None:
+def _sort(recording: Recording, steps: BuildSteps, keys: SortKeys, monitor: Monitor) -> None:
     names = _names_to_sort(recording, steps)
     refuse_small_disk(recording.folder, 2 * recording.count * bytes_of(names))
     sort_points(recording.folder, names, recording.count, keys, monitor)
@@ -286,15 +297,15 @@ def _trajectory_of(
 
 
 def _sampled_times(folder: Path, count: int) -> NDArray[np.float64]:
-    times = sampled(folder, "time", count, max(1, count // _SAMPLE_POINTS))
-    return np.append(times, read_stretch(folder, "time", count - 1, count))
+    times = sample_column(folder, "time", count, max(1, count // _SAMPLE_POINTS))
+    return np.append(times, read_chunk(folder, "time", count - 1, count))
 
 
 def _shift_times(recording: Recording, steps: BuildSteps, offset_s: float) -> None:
     folder = recording.folder
     with ColumnWriter(new_columns(folder)) as writer:
-        for start, stop in stretches(recording.count):
-            writer.append({"time": read_stretch(folder, "time", start, stop) + offset_s})
+        for start, stop in chunk_ranges(recording.count):
+            writer.append({"time": read_chunk(folder, "time", start, stop) + offset_s})
     replace_columns(folder, steps.note_shifted, is_flushed=steps.is_on_disk)
 
 
@@ -307,16 +318,16 @@ class _FoundRows:
     cells_per_row: int = 0
     view: TopView | None = None
     offset_s: float = 0.0
-    place: Place | None = None
+    position: ScannerPosition | None = None
 
 
-def _found_from(values: Facts) -> _FoundRows:
+def _found_from(values: JournalEntries) -> _FoundRows:
     """What was found, as it was noted."""
-    view, place = values["view"], values["place"]
+    view, position = values["view"], values["position"]
     read = {
         "reason": Text(**values["reason"]),
         "view": None if view is None else TopView(**view),
-        "place": None if place is None else tuple(place),
+        "position": None if position is None else tuple(position),
     }
     return _FoundRows(**{**values, **read})
 
@@ -334,18 +345,18 @@ def _rows_of(
         monitor.report(0.0, _GRID.filled(name=name))
         grid = order_by_grid(folder, count, lambda: _names_to_sort(recording, steps), monitor)
         if isinstance(grid, ScanGrid):
-            return _FoundRows(grid.told, SCAN, cells_per_row=grid.sweep_length)
+            return _FoundRows(grid.reported, SCAN, cells_per_row=grid.sweep_length)
         contradiction = grid.reason
     if recording.has_times:
-        lattice = recording.lattice
-        points = RecordedPoints(folder, count, lattice.scale, lattice.offset)
-        found = find_turns(points, trajectory, monitor)
-        if isinstance(found, NoTurns):
+        quantisation = recording.quantisation
+        points = RecordedPoints(folder, count, quantisation.scale, quantisation.offset)
+        found = find_revolutions(points, trajectory, monitor)
+        if isinstance(found, NoRevolutions):
             reason = found.reason
         elif trajectory is None and count < _LEAST_FILLED * int(np.ptp(found.fold_pulses)):
             reason = _NEARLY_EMPTY
         else:
-            write_turns(folder, found)
+            write_revolutions(folder, found)
             return _FoundRows(Text("", ""), found.method)
     else:
         reason = Text(
@@ -356,23 +367,25 @@ def _rows_of(
     return _FoundRows(contradiction or reason, "top-view", view.cells_per_row, view)
 
 
-def _scanner_place(recording: Recording, plan: BuildPlan, found: _FoundRows) -> Place | None:
+def _scanner_position(
+    recording: Recording, plan: BuildPlan, found: _FoundRows
+) -> ScannerPosition | None:
     if found.rows_by != SCAN or len(recording.sources) != 1:
         return None
     source = recording.sources[0]
-    return checked_place(
+    return check_scanner_position(
         Columns(recording.folder, recording.count),
-        recording.lattice.scale,
-        recording.lattice.offset,
+        recording.quantisation.scale,
+        recording.quantisation.offset,
         found.cells_per_row,
-        plan.scanner_places.get((source, recording.scanner)),
+        plan.scanner_positions.get((source, recording.scanner)),
     )
 
 
 def _top_view_of(recording: Recording) -> TopView:
     count = recording.count
-    scale, offset = np.array(recording.lattice.scale), np.array(recording.lattice.offset)
-    integers = sampled(recording.folder, "xyz", count, max(1, count // _SAMPLE_POINTS))
+    scale, offset = np.array(recording.quantisation.scale), np.array(recording.quantisation.offset)
+    integers = sample_column(recording.folder, "xyz", count, max(1, count // _SAMPLE_POINTS))
     lowest, highest = recording.lowest * scale + offset, recording.highest * scale + offset
     return top_view_of(integers * scale + offset, count, lowest, highest)
 
@@ -380,7 +393,7 @@ def _top_view_of(recording: Recording) -> TopView:
 def _order_for_top_view(
     recording: Recording, view: TopView, steps: BuildSteps, monitor: Monitor
 ) -> None:
-    scale, offset = np.array(recording.lattice.scale), np.array(recording.lattice.offset)
+    scale, offset = np.array(recording.quantisation.scale), np.array(recording.quantisation.offset)
 
     def by_cell(columns: Mapping[str, NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
         integers = columns["xyz"]
@@ -390,7 +403,7 @@ def _order_for_top_view(
         _sort(recording, steps, by_cell, PartMonitor(monitor, 0.0, 0.8))
         steps.note(_SORTED_BY_CELL, {})
     with ColumnWriter(recording.folder) as cells:
-        for start, stop in stretches(recording.count, POINTS_AT_ONCE // 4):
+        for start, stop in chunk_ranges(recording.count, POINTS_AT_ONCE // 4):
             monitor.check()
-            integers = read_stretch(recording.folder, "xyz", start, stop)
+            integers = read_chunk(recording.folder, "xyz", start, stop)
             cells.append({"pulse": view.cells_of(integers * scale + offset)})

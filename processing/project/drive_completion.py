@@ -18,26 +18,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.cameras.image_store import write_images
-from processing.errors import UNCHANGED, OutOfRange, told_as_user_error
+from processing.errors import UNCHANGED, OutOfRange, report_as_user_error
 from processing.monitor import Monitor, PartMonitor
 from processing.points.columns import column_path
 from processing.points.drive import Drive
 from processing.points.drive_info import read_drive_info, write_drive_info
-from processing.points.ordering import read_stretch, sort_points, stretches
+from processing.points.ordering import chunk_ranges, read_chunk, sort_points
 from processing.points.source_order import FILE, INDEX
 from processing.project.build_steps import BuildSteps
 from processing.project.carried_results import carry_results, results_mark
 from processing.project.disk_room import refuse_small_disk
 from processing.project.drive_building import SOURCES, BuildPlan, build_drive
-from processing.project.file_record import Run, Stream
+from processing.project.file_record import PointRun, Stream
 from processing.project.import_journal import ImportJournal
 from processing.project.import_layout import bytes_of
-from processing.project.lattice import Lattice
-from processing.project.recording import Part, Recording
+from processing.project.quantisation import Quantisation
+from processing.project.recording import Recording, RecordingPart
 from processing.project.trajectory_choice import NamedTrajectory
 from processing.text import Text
 
-PLACE = "place_before"
+POSITION = "place_before"
 _DELIVERED = (
     "xyz", "time", "intensity", "return_number", "number_of_returns", "classification",
     FILE, INDEX, "color",
@@ -74,7 +74,7 @@ class CompletedDrive:
         """Remove what is left where it was made, once its folder is taken over."""
         shutil.rmtree(self.folder.parent, ignore_errors=True)
 
-    def places(self) -> NDArray[np.int64] | None:
+    def positions(self) -> NDArray[np.int64] | None:
         """(n,) int64 on the disk: where each point is now; None where all are where they were.
 
         Raises
@@ -84,10 +84,10 @@ class CompletedDrive:
         if self.places_before is None:
             return None
         path = self.places_before.with_suffix(".now")
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             now = np.lib.format.open_memmap(path, "w+", np.int64, (self.count,))
-            for start, stop in stretches(self.count):
-                before = _read_places(self.places_before, start, stop)
+            for start, stop in chunk_ranges(self.count):
+                before = _read_positions(self.places_before, start, stop)
                 now[before] = np.arange(start, stop)
         return now
 
@@ -118,7 +118,9 @@ def complete_drive(
         raise
 
 
-def carried_again(completed: CompletedDrive, drive: Drive, monitor: Monitor) -> CompletedDrive:
+def carry_results_again(
+    completed: CompletedDrive, drive: Drive, monitor: Monitor
+) -> CompletedDrive:
     """The same with the labels and results that the drive has now.
 
     Raises
@@ -148,15 +150,15 @@ def _completed(
     drive: Drive, trajectories: tuple[NamedTrajectory, ...], into: Path, monitor: Monitor
 ) -> CompletedDrive:
     folder, names = into / "0", tuple(name for name in _DELIVERED if drive.columns.has(name))
-    refuse_small_disk(drive.folder, 3 * drive.count * bytes_of((*names, PLACE)))
-    with told_as_user_error(folder):
+    refuse_small_disk(drive.folder, 3 * drive.count * bytes_of((*names, POSITION)))
+    with report_as_user_error(folder):
         folder.mkdir(parents=True)
     monitor.report(0.0, _COPYING.filled(name=drive.info.name))
     _copy(drive, folder, names, monitor)
-    if drive.turns is None and FILE in names:
+    if drive.revolutions is None and FILE in names:
         # The top view has its points by cells: at first they go where they were delivered.
         part = PartMonitor(monitor, 0.1, 0.3)
-        sort_points(folder, (*names, PLACE), drive.count, _by_source, part)
+        sort_points(folder, (*names, POSITION), drive.count, _by_source, part)
     journal = ImportJournal(into, is_kept=False)
     try:
         steps = BuildSteps(journal, 0, folder)
@@ -168,22 +170,22 @@ def _completed(
     finally:
         journal.close()
     _name_as(drive, built)
-    places = _places_of(built, into, drive.count)
+    positions = _positions_of(built, into, drive.count)
     monitor.report(0.9, _CARRYING)
     mark = results_mark(drive)
-    carry_results(drive, built, places, PartMonitor(monitor, 0.9, 1.0))
+    carry_results(drive, built, positions, PartMonitor(monitor, 0.9, 1.0))
     if drive.noted_images is not None:
         write_images(built, drive.noted_images)
-    return CompletedDrive(drive.id, drive.info.name, drive.count, built, places, mark)
+    return CompletedDrive(drive.id, drive.info.name, drive.count, built, positions, mark)
 
 
 def _copy(drive: Drive, folder: Path, names: tuple[str, ...], monitor: Monitor) -> None:
     for name in names:
         monitor.check()
-        with told_as_user_error(folder):
+        with report_as_user_error(folder):
             shutil.copyfile(column_path(drive.folder, name), column_path(folder, name))
-    with told_as_user_error(folder), column_path(folder, PLACE).open("wb") as file:
-        for start, stop in stretches(drive.count):
+    with report_as_user_error(folder), column_path(folder, POSITION).open("wb") as file:
+        for start, stop in chunk_ranges(drive.count):
             file.write(np.arange(start, stop, dtype="<i8").data)
 
 
@@ -199,7 +201,7 @@ def _recording_of(drive: Drive, folder: Path, names: tuple[str, ...]) -> Recordi
     scale, offset = np.array(info.scale), np.array(info.offset)
     low, high = (np.rint((np.array(one) - offset) / scale) for one in (info.lowest, info.highest))
     has_times, is_in_order = _times_of(folder, drive.count)
-    own = tuple(name for name in (*names, PLACE) if name not in (FILE, INDEX))
+    own = tuple(name for name in (*names, POSITION) if name not in (FILE, INDEX))
     parts, first = [], 0
     for source, count, runs in _parts_of(drive):
         stream = Stream(
@@ -208,18 +210,18 @@ def _recording_of(drive: Drive, folder: Path, names: tuple[str, ...]) -> Recordi
             count,
             _integers(low),
             _integers(high),
-            float(read_stretch(folder, "time", first, first + 1)[0]),
-            float(read_stretch(folder, "time", first + count - 1, first + count)[0]),
+            float(read_chunk(folder, "time", first, first + 1)[0]),
+            float(read_chunk(folder, "time", first + count - 1, first + count)[0]),
             has_times,
             is_in_order,
             runs,
         )
-        parts.append(Part(source, 0, stream))
+        parts.append(RecordingPart(source, 0, stream))
         first += count
-    return Recording(folder, Lattice(info.scale, info.offset), info.scanner, own, parts)
+    return Recording(folder, Quantisation(info.scale, info.offset), info.scanner, own, parts)
 
 
-def _parts_of(drive: Drive) -> list[tuple[int, int, list[Run]]]:
+def _parts_of(drive: Drive) -> list[tuple[int, int, list[PointRun]]]:
     """Source, points and runs of the stretches that come from one file each."""
     runs = drive.info.source_runs
     if not runs:
@@ -228,7 +230,7 @@ def _parts_of(drive: Drive) -> list[tuple[int, int, list[Run]]]:
     for source, of_source in groupby(runs, key=lambda run: run.source):
         mine = list(of_source)
         first = mine[0].start
-        own: list[Run] = [(run.start - first, run.count, run.first_index) for run in mine]
+        own: list[PointRun] = [(run.start - first, run.count, run.first_index) for run in mine]
         parts.append((source, sum(run.count for run in mine), own))
     return parts
 
@@ -240,8 +242,8 @@ def _integers(values: NDArray[np.float64]) -> tuple[int, int, int]:
 def _times_of(folder: Path, count: int) -> tuple[bool, bool]:
     """Whether every point has a time, and whether times never go back."""
     has_times, is_in_order, last = True, True, -np.inf
-    for start, stop in stretches(count):
-        times = read_stretch(folder, "time", start, stop)
+    for start, stop in chunk_ranges(count):
+        times = read_chunk(folder, "time", start, stop)
         has_times &= bool(np.isfinite(times).all())
         is_in_order &= bool(times[0] >= last and (np.diff(times) >= 0).all())
         last = times[-1]
@@ -263,17 +265,17 @@ def _name_as(drive: Drive, built: Path) -> None:
     write_drive_info(built, info)
 
 
-def _places_of(built: Path, into: Path, count: int) -> Path | None:
+def _positions_of(built: Path, into: Path, count: int) -> Path | None:
     """Where points were before, as a file; None where the order is the same."""
-    path = into / f"{PLACE}.bin"
-    with told_as_user_error(path):
-        column_path(built, PLACE).replace(path)
-    for start, stop in stretches(count):
-        if (_read_places(path, start, stop) != np.arange(start, stop)).any():
+    path = into / f"{POSITION}.bin"
+    with report_as_user_error(path):
+        column_path(built, POSITION).replace(path)
+    for start, stop in chunk_ranges(count):
+        if (_read_positions(path, start, stop) != np.arange(start, stop)).any():
             return path
     return None
 
 
-def _read_places(path: Path, start: int, stop: int) -> NDArray[np.int64]:
-    with told_as_user_error(path):
+def _read_positions(path: Path, start: int, stop: int) -> NDArray[np.int64]:
+    with report_as_user_error(path):
         return np.fromfile(path, "<i8", stop - start, offset=start * 8).astype(np.int64)

@@ -9,7 +9,7 @@ from itertools import count
 from pathlib import Path
 from uuid import uuid4
 
-from processing.errors import UserError, told_as_user_error
+from processing.errors import UserError, report_as_user_error
 from processing.owned_files import remove_emptied, remove_folder
 from processing.project.change import Change, ListedDrive
 from processing.project.database import Database
@@ -41,18 +41,18 @@ class DriveFolders:
         self._database = database
         self._settings = settings
         self._leaving_soon: dict[str, int] = {}
-        self._places: dict[str, int] = {}
+        self._positions: dict[str, int] = {}
         self._read()
 
     @property
     def ids(self) -> tuple[str, ...]:
         """The ids of all drives, in their order."""
-        return tuple(self._places)
+        return tuple(self._positions)
 
     @property
     def taken(self) -> tuple[str, ...]:
         """Ids that no new drive may get: those of all drives, and of those that leave."""
-        return tuple({**self._places, **dict.fromkeys(map(_id_in, self._leaving()))})
+        return tuple({**self._positions, **dict.fromkeys(map(_id_in, self._leaving()))})
 
     def path_of(self, id: str) -> Path:  # noqa: A002 - the word of the trade
         """A drive's folder."""
@@ -60,7 +60,7 @@ class DriveFolders:
 
     def listed(self, id: str) -> ListedDrive:  # noqa: A002 - the word of the trade
         """A drive as it is listed; KeyError when there is none of that id."""
-        return ListedDrive(id, self._places[id], self._name_of(id))
+        return ListedDrive(id, self._positions[id], self._name_of(id))
 
     def temporary(self) -> Path:
         """A new name for a folder of drives; what is left there goes at the next opening."""
@@ -91,14 +91,14 @@ class DriveFolders:
         try:
             for id_, folder in folders.items():
                 target = self.path_of(id_)
-                with told_as_user_error(target):
+                with report_as_user_error(target):
                     target.parent.mkdir(exist_ok=True)
                     folder.rename(target)
                 moved.append((folder, target))
             with self._database.transaction() as connection:
-                first = max(self._places.values(), default=-1) + 1
-                places = range(first, first + len(folders))
-                connection.executemany(_INSERT, zip(folders, places, strict=True))
+                first = max(self._positions.values(), default=-1) + 1
+                positions = range(first, first + len(folders))
+                connection.executemany(_INSERT, zip(folders, positions, strict=True))
                 write_setting(connection, _ARRIVING, [])
                 yield connection
         except BaseException:
@@ -134,12 +134,12 @@ class DriveFolders:
         try:
             for id_, folder in folders.items():
                 target = self._folder / DRIVES / names[id_]
-                with told_as_user_error(target):
+                with report_as_user_error(target):
                     folder.rename(target)
                 moved.append((folder, target))
             with self._database.transaction() as connection:
-                told = {**self._table(_NAMES), **names}
-                write_setting(connection, _NAMES, told)
+                reported = {**self._table(_NAMES), **names}
+                write_setting(connection, _NAMES, reported)
                 write_setting(connection, _LEAVING, {**leaving, **dict.fromkeys(old, 0)})
                 yield connection
         except BaseException:
@@ -147,29 +147,29 @@ class DriveFolders:
             with suppress(UserError):
                 self._settings.put(_LEAVING, {**leaving})
             raise
-        self._settings.took(_NAMES, told)
+        self._settings.took(_NAMES, reported)
         self._settings.took(_LEAVING, {**leaving, **dict.fromkeys(old, 0)})
 
-    def write(self, connection: sqlite3.Connection, change: Change, place: int) -> None:
+    def write(self, connection: sqlite3.Connection, change: Change, position: int) -> None:
         """Write which drives there are after a change, in the caller's transaction.
 
         Parameters
         ----------
-        place : int
+        position : int
             Of the change in the history; what leaves is wanted as long as it may be undone.
         """
         if not (change.removed_drives or change.restored_drives):
             return
         leaving = {
             **self._leaving(),
-            **dict.fromkeys((one.folder for one in change.removed_drives), place),
+            **dict.fromkeys((one.folder for one in change.removed_drives), position),
         }
         for one in change.restored_drives:
             leaving.pop(one.folder, None)
         connection.executemany(
             "DELETE FROM zuka_drives WHERE id = ?", [(one.id,) for one in change.removed_drives]
         )
-        connection.executemany(_INSERT, [(one.id, one.place) for one in change.restored_drives])
+        connection.executemany(_INSERT, [(one.id, one.position) for one in change.restored_drives])
         write_setting(connection, _LEAVING, {**leaving})
         self._leaving_soon = leaving
 
@@ -229,8 +229,8 @@ class DriveFolders:
 
     def _read(self) -> None:
         rows = self._database.rows("SELECT id, place FROM zuka_drives ORDER BY place, id")
-        self._places = {str(id_): int(str(place)) for id_, place in rows}
-        for id_ in self._places:
+        self._positions = {str(id_): int(str(position)) for id_, position in rows}
+        for id_ in self._positions:
             if not _is_name(id_):
                 raise damaged(self._database.path, f"zuka_drives.id: {id_}")
 
@@ -246,7 +246,9 @@ class DriveFolders:
     def _leaving(self) -> dict[str, int]:
         """Folders that no drive has, and the places in the history that want them."""
         return {
-            name: place for name, place in self._table(_LEAVING).items() if isinstance(place, int)
+            name: position
+            for name, position in self._table(_LEAVING).items()
+            if isinstance(position, int)
         }
 
     def _table(self, name: str) -> dict[str, JsonValue]:

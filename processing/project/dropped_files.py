@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from processing.errors import MissingInput, told_as_user_error
+from processing.errors import MissingInput, report_as_user_error
 from processing.formats.point_files import POINT_ENDINGS, TEXT_ENDINGS
 from processing.formats.pulse_folder import is_pulse_folder
 from processing.formats.trajectory_files import TRAJECTORY_ENDINGS
@@ -61,7 +61,7 @@ def additions_of_files(files: tuple[Path, ...], crs: str) -> ImportRequest:
 def _unfolded(files: tuple[Path, ...]) -> list[Path]:
     found: list[Path] = []
     for path in files:
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             if is_pulse_folder(path):
                 found.append(path)
             elif path.is_dir():
@@ -82,7 +82,7 @@ def content_of(path: Path) -> str:
     """
     if path.suffix.lower() in POINT_ENDINGS or path.is_dir():
         return POINTS
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         size = path.stat().st_size
         with path.open("rb") as file:
             start = file.read(2048)

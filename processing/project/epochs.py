@@ -16,7 +16,7 @@ from processing.points.recorded_together import recordings_of
 from processing.project.volume import ChosenSide, SideKind
 
 _GROUND = 2
-_LOOKED_AT, _STRETCHES = 1000, 50
+_LOOKED_AT, _CHUNKS = 1000, 50
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def epochs_of(drives: Sequence[Drive]) -> tuple[Epoch, ...]:
 def has_ground(drive: Drive) -> bool:
     """Whether ground was told from what stands on it, as far as some stretches show."""
     classes = class_columns(drive.columns)
-    starts = np.linspace(0, max(drive.count - _LOOKED_AT, 0), _STRETCHES).astype(np.int64)
+    starts = np.linspace(0, max(drive.count - _LOOKED_AT, 0), _CHUNKS).astype(np.int64)
     return any(
         bool(
             np.any(

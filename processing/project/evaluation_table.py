@@ -7,9 +7,9 @@ import math
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.project.run_evaluation import RunEvaluation
-from processing.score.reliability import Share
+from processing.score.reliability import ShareInterval
 
 _DIGITS = 4
 
@@ -30,12 +30,12 @@ def write_evaluation(
     Raises
     ------
     UserError
-        What :func:`processing.formats.safe_write.written_safely` raises.
+        What :func:`processing.formats.safe_write.write_safely` raises.
     """
     rows = [_row(one) for one in evaluations]
     columns = list(dict.fromkeys(name for row in rows for name in row))
     with (
-        written_safely(path, never=never) as temporary,
+        write_safely(path, never=never) as temporary,
         temporary.open("w", encoding="utf-8-sig", newline="") as file,
     ):
         table = csv.DictWriter(file, columns or ["tool"], restval="")
@@ -67,7 +67,7 @@ def _row(one: RunEvaluation) -> dict[str, str]:
     return row
 
 
-def _share(name: str, share: Share) -> dict[str, str]:
+def _share(name: str, share: ShareInterval) -> dict[str, str]:
     return {
         name: _number(share.value),
         f"{name}_low": _number(share.low),

@@ -15,7 +15,7 @@ from processing.formats.geojson import write_geojson
 from processing.formats.geopackage import write_geopackage
 from processing.formats.ledger_columns import TableStyle
 from processing.formats.ledger_csv import write_features, write_ledger, write_vertices
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import Monitor, PartMonitor, SilentMonitor
 from processing.points.drive import Drive
 from processing.project.catalogue import Catalogue, Geometry
@@ -134,9 +134,9 @@ def export(
     paths: list[Path] = []
     with ExitStack() as whole:
 
-        def place(name: str) -> Path:
+        def position(name: str) -> Path:
             path = request.folder / name
-            temporary = whole.enter_context(written_safely(path, never=request.never))
+            temporary = whole.enter_context(write_safely(path, never=request.never))
             paths.append(path)
             return temporary
 
@@ -144,14 +144,14 @@ def export(
             monitor.check()
             monitor.report(number / len(request.formats), _saying(name, crs))
             ends = (number / len(request.formats), (number + 1) / len(request.formats))
-            FORMATS[name].write(job, place, PartMonitor(monitor, *ends))
+            FORMATS[name].write(job, position, PartMonitor(monitor, *ends))
     return tuple(paths)
 
 
-def _write_dxf(job: _Job, place: Callable[[str], Path], monitor: Monitor) -> None:
+def _write_dxf(job: _Job, position: Callable[[str], Path], monitor: Monitor) -> None:
     version: DxfVersion = "R2000" if job.request.dxf_version == "R2000" else "R2018"
     write_dxf(
-        place(f"{_STEM}.dxf"),
+        position(f"{_STEM}.dxf"),
         job.features,
         job.catalogue,
         version=version,
@@ -161,29 +161,29 @@ def _write_dxf(job: _Job, place: Callable[[str], Path], monitor: Monitor) -> Non
     )
 
 
-def _write_csv(job: _Job, place: Callable[[str], Path], monitor: Monitor) -> None:
+def _write_csv(job: _Job, position: Callable[[str], Path], monitor: Monitor) -> None:
     request = job.request
     style = TableStyle(request.language, request.encoding, request.digits, job.crs)
-    path = place(f"{_STEM}.csv")
+    path = position(f"{_STEM}.csv")
     write_features(path, job.features, job.catalogue, style, monitor=monitor)
-    write_vertices(place("vertices.csv"), job.features, style, monitor=monitor)
+    write_vertices(position("vertices.csv"), job.features, style, monitor=monitor)
     for kind in job.catalogue:
         members = [feature for feature in job.features if feature.kind == kind.id]
         if members:
-            write_ledger(place(f"ledger_{kind.id}.csv"), members, kind, style, monitor=monitor)
+            write_ledger(position(f"ledger_{kind.id}.csv"), members, kind, style, monitor=monitor)
 
 
-def _write_geopackage(job: _Job, place: Callable[[str], Path], monitor: Monitor) -> None:
-    path = place(f"{_STEM}.gpkg")
+def _write_geopackage(job: _Job, position: Callable[[str], Path], monitor: Monitor) -> None:
+    path = position(f"{_STEM}.gpkg")
     write_geopackage(path, job.features, job.catalogue, crs=job.crs, monitor=monitor)
 
 
-def _write_geojson(job: _Job, place: Callable[[str], Path], monitor: Monitor) -> None:
-    write_geojson(place(f"{_STEM}.geojson"), job.features, crs=job.crs, monitor=monitor)
+def _write_geojson(job: _Job, position: Callable[[str], Path], monitor: Monitor) -> None:
+    write_geojson(position(f"{_STEM}.geojson"), job.features, crs=job.crs, monitor=monitor)
 
 
-def _write_points(job: _Job, place: Callable[[str], Path], monitor: Monitor) -> None:
-    write_labelled_points(job.drives, place, monitor)
+def _write_points(job: _Job, position: Callable[[str], Path], monitor: Monitor) -> None:
+    write_labelled_points(job.drives, position, monitor)
 
 
 FORMATS: Mapping[str, ExportFormat] = {

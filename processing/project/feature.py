@@ -106,12 +106,12 @@ class Feature:
         return dataclasses.replace(self, vertices=vertices)
 
 
-def with_points_at(feature: Feature, places: Mapping[str, NDArray[np.int64]]) -> Feature:
+def with_points_at(feature: Feature, positions: Mapping[str, NDArray[np.int64]]) -> Feature:
     """A feature whose vertices rest on the same points, where drives have another order now.
 
     Parameters
     ----------
-    places : mapping of str to (n,) int64
+    positions : mapping of str to (n,) int64
         By drive: where each of its points is now. Vertices on other drives stay as they are.
 
     Returns
@@ -122,13 +122,13 @@ def with_points_at(feature: Feature, places: Mapping[str, NDArray[np.int64]]) ->
 
     def moved(vertex: Vertex) -> Vertex:
         rests = vertex.measured
-        if rests is None or rests.drive not in places:
+        if rests is None or rests.drive not in positions:
             return vertex
-        there = PointReference(rests.drive, int(places[rests.drive][rests.point]))
+        there = PointReference(rests.drive, int(positions[rests.drive][rests.point]))
         return dataclasses.replace(vertex, measured=there)
 
     on = {vertex.measured.drive for vertex in feature.vertices if vertex.measured is not None}
-    if on.isdisjoint(places):
+    if on.isdisjoint(positions):
         return feature
     return feature.with_vertices(tuple(map(moved, feature.vertices)))
 

@@ -16,7 +16,7 @@ from processing.project.catalogue import Catalogue, Geometry
 from processing.project.clip_kinds import (
     KindDescription,
     KindTally,
-    described_kinds,
+    describe_kinds,
     read_descriptions,
 )
 from processing.project.clip_members import OURS, features_of, member_of
@@ -24,8 +24,8 @@ from processing.project.feature import Feature, Vertex
 from processing.project.geojson_shapes import (
     MOST_CHARACTERS,
     WHERE,
+    GeoJsonGeometry,
     JsonObject,
-    Shape,
     crs_member,
     read_collection,
     refusal,
@@ -39,7 +39,7 @@ _VERSION = 1
 
 
 @dataclass(frozen=True)
-class Pasted:
+class PastedFeatures:
     """What a text gives a map.
 
     Attributes
@@ -73,7 +73,7 @@ def clip_of(features: Sequence[Feature], crs: str, catalogue: Catalogue) -> str:
         {
             "type": "FeatureCollection",
             "crs": crs_member(crs),
-            OURS: {"version": _VERSION, "kinds": described_kinds(features, catalogue)},
+            OURS: {"version": _VERSION, "kinds": describe_kinds(features, catalogue)},
             "features": [member_of(feature) for feature in features],
         },
         ensure_ascii=False,
@@ -98,7 +98,7 @@ def features_of_clip(
     drives: Collection[str],
     *,
     kind_for: Mapping[Geometry, str] | None = None,
-) -> Pasted:
+) -> PastedFeatures:
     """The features in a text of :func:`clip_of`, or in GeoJSON of another program.
 
     Parameters
@@ -142,7 +142,7 @@ def features_of_clip(
     ]
     moved, notes = _moved(copies, source, crs)
     grounded = [_grounded(one, drives if source == crs else ()) for one in moved]
-    return Pasted(
+    return PastedFeatures(
         tuple(grounded),
         (
             *notes,
@@ -184,9 +184,9 @@ def _moved(
     if not source or not target:
         raise _one_unknown(source, target)
     transform = reference_transform(source, target)
-    places = np.array([vertex.xyz for one in features for vertex in one.vertices])
+    positions = np.array([vertex.xyz for one in features for vertex in one.vertices])
     # Each feature takes from the rows as many as it has vertices.
-    rows = iter(transform.apply(places).tolist())
+    rows = iter(transform.apply(positions).tolist())
     moved = [
         one.with_vertices(
             tuple(
@@ -254,7 +254,7 @@ def _measured_count(feature: Feature) -> int:
     return sum(vertex.measured is not None for vertex in feature.vertices)
 
 
-def _notes_of_shapes(shapes: list[tuple[Shape, ...]]) -> tuple[Text, ...]:
+def _notes_of_shapes(shapes: list[tuple[GeoJsonGeometry, ...]]) -> tuple[Text, ...]:
     every = [shape for several in shapes for shape in several]
     counted = (
         (

@@ -89,11 +89,11 @@ def _centroid(ring: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(((ring + after) * cross[:, None]).sum(axis=0) / (3 * total))
 
 
-def _is_inside(place: NDArray[np.float64], ring: NDArray[np.float64]) -> bool:
+def _is_inside(position: NDArray[np.float64], ring: NDArray[np.float64]) -> bool:
     """By the number of sides that a ray to the right crosses."""
     after = np.roll(ring, -1, axis=0)
-    spans = (ring[:, 1] > place[1]) != (after[:, 1] > place[1])
+    spans = (ring[:, 1] > position[1]) != (after[:, 1] > position[1])
     start, end = ring[spans], after[spans]
-    share = (place[1] - start[:, 1]) / (end[:, 1] - start[:, 1])
+    share = (position[1] - start[:, 1]) / (end[:, 1] - start[:, 1])
     crossings = start[:, 0] + share * (end[:, 0] - start[:, 0])
-    return bool(np.count_nonzero(crossings > place[0]) % 2)
+    return bool(np.count_nonzero(crossings > position[0]) % 2)

@@ -122,7 +122,7 @@ class SearchTexts:
                 words.append(choices.get(value, value))
             elif value is not None:
                 words.append(str(value))
-        return folded("\n".join(words))
+        return fold_text("\n".join(words))
 
     def _words_of_choices(self, kind: str, id_: str) -> Mapping[str, str]:
         field = _field_of(self._catalogue, kind, id_)
@@ -150,7 +150,7 @@ class QueryTest:
         self._query = query
         self._catalogue = catalogue
         self._texts = SearchTexts(catalogue) if texts is None else texts
-        self._words = tuple(folded(query.text).split())
+        self._words = tuple(fold_text(query.text).split())
         self._left_of_kind: dict[str, tuple[str, ...]] = {}
         self._conditions = tuple(_ReadyCondition(one, catalogue) for one in query.conditions)
 
@@ -188,9 +188,9 @@ class QueryTest:
 
     def _names_of(self, kind_id: str) -> str:
         if kind_id not in self._catalogue:
-            return folded(kind_id)
+            return fold_text(kind_id)
         kind = self._catalogue[kind_id]
-        return folded("\n".join((kind.id, kind.name.en, kind.name.ja, kind.layer)))
+        return fold_text("\n".join((kind.id, kind.name.en, kind.name.ja, kind.layer)))
 
 
 class _ReadyCondition:
@@ -198,7 +198,7 @@ class _ReadyCondition:
 
     def __init__(self, condition: AttributeCondition, catalogue: Catalogue) -> None:
         self._id = condition.attribute
-        self._wanted = folded(condition.value).strip()
+        self._wanted = fold_text(condition.value).strip()
         self._number = number_in(condition.value)
         self._fields = {kind.id: kind.attribute(self._id) for kind in catalogue}
         self._fits: Callable[[AttributeValue, AttributeField | None], bool] = {
@@ -222,7 +222,7 @@ class _ReadyCondition:
         number = _number_of(value)
         if number is not None and self._number is not None:
             return number == self._number
-        return any(folded(word).strip() == self._wanted for word in _words_of(value, field))
+        return any(fold_text(word).strip() == self._wanted for word in _words_of(value, field))
 
     def _is_other(self, value: AttributeValue, field: AttributeField | None) -> bool:
         return not self._is_equal(value, field)
@@ -230,7 +230,7 @@ class _ReadyCondition:
     def _contains(self, value: AttributeValue, field: AttributeField | None) -> bool:
         if _is_empty(value, field):
             return False
-        return any(self._wanted in folded(word) for word in _words_of(value, field))
+        return any(self._wanted in fold_text(word) for word in _words_of(value, field))
 
     def _is_less(self, value: AttributeValue, field: AttributeField | None) -> bool:
         return not _is_empty(value, field) and self._order(value) < 0
@@ -253,14 +253,14 @@ class _ReadyCondition:
         return (here > there) - (here < there)
 
 
-def folded(text: str) -> str:
+def fold_text(text: str) -> str:
     """A text for comparing: full-width forms as half-width ones, capitals as small letters."""
     return text.lower() if text.isascii() else unicodedata.normalize("NFKC", text).casefold()
 
 
 def natural_key(text: str) -> tuple[str | int, ...]:
     """A key by which ``No. 9`` comes before ``No. 10``: texts and numbers by turns."""
-    parts = _DIGITS.split(folded(text))
+    parts = _DIGITS.split(fold_text(text))
     return tuple(int(part) if i % 2 else part for i, part in enumerate(parts))
 
 

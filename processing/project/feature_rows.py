@@ -18,7 +18,7 @@ from processing.project.feature import (
     Vertex,
 )
 from processing.project.filed_labels import filed_of_plain, filed_to_plain
-from processing.project.geometry_blob import blob_of, places_of
+from processing.project.geometry_blob import blob_of, positions_of
 
 COLUMNS = (
     "geom", "id", "kind", "layer", "status", "confidence", "attributes", "provenance", "measured",
@@ -26,10 +26,10 @@ COLUMNS = (
 )  # fmt: skip
 """Columns of the table ``features``, in the order of rows."""
 
-Row = tuple[bytes, str, str, str, str, float, str, str, str, str]
+FeatureRow = tuple[bytes, str, str, str, str, float, str, str, str, str]
 
 
-def row_of(feature: Feature, layer: str, srs_id: int) -> Row:
+def row_of(feature: Feature, layer: str, srs_id: int) -> FeatureRow:
     """A feature as a row of the table ``features``.
 
     Raises
@@ -37,9 +37,9 @@ def row_of(feature: Feature, layer: str, srs_id: int) -> Row:
     ValueError
         A value can't be stored: a coordinate that is not finite, too few vertices.
     """
-    places = tuple(vertex.xyz for vertex in feature.vertices)
+    positions = tuple(vertex.xyz for vertex in feature.vertices)
     return (
-        blob_of(feature.geometry, places, srs_id),
+        blob_of(feature.geometry, positions, srs_id),
         feature.id,
         feature.kind,
         layer,
@@ -62,13 +62,13 @@ def feature_of(row: tuple[Any, ...]) -> Feature:
         The row is damaged.
     """
     blob, id_, kind, _, status, _, attributes, provenance, measured, occluded = row
-    geometry, places = places_of(blob)
+    geometry, positions = positions_of(blob)
     return Feature(
         id=id_,
         kind=kind,
         geometry=geometry,
         vertices=_vertices(
-            places,
+            positions,
             {} if measured == "{}" else _mapping(json.loads(measured)),
             [] if occluded == "[]" else json.loads(occluded),
         ),
@@ -118,11 +118,11 @@ def change_from_json(text: str, label_steps: Path) -> Change:
 
 def _plain_drives(name: str, drives: tuple[ListedDrive, ...]) -> dict[str, object]:
     """Nothing where there are none, as in nearly every step."""
-    return {name: [[one.id, one.place, one.folder] for one in drives]} if drives else {}
+    return {name: [[one.id, one.position, one.folder] for one in drives]} if drives else {}
 
 
 def _drives_from(plain: list[Any]) -> tuple[ListedDrive, ...]:
-    return tuple(ListedDrive(str(id_), int(place), str(name)) for id_, place, name in plain)
+    return tuple(ListedDrive(str(id_), int(position), str(name)) for id_, position, name in plain)
 
 
 def _plain(feature: Feature) -> dict[str, object]:
@@ -141,13 +141,13 @@ def _plain(feature: Feature) -> dict[str, object]:
 
 # What comes out of JSON has no types of its own.
 def _from_plain(plain: dict[str, Any]) -> Feature:
-    places = tuple((place[0], place[1], place[2]) for place in plain["places"])
+    positions = tuple((position[0], position[1], position[2]) for position in plain["places"])
     return Feature(
         id=plain["id"],
         kind=plain["kind"],
         geometry=Geometry(plain["geometry"]),
         # Histories of the first schema say nothing of occluded vertices.
-        vertices=_vertices(places, plain["measured"], plain.get("occluded", [])),
+        vertices=_vertices(positions, plain["measured"], plain.get("occluded", [])),
         attributes=_mapping(plain["attributes"]),
         status=Status(plain["status"]),
         provenance=Provenance(**plain["provenance"]),
@@ -186,9 +186,9 @@ def _occluded(vertices: tuple[Vertex, ...]) -> list[int]:
 
 
 def _vertices(
-    places: tuple[Position, ...], references: dict[str, list[int | None]], occluded: list[int]
+    positions: tuple[Position, ...], references: dict[str, list[int | None]], occluded: list[int]
 ) -> tuple[Vertex, ...]:
-    vertices = _resting(places, references)
+    vertices = _resting(positions, references)
     if not occluded:
         return vertices
     hidden = set(occluded)
@@ -199,19 +199,21 @@ def _vertices(
 
 
 def _resting(
-    places: tuple[Position, ...], references: dict[str, list[int | None]]
+    positions: tuple[Position, ...], references: dict[str, list[int | None]]
 ) -> tuple[Vertex, ...]:
     # Where a GIS program added or removed vertices, nobody knows what they rest on.
-    fitting = {drive: points for drive, points in references.items() if len(points) == len(places)}
+    fitting = {
+        drive: points for drive, points in references.items() if len(points) == len(positions)
+    }
     if len(fitting) == 1:  # nearly always, and then quickly
         ((drive, points),) = fitting.items()
-        pairs = zip(places, points, strict=True)
+        pairs = zip(positions, points, strict=True)
         return tuple([Vertex(p, None if n is None else PointReference(drive, n)) for p, n in pairs])
-    vertices = [Vertex(place) for place in places]
+    vertices = [Vertex(position) for position in positions]
     for drive, points in fitting.items():
         for number, point in enumerate(points):
             if point is not None:
-                vertices[number] = Vertex(places[number], PointReference(drive, point))
+                vertices[number] = Vertex(positions[number], PointReference(drive, point))
     return tuple(vertices)
 
 

@@ -18,7 +18,7 @@ from processing.project.database_errors import changed_elsewhere, damaged
 from processing.project.feature import Feature, with_points_at
 from processing.project.feature_rows import COLUMNS, feature_of, row_of
 from processing.project.filed_labels import FiledLabels
-from processing.project.history import History, Standing
+from processing.project.history import History, HistoryPosition
 from processing.project.label_layer import LabelLayer
 from processing.project.map_extent import Bounds, extent_after, extent_of
 from processing.project.open_drives import OpenDrives
@@ -26,8 +26,8 @@ from processing.project.runs import Run, write_run
 from processing.text import Text
 
 _NAMES = ", ".join(COLUMNS)
-_PLACES = ", ".join("?" * len(COLUMNS))
-_INSERT = f"INSERT INTO features ({_NAMES}) VALUES ({_PLACES})"  # noqa: S608 - constants only
+_POSITIONS = ", ".join("?" * len(COLUMNS))
+_INSERT = f"INSERT INTO features ({_NAMES}) VALUES ({_POSITIONS})"  # noqa: S608 - constants only
 _UPDATE = f"UPDATE features SET {', '.join(f'{name} = ?' for name in COLUMNS)} WHERE id = ?"  # noqa: S608 - constants only
 _SELECT = f"SELECT {_NAMES} FROM features ORDER BY fid"  # noqa: S608 - constants only
 _EXTENT = (
@@ -176,13 +176,13 @@ class FeatureStore:
         self._srs_id = srs_id
 
     def rewrite_points(
-        self, connection: sqlite3.Connection, places: Mapping[str, NDArray[np.int64]]
+        self, connection: sqlite3.Connection, positions: Mapping[str, NDArray[np.int64]]
     ) -> tuple[Feature, ...]:
         """Let vertices rest on the points that they rested on, in a transaction.
 
         Parameters
         ----------
-        places : mapping of str to (n,) int64
+        positions : mapping of str to (n,) int64
             By drive: where each of its points is now.
 
         Returns
@@ -199,7 +199,7 @@ class FeatureStore:
         moved = tuple(
             moved
             for feature in self._features.values()
-            if (moved := with_points_at(feature, places)) is not feature
+            if (moved := with_points_at(feature, positions)) is not feature
         )
         connection.executemany(_UPDATE, [(*self._row(f, self._srs_id), f.id) for f in moved])
         return moved
@@ -247,7 +247,7 @@ class FeatureStore:
         self._follow(change, standing, by)
         return change
 
-    def _follow(self, change: Change, standing: Standing, by: int) -> None:
+    def _follow(self, change: Change, standing: HistoryPosition, by: int) -> None:
         """Take over what the database has; where label files can't, it is taken back."""
         self._history.stands(standing)
         try:

@@ -6,10 +6,10 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from processing.project.import_request import Labels
-from processing.project.lattice import Lattice
+from processing.project.quantisation import Quantisation
 
 Integers3 = tuple[int, int, int]
-Run = tuple[int, int, int]
+PointRun = tuple[int, int, int]
 
 NO_LOWEST: Integers3 = (2**62,) * 3
 NO_HIGHEST: Integers3 = (-(2**62),) * 3
@@ -26,7 +26,7 @@ class Stream:
     count : int
         Points so far.
     lowest, highest : tuple of int
-        Extent, integers of the lattice they are written on.
+        Extent, integers of the quantisation they are written on.
     first_time, last_time : float
         NaN before the first point with a time.
     has_times : bool
@@ -49,7 +49,7 @@ class Stream:
     last_time: float = float("nan")
     has_times: bool = True
     is_in_time_order: bool = True
-    runs: list[Run] = field(default_factory=list)
+    runs: list[PointRun] = field(default_factory=list)
     is_indexed: bool = False
 
 
@@ -102,7 +102,7 @@ def record_from(values: dict[str, Any]) -> FileRecord:
 
 
 @dataclass(frozen=True)
-class Place:
+class FilePlacement:
     """Where the points of a file go if they are what its header and its ends promise.
 
     Attributes
@@ -115,7 +115,7 @@ class Place:
         Of all points.
     names : tuple of str
         Columns of all points.
-    lattice : Lattice
+    quantisation : Lattice
         To which coordinates are moved.
     """
 
@@ -123,7 +123,7 @@ class Place:
     first: int
     scanner: int
     names: tuple[str, ...]
-    lattice: Lattice
+    quantisation: Quantisation
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ class FileJob:
         Points it is said to have.
     size, modified_ns : int
         What it was like when the import began.
-    lattice : Lattice
+    quantisation : Lattice
         Its own.
     scanner_column : str
         The column that tells scanners apart.
@@ -148,7 +148,7 @@ class FileJob:
         Whether scan angles are wanted; whether any file has labels.
     columns : tuple of str
         What the columns of text are taken for; empty where the file says it.
-    place : Place or None
+    position : Place or None
         None: each scanner's points go to a folder of their own below ``parts``.
     """
 
@@ -158,26 +158,32 @@ class FileJob:
     count: int
     size: int
     modified_ns: int
-    lattice: Lattice
+    quantisation: Quantisation
     scanner_column: str
     keeps_angles: bool
     has_labels: bool
     labels: Labels
     parts: str
-    place: Place | None = None
+    position: FilePlacement | None = None
     columns: tuple[str, ...] = ()
 
 
 def job_from(values: dict[str, Any]) -> FileJob:
     """A job that came as JSON from ``dataclasses.asdict``."""
-    place = values["place"]
-    if place is not None:
-        kept = {"names": tuple(place["names"]), "lattice": _lattice(place["lattice"])}
-        place = Place(**{**place, **kept})
-    made = {"lattice": _lattice(values["lattice"]), "columns": tuple(values["columns"])}
-    return FileJob(**{**values, **made, "place": place})
+    position = values["position"]
+    if position is not None:
+        kept = {
+            "names": tuple(position["names"]),
+            "quantisation": _quantisation(position["quantisation"]),
+        }
+        position = FilePlacement(**{**position, **kept})
+    made = {
+        "quantisation": _quantisation(values["quantisation"]),
+        "columns": tuple(values["columns"]),
+    }
+    return FileJob(**{**values, **made, "position": position})
 
 
-def _lattice(values: dict[str, Any]) -> Lattice:
+def _quantisation(values: dict[str, Any]) -> Quantisation:
     (a, b, c), (d, e, f) = values["scale"], values["offset"]
-    return Lattice((a, b, c), (d, e, f))
+    return Quantisation((a, b, c), (d, e, f))

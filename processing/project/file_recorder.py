@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UNCHANGED, BadFile, UserError, told_as_user_error
+from processing.errors import UNCHANGED, BadFile, UserError, report_as_user_error
 from processing.formats.point_files import PointChunk, read_chunks
 from processing.kernels import kernel
-from processing.points.placed_columns import PlacedColumns
+from processing.points.column_writer_at_offsets import OffsetColumnWriter
 from processing.points.source_order import INDEX
 from processing.project.file_record import FileJob, FileRecord, Stream
-from processing.project.lattice import move_between
+from processing.project.quantisation import shift_between
 from processing.text import Text
 
 CHUNK_POINTS = 500_000
@@ -34,22 +34,22 @@ _MOST_RUNS = 1_000
 _MOST_OPEN = 16
 _FEWEST_EMPTY = 1_000
 
-Columns = dict[str, NDArray[Any]]
-Told = Callable[[FileRecord], None]
+ChunkColumns = dict[str, NDArray[Any]]
+RecordListener = Callable[[FileRecord], None]
 
 
 class NotAsPlanned(Exception):
     """A file holds other points than its header and its ends promised; it must go into parts."""
 
 
-def record_file(job: FileJob, record: FileRecord, told: Told) -> FileRecord:
+def record_file(job: FileJob, record: FileRecord, reported: RecordListener) -> FileRecord:
     """Read a file's points into columns, from where its record says.
 
     Parameters
     ----------
     record : FileRecord
         How far an earlier try came; changed as points are written.
-    told : callable
+    reported : callable
         Called with the record after each stretch; what it raises ends the work.
 
     Raises
@@ -64,7 +64,7 @@ def record_file(job: FileJob, record: FileRecord, told: Told) -> FileRecord:
             checksum = pool.submit(checksum_of, Path(job.path))
             for chunk in _read_ahead(_chunks_after(job, record.done)):
                 recorder.add(wanted_columns(job, chunk))
-                told(record)
+                reported(record)
             _check_unchanged(job, record.done)
             record.sha256 = checksum.result()
     finally:
@@ -72,7 +72,7 @@ def record_file(job: FileJob, record: FileRecord, told: Told) -> FileRecord:
     return record
 
 
-def wanted_columns(job: FileJob, chunk: PointChunk) -> Columns:
+def wanted_columns(job: FileJob, chunk: PointChunk) -> ChunkColumns:
     """The columns of a chunk; points of files without labels have none of them."""
     columns = chunk.columns
     if job.labels == "classification":
@@ -98,7 +98,7 @@ def checksum_of(path: Path) -> str:
     """
     files = sorted(file for file in path.rglob("*") if file.is_file()) if path.is_dir() else [path]
     digest = hashlib.sha256()
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         for name in files:
             with name.open("rb") as file:
                 while block := file.read(_HASHED_BYTES):
@@ -112,10 +112,12 @@ class _Recorder:
     def __init__(self, job: FileJob, record: FileRecord) -> None:
         self._job = job
         self._record = record
-        self._lattice = job.place.lattice if job.place is not None else job.lattice
-        self._open: dict[int, PlacedColumns] = {}
+        self._quantisation = (
+            job.position.quantisation if job.position is not None else job.quantisation
+        )
+        self._open: dict[int, OffsetColumnWriter] = {}
 
-    def add(self, columns: Columns) -> None:
+    def add(self, columns: ChunkColumns) -> None:
         """Write the next points of the file."""
         count = columns["xyz"].shape[0]
         start = self._record.done
@@ -134,7 +136,7 @@ class _Recorder:
         for columns in self._open.values():
             columns.close()
 
-    def _write(self, scanner: int, given: Columns, indices: NDArray[np.int64]) -> None:
+    def _write(self, scanner: int, given: ChunkColumns, indices: NDArray[np.int64]) -> None:
         if indices.size == 0:
             return
         names = column_names(given, keeps_angles=self._job.keeps_angles)
@@ -152,8 +154,8 @@ class _Recorder:
         stream.count += indices.size
 
     def _stream_of(self, scanner: int, names: tuple[str, ...]) -> int:
-        place = self._job.place
-        if place is not None and (place.scanner, place.names) != (scanner, names):
+        position = self._job.position
+        if position is not None and (position.scanner, position.names) != (scanner, names):
             raise NotAsPlanned
         for number, stream in enumerate(self._record.streams):
             if (stream.scanner, stream.names) == (scanner, names):
@@ -162,15 +164,15 @@ class _Recorder:
         return len(self._record.streams) - 1
 
     def _moved(self, xyz: NDArray[np.int32]) -> NDArray[np.int32]:
-        if self._lattice == self._job.lattice:
+        if self._quantisation == self._job.quantisation:
             return xyz
-        move = move_between(self._job.lattice, self._lattice)
+        move = shift_between(self._job.quantisation, self._quantisation)
         moved = None if move is None else move.applied(xyz)
         if moved is None:
             raise NotAsPlanned
         return moved
 
-    def _note_indices(self, number: int, columns: Columns, indices: NDArray[np.int64]) -> None:
+    def _note_indices(self, number: int, columns: ChunkColumns, indices: NDArray[np.int64]) -> None:
         """Note where in the file points were: as runs, or as a column where these are many."""
         stream = self._record.streams[number]
         first = int(indices[0])
@@ -190,7 +192,7 @@ class _Recorder:
             stream.runs = []
         columns[INDEX] = indices
 
-    def _columns_of(self, number: int) -> PlacedColumns:
+    def _columns_of(self, number: int) -> OffsetColumnWriter:
         if number not in self._open:
             # A file may hold more scans than files may be open at a time; they follow one another.
             if len(self._open) >= _MOST_OPEN:
@@ -198,16 +200,16 @@ class _Recorder:
             self._open[number] = self._opened(number)
         return self._open[number]
 
-    def _opened(self, number: int) -> PlacedColumns:
-        place = self._job.place
-        if place is not None:
-            return PlacedColumns(Path(place.folder), place.first)
+    def _opened(self, number: int) -> OffsetColumnWriter:
+        position = self._job.position
+        if position is not None:
+            return OffsetColumnWriter(Path(position.folder), position.first)
         folder = part_folder(self._job, number)
-        with told_as_user_error(folder):
+        with report_as_user_error(folder):
             folder.mkdir(parents=True, exist_ok=True)
-        return PlacedColumns(folder)
+        return OffsetColumnWriter(folder)
 
-    def _refuse_empty(self, columns: Columns, start: int) -> None:
+    def _refuse_empty(self, columns: ChunkColumns, start: int) -> None:
         """Refuse a stretch of nothing but zeros: room that a copying program took, never filled."""
         given = [columns[name] for name in ("xyz", "intensity", "time") if name in columns]
         count = columns["xyz"].shape[0]
@@ -236,7 +238,7 @@ def part_folder(job: FileJob, stream: int) -> Path:
     return Path(job.parts) / f"{job.number}-{stream}"
 
 
-def write_indices(columns: PlacedColumns, stream: Stream) -> None:
+def write_indices(columns: OffsetColumnWriter, stream: Stream) -> None:
     """Write as a column what a stream's runs say.
 
     Raises
@@ -256,7 +258,7 @@ def _chunks_after(job: FileJob, done: int) -> Iterator[PointChunk]:
 
 def _check_unchanged(job: FileJob, points: int) -> None:
     path = Path(job.path)
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         status = path.stat()
     if (status.st_size, status.st_mtime_ns, points) == (job.size, job.modified_ns, job.count):
         return
@@ -273,7 +275,7 @@ def _check_unchanged(job: FileJob, points: int) -> None:
     )
 
 
-def _by_scanner(columns: Columns, name: str) -> Iterator[tuple[int, NDArray[np.bool_] | None]]:
+def _by_scanner(columns: ChunkColumns, name: str) -> Iterator[tuple[int, NDArray[np.bool_] | None]]:
     """Each scanner number of a chunk and its points; None for all of them."""
     if name not in columns or columns["xyz"].shape[0] == 0:
         yield 0, None
@@ -295,7 +297,7 @@ def _read_ahead(chunks: Iterator[PointChunk]) -> Iterator[PointChunk]:
             yield chunk
 
 
-def _times_of(stream: Stream, given: Columns) -> NDArray[np.float64]:
+def _times_of(stream: Stream, given: ChunkColumns) -> NDArray[np.float64]:
     """Times, with a lost one taken from the point before it; their order is watched."""
     if "time" not in given:
         stream.has_times = False

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from processing.errors import UNCHANGED, BadFile, told_as_user_error
+from processing.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.project.label_change import LabelChange
 from processing.text import Text
 
@@ -36,7 +36,7 @@ class FiledPart:
     drive : str
     count, first, last : int
         Number of points, and the lowest and highest of them.
-    place : int
+    position : int
         Of its first byte.
     sizes : tuple of int
         Bytes of its points, of their codes before and after.
@@ -46,7 +46,7 @@ class FiledPart:
     count: int
     first: int
     last: int
-    place: int
+    position: int
     sizes: tuple[int, int, int]
 
 
@@ -95,8 +95,8 @@ class FiledLabels:
             The file is gone, can't be read or is damaged.
         """
         path = self.folder / PARTS
-        with told_as_user_error(path), path.open("rb") as file:
-            file.seek(part.place)
+        with report_as_user_error(path), path.open("rb") as file:
+            file.seek(part.position)
             packed = file.read(sum(part.sizes) + _CHECK)
         content, check = packed[: sum(part.sizes)], packed[sum(part.sizes) :]
         if check != check_of(content):
@@ -144,7 +144,7 @@ def _damaged(path: Path) -> BadFile:
 
 def filed_to_plain(filed: FiledLabels) -> dict[str, object]:
     """What the history remembers: the folder's name, and what lies where."""
-    parts = [[p.drive, p.count, p.first, p.last, p.place, *p.sizes] for p in filed.parts]
+    parts = [[p.drive, p.count, p.first, p.last, p.position, *p.sizes] for p in filed.parts]
     return {"folder": filed.folder.name, "parts": parts}
 
 
@@ -167,7 +167,7 @@ def filed_of_plain(stored: Mapping[str, Any], steps: Path) -> FiledLabels:
         raise ValueError(message)
     parts = []
     for drive, *numbers in stored["parts"]:
-        count, first, last, place, *sizes = map(int, numbers)
+        count, first, last, position, *sizes = map(int, numbers)
         points, before, after = sizes
-        parts.append(FiledPart(str(drive), count, first, last, place, (points, before, after)))
+        parts.append(FiledPart(str(drive), count, first, last, position, (points, before, after)))
     return FiledLabels(steps / name, tuple(parts))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from processing.labels.label_column import labels_of
 from processing.monitor import Monitor
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 from processing.project.found_features import FoundFeatures, parameter_values
 from processing.project.label_change import MOST_POINTS, LabelChange
 from processing.project.label_filing import labels_as_change
@@ -112,7 +112,7 @@ def _labels_within(
     stop = min(start + MOST_POINTS, drive.count)
     found = result.read(_CLASS, start, stop)
     after = np.where(found != _delivered(drive, start, stop), found, 0).astype(np.uint8)
-    return relabelled(drive, np.arange(start, stop), after, tool)
+    return relabel_points(drive, np.arange(start, stop), after, tool)
 
 
 def _summary(tool: Tool, tally: _Tally, note: Text) -> Text:
@@ -127,14 +127,14 @@ def classes_now(
 ) -> FoundFeatures:
     """The same labels for points that may have been painted since the tool ran."""
     labels = [
-        relabelled(drive_of(one.drive), one.unpacked_points(), one.codes_after(), tool)
+        relabel_points(drive_of(one.drive), one.unpacked_points(), one.codes_after(), tool)
         for one in found.change.labels
     ]
     kept = tuple(one for one in labels if one is not None)
     return replace(found, change=replace(found.change, labels=kept))
 
 
-def relabelled(
+def relabel_points(
     drive: Drive, points: NDArray[np.int64], after: NDArray[np.uint8], tool: Tool
 ) -> LabelChange | None:
     """What a tool's codes change of the labels of points as they are now: see `found_classes`.
@@ -163,4 +163,4 @@ def relabelled(
 def _delivered(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:
     if not drive.columns.has(_CLASS):
         return np.zeros(stop - start, np.uint8)
-    return np.asarray(read_stretch(drive.folder, _CLASS, start, stop))
+    return np.asarray(read_chunk(drive.folder, _CLASS, start, stop))

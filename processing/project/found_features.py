@@ -135,9 +135,9 @@ def summary_of(tool: Tool, count: int, note: Text = _NO_NOTE, beside: Beside = _
     summary = text.filled(tool=tool.name, count=f"{count:,}")
     replaced = _counted(beside.replaced, _REPLACED_ONE, _REPLACED)
     decided = _counted(beside.decided, _DECIDED_ONE, _DECIDED)
-    told = _BOTH.filled(replaced=replaced, decided=decided) if replaced and decided else None
-    if told := told or replaced or decided:
-        summary = _BESIDE.filled(summary=summary, told=told)
+    reported = _BOTH.filled(replaced=replaced, decided=decided) if replaced and decided else None
+    if reported := reported or replaced or decided:
+        summary = _BESIDE.filled(summary=summary, told=reported)
     return _NOTED.filled(summary=summary, note=note) if note.en else summary
 
 

@@ -34,12 +34,12 @@ _COPY_AGAIN = Text(
 
 
 @dataclass(frozen=True)
-class Shape:
+class GeoJsonGeometry:
     """One geometry of a GeoJSON feature.
 
     Attributes
     ----------
-    places : tuple of Position
+    positions : tuple of Position
         As many as the geometry needs; a ring without its first place repeated.
     heightless : int
         Number of places that came without a height and got 0.
@@ -48,7 +48,7 @@ class Shape:
     """
 
     geometry: Geometry
-    places: tuple[Position, ...]
+    positions: tuple[Position, ...]
     heightless: int = 0
     is_hole: bool = False
 
@@ -111,7 +111,7 @@ def crs_member(crs: str) -> JsonObject | None:
     return {"type": "name", "properties": {"name": name}}
 
 
-def system_of(whole: JsonObject, shapes: list[Shape]) -> str:
+def system_of(whole: JsonObject, shapes: list[GeoJsonGeometry]) -> str:
     """The reference system that a GeoJSON names; empty where nobody knows it.
 
     Returns
@@ -150,7 +150,7 @@ def system_of(whole: JsonObject, shapes: list[Shape]) -> str:
     )
 
 
-def shapes_of(geometry: object, number: int) -> Iterator[Shape]:
+def shapes_of(geometry: object, number: int) -> Iterator[GeoJsonGeometry]:
     """The shapes of a feature's geometry; none for ``null``.
 
     Parts of a multi-geometry and holes are shapes of their own.
@@ -205,7 +205,7 @@ def _type_of(value: JsonObject) -> str:
     return kind if isinstance(kind, str) else ""
 
 
-def _single(kind: str, coordinates: object, number: int) -> Iterator[Shape]:
+def _single(kind: str, coordinates: object, number: int) -> Iterator[GeoJsonGeometry]:
     geometry = _SINGLE[kind]
     if geometry is Geometry.POINT:
         yield _shape(geometry, [coordinates], number)
@@ -215,14 +215,14 @@ def _single(kind: str, coordinates: object, number: int) -> Iterator[Shape]:
         rings = _list(coordinates, number)
         if not rings:
             raise _damaged("polygon", number)
-        for place, ring in enumerate(rings):
-            yield _shape(geometry, _list(ring, number), number, is_hole=place > 0)
+        for position, ring in enumerate(rings):
+            yield _shape(geometry, _list(ring, number), number, is_hole=position > 0)
 
 
 def _shape(
-    geometry: Geometry, positions: list[Any], number: int, *, is_hole: bool = False
-) -> Shape:
-    read = [_place(position, number) for position in positions]
+    geometry: Geometry, coordinate_lists: list[Any], number: int, *, is_hole: bool = False
+) -> GeoJsonGeometry:
+    read = [_position(coordinates, number) for coordinates in coordinate_lists]
     if geometry is Geometry.AREA and len(read) > 1 and read[0] == read[-1]:
         read.pop()
     if len(read) < _LEAST_VERTICES[geometry]:
@@ -234,23 +234,23 @@ def _shape(
             number,
         )
     heightless = sum(not has_height for _, has_height in read)
-    return Shape(geometry, tuple(place for place, _ in read), heightless, is_hole)
+    return GeoJsonGeometry(geometry, tuple(position for position, _ in read), heightless, is_hole)
 
 
-def _place(position: Any, number: int) -> tuple[Position, bool]:
+def _position(position: Any, number: int) -> tuple[Position, bool]:
     if not isinstance(position, list) or len(position) < 2:
         raise _damaged("coordinates", number)
     numbers = position[:3]
     if not all(isinstance(one, (int, float)) and not isinstance(one, bool) for one in numbers):
-        raise _no_place(position, number)
+        raise _no_position(position, number)
     # Compared before they are turned to floats: JSON's whole numbers have no end.
     if not all(-_MOST_METRES < one < _MOST_METRES for one in numbers):
-        raise _no_place(position, number)
+        raise _no_position(position, number)
     height = float(numbers[2]) if len(numbers) > 2 else 0.0
     return (float(numbers[0]), float(numbers[1]), height), len(numbers) > 2
 
 
-def _no_place(position: object, number: int) -> BadFile:
+def _no_position(position: object, number: int) -> BadFile:
     return refusal(
         Text("“{place}” is no place.", "「{place}」は座標として使えません。").filled(
             place=short(position)
@@ -259,8 +259,8 @@ def _no_place(position: object, number: int) -> BadFile:
     )
 
 
-def _is_in_degrees(shape: Shape) -> bool:
-    return all(abs(x) <= 180 and abs(y) <= 90 for x, y, _ in shape.places)
+def _is_in_degrees(shape: GeoJsonGeometry) -> bool:
+    return all(abs(x) <= 180 and abs(y) <= 90 for x, y, _ in shape.positions)
 
 
 def _list(value: object, number: int) -> list[Any]:

@@ -17,12 +17,12 @@ _GEOMETRIES = {code: geometry for geometry, code in _WKB_TYPES.items()}
 _FEWEST = {Geometry.POINT: 1, Geometry.LINE: 2, Geometry.AREA: 3}
 
 
-def blob_of(geometry: Geometry, places: tuple[Position, ...], srs_id: int) -> bytes:
+def blob_of(geometry: Geometry, positions: tuple[Position, ...], srs_id: int) -> bytes:
     """A geometry as GeoPackage keeps it: GP header, then ISO WKB with Z.
 
     Parameters
     ----------
-    places : tuple of Position
+    positions : tuple of Position
         One for a point; a ring without its first place repeated for an area.
 
     Raises
@@ -34,14 +34,14 @@ def blob_of(geometry: Geometry, places: tuple[Position, ...], srs_id: int) -> by
     ----------
     OGC 12-128r18, clause 2.1.3.
     """
-    is_enough = len(places) >= _FEWEST[geometry]
-    if not is_enough or (geometry is Geometry.POINT and len(places) > 1):
-        message = f"{len(places)} vertices for a {geometry.value}"
+    is_enough = len(positions) >= _FEWEST[geometry]
+    if not is_enough or (geometry is Geometry.POINT and len(positions) > 1):
+        message = f"{len(positions)} vertices for a {geometry.value}"
         raise ValueError(message)
-    ring = (*places, places[0]) if geometry is Geometry.AREA else places
-    numbers = [number for place in ring for number in place]
+    ring = (*positions, positions[0]) if geometry is Geometry.AREA else positions
+    numbers = [number for position in ring for number in position]
     if not all(map(math.isfinite, numbers)):
-        message = f"a coordinate that is not finite: {places}"
+        message = f"a coordinate that is not finite: {positions}"
         raise ValueError(message)
     head = _HEADER.pack(b"GP", 0, _LITTLE_ENDIAN_NO_ENVELOPE, srs_id)
     kind = struct.pack("<BI", 1, _WKB_TYPES[geometry])
@@ -52,7 +52,7 @@ def blob_of(geometry: Geometry, places: tuple[Position, ...], srs_id: int) -> by
     return head + kind + rings + struct.pack("<I", len(ring)) + body
 
 
-def places_of(blob: bytes) -> tuple[Geometry, tuple[Position, ...]]:
+def positions_of(blob: bytes) -> tuple[Geometry, tuple[Position, ...]]:
     """The geometry in a blob of :func:`blob_of`, or of a GIS program that moved it.
 
     Raises
@@ -72,14 +72,14 @@ def places_of(blob: bytes) -> tuple[Geometry, tuple[Position, ...]]:
         if order != 1 or geometry is None:
             message = f"a geometry of the type {code}"
             raise ValueError(message)
-        places = _read_places(blob, at + 5, geometry)
+        positions = _read_positions(blob, at + 5, geometry)
     except struct.error as error:
         message = "a geometry that is cut off"
         raise ValueError(message) from error
-    return geometry, places
+    return geometry, positions
 
 
-def _read_places(blob: bytes, at: int, geometry: Geometry) -> tuple[Position, ...]:
+def _read_positions(blob: bytes, at: int, geometry: Geometry) -> tuple[Position, ...]:
     if geometry is Geometry.POINT:
         return (struct.unpack_from("<3d", blob, at),)
     if geometry is Geometry.AREA:
@@ -93,20 +93,20 @@ def _read_places(blob: bytes, at: int, geometry: Geometry) -> tuple[Position, ..
     if len(body) != 24 * count or count < _FEWEST[geometry]:
         message = f"a {geometry.value} of {count} vertices in {len(body)} bytes"
         raise ValueError(message)
-    places = tuple(struct.iter_unpack("<3d", body))
-    return places[:-1] if geometry is Geometry.AREA else places
+    positions = tuple(struct.iter_unpack("<3d", body))
+    return positions[:-1] if geometry is Geometry.AREA else positions
 
 
 def _lowest(axis: int) -> Callable[[bytes], float | None]:
     def lowest(blob: bytes) -> float | None:
-        return None if blob is None else min(place[axis] for place in places_of(blob)[1])
+        return None if blob is None else min(position[axis] for position in positions_of(blob)[1])
 
     return lowest
 
 
 def _highest(axis: int) -> Callable[[bytes], float | None]:
     def highest(blob: bytes) -> float | None:
-        return None if blob is None else max(place[axis] for place in places_of(blob)[1])
+        return None if blob is None else max(position[axis] for position in positions_of(blob)[1])
 
     return highest
 

@@ -23,7 +23,7 @@ _LABEL = "SELECT label_en, label_ja FROM zuka_history WHERE place = ?"
 
 
 @dataclass(frozen=True)
-class Standing:
+class HistoryPosition:
     """Where the history stands: how many changes are done, and the labels on both sides."""
 
     position: int
@@ -98,8 +98,8 @@ class History:
 
     def has_filed(self, by: int) -> bool:
         """Whether the change that undo (−1) or redo (1) is about labels many points; at once."""
-        place = self.position + (0 if by < 0 else 1)
-        return bool(self._database.rows(f"{_FILED} AND place = ?", (place,)))
+        position = self.position + (0 if by < 0 else 1)
+        return bool(self._database.rows(f"{_FILED} AND place = ?", (position,)))
 
     def pending(self) -> Change:
         """The step that was done last before the project was opened, where it was about labels.
@@ -125,8 +125,8 @@ class History:
         rows = self._database.rows(_FILED)
         return frozenset(
             filed.folder.name
-            for (place,) in rows
-            if (change := self._change(int(str(place)))) is not None
+            for (position,) in rows
+            if (change := self._change(int(str(position)))) is not None
             and (filed := change.filed) is not None
         )
 
@@ -144,7 +144,9 @@ class History:
         added = () if change is None else change.added
         return tuple(feature for feature in added if feature.provenance.run == run)
 
-    def append(self, connection: sqlite3.Connection, label: Text, change: Change) -> Standing:
+    def append(
+        self, connection: sqlite3.Connection, label: Text, change: Change
+    ) -> HistoryPosition:
         """Write a change behind the last one, in the caller's transaction; redo is gone.
 
         Returns
@@ -152,18 +154,18 @@ class History:
         Standing
             For :meth:`stands` once the transaction is through.
         """
-        place = self.position + 1
-        connection.execute("DELETE FROM zuka_history WHERE place >= ?", (place,))
+        position = self.position + 1
+        connection.execute("DELETE FROM zuka_history WHERE place >= ?", (position,))
         connection.execute(
             "INSERT INTO zuka_history VALUES (?, ?, ?, ?)",
-            (place, label.en, label.ja, change_to_json(change)),
+            (position, label.en, label.ja, change_to_json(change)),
         )
-        write_labels(connection, place, change.labels)
-        write_pending(connection, place)
-        write_setting(connection, _POSITION, place)
-        return Standing(place, label, None)
+        write_labels(connection, position, change.labels)
+        write_pending(connection, position)
+        write_setting(connection, _POSITION, position)
+        return HistoryPosition(position, label, None)
 
-    def step(self, connection: sqlite3.Connection, by: int) -> Standing:
+    def step(self, connection: sqlite3.Connection, by: int) -> HistoryPosition:
         """Write that a change was taken back (−1) or done again (1), in the caller's transaction.
 
         Returns
@@ -176,16 +178,16 @@ class History:
         write_setting(connection, _POSITION, position)
         return _standing_at(connection, position, self._first)
 
-    def end_undo(self, connection: sqlite3.Connection, place: int) -> Standing:
+    def end_undo(self, connection: sqlite3.Connection, position: int) -> HistoryPosition:
         """Write that nothing up to a place is taken back any more, in the caller's transaction.
 
         What was done stays readable: runs are judged by it.
         """
-        first = max(place, self._first)
+        first = max(position, self._first)
         write_setting(connection, _FIRST, first)
         return _standing_at(connection, self.position, first)
 
-    def begin_anew(self, connection: sqlite3.Connection) -> Standing:
+    def begin_anew(self, connection: sqlite3.Connection) -> HistoryPosition:
         """Write that points have other places now, in the caller's transaction.
 
         Older steps name points by the places that they had: none is taken back or done again.
@@ -195,31 +197,31 @@ class History:
         write_pending(connection, 0)
         return self.end_undo(connection, self.position)
 
-    def ended_undo(self, standing: Standing, place: int) -> None:
+    def ended_undo(self, standing: HistoryPosition, position: int) -> None:
         """The transaction of :meth:`end_undo` is through."""
-        self._first = max(place, self._first)
+        self._first = max(position, self._first)
         self.stands(standing)
 
-    def stands(self, standing: Standing) -> None:
+    def stands(self, standing: HistoryPosition) -> None:
         """The transaction that gave this is through."""
         self._standing = standing
 
-    def _change(self, place: int) -> Change | None:
-        rows = self._database.rows("SELECT change FROM zuka_history WHERE place = ?", (place,))
+    def _change(self, position: int) -> Change | None:
+        rows = self._database.rows("SELECT change FROM zuka_history WHERE place = ?", (position,))
         try:
             if not rows:
                 return None
-            labels = labels_at(self._database, place)
+            labels = labels_at(self._database, position)
             return replace(change_from_json(str(rows[0][0]), self._label_steps), labels=labels)
         except (ValueError, KeyError, TypeError, IndexError) as error:
-            raise damaged(self._database.path, f"zuka_history.place {place}: {error}") from error
+            raise damaged(self._database.path, f"zuka_history.place {position}: {error}") from error
 
 
-def _standing_at(connection: sqlite3.Connection, position: int, first: int) -> Standing:
+def _standing_at(connection: sqlite3.Connection, position: int, first: int) -> HistoryPosition:
     undo = _label_at(connection, position) if position > first else None
-    return Standing(position, undo, _label_at(connection, position + 1))
+    return HistoryPosition(position, undo, _label_at(connection, position + 1))
 
 
-def _label_at(connection: sqlite3.Connection, place: int) -> Text | None:
-    found = connection.execute(_LABEL, (place,)).fetchone()
+def _label_at(connection: sqlite3.Connection, position: int) -> Text | None:
+    found = connection.execute(_LABEL, (position,)).fetchone()
     return None if found is None else Text(str(found[0]), str(found[1]))

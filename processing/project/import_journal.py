@@ -15,7 +15,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.points.replacing import flush_folder, flush_names
 
 PLAN, JOURNAL, FINISHED = "plan.json", "journal.jsonl", "finished.json"
@@ -25,7 +25,7 @@ SECONDS = 10.0
 _ROOM, _ROOM_BYTES = "room", 1 << 18
 
 # What is noted under a name: JSON, whose types its reader knows.
-Facts = dict[str, Any]
+JournalEntries = dict[str, Any]
 
 
 class ImportJournal:
@@ -42,8 +42,8 @@ class ImportJournal:
     def __init__(self, folder: Path, *, is_kept: bool) -> None:
         self.folder = folder
         self._is_kept = is_kept
-        self._facts: dict[str, Facts] = {}
-        self._waiting: dict[str, Facts] = {}
+        self._facts: dict[str, JournalEntries] = {}
+        self._waiting: dict[str, JournalEntries] = {}
         self._unsafe: set[Path] = set()
         self._last = time.monotonic()
         self._pool = ThreadPoolExecutor(max_workers=1)
@@ -60,7 +60,7 @@ class ImportJournal:
     def begin(self, plan: object) -> None:
         """Write down what is imported, and take room for a last note on a full disk."""
         path = self.folder / PLAN
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             (self.folder / _ROOM).write_bytes(bytes(_ROOM_BYTES))
             temporary = path.with_suffix(".part")
             text = json.dumps(plan, ensure_ascii=False)
@@ -68,11 +68,11 @@ class ImportJournal:
             temporary.write_text(text, encoding="utf-8", errors="backslashreplace")
             temporary.replace(path)
 
-    def known(self, name: str) -> Facts | None:
+    def known(self, name: str) -> JournalEntries | None:
         """What was noted last under a name."""
         return self._facts.get(name)
 
-    def note(self, name: str, facts: Facts, unsafe: Iterable[Path] = ()) -> None:
+    def note(self, name: str, facts: JournalEntries, unsafe: Iterable[Path] = ()) -> None:
         """Note facts, to be written when it is time.
 
         Parameters
@@ -128,7 +128,7 @@ class ImportJournal:
         self.settle()
         if self._is_kept:
             path = self.folder / FINISHED
-            with told_as_user_error(path):
+            with report_as_user_error(path):
                 path.write_text(json.dumps(list(drives)), encoding="utf-8")
 
     def close(self) -> None:
@@ -143,7 +143,7 @@ class ImportJournal:
         path = self.folder / JOURNAL
         if not path.is_file():
             return
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             lines = path.read_bytes().splitlines()
         for line in lines:
             # The last line may be cut off by the kill.
@@ -163,9 +163,9 @@ class ImportJournal:
             writing.result()
             self._last = time.monotonic()
 
-    def _write(self, waiting: dict[str, Facts], unsafe: set[Path]) -> None:
+    def _write(self, waiting: dict[str, JournalEntries], unsafe: set[Path]) -> None:
         path = self.folder / JOURNAL
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             for folder in sorted(unsafe):
                 flush_folder(folder)
             is_new = not path.exists()

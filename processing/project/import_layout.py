@@ -10,18 +10,18 @@ import numpy as np
 
 from processing.points.columns import COLUMN_TYPES
 from processing.project.delivery import DeliveredFile, Delivery
-from processing.project.file_record import FileJob, FileRecord, Place
+from processing.project.file_record import FileJob, FilePlacement, FileRecord
 from processing.project.file_recorder import column_names, part_folder
 from processing.project.import_request import FileMark, Labels
-from processing.project.lattice import Lattice, move_between
-from processing.project.recording import Part, Recording
+from processing.project.quantisation import Quantisation, shift_between
+from processing.project.recording import Recording, RecordingPart
 
 _MADE_LATER_BYTES = 8
 _FAR = np.iinfo(np.int32).max
 
 
 @dataclass(frozen=True)
-class ReadWay:
+class ReadOptions:
     """What is wanted of all files: scan angles, labels; whether a file has labels."""
 
     keeps_angles: bool
@@ -37,7 +37,7 @@ class ReadWay:
 
 
 @dataclass(frozen=True)
-class Layout:
+class ImportLayout:
     """Where everything goes.
 
     Attributes
@@ -65,7 +65,9 @@ class Layout:
         total = 0
         for job in self.jobs:
             names = (
-                job.place.names if job.place is not None else column_names({}, keeps_angles=True)
+                job.position.names
+                if job.position is not None
+                else column_names({}, keeps_angles=True)
             )
             total += job.count * (bytes_of(names) + _MADE_LATER_BYTES)
         return total
@@ -80,10 +82,10 @@ def bytes_of(names: tuple[str, ...]) -> int:
 def layout_of(
     delivery: Delivery,
     marks: Mapping[str, FileMark],
-    way: ReadWay,
+    options: ReadOptions,
     into: Path,
     mixed: Collection[int],
-) -> Layout:
+) -> ImportLayout:
     """Plan where the points of a delivery go.
 
     Parameters
@@ -102,17 +104,21 @@ def layout_of(
         first = len(jobs)
         groups.append(tuple(range(first, first + len(group))))
         own = [
-            _job(file, first + number, marks, way, into / "parts")
+            _job(file, first + number, marks, options, into / "parts")
             for number, file in enumerate(group)
         ]
         if at not in mixed and all(len(file.scanners) == 1 for file in group):
-            own, planned[at] = _placed(own, group, way, into / f"{at}")
+            own, planned[at] = _placed(own, group, options, into / f"{at}")
         jobs += own
-    return Layout(tuple(jobs), tuple(groups), planned)
+    return ImportLayout(tuple(jobs), tuple(groups), planned)
 
 
 def _job(
-    file: DeliveredFile, number: int, marks: Mapping[str, FileMark], way: ReadWay, parts: Path
+    file: DeliveredFile,
+    number: int,
+    marks: Mapping[str, FileMark],
+    options: ReadOptions,
+    parts: Path,
 ) -> FileJob:
     path = file.info.path.resolve()
     mark = marks[str(path)]
@@ -123,56 +129,58 @@ def _job(
         count=file.info.count,
         size=mark.size,
         modified_ns=mark.modified_ns,
-        lattice=Lattice(file.info.scale, file.info.offset),
+        quantisation=Quantisation(file.info.scale, file.info.offset),
         scanner_column=file.scanner_column,
-        keeps_angles=way.keeps_angles,
-        has_labels=way.has_labels,
-        labels=way.labels,
+        keeps_angles=options.keeps_angles,
+        has_labels=options.has_labels,
+        labels=options.labels,
         parts=str(parts),
         columns=file.info.columns_taken,
     )
 
 
 def _placed(
-    jobs: list[FileJob], group: tuple[DeliveredFile, ...], way: ReadWay, stem: Path
+    jobs: list[FileJob], group: tuple[DeliveredFile, ...], options: ReadOptions, stem: Path
 ) -> tuple[list[FileJob], tuple[Recording, ...]]:
     """The jobs with their places, and the recordings that these make."""
     recordings: list[Recording] = []
     counts: list[int] = []
     placed = []
     for job, file in zip(jobs, group, strict=True):
-        names, scanner = way.names(file), next(iter(file.scanners))
+        names, scanner = options.names(file), next(iter(file.scanners))
         taking = (
             at
             for at, one in enumerate(recordings)
             if (one.scanner, one.delivered_names) == (scanner, names)
-            and _fits(job, file, one.lattice)
+            and _fits(job, file, one.quantisation)
         )
         at = next(taking, len(recordings))
         if at == len(recordings):
             folder = stem.with_name(f"{stem.name}-{at}")
-            recordings.append(Recording(folder, job.lattice, scanner, names))
+            recordings.append(Recording(folder, job.quantisation, scanner, names))
             counts.append(0)
         recording = recordings[at]
-        place = Place(str(recording.folder), counts[at], scanner, names, recording.lattice)
-        placed.append(replace(job, place=place))
+        position = FilePlacement(
+            str(recording.folder), counts[at], scanner, names, recording.quantisation
+        )
+        placed.append(replace(job, position=position))
         counts[at] += job.count
     return placed, tuple(recordings)
 
 
-def _fits(job: FileJob, file: DeliveredFile, lattice: Lattice) -> bool:
+def _fits(job: FileJob, file: DeliveredFile, quantisation: Quantisation) -> bool:
     """Whether a file's points can be moved to a lattice, as far as its header tells."""
-    if job.lattice == lattice:
+    if job.quantisation == quantisation:
         return True
     corners = np.array([file.info.lowest, file.info.highest])
-    if move_between(job.lattice, lattice) is None or not np.isfinite(corners).all():
+    if shift_between(job.quantisation, quantisation) is None or not np.isfinite(corners).all():
         return False
-    moved = (corners - np.array(lattice.offset)) / np.array(lattice.scale)
+    moved = (corners - np.array(quantisation.offset)) / np.array(quantisation.scale)
     return bool(np.abs(moved).max() < _FAR)
 
 
 def recordings_of(
-    layout: Layout, group: int, records: Mapping[int, FileRecord]
+    layout: ImportLayout, group: int, records: Mapping[int, FileRecord]
 ) -> tuple[Recording, ...]:
     """The recordings of a group that was read: as planned, or dealt from the files' parts."""
     numbers = layout.groups[group]
@@ -182,21 +190,21 @@ def recordings_of(
         for one in found:
             one.parts.clear()
         for number in numbers:
-            place = layout.jobs[number].place
-            if place is not None:
+            position = layout.jobs[number].position
+            if position is not None:
                 streams = records[number].streams
-                parts = [Part(number, at, stream) for at, stream in enumerate(streams)]
-                by_folder[place.folder].parts += parts
+                parts = [RecordingPart(number, at, stream) for at, stream in enumerate(streams)]
+                by_folder[position.folder].parts += parts
         return tuple(one for one in found if one.count)
     recordings: list[Recording] = []
     for number in numbers:
         job = layout.jobs[number]
         for at, stream in enumerate(records[number].streams):
-            taking = (one for one in recordings if one.takes(job.lattice, stream))
+            taking = (one for one in recordings if one.takes(job.quantisation, stream))
             recording = next(taking, None)
             if recording is None:
                 folder = part_folder(job, at)
-                recording = Recording(folder, job.lattice, stream.scanner, stream.names)
+                recording = Recording(folder, job.quantisation, stream.scanner, stream.names)
                 recordings.append(recording)
-            recording.parts.append(Part(number, at, stream))
+            recording.parts.append(RecordingPart(number, at, stream))
     return tuple(recordings)

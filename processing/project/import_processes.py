@@ -43,8 +43,8 @@ _ERRORS = {
     kind.__name__: kind for kind in (BadFile, InUse, MissingInput, NoSpace, OutOfRange, Unsuitable)
 }
 
-Work = Sequence[tuple[FileJob, FileRecord]]
-Told = Callable[[int, FileRecord], None]
+FileBatch = Sequence[tuple[FileJob, FileRecord]]
+ProgressListener = Callable[[int, FileRecord], None]
 
 
 class MixedFile(Exception):
@@ -55,14 +55,14 @@ class MixedFile(Exception):
         self.number = number
 
 
-def record_files(work: Work, told: Told, check: Callable[[], None]) -> None:
+def record_files(work: FileBatch, reported: ProgressListener, check: Callable[[], None]) -> None:
     """Read files into columns; what is written does not depend on how many processes do it.
 
     Parameters
     ----------
     work : sequence of (FileJob, FileRecord)
         Files and how far they are.
-    told : callable
+    reported : callable
         Called with a file's number and record after each stretch, and at its end.
     check : callable
         Called all the time; what it raises ends the work.
@@ -75,22 +75,22 @@ def record_files(work: Work, told: Told, check: Callable[[], None]) -> None:
     """
     number = processes_for(work)
     if number > 1:
-        _record_beside(deque(work), number, told, check)
+        _record_beside(deque(work), number, reported, check)
         return
     for job, record in work:
 
         def tell(so_far: FileRecord, file: int = job.number) -> None:
-            told(file, so_far)
+            reported(file, so_far)
             check()
 
         check()
         try:
-            told(job.number, record_file(job, record, tell))
+            reported(job.number, record_file(job, record, tell))
         except NotAsPlanned as surprise:
             raise MixedFile(job.number) from surprise
 
 
-def processes_for(work: Work) -> int:
+def processes_for(work: FileBatch) -> int:
     """How many processes are worth their start."""
     left = sum(job.count - record.done for job, record in work)
     if left < FEWEST_POINTS:
@@ -101,7 +101,10 @@ def processes_for(work: Work) -> int:
 
 
 def _record_beside(
-    left: deque[tuple[FileJob, FileRecord]], number: int, told: Told, check: Callable[[], None]
+    left: deque[tuple[FileJob, FileRecord]],
+    number: int,
+    reported: ProgressListener,
+    check: Callable[[], None],
 ) -> None:
     answers: SimpleQueue[tuple[_Worker, str | None]] = SimpleQueue()
     workers = [_Worker(answers) for _ in range(number)]
@@ -120,7 +123,7 @@ def _record_beside(
                 raise _error_from(facts)
             if what == MIXED:
                 raise MixedFile(file)
-            told(file, record_from(facts))
+            reported(file, record_from(facts))
             if what == WHOLE and not worker.go_on(left):
                 busy -= 1
     finally:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, cast
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 
 Labels = Literal["label", "classification"]
 
@@ -65,7 +65,7 @@ def mark_of(path: Path) -> FileMark:
     UserError
         It can't be looked at.
     """
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         status = path.stat()
     return FileMark(str(path.resolve()), status.st_size, status.st_mtime_ns)
 
@@ -81,7 +81,7 @@ def marks_of(request: ImportRequest) -> tuple[FileMark, ...]:
     return tuple(mark_of(path) for path in request.files)
 
 
-def described(request: ImportRequest, marks: tuple[FileMark, ...]) -> dict[str, object]:
+def describe_request(request: ImportRequest, marks: tuple[FileMark, ...]) -> dict[str, object]:
     """A request as JSON keeps it; paths are whole, so another folder to work in changes nothing."""
     # Only where it says something, so that an import of an earlier version goes on.
     columns = {"columns": list(request.columns)} if request.columns else {}
@@ -99,7 +99,7 @@ def described(request: ImportRequest, marks: tuple[FileMark, ...]) -> dict[str, 
 
 # The values come from JSON, whose types only the field names tell.
 def request_from(values: dict[str, Any]) -> tuple[ImportRequest, tuple[FileMark, ...]]:
-    """A request and its files' marks as :func:`described` wrote them.
+    """A request and its files' marks as :func:`describe_request` wrote them.
 
     Raises
     ------

@@ -18,10 +18,10 @@ from processing.output_streams import write_every_character
 from processing.project.file_record import FileRecord, job_from, record_from
 from processing.project.file_recorder import NotAsPlanned, record_file
 
-TOLD, WHOLE, REFUSED, MIXED = "told", "whole", "refused", "mixed"
+TOLD, WHOLE, REFUSED, MIXED = "reported", "whole", "refused", "mixed"
 
 
-def described_error(error: UserError) -> dict[str, object]:
+def describe_error(error: UserError) -> dict[str, object]:
     """An error as JSON."""
     cause = error.__cause__
     return {
@@ -43,13 +43,13 @@ def main() -> None:
 def _do(values: dict[str, Any]) -> None:
     job, record = job_from(values["job"]), record_from(values["record"])
 
-    def told(so_far: FileRecord) -> None:
+    def reported(so_far: FileRecord) -> None:
         _say(TOLD, job.number, so_far.to_json())
 
     try:
-        _say(WHOLE, job.number, record_file(job, record, told).to_json())
+        _say(WHOLE, job.number, record_file(job, record, reported).to_json())
     except UserError as error:
-        _say(REFUSED, job.number, described_error(error))
+        _say(REFUSED, job.number, describe_error(error))
     except NotAsPlanned:
         _say(MIXED, job.number, {})
 

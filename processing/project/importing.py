@@ -21,7 +21,7 @@ from processing.errors import (
     Interrupted,
     InUse,
     UserError,
-    told_as_user_error,
+    report_as_user_error,
 )
 from processing.formats.image_list import read_image_list
 from processing.formats.point_chunk import Vector3
@@ -40,18 +40,18 @@ from processing.owned_files import (
 from processing.points.drive_info import SourceFile
 from processing.project.build_steps import BuildSteps
 from processing.project.delivery import Delivery, read_delivery
-from processing.project.disk_room import full_disk_told, refuse_small_disk
+from processing.project.disk_room import refuse_small_disk, report_full_disk
 from processing.project.drive_building import BuildPlan, build_drive
 from processing.project.file_record import FileRecord, record_from
 from processing.project.file_recorder import checksum_of
 from processing.project.import_journal import ImportJournal
-from processing.project.import_layout import Layout, ReadWay, layout_of, recordings_of
+from processing.project.import_layout import ImportLayout, ReadOptions, layout_of, recordings_of
 from processing.project.import_processes import MixedFile, record_files
 from processing.project.import_request import (
     FileMark,
     ImportRequest,
     Labels,
-    described,
+    describe_request,
     marks_of,
 )
 from processing.project.part_joining import join_parts
@@ -96,15 +96,15 @@ def import_drives(
     """
     marks = marks_of(request)
     delivery = read_delivery(request.inputs, request.crs, monitor, columns=request.columns)
-    with told_as_user_error(into):
+    with report_as_user_error(into):
         _make_own(into)
     journal = ImportJournal(into, is_kept=is_import_folder(into))
     running = _Import(request, marks, delivery, journal, monitor)
     try:
-        with full_disk_told(running.wanted_bytes, running.keep):
+        with report_full_disk(running.wanted_bytes, running.keep):
             if is_import_folder(into) and not journal.is_begun:
                 _empty(into)
-                journal.begin(described(request, marks))
+                journal.begin(describe_request(request, marks))
             folders = running.run(tuple(taken))
         journal.finish(folder.name for folder in folders)
     except (UserError, Cancelled, KeyboardInterrupt) as end:
@@ -142,7 +142,7 @@ class _Import:
         self._into = journal.folder
         self._files = tuple(file.info for group in delivery.recordings for file in group)
         self._marks = {mark.path: mark for mark in marks}
-        self._way = ReadWay(
+        self._options = ReadOptions(
             keeps_angles=not request.trajectories,
             has_labels=any("label" in info.attributes for info in self._files),
             labels=request.labels,
@@ -174,7 +174,7 @@ class _Import:
             images,
             _is_adjusted_standard(self._files),
             _shared_sources(recordings),
-            _scanner_places(self._files),
+            _scanner_positions(self._files),
             identity=(*checksums, self._request.labels, self._request.crs, *self._request.columns),
         )
         return self._build_all(recordings, plan, taken)
@@ -193,10 +193,10 @@ class _Import:
             self._journal.save()
         return self.is_kept
 
-    def _planned(self) -> Layout:
+    def _planned(self) -> ImportLayout:
         groups = range(len(self._delivery.recordings))
         mixed = [group for group in groups if self._journal.known(f"mixed {group}") is not None]
-        return layout_of(self._delivery, self._marks, self._way, self._into, mixed)
+        return layout_of(self._delivery, self._marks, self._options, self._into, mixed)
 
     def _read_all(self, ways: Future[tuple[NamedTrajectory, ...]]) -> None:
         total = sum(info.count for info in self._files)
@@ -211,7 +211,7 @@ class _Import:
         done: dict[int, int] = {}
         read = 0
 
-        def told(number: int, record: FileRecord) -> None:
+        def reported(number: int, record: FileRecord) -> None:
             nonlocal read
             read += record.done - done[number]
             done[number] = record.done
@@ -231,7 +231,7 @@ class _Import:
                 if not record.is_whole
             ]
             try:
-                record_files(work, told, check)
+                record_files(work, reported, check)
             except MixedFile as surprise:
                 group = self._layout.group_of(surprise.number)
                 self._journal.note(f"mixed {group}", {})
@@ -246,20 +246,20 @@ class _Import:
         """The records as they were noted, new ones for what goes elsewhere now."""
         for group in range(len(self._layout.groups)):
             for recording in self._layout.planned.get(group, ()):
-                with told_as_user_error(recording.folder):
+                with report_as_user_error(recording.folder):
                     recording.folder.mkdir(parents=True, exist_ok=True)
         for job in self._layout.jobs:
             noted = self._journal.known(f"file {job.number}")
             record = None if noted is None else record_from(noted)
-            in_parts = job.place is None
+            in_parts = job.position is None
             if record is None or record.in_parts != in_parts:
                 record = FileRecord(in_parts)
             self._records[job.number] = record
 
     def _folders_of(self, number: int) -> tuple[Path, ...]:
         job = self._layout.jobs[number]
-        if job.place is not None:
-            return (Path(job.place.folder),)
+        if job.position is not None:
+            return (Path(job.position.folder),)
         streams = range(len(self._records[number].streams))
         return tuple(Path(job.parts) / f"{number}-{at}" for at in streams)
 
@@ -319,7 +319,7 @@ def _no(_: str) -> bool:
 
 def _empty(folder: Path) -> None:
     """Remove what a killed import left that had noted nothing."""
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         for path in folder.iterdir():
             if path.is_dir() and not is_link(path):
                 remove_folder(path)
@@ -358,10 +358,10 @@ def _shared_sources(recordings: Sequence[Recording]) -> frozenset[int]:
     return frozenset(source for source, count in uses.items() if count > 1)
 
 
-def _scanner_places(files: tuple[PointFileInfo, ...]) -> dict[tuple[int, int], Vector3]:
+def _scanner_positions(files: tuple[PointFileInfo, ...]) -> dict[tuple[int, int], Vector3]:
     """By file and scanner number, which is 0 where a file has one scan."""
     return {
-        (source, scan if len(info.scanner_places) > 1 else 0): place
+        (source, scan if len(info.scanner_positions) > 1 else 0): position
         for source, info in enumerate(files)
-        for scan, place in info.scanner_places
+        for scan, position in info.scanner_positions
     }

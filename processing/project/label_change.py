@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.labels.packing import (
-    packed_codes,
-    packed_points,
-    unpacked_codes,
-    unpacked_points,
+    pack_codes,
+    pack_points,
+    unpack_codes,
+    unpack_points,
 )
 
 MOST_POINTS = 1_000_000
@@ -62,7 +62,7 @@ class LabelChange:
             message = f"{points.shape} points have {before.shape} and {after.shape} codes"
             raise ValueError(message)
         return LabelChange(
-            drive, points.size, packed_points(points), packed_codes(before), packed_codes(after)
+            drive, points.size, pack_points(points), pack_codes(before), pack_codes(after)
         )
 
     def inverse(self) -> LabelChange:
@@ -77,7 +77,7 @@ class LabelChange:
         ValueError
             It is damaged.
         """
-        points = unpacked_points(self.points)
+        points = unpack_points(self.points)
         if points.size != self.count:
             message = f"{points.size} of {self.count} points"
             raise ValueError(message)
@@ -92,7 +92,7 @@ class LabelChange:
         return self._codes(self.after)
 
     def _codes(self, packed: bytes) -> NDArray[np.uint8]:
-        codes = unpacked_codes(packed)
+        codes = unpack_codes(packed)
         if codes.size != self.count:
             message = f"{codes.size} codes for {self.count} points"
             raise ValueError(message)

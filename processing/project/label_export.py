@@ -12,7 +12,7 @@ from processing.formats.las_results import write_results
 from processing.labels.label_column import LABEL
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 from processing.project.delivered_order import DeliveredOrder, Values
 from processing.project.scratch_folder import scratch_folder
 from processing.project.source_check import require_delivered
@@ -24,7 +24,7 @@ _Codes = NDArray[np.uint8]
 
 
 def write_labelled_points(
-    drives: Sequence[Drive], place: Callable[[str], Path], monitor: Monitor
+    drives: Sequence[Drive], position: Callable[[str], Path], monitor: Monitor
 ) -> None:
     """Write the points of every delivered file, with the labels that were painted on them.
 
@@ -33,7 +33,7 @@ def write_labelled_points(
 
     Parameters
     ----------
-    place : callable
+    position : callable
         From a file's name to where it is written; delivered files are never that.
 
     Raises
@@ -51,7 +51,7 @@ def write_labelled_points(
     for drive in drives:
         _check_codes(drive)
     sources = sorted(columns)
-    paths = [place(name) for name in _names_of(sources)]
+    paths = [position(name) for name in _names_of(sources)]
     if not paths:
         return
     with scratch_folder(paths[0].parent) as scratch:
@@ -85,7 +85,7 @@ def _column(drive: Drive, name: str, start: int, stop: int) -> _Codes:
         return np.asarray(held[start:stop])
     if not drive.columns.has(name):
         return np.zeros(stop - start, np.uint8)
-    return np.asarray(read_stretch(drive.folder, name, start, stop))
+    return np.asarray(read_chunk(drive.folder, name, start, stop))
 
 
 def _results_of(order: DeliveredOrder, source: Path) -> Callable[[int, int], Values]:

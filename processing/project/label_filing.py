@@ -1,6 +1,6 @@
 """Filing labels of many points, in a worker's thread: the parts, and the columns that follow.
 
-Painting goes on meanwhile. What is painted while labels are filed is told to :func:`caught_up`,
+Painting goes on meanwhile. What is painted while labels are filed is told to :func:`drop_repainted`,
 which leaves those points to the painter.
 """
 
@@ -16,7 +16,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.labels.label_column import LABEL, labels_of, write_codes
 from processing.monitor import Monitor
 from processing.owned_files import holds_only, is_link, remove_folder, unmark
@@ -73,7 +73,7 @@ def labels_as_change(
     else:
         return Change(labels=tuple(held))
     with whole_folder(folder):
-        with told_as_user_error(folder), (folder / PARTS).open("wb") as file:
+        with report_as_user_error(folder), (folder / PARTS).open("wb") as file:
             parts = [_filed(file, one) for one in held]
             held.clear()
             for one in rest:
@@ -81,7 +81,7 @@ def labels_as_change(
                 parts.append(_filed(file, one))
         filed = FiledLabels(folder, tuple(parts))
         make_columns(filed, drive_of, monitor)
-        with told_as_user_error(folder):
+        with report_as_user_error(folder):
             unmark(folder)
     return Change(filed=filed)
 
@@ -102,7 +102,7 @@ def make_columns(filed: FiledLabels, drive_of: DriveOf, monitor: Monitor) -> boo
     total, done = sum(filed.counts.values()), 0
     for id_ in filed.counts:
         drive, file = drive_of(id_), filed.column_file(id_)
-        with told_as_user_error(file):
+        with report_as_user_error(file):
             _copy_column(drive, file)
         for one in filed.changes(id_):
             monitor.check()
@@ -115,7 +115,7 @@ def make_columns(filed: FiledLabels, drive_of: DriveOf, monitor: Monitor) -> boo
     return fits
 
 
-def caught_up(
+def drop_repainted(
     filed: FiledLabels,
     painted: Sequence[LabelChange],
     drive_of: DriveOf,
@@ -139,7 +139,7 @@ def caught_up(
     later = _points_by_drive(painted)
     parts = []
     path = filed.folder / PARTS
-    with told_as_user_error(path), path.open("ab") as file:
+    with report_as_user_error(path), path.open("ab") as file:
         file.seek(0, os.SEEK_END)
         for part in filed.parts:
             monitor.check()
@@ -186,7 +186,7 @@ def remove_unlisted(steps: Path, listed: Collection[str]) -> None:
                     file.unlink()
 
 
-def rebased(
+def rebase_labels(
     labels: Sequence[LabelChange], painted: Sequence[LabelChange], drive_of: DriveOf
 ) -> tuple[LabelChange, ...]:
     """What was wished for, over the labels as they are, but for points that were painted since."""
@@ -231,12 +231,12 @@ def _without(one: LabelChange, others: NDArray[np.int64]) -> LabelChange | None:
 
 
 def _filed(file: BinaryIO, one: LabelChange) -> FiledPart:
-    place, points = file.tell(), one.unpacked_points()
+    position, points = file.tell(), one.unpacked_points()
     content = one.points + one.before + one.after
     file.write(content + check_of(content))
     sizes = len(one.points), len(one.before), len(one.after)
     first, last = (int(points[0]), int(points[-1])) if points.size else (0, -1)
-    return FiledPart(one.drive, one.count, first, last, place, sizes)
+    return FiledPart(one.drive, one.count, first, last, position, sizes)
 
 
 def _copy_column(drive: Drive, file: Path) -> None:
@@ -248,6 +248,6 @@ def _copy_column(drive: Drive, file: Path) -> None:
 
 
 def _flush(folder: Path) -> None:
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         flush_folder(folder)
         flush_names(folder.parent)

@@ -7,7 +7,7 @@ from contextlib import suppress
 
 import numpy as np
 
-from processing.errors import BadFile, UserError, told_as_user_error
+from processing.errors import BadFile, UserError, report_as_user_error
 from processing.labels.label_column import LABEL, flush, labels_of, make_column, write_labels
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
@@ -130,7 +130,7 @@ class LabelLayer:
                 self._drive_of(id_).columns.take_over(LABEL, filed.column_file(id_))
                 adopted.append(id_)
                 # The next step's note replaces this one's: by then the new name must be safe.
-                with told_as_user_error(filed.folder):
+                with report_as_user_error(filed.folder):
                     flush_names(self._drive_of(id_).folder)
         except UserError:
             with suppress(UserError):
@@ -187,7 +187,7 @@ class LabelLayer:
 def _share_points(labels: Sequence[LabelChange]) -> bool:
     """Whether two changes of one drive are about the same point.
 
-    A long recording is changed by many, stretch after stretch: only what overlaps is compared.
+    A long recording is changed by many, chunk after chunk: only what overlaps is compared.
     """
     reached: list[tuple[int, LabelChange]] = []
     for first, last, one in sorted(

@@ -23,25 +23,25 @@ _SELECT = (
 
 
 def write_labels(
-    connection: sqlite3.Connection, place: int, labels: tuple[LabelChange, ...]
+    connection: sqlite3.Connection, position: int, labels: tuple[LabelChange, ...]
 ) -> None:
     """Write the labels of a change behind all others, in the caller's transaction."""
-    connection.execute("DELETE FROM zuka_history_labels WHERE place >= ?", (place,))
+    connection.execute("DELETE FROM zuka_history_labels WHERE place >= ?", (position,))
     connection.executemany(
         _INSERT,
         [
-            (place, number, one.drive, one.count, one.points, one.before, one.after)
+            (position, number, one.drive, one.count, one.points, one.before, one.after)
             for number, one in enumerate(labels)
         ],
     )
 
 
-def write_pending(connection: sqlite3.Connection, place: int) -> None:
+def write_pending(connection: sqlite3.Connection, position: int) -> None:
     """Write which entry label files may lack from now on, in the caller's transaction."""
-    write_setting(connection, PENDING, place)
+    write_setting(connection, PENDING, position)
 
 
-def labels_at(database: Database, place: int) -> tuple[LabelChange, ...]:
+def labels_at(database: Database, position: int) -> tuple[LabelChange, ...]:
     """The labels of the change at a place in the history.
 
     Raises
@@ -49,7 +49,7 @@ def labels_at(database: Database, place: int) -> tuple[LabelChange, ...]:
     TypeError
         A row is damaged.
     """
-    return tuple(_label_change(row) for row in database.rows(_SELECT, (place,)))
+    return tuple(_label_change(row) for row in database.rows(_SELECT, (position,)))
 
 
 def _label_change(row: tuple[object, ...]) -> LabelChange:

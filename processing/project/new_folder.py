@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from pathlib import Path
 
-from processing.errors import InUse, told_as_user_error
+from processing.errors import InUse, report_as_user_error
 from processing.project.database import Database
 from processing.project.project_lock import LOCK_FILES
 from processing.project.project_settings import write_setting
@@ -70,5 +70,5 @@ def make_database(path: Path, crs: str) -> None:
                 write_setting(connection, CRS, crs)
         finally:
             database.close()
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         unfinished.rename(path)

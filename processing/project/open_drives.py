@@ -53,15 +53,15 @@ class OpenDrives:
             *(one.id for one in change.restored_drives if one.id not in self._removed),
         ]
 
-    def write(self, connection: sqlite3.Connection, change: Change, place: int) -> None:
+    def write(self, connection: sqlite3.Connection, change: Change, position: int) -> None:
         """Write which drives there are after a change, in the caller's transaction.
 
         Parameters
         ----------
-        place : int
+        position : int
             Of the change in the history.
         """
-        self.folders.write(connection, change, place)
+        self.folders.write(connection, change, position)
 
     def follow(self, change: Change) -> None:
         """The transaction of :meth:`write` is through."""

@@ -9,21 +9,21 @@ import numpy as np
 
 from processing.monitor import Monitor
 from processing.owned_files import remove_folder
-from processing.points.ordering import read_stretch, stretches
-from processing.points.placed_columns import PlacedColumns
+from processing.points.column_writer_at_offsets import OffsetColumnWriter
+from processing.points.ordering import chunk_ranges, read_chunk
 from processing.points.source_order import INDEX
 from processing.project.file_record import Stream
 from processing.project.file_recorder import part_folder
 from processing.project.import_journal import ImportJournal
-from processing.project.import_layout import Layout
-from processing.project.lattice import Lattice, Move, move_between
+from processing.project.import_layout import ImportLayout
+from processing.project.quantisation import Quantisation, QuantisationShift, shift_between
 from processing.project.recording import Recording
 
 _POINTS = 1_000_000
 
 
 def join_parts(
-    recording: Recording, layout: Layout, journal: ImportJournal, monitor: Monitor
+    recording: Recording, layout: ImportLayout, journal: ImportJournal, monitor: Monitor
 ) -> None:
     """Bring all parts of a recording into its folder, which is the first part's.
 
@@ -40,10 +40,10 @@ def join_parts(
     first = 0
     for number, part in enumerate(recording.parts):
         job = layout.jobs[part.source]
-        move = _move_to(recording.lattice, job.lattice)
+        move = _move_to(recording.quantisation, job.quantisation)
         if number >= joined:
             folder = part_folder(job, part.at)
-            _copy(folder, part.stream, PlacedColumns(recording.folder, first), move, monitor)
+            _copy(folder, part.stream, OffsetColumnWriter(recording.folder, first), move, monitor)
             journal.note(name, {"parts": number + 1}, (recording.folder,))
             journal.settle()
             remove_folder(folder)
@@ -55,26 +55,30 @@ def join_parts(
         monitor.report(first / recording.count)
 
 
-def _move_to(target: Lattice, lattice: Lattice) -> Move | None:
+def _move_to(target: Quantisation, quantisation: Quantisation) -> QuantisationShift | None:
     """None where nothing is to be moved."""
-    return None if lattice == target else move_between(lattice, target)
+    return None if quantisation == target else shift_between(quantisation, target)
 
 
 def _copy(
-    folder: Path, stream: Stream, to: PlacedColumns, move: Move | None, monitor: Monitor
+    folder: Path,
+    stream: Stream,
+    to: OffsetColumnWriter,
+    move: QuantisationShift | None,
+    monitor: Monitor,
 ) -> None:
     names = (*stream.names, *((INDEX,) if stream.is_indexed else ()))
     try:
-        for start, stop in stretches(stream.count, _POINTS):
+        for start, stop in chunk_ranges(stream.count, _POINTS):
             monitor.check()
-            columns = {name: read_stretch(folder, name, start, stop) for name in names}
+            columns = {name: read_chunk(folder, name, start, stop) for name in names}
             moved = None if move is None else move.applied(columns["xyz"])
             to.write(start, columns if moved is None else {**columns, "xyz": moved})
     finally:
         to.close()
 
 
-def _moved(stream: Stream, move: Move) -> Stream:
+def _moved(stream: Stream, move: QuantisationShift) -> Stream:
     corners = np.array([stream.lowest, stream.highest], dtype=np.int32)
     with_move = move.applied(corners)
     low, high = (corners if with_move is None else with_move).tolist()

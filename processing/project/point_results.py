@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.formats.las_results import write_results
-from processing.formats.safe_write import refuse_inputs, written_safely
+from processing.formats.safe_write import refuse_inputs, write_safely
 from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 from processing.project.delivered_order import DeliveredOrder, Values
 from processing.project.scratch_folder import scratch_folder
 from processing.project.source_check import require_delivered
@@ -107,7 +107,7 @@ def write_point_results(
             first = _DEALING + number * share
             monitor.report(first, _WRITING.filled(name=path.name))
             part = PartMonitor(monitor, first, first + share)
-            temporary = whole.enter_context(written_safely(path, never=_delivered(drives)))
+            temporary = whole.enter_context(write_safely(path, never=_delivered(drives)))
             found, columns = _results_of(order, source), noted[source].columns
             write_results(source, temporary, found, part, columns=columns)
     return tuple(path for _, path in files)
@@ -149,7 +149,7 @@ def _reader_of(
             if drive.columns.has(_COLOR):
                 # Where no camera saw a point it keeps the colour that it was delivered with.
                 is_unseen = values[_SEEN] == 0
-                delivered = read_stretch(drive.folder, _COLOR, start, stop)
+                delivered = read_chunk(drive.folder, _COLOR, start, stop)
                 seen[is_unseen] = delivered[is_unseen]
             values[_COLOR] = seen
         return values

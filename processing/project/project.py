@@ -11,7 +11,7 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import MissingInput, told_as_user_error
+from processing.errors import MissingInput, report_as_user_error
 from processing.owned_files import remove_folder
 from processing.points.drive import Drive
 from processing.project.catalogue import Catalogue
@@ -137,7 +137,7 @@ class Project:
         """
         folder = folder.absolute()
         system = reference_system(crs) if crs else ""
-        with told_as_user_error(folder):
+        with report_as_user_error(folder):
             refuse_occupied(folder)
             folder.mkdir(parents=True, exist_ok=True)
         refuse_links(folder, _OWN)
@@ -297,10 +297,10 @@ class Project:
         for one in completed:
             if one.id not in self._folders.ids or not one.fits(self.drive(one.id)):
                 raise drive_changed(one.name)
-        places = {one.id: where for one in completed if (where := one.places()) is not None}
+        positions = {one.id: where for one in completed if (where := one.positions()) is not None}
         with self._folders.replacing({one.id: one.folder for one in completed}) as connection:
-            moved = self.features.rewrite_points(connection, places)
-            standing = self.history.begin_anew(connection) if places else None
+            moved = self.features.rewrite_points(connection, positions)
+            standing = self.history.begin_anew(connection) if positions else None
         self.features.took_points(moved)
         if standing is not None:
             self.history.ended_undo(standing, standing.position)

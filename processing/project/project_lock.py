@@ -12,7 +12,7 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from processing.errors import InUse, NoSpace, told_as_user_error
+from processing.errors import InUse, NoSpace, report_as_user_error
 from processing.owned_files import new_file, refuse_link
 from processing.text import Text
 
@@ -39,7 +39,7 @@ class ProjectLock:
             refuse_link(folder / name)
         # Not a singleton: a second window of the same process must be refused too.
         self._lock = FileLock(folder / _LOCK, timeout=0)
-        with told_as_user_error(folder / _LOCK):
+        with report_as_user_error(folder / _LOCK):
             try:
                 self._lock.acquire()
             except Timeout as error:

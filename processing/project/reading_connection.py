@@ -14,13 +14,13 @@ from contextlib import closing
 from pathlib import Path, PurePath
 from urllib.parse import quote
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 
 BUSY_S = 5.0
 
 _ATTEMPTS = 5
 _WAL_VERSION = 2
-_VERSION_PLACE = 18
+_VERSION_POSITION = 18
 _NEED_A_COPY = frozenset(
     {
         sqlite3.SQLITE_READONLY_ROLLBACK,
@@ -47,7 +47,7 @@ def uri_of(path: PurePath, mode: str) -> str:
 
 def connect(path: Path, mode: str) -> sqlite3.Connection:
     """A connection on which every transaction is begun and ended by its user."""
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         return sqlite3.connect(
             uri_of(path.absolute(), mode), uri=True, isolation_level=None, timeout=BUSY_S
         )
@@ -87,22 +87,22 @@ def connect_for_reading(path: Path) -> tuple[sqlite3.Connection, Callable[[], No
 
 def _would_make_files(path: Path) -> bool:
     """Whether the database is in WAL mode and nobody has it open: a reader would make files."""
-    with told_as_user_error(path), path.open("rb") as file:
-        head = file.read(_VERSION_PLACE + 1)
-    is_wal = len(head) > _VERSION_PLACE and head[_VERSION_PLACE] == _WAL_VERSION
+    with report_as_user_error(path), path.open("rb") as file:
+        head = file.read(_VERSION_POSITION + 1)
+    is_wal = len(head) > _VERSION_POSITION and head[_VERSION_POSITION] == _WAL_VERSION
     return is_wal and not Path(f"{path}-shm").exists()
 
 
 def _copied(path: Path) -> tuple[sqlite3.Connection, Callable[[], None]] | None:
     """A connection to a recovered copy; None when the database was changed meanwhile."""
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         folder = Path(tempfile.mkdtemp(prefix="zuka-"))
 
     def clean_up() -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
     try:
-        with told_as_user_error(path):
+        with report_as_user_error(path):
             before = _states(path)
             for end in ("", "-journal", "-wal"):
                 source = Path(f"{path}{end}")

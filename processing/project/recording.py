@@ -9,18 +9,18 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.points.placed_columns import PlacedColumns
+from processing.points.column_writer_at_offsets import OffsetColumnWriter
 from processing.points.source_order import FILE, INDEX, SourceRun
 from processing.project.file_record import NO_HIGHEST, NO_LOWEST, Stream
 from processing.project.file_recorder import write_indices
-from processing.project.lattice import Lattice, move_between
+from processing.project.quantisation import Quantisation, shift_between
 
 _MOST_RUNS = 10_000
 _STRETCH = 2_000_000
 
 
 @dataclass(frozen=True)
-class Part:
+class RecordingPart:
     """The points of a recording from one file.
 
     Attributes
@@ -53,10 +53,10 @@ class Recording:
     """
 
     folder: Path
-    lattice: Lattice
+    quantisation: Quantisation
     scanner: int
     delivered_names: tuple[str, ...]
-    parts: list[Part] = field(default_factory=list)
+    parts: list[RecordingPart] = field(default_factory=list)
     has_source_columns: bool = False
 
     @property
@@ -112,7 +112,7 @@ class Recording:
         """Where the points were delivered; empty where columns say it."""
         if self.has_source_columns:
             return ()
-        own = {number: place for place, number in enumerate(self.sources)}
+        own = {number: position for position, number in enumerate(self.sources)}
         runs, first = [], 0
         for part in self.parts:
             file = own.get(part.source, 0)
@@ -134,11 +134,11 @@ class Recording:
         ------
         NoSpace
         """
-        own = {number: place for place, number in enumerate(self.sources)}
+        own = {number: position for position, number in enumerate(self.sources)}
         first = 0
         for part in self.parts:
             stream = part.stream
-            columns = PlacedColumns(self.folder, first)
+            columns = OffsetColumnWriter(self.folder, first)
             try:
                 for start in range(0, stream.count, _STRETCH):
                     size = min(_STRETCH, stream.count - start)
@@ -149,12 +149,12 @@ class Recording:
             first += stream.count
         self.has_source_columns = True
 
-    def takes(self, lattice: Lattice, stream: Stream) -> bool:
+    def takes(self, quantisation: Quantisation, stream: Stream) -> bool:
         """Whether points of this lattice can be added exactly."""
         if (stream.scanner, stream.names) != (self.scanner, self.delivered_names):
             return False
-        if lattice == self.lattice:
+        if quantisation == self.quantisation:
             return True
-        move = move_between(lattice, self.lattice)
+        move = shift_between(quantisation, self.quantisation)
         corners = np.array([stream.lowest, stream.highest], dtype=np.int32)
         return move is not None and move.applied(corners) is not None

@@ -67,14 +67,14 @@ def _nearest_passed(
 ) -> dict[str, _Key]:
     from scipy.spatial import cKDTree
 
-    places = np.array([xyz for _, xyz in lost])
+    positions = np.array([xyz for _, xyz in lost])
     best = np.full(len(lost), np.inf)
     keys: list[_Key] = [(len(drives), 0)] * len(lost)
     for number, drive in enumerate(drives):
         trajectory = drive.trajectory
         if trajectory is None or not drive.count:
             continue
-        found = cKDTree(trajectory.xyz).query(places)
+        found = cKDTree(trajectory.xyz).query(positions)
         distances, nearest = np.asarray(found[0]), np.asarray(found[1])
         points = np.searchsorted(drive.columns["time"], trajectory.time[nearest])
         for one in np.flatnonzero(distances < best).tolist():

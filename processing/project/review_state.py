@@ -78,7 +78,7 @@ class ReviewProgress:
     ----------
     accepted, rejected, left : int
         Of the features of the runs under review.
-    place : int
+    position : int
         Which of them is shown, counted from 1 in the order of the review; 0: none.
     """
 
@@ -86,7 +86,7 @@ class ReviewProgress:
     accepted: int = 0
     rejected: int = 0
     left: int = 0
-    place: int = 0
+    position: int = 0
 
     @property
     def total(self) -> int:

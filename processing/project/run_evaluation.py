@@ -15,7 +15,7 @@ from processing.project.feature import Feature, Status
 from processing.project.feature_middle import middle_of
 from processing.project.measures import length_m
 from processing.project.runs import Run
-from processing.score.reliability import Reliability, Share, reliability_of, share_of
+from processing.score.reliability import Reliability, ShareInterval, reliability_of, share_of
 
 _HAND = "hand"
 _SAME_M = 1e-6
@@ -59,9 +59,9 @@ class RunEvaluation:
     rejected: int
     corrected: int
     shift_m: float
-    precision: Share
-    recall: Share
-    recall_by_length: Share
+    precision: ShareInterval
+    recall: ShareInterval
+    recall_by_length: ShareInterval
     reliability: Reliability
 
     @property
@@ -140,12 +140,12 @@ class _Drawn:
     """What was drawn by hand, and where."""
 
     features: list[Feature]
-    places: NDArray[np.float64]  # (n, 2)
+    positions: NDArray[np.float64]  # (n, 2)
 
     @staticmethod
     def of(features: list[Feature]) -> _Drawn:
-        places = [middle_of(feature).xyz[:2] for feature in features]
-        return _Drawn(features, np.array(places, np.float64).reshape(-1, 2))
+        positions = [middle_of(feature).xyz[:2] for feature in features]
+        return _Drawn(features, np.array(positions, np.float64).reshape(-1, 2))
 
     def within(self, runs: Sequence[Run], drives: Sequence[Drive]) -> list[Feature]:
         """Those within the extent of a drive that one of the runs was on."""
@@ -154,7 +154,7 @@ class _Drawn:
         for drive in drives:
             if drive.id in ids:
                 low, high = np.array(drive.info.lowest), np.array(drive.info.highest)
-                inside = (self.places >= low[:2]) & (self.places <= high[:2])
+                inside = (self.positions >= low[:2]) & (self.positions <= high[:2])
                 is_within |= inside.all(axis=1)
         return [self.features[one] for one in np.flatnonzero(is_within).tolist()]
 
@@ -188,7 +188,7 @@ def _evaluation(
         shift_m=float(np.mean(moved)) if moved else math.nan,
         precision=share_of(len(accepted), len(decided)),
         recall=share_of(len(accepted), len(accepted) + len(missed)),
-        recall_by_length=Share(length, length + missing),
+        recall_by_length=ShareInterval(length, length + missing),
         reliability=reliability_of(
             np.array([one.provenance.confidence for one in decided], np.float64),
             np.array([one.status is Status.ACCEPTED for one in decided], bool),
@@ -207,15 +207,15 @@ def _length_m(features: Iterable[Feature]) -> float:
 
 def _shift_m(feature: Feature, original: Feature) -> float:
     """Mean distance of a feature's vertices from what the original drew."""
-    places = np.array([vertex.xyz for vertex in feature.vertices])
+    positions = np.array([vertex.xyz for vertex in feature.vertices])
     drawn = np.array([vertex.xyz for vertex in original.vertices])
     if original.geometry is Geometry.AREA:
         drawn = np.concatenate([drawn, drawn[:1]])
     if len(drawn) == 1:
-        return float(np.linalg.norm(places - drawn[0], axis=1).mean())
+        return float(np.linalg.norm(positions - drawn[0], axis=1).mean())
     starts, steps = drawn[:-1], np.diff(drawn, axis=0)
     squares = np.maximum((steps**2).sum(axis=1), 1e-12)
-    ways = places[:, None] - starts[None]
+    ways = positions[:, None] - starts[None]
     shares = np.clip((ways * steps).sum(axis=2) / squares, 0.0, 1.0)
     away = ways - shares[..., None] * steps
     return float(np.linalg.norm(away, axis=2).min(axis=1).mean())

@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.points.drive import Drive
 from processing.score.asked_classes import ASKED
-from processing.score.point_classes import is_one_of
+from processing.score.confusion_matrix import is_one_of
 from processing.tools.tool import FinishedColumns, Tool
 
 _CLASS = "classification"
@@ -37,7 +37,7 @@ def write_finding(result: FinishedColumns, codes: Collection[int], path: Path) -
     ------
     NoSpace
     """
-    with told_as_user_error(path), path.open("wb") as file:
+    with report_as_user_error(path), path.open("wb") as file:
         for start in range(0, result.count, _AT_ONCE):
             stop = min(start + _AT_ONCE, result.count)
             found = is_one_of(result.read(_CLASS, start, stop), codes)
@@ -52,7 +52,7 @@ def adopt_finding(drive: Drive, tool: str, run: str, file: Path) -> None:
     NoSpace, MissingInput, InUse
     """
     path = finding_path(drive, tool, run)
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         path.parent.mkdir(parents=True, exist_ok=True)
         file.replace(path)
 
@@ -94,7 +94,7 @@ def finding_of(drive: Drive, tool: str, run: str, points: NDArray[np.int64]) -> 
     path = finding_path(drive, tool, run)
     if not points.size:
         return np.zeros(0, np.bool_)
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         packed = np.memmap(path, np.uint8, "r")
         bits = packed[points // _BYTE] >> (_BYTE - 1 - points % _BYTE).astype(np.uint8)
     said: NDArray[np.bool_] = (bits & 1).astype(np.bool_)
@@ -138,7 +138,7 @@ def _is_whole(drive: Drive, path: Path) -> bool:
 
 def _read(path: Path, start: int, stop: int) -> NDArray[np.bool_]:
     first = start // _BYTE
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         packed = np.fromfile(path, np.uint8, count=-(-stop // _BYTE) - first, offset=first)
     bits: NDArray[np.bool_] = np.unpackbits(packed).view(np.bool_)
     return bits[start - first * _BYTE : stop - first * _BYTE]

@@ -12,7 +12,7 @@ from processing.text import Text
 APPLICATION_ID = 0x47504B47  # "GPKG"
 GEOPACKAGE_VERSION = 10300
 
-Step = Callable[[sqlite3.Connection], None]
+Migration = Callable[[sqlite3.Connection], None]
 
 _GEOPACKAGE = """
 CREATE TABLE gpkg_spatial_ref_sys (
@@ -96,7 +96,7 @@ def _make_first_tables(connection: sqlite3.Connection) -> None:
     connection.execute(f"PRAGMA user_version = {GEOPACKAGE_VERSION}")
 
 
-MIGRATIONS: tuple[Step, ...] = (_make_first_tables, _add_occluded, _add_history_labels)
+MIGRATIONS: tuple[Migration, ...] = (_make_first_tables, _add_occluded, _add_history_labels)
 """The step from each schema version to the next, from an empty file on."""
 
 
@@ -124,7 +124,7 @@ def stored_version(connection: sqlite3.Connection, path: Path) -> int:
     return int(found[0])
 
 
-def migrate(connection: sqlite3.Connection, version: int, steps: Sequence[Step]) -> None:
+def migrate(connection: sqlite3.Connection, version: int, steps: Sequence[Migration]) -> None:
     """Bring tables from a version to the newest, in the caller's transaction.
 
     Parameters

@@ -9,7 +9,7 @@ from uuid import uuid4
 
 from filelock import FileLock, Timeout
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.owned_files import (
     is_link,
     is_marked,
@@ -39,7 +39,7 @@ def scratch_folder(beside: Path) -> Iterator[Path]:
     NoSpace, MissingInput
         The folder can't be written.
     """
-    with told_as_user_error(beside):
+    with report_as_user_error(beside):
         beside.mkdir(parents=True, exist_ok=True)
         for left in beside.glob(f"{_PREFIX}*"):
             _remove_if_left(left)
@@ -60,7 +60,7 @@ def whole_folder(folder: Path) -> Iterator[Path]:
     NoSpace, MissingInput
         The folder can't be made.
     """
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         make_marked(folder)
     try:
         yield folder

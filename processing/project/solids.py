@@ -20,7 +20,7 @@ _LEAST_AREA_M2 = 1e-6
 _THICKEST_M = 10.0
 
 Floats = NDArray[np.float64]
-Face = tuple[int, ...]
+FaceIndices = tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -29,17 +29,17 @@ class Solid:
 
     Attributes
     ----------
-    places : (2n, 3) float64
+    positions : (2n, 3) float64
         The top's corners counter-clockwise as seen from above, then those below them, in the
         frame of the ring.
     top, sides, bottom : tuple of tuples of int
         Faces of three or four places, counter-clockwise as seen from outside.
     """
 
-    places: Floats
-    top: tuple[Face, ...]
-    sides: tuple[Face, ...]
-    bottom: tuple[Face, ...]
+    positions: Floats
+    top: tuple[FaceIndices, ...]
+    sides: tuple[FaceIndices, ...]
+    bottom: tuple[FaceIndices, ...]
 
 
 def thickness_of(kind: FeatureKind, feature: Feature) -> float:
@@ -81,12 +81,12 @@ def solid_of(ring: Floats, thickness_m: float) -> Solid | None:
     )
 
 
-def _faces(ring: Floats) -> tuple[Face, ...]:
+def _faces(ring: Floats) -> tuple[FaceIndices, ...]:
     """A ring in plan, counter-clockwise, as one face of four corners or triangles."""
     left = list(range(len(ring)))
     if len(left) == 4 and all(_turns_left(ring, left, at) for at in range(4)):
         return (tuple(left),)
-    faces: list[Face] = []
+    faces: list[FaceIndices] = []
     while len(left) > 3:
         ear = next((at for at in range(len(left)) if _is_ear(ring, left, at)), 0)
         faces.append((left[ear - 1], left[ear], left[(ear + 1) % len(left)]))

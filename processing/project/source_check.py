@@ -7,12 +7,12 @@ from collections.abc import Callable
 from enum import Enum
 from pathlib import Path
 
-from processing.errors import BadFile, MissingInput, told_as_user_error
+from processing.errors import BadFile, MissingInput, report_as_user_error
 from processing.points.drive_info import SourceFile
 from processing.text import Text
 
 _HASHED_BYTES = 1 << 22
-Check = Callable[[], None]
+CancelCheck = Callable[[], None]
 """Raises what stops the reading of a long file."""
 
 
@@ -24,7 +24,7 @@ class FileState(Enum):
     CHANGED = "changed"
 
 
-def state_of(source: SourceFile, path: Path, check: Check) -> FileState:
+def state_of(source: SourceFile, path: Path, check: CancelCheck) -> FileState:
     """Look at a file; read it only where its date alone speaks against it.
 
     Parameters
@@ -56,7 +56,7 @@ def state_of(source: SourceFile, path: Path, check: Check) -> FileState:
     return FileState.AS_DELIVERED if is_same else FileState.CHANGED
 
 
-def require_delivered(source: SourceFile, path: Path, check: Check) -> None:
+def require_delivered(source: SourceFile, path: Path, check: CancelCheck) -> None:
     """Refuse to go on without the file that was imported.
 
     Raises
@@ -92,9 +92,9 @@ def require_delivered(source: SourceFile, path: Path, check: Check) -> None:
         )
 
 
-def _checksum(path: Path, check: Check) -> str:
+def _checksum(path: Path, check: CancelCheck) -> str:
     digest = hashlib.sha256()
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         files = sorted(one for one in path.rglob("*") if one.is_file()) if path.is_dir() else [path]
         for name in files:
             with name.open("rb") as file:

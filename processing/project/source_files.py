@@ -6,9 +6,15 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 from processing.points.drive import Drive
-from processing.points.file_places import FolderMove, beside, folder_of
+from processing.points.file_locations import FolderMove, beside, folder_of
 from processing.project.project_settings import JsonValue, ProjectSettings
-from processing.project.source_survey import NotedDrive, SourceSurvey, Stamp, SurveyResult, Trouble
+from processing.project.source_survey import (
+    FileProblem,
+    FileStamp,
+    NotedDrive,
+    SourceSurvey,
+    SurveyResult,
+)
 
 HOMES = "drive_homes"
 """Setting: by drive, the project's folder at the time when its paths were noted."""
@@ -40,7 +46,7 @@ class SourceFiles:
         self._folder = folder
         self._settings = settings
         self._writing = writing
-        self.troubles: tuple[Trouble, ...] = ()
+        self.troubles: tuple[FileProblem, ...] = ()
 
     def homes_with(self, ids: Iterable[str]) -> dict[str, JsonValue]:
         """The setting `HOMES` once drives are in the project."""
@@ -123,13 +129,13 @@ class SourceFiles:
                 continue
             noted, now, home = (str(one.get(name, "")) for name in ("noted", "now", "home"))
             if home != str(self._folder):
-                place = beside(now, home, self._folder)
-                if place is not None:
-                    found.append(FolderMove(noted, str(place)))
+                position = beside(now, home, self._folder)
+                if position is not None:
+                    found.append(FolderMove(noted, str(position)))
             found.append(FolderMove(noted, now))
         return tuple(found)
 
-    def _stamps(self) -> Mapping[str, Stamp]:
+    def _stamps(self) -> Mapping[str, FileStamp]:
         found = {}
         for key, stamp in self._table(_STAMPS).items():
             match stamp:

@@ -11,11 +11,11 @@ from pathlib import Path
 
 from processing.errors import UserError
 from processing.points.drive_info import SourceFile
-from processing.points.file_places import FolderMove, below, beside, folder_of, name_of
-from processing.project.source_check import Check, FileState, state_of
+from processing.points.file_locations import FolderMove, below, beside, folder_of, name_of
+from processing.project.source_check import CancelCheck, FileState, state_of
 
 _ALIKE = 2
-Stamp = tuple[int, int]
+FileStamp = tuple[int, int]
 """Size and date (ns) of a file that was read whole and found to be the delivered one."""
 
 
@@ -41,7 +41,7 @@ class NotedDrive:
 
 
 @dataclass(frozen=True)
-class Trouble:
+class FileProblem:
     """A noted file that is missing or is another one now.
 
     Attributes
@@ -75,8 +75,8 @@ class SurveyResult:
     """
 
     moves: tuple[FolderMove, ...] = ()
-    troubles: tuple[Trouble, ...] = ()
-    stamps: Mapping[str, Stamp] = field(default_factory=dict)
+    troubles: tuple[FileProblem, ...] = ()
+    stamps: Mapping[str, FileStamp] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -99,10 +99,10 @@ class SourceSurvey:
     drives: tuple[NotedDrive, ...]
     folder: Path
     moves: tuple[FolderMove, ...]
-    stamps: Mapping[str, Stamp]
+    stamps: Mapping[str, FileStamp]
     chosen: Path | None = None
 
-    def look(self, check: Check) -> SurveyResult:
+    def look(self, check: CancelCheck) -> SurveyResult:
         """Look for all files; some of them may have to be read whole.
 
         Parameters
@@ -111,29 +111,29 @@ class SourceSurvey:
             Called now and then; raises to stop.
         """
         moves = self.moves_found(check)
-        places = {move.noted: Path(move.now) for move in moves}
-        troubles: list[Trouble] = []
+        positions = {move.noted: Path(move.now) for move in moves}
+        troubles: list[FileProblem] = []
         stamps = dict(self.stamps)
         for folder, noted_files in self._by_folder().items():
-            place = places.get(folder, Path(folder))
-            names = _names_in(place)
+            position = positions.get(folder, Path(folder))
+            names = _names_in(position)
             for noted in noted_files:
                 check()
-                state = _state(noted, place, names, stamps, check)
+                state = _state(noted, position, names, stamps, check)
                 if state is not FileState.AS_DELIVERED:
-                    troubles.append(noted.trouble(place, state))
+                    troubles.append(noted.trouble(position, state))
         return SurveyResult(moves, tuple(troubles), stamps)
 
-    def moves_found(self, check: Check) -> tuple[FolderMove, ...]:
+    def moves_found(self, check: CancelCheck) -> tuple[FolderMove, ...]:
         """Look only where folders are; no file is read."""
-        places = {
-            folder: self._place_of(folder, noted_files, check)
+        positions = {
+            folder: self._position_of(folder, noted_files, check)
             for folder, noted_files in self._by_folder().items()
         }
         return tuple(
-            FolderMove(folder, str(place))
-            for folder, place in places.items()
-            if place != Path(folder)
+            FolderMove(folder, str(position))
+            for folder, position in positions.items()
+            if position != Path(folder)
         )
 
     def _by_folder(self) -> dict[str, list[_Noted]]:
@@ -148,15 +148,15 @@ class SourceSurvey:
                 own.drives.append(drive)
         return {folder: list(own.values()) for folder, own in files.items()}
 
-    def _place_of(self, folder: str, files: list[_Noted], check: Check) -> Path:
+    def _position_of(self, folder: str, files: list[_Noted], check: CancelCheck) -> Path:
         """The first place that has all of a folder's files, or else the one that has most."""
         best, most = Path(folder), 0
-        for place in dict.fromkeys(self._candidates(folder, files)):
+        for position in dict.fromkeys(self._candidates(folder, files)):
             check()
-            names = _names_in(place)
-            count = sum(_likeness(noted, place, names) for noted in files)
+            names = _names_in(position)
+            count = sum(_likeness(noted, position, names) for noted in files)
             if count > most:
-                best, most = place, count
+                best, most = position, count
             if count == len(files) * _ALIKE:
                 break
         return best
@@ -167,9 +167,9 @@ class SourceSurvey:
         yield from (Path(move.now) for move in self.moves if move.noted == folder)
         yield Path(folder)
         for home in dict.fromkeys(drive.home for noted in files for drive in noted.drives):
-            place = beside(folder, home, self.folder) if home else None
-            if place is not None:
-                yield place
+            position = beside(folder, home, self.folder) if home else None
+            if position is not None:
+                yield position
 
 
 @dataclass(frozen=True)
@@ -184,45 +184,49 @@ class _Noted:
     def name(self) -> str:
         return name_of(self.path)
 
-    def trouble(self, place: Path, state: FileState) -> Trouble:
+    def trouble(self, position: Path, state: FileState) -> FileProblem:
         """What is to be said of it."""
         ids = tuple(drive.id for drive in self.drives)
-        return Trouble(ids, self.path, place / self.name, state, self.source is None)
+        return FileProblem(ids, self.path, position / self.name, state, self.source is None)
 
 
-def _names_in(place: Path) -> frozenset[str]:
+def _names_in(position: Path) -> frozenset[str]:
     """One look at a folder in place of one at each of its thousands of images."""
     try:
-        return frozenset(entry.name for entry in place.iterdir())
+        return frozenset(entry.name for entry in position.iterdir())
     except OSError:
         return frozenset()
 
 
-def _is_there(noted: _Noted, place: Path, names: frozenset[str]) -> bool:
+def _is_there(noted: _Noted, position: Path, names: frozenset[str]) -> bool:
     # Systems that take small letters for capitals know more names than they list.
-    return noted.name in names or (bool(names) and (place / noted.name).is_file())
+    return noted.name in names or (bool(names) and (position / noted.name).is_file())
 
 
-def _likeness(noted: _Noted, place: Path, names: frozenset[str]) -> int:
+def _likeness(noted: _Noted, position: Path, names: frozenset[str]) -> int:
     """A file of the same name is better than none, one of the same size is the one meant."""
-    if not _is_there(noted, place, names):
+    if not _is_there(noted, position, names):
         return 0
     if noted.source is None:
         return _ALIKE
     try:
-        return _ALIKE if (place / noted.name).stat().st_size == noted.source.size else 1
+        return _ALIKE if (position / noted.name).stat().st_size == noted.source.size else 1
     except OSError:
         return 0
 
 
 def _state(
-    noted: _Noted, place: Path, names: frozenset[str], stamps: dict[str, Stamp], check: Check
+    noted: _Noted,
+    position: Path,
+    names: frozenset[str],
+    stamps: dict[str, FileStamp],
+    check: CancelCheck,
 ) -> FileState:
-    if not _is_there(noted, place, names):
+    if not _is_there(noted, position, names):
         return FileState.MISSING
     if noted.source is None:
         return FileState.AS_DELIVERED
-    path, key = place / noted.name, f"{noted.source.sha256} {place / noted.name}"
+    path, key = position / noted.name, f"{noted.source.sha256} {position / noted.name}"
     try:
         status = path.stat()
         stamp = (status.st_size, status.st_mtime_ns)

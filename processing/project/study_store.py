@@ -7,10 +7,10 @@ from datetime import datetime
 from uuid import uuid4
 
 from processing.project.project_settings import JsonValue, ProjectSettings
-from processing.score.parameter_study import ParameterStudy, StudyCell, Varied
-from processing.score.point_classes import TwoByTwo
+from processing.score.confusion_matrix import ConfusionMatrix
+from processing.score.parameter_study import ParameterStudy, StudyCell, VariedParameter
 from processing.text import Text
-from processing.tools.parameters import Value
+from processing.tools.parameters import ParameterValue
 
 MOST_KEPT = 50
 """The oldest ones go first; a study of twenty by twenty is some 20 kB."""
@@ -146,17 +146,19 @@ def _study_of(values: JsonValue) -> KeptStudy | None:
     )
 
 
-def _varied_of(stored: JsonValue) -> Varied:
+def _varied_of(stored: JsonValue) -> VariedParameter:
     if not isinstance(stored, dict) or not isinstance(stored.get("values"), list):
         raise TypeError(stored)
     values = stored["values"]
-    return Varied(str(stored.get("parameter")), tuple(_value(one) for one in _list(values)))
+    return VariedParameter(
+        str(stored.get("parameter")), tuple(_value(one) for one in _list(values))
+    )
 
 
 def _cell_of(stored: JsonValue) -> StudyCell:
     values, numbers = _list(stored)
     counts = [one for one in _list(numbers) if isinstance(one, int)]
-    return StudyCell(tuple(_value(one) for one in _list(values)), TwoByTwo(*counts))
+    return StudyCell(tuple(_value(one) for one in _list(values)), ConfusionMatrix(*counts))
 
 
 def _list(stored: JsonValue) -> list[JsonValue]:
@@ -165,7 +167,7 @@ def _list(stored: JsonValue) -> list[JsonValue]:
     return stored
 
 
-def _value(stored: JsonValue) -> Value:
+def _value(stored: JsonValue) -> ParameterValue:
     if not isinstance(stored, (str, int, float, bool)):
         raise TypeError(stored)
     return stored

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from processing.errors import OutOfRange
 from processing.formats.geotiff import TILE, Raster, write_geotiff
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.ground.stored_surface import StoredSurface
 from processing.monitor import Monitor
 from processing.points.drive import Drive
@@ -64,7 +64,7 @@ def write_surface(
     InUse, NoSpace, Cancelled
     """
     monitor.report(0.0, _WRITING.filled(name=path.name))
-    with written_safely(path, never=never) as temporary:
+    with write_safely(path, never=never) as temporary:
         write_surface_content(surface, temporary, monitor)
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from processing.errors import OutOfRange
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.project.project_settings import ProjectSettings
 from processing.templates.profile_template import ProfileTemplate
 from processing.templates.template_text import (
@@ -125,5 +125,5 @@ def export_template(template: ProfileTemplate, path: Path) -> None:
     InUse, NoSpace, MissingInput
         What was there is as it was.
     """
-    with written_safely(path) as temporary:
+    with write_safely(path) as temporary:
         temporary.write_text(template_text(template) + "\n", encoding="utf-8", newline="\n")

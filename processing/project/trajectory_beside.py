@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UserError, told_as_user_error
+from processing.errors import UserError, report_as_user_error
 from processing.formats.point_files import read_info, read_sample
 from processing.project.dropped_files import TRAJECTORY, content_of
 from processing.project.trajectory_choice import match_trajectory, read_trajectories
@@ -95,7 +95,7 @@ def _listed(folder: Path) -> list[Path]:
 def _is_trajectory(path: Path) -> bool:
     if path.suffix.lower() not in _ENDINGS:
         return False
-    with suppress(UserError), told_as_user_error(path):
+    with suppress(UserError), report_as_user_error(path):
         return path.is_file() and content_of(path) == TRAJECTORY
     return False
 

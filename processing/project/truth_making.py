@@ -1,6 +1,6 @@
 """Making a truth of the classes as they stand now, after somebody corrected them.
 
-The column is written into a folder of its own, a stretch at a time, in a worker's thread;
+The column is written into a folder of its own, a chunk at a time, in a worker's thread;
 :class:`processing.project.truth_store.TruthStore` adopts the folder.
 """
 
@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import Unsuitable, told_as_user_error
+from processing.errors import Unsuitable, report_as_user_error
 from processing.image.clip import Clip
 from processing.labels.label_column import LABEL
 from processing.monitor import Monitor, PartMonitor
 from processing.owned_files import remove_folder
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 from processing.project.run_findings import labelled_by_runs
 from processing.project.scratch_folder import whole_folder
 from processing.project.truth_store import TRUTH
@@ -36,7 +36,7 @@ _CLASS = "classification"
 _AT_ONCE = 1_000_000
 
 
-class Checked(Enum):
+class CheckedPoints(Enum):
     """Which points a person vouches for."""
 
     WHOLE = "whole"
@@ -113,7 +113,7 @@ def _write(
 ) -> int:
     """The truth of one drive; gives how many points are known."""
     known = 0
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         folder.mkdir()
     with ColumnWriter(folder) as writer:
         writer.append({TRUTH: np.empty(0, np.uint8)})
@@ -156,7 +156,7 @@ def classes_as_they_stand(drive: Drive, start: int, stop: int) -> NDArray[np.uin
     """Labels over delivered classes of the points ``start … stop − 1``: (k,) uint8, never 0."""
     codes = np.zeros(stop - start, np.uint8)
     if drive.columns.has(_CLASS):
-        codes = np.asarray(read_stretch(drive.folder, _CLASS, start, stop))
+        codes = np.asarray(read_chunk(drive.folder, _CLASS, start, stop))
     if drive.columns.has(LABEL):
         labels = np.asarray(drive.columns[LABEL][start:stop])
         codes = np.where(labels > 0, labels, codes)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import BadFile, told_as_user_error
+from processing.errors import BadFile, report_as_user_error
 from processing.formats.point_codes import read_truth
 from processing.monitor import Monitor, PartMonitor
 from processing.owned_files import remove_folder
@@ -87,7 +87,7 @@ def _write(
 ) -> int:
     """The truth of one drive; gives how many points are known."""
     number, known = _paths(drive).index(source), 0
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         folder.mkdir()
     with ColumnWriter(folder) as writer:
         writer.append({TRUTH: np.empty(0, np.uint8)})
@@ -107,7 +107,7 @@ def _write(
 
 
 def _dealt(file: CodedFile, scratch: Path, monitor: Monitor) -> NDArray[np.uint8]:
-    with told_as_user_error(scratch):
+    with report_as_user_error(scratch):
         scratch.mkdir()
     with ColumnWriter(scratch) as writer:
         writer.append({TRUTH: np.empty(0, np.uint8)})

@@ -16,11 +16,11 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.owned_files import holds_only, remove_emptied, remove_folder
 from processing.points.columns import column_path
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 from processing.project.project_settings import JsonValue, ProjectSettings
 from processing.text import Text
 
@@ -80,7 +80,7 @@ def read_truth(drive: Drive, id_: str, start: int, stop: int) -> NDArray[np.uint
     MissingInput
         The column is gone.
     """
-    return np.asarray(read_stretch(truth_folder(drive, id_), TRUTH, start, stop))
+    return np.asarray(read_chunk(truth_folder(drive, id_), TRUTH, start, stop))
 
 
 class TruthStore:
@@ -124,7 +124,7 @@ class TruthStore:
         try:
             for drive_id, folder in folders.items():
                 target = truth_folder(drive_of(drive_id), truth.id)
-                with told_as_user_error(target):
+                with report_as_user_error(target):
                     target.parent.mkdir(exist_ok=True)
                     folder.rename(target)
                 moved.append(target)

@@ -9,12 +9,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.monitor import Monitor, PartMonitor
 from processing.owned_files import make_marked, remove_folder
 from processing.points.drive import Drive
 from processing.points.drive_part import write_part
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 from processing.project.truth_store import TRUTH, has_truth, read_truth
 from processing.runner import RunRequest, drives_of
 from processing.score.parameter_study import ParameterStudy, StudyRequest, TruthOf, study
@@ -48,7 +48,7 @@ def study_by_truth(
         As :func:`processing.score.parameter_study.study`.
     Cancelled
     """
-    with told_as_user_error(into):
+    with report_as_user_error(into):
         make_marked(into)
     try:
         if not is_part:
@@ -66,7 +66,7 @@ def _truth_of(id_: str) -> TruthOf:
 
 
 def _truth_of_part(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:
-    return np.asarray(read_stretch(drive.folder, TRUTH, start, stop))
+    return np.asarray(read_chunk(drive.folder, TRUTH, start, stop))
 
 
 def _study_of_parts(

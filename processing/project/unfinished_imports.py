@@ -20,7 +20,7 @@ from processing.owned_files import (
 from processing.project.import_journal import FINISHED, PLAN
 from processing.project.import_request import (
     ImportRequest,
-    described,
+    describe_request,
     digest_of,
     marks_of,
     request_from,
@@ -52,7 +52,7 @@ def import_folder(project: Path, request: ImportRequest) -> Path:
     UserError
         A file can't be looked at.
     """
-    return project / TEMPORARY / f"{_STEM}{digest_of(described(request, marks_of(request)))}"
+    return project / TEMPORARY / f"{_STEM}{digest_of(describe_request(request, marks_of(request)))}"
 
 
 def is_import_folder(folder: Path) -> bool:

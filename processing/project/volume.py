@@ -12,7 +12,7 @@ from shapely.geometry.base import BaseGeometry
 
 from processing.earthwork.volume_result import Registration, VolumeResult, Volumes
 from processing.text import Text
-from processing.tools.parameters import Value
+from processing.tools.parameters import ParameterValue
 
 
 class SideKind(Enum):
@@ -52,7 +52,7 @@ class ChosenSide:
 
 
 @dataclass(frozen=True)
-class VolumeWish:
+class VolumeRequest:
     """What is to be compared, and how.
 
     Attributes
@@ -70,7 +70,7 @@ class VolumeWish:
 
     before: ChosenSide
     after: ChosenSide
-    parameters: Mapping[str, Value]
+    parameters: Mapping[str, ParameterValue]
     boundary: BaseGeometry | None = None
     line: BaseGeometry | None = None
     break_lines: tuple[BaseGeometry, ...] = ()
@@ -96,7 +96,7 @@ class KeptVolume:
     made: datetime
     version: int
     crs: str
-    wish: VolumeWish
+    request: VolumeRequest
     volumes: Volumes
     method: str
     grid_m: float
@@ -105,7 +105,7 @@ class KeptVolume:
 
 
 def new_volume(
-    wish: VolumeWish, result: VolumeResult, *, crs: str, version: int, made: datetime
+    request: VolumeRequest, result: VolumeResult, *, crs: str, version: int, made: datetime
 ) -> KeptVolume:
     """A volume with an id that no other has."""
     return KeptVolume(
@@ -113,7 +113,7 @@ def new_volume(
         made=made,
         version=version,
         crs=crs,
-        wish=wish,
+        request=request,
         volumes=result.volumes,
         method=result.method,
         grid_m=result.grid_m,

@@ -14,25 +14,25 @@ from shapely.geometry.base import BaseGeometry
 from processing.earthwork.volume_result import Registration, Volumes
 from processing.errors import BadFile
 from processing.ground.cells import CellGrid
-from processing.project.volume import ChosenSide, KeptVolume, SideKind, VolumeWish
+from processing.project.volume import ChosenSide, KeptVolume, SideKind, VolumeRequest
 from processing.text import Text
 
-Facts = dict[str, Any]  # what JSON holds
+VolumeRecord = dict[str, Any]  # what JSON holds
 
 
-def values_of(kept: KeptVolume, grid: CellGrid) -> Facts:
+def values_of(kept: KeptVolume, grid: CellGrid) -> VolumeRecord:
     """What JSON is to hold of a volume, and of the cells of its map."""
-    wish, shift = kept.wish, kept.registration
+    request, shift = kept.request, kept.registration
     return {
         "made": kept.made.isoformat(),
         "version": kept.version,
         "crs": kept.crs,
-        "before": _side_values(wish.before),
-        "after": _side_values(wish.after),
-        "parameters": dict(wish.parameters),
-        "boundary": _words_of(wish.boundary),
-        "line": _words_of(wish.line),
-        "break_lines": [_words_of(one) for one in wish.break_lines],
+        "before": _side_values(request.before),
+        "after": _side_values(request.after),
+        "parameters": dict(request.parameters),
+        "boundary": _words_of(request.boundary),
+        "line": _words_of(request.line),
+        "break_lines": [_words_of(one) for one in request.break_lines],
         "volumes": _field_values(kept.volumes),
         "method": kept.method,
         "grid_m": kept.grid_m,
@@ -47,7 +47,7 @@ def values_of(kept: KeptVolume, grid: CellGrid) -> Facts:
     }
 
 
-def kept_of(facts: Facts, folder: Path) -> KeptVolume:
+def kept_of(facts: VolumeRecord, folder: Path) -> KeptVolume:
     """The volume that was written so; its folder's name is its id.
 
     Raises
@@ -62,7 +62,7 @@ def kept_of(facts: Facts, folder: Path) -> KeptVolume:
             made=datetime.fromisoformat(facts["made"]),
             version=int(facts["version"]),
             crs=str(facts["crs"]),
-            wish=VolumeWish(
+            request=VolumeRequest(
                 _side_of(facts["before"]),
                 _side_of(facts["after"]),
                 dict(facts["parameters"]),
@@ -80,7 +80,7 @@ def kept_of(facts: Facts, folder: Path) -> KeptVolume:
         raise damaged(folder) from error
 
 
-def _field_values(of: Volumes | Registration) -> Facts:
+def _field_values(of: Volumes | Registration) -> VolumeRecord:
     return {one.name: _plain(getattr(of, one.name)) for one in fields(of)}
 
 
@@ -90,13 +90,13 @@ def _plain(value: object) -> Any:
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _registration_of(values: Facts) -> Registration:
+def _registration_of(values: VolumeRecord) -> Registration:
     east, north, up = values.pop("shift_m")
     sure = values.pop("sure_m")
     return Registration((east, north, up), (sure[0], sure[1], sure[2]), **values)
 
 
-def _side_values(side: ChosenSide) -> Facts:
+def _side_values(side: ChosenSide) -> VolumeRecord:
     day = side.measured_on
     return {
         "kind": side.kind.value,
@@ -109,7 +109,7 @@ def _side_values(side: ChosenSide) -> Facts:
     }
 
 
-def _side_of(values: Facts) -> ChosenSide:
+def _side_of(values: VolumeRecord) -> ChosenSide:
     day = values["measured_on"]
     return ChosenSide(
         SideKind(values["kind"]),
@@ -122,7 +122,7 @@ def _side_of(values: Facts) -> ChosenSide:
     )
 
 
-def grid_of(values: Facts) -> CellGrid:
+def grid_of(values: VolumeRecord) -> CellGrid:
     """The cells of a map; raises what Python does where they are none."""
     origin = np.array(values["origin"], np.float64)
     return CellGrid(origin, float(values["size_m"]), int(values["rows"]), int(values["columns"]))

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.earthwork.drawing_parts import DrawnSection, SectionedLine
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.project.volume_facts import damaged
 
-Between = tuple[tuple[float, float], ...]
+SectionSpans = tuple[tuple[float, float], ...]
 
 
-def write_sections(path: Path, line: SectionedLine, between: Between) -> None:
+def write_sections(path: Path, line: SectionedLine, between: SectionSpans) -> None:
     """Write a line with its sections.
 
     Parameters
@@ -44,7 +44,7 @@ def write_sections(path: Path, line: SectionedLine, between: Between) -> None:
         )
 
 
-def read_sections(path: Path) -> tuple[SectionedLine, Between]:
+def read_sections(path: Path) -> tuple[SectionedLine, SectionSpans]:
     """What :func:`write_sections` wrote.
 
     Raises
@@ -54,7 +54,7 @@ def read_sections(path: Path) -> tuple[SectionedLine, Between]:
     """
     try:
         with (
-            told_as_user_error(path),
+            report_as_user_error(path),
             path.open("rb") as file,
             np.load(file, allow_pickle=False) as stored,
         ):

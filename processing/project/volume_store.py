@@ -16,7 +16,7 @@ import numpy as np
 
 from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.volume_result import VolumeResult
-from processing.errors import BadFile, MissingInput, told_as_user_error
+from processing.errors import BadFile, MissingInput, report_as_user_error
 from processing.ground.cells import CellGrid
 from processing.owned_files import (
     holds_only,
@@ -26,7 +26,7 @@ from processing.owned_files import (
     unmark,
 )
 from processing.project.volume import KeptVolume
-from processing.project.volume_facts import Facts, damaged, grid_of, kept_of, values_of
+from processing.project.volume_facts import VolumeRecord, damaged, grid_of, kept_of, values_of
 from processing.project.volume_sections import read_sections, write_sections
 
 VOLUMES = "results/volumes"
@@ -49,7 +49,7 @@ def write_volume(kept: KeptVolume, result: VolumeResult, folder: Path) -> None:
     NoSpace, MissingInput, BadFile
         What the operating system says; what was written so far is removed.
     """
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         make_marked(folder)
         try:
             for name, dtype in _ARRAYS.items():
@@ -97,7 +97,7 @@ class VolumeStore:
         NoSpace, MissingInput, BadFile
             The folder stays where it is.
         """
-        with told_as_user_error(folder):
+        with report_as_user_error(folder):
             self._home.mkdir(parents=True, exist_ok=True)
             folder.rename(self._home / kept.id)
             unmark(self._home / kept.id)
@@ -152,7 +152,7 @@ class VolumeStore:
         if Path(id_).name != id_ or not folder.is_dir():
             return
         refuse_link(folder)
-        with told_as_user_error(folder):
+        with report_as_user_error(folder):
             # Without its facts it is none any more, whatever else a system keeps open.
             (folder / _FACTS).unlink(missing_ok=True)
         remove_folder(folder, self._home.parent.parent)
@@ -171,7 +171,7 @@ def _flush(file: int) -> None:
 
 
 def _mapped(path: Path, grid: CellGrid) -> Any:  # each array has its own dtype
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         try:
             values = np.load(path, mmap_mode="r", allow_pickle=False)
         except (ValueError, EOFError) as error:
@@ -181,9 +181,9 @@ def _mapped(path: Path, grid: CellGrid) -> Any:  # each array has its own dtype
     return values
 
 
-def _read_facts(folder: Path) -> Facts:  # what JSON holds
+def _read_facts(folder: Path) -> VolumeRecord:  # what JSON holds
     path = folder / _FACTS
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         text = path.read_bytes()
     try:
         facts = json.loads(text)

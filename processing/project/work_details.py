@@ -11,8 +11,8 @@ from pathlib import Path
 from processing.errors import OutOfRange
 from processing.formats.work_facts import WorkFacts
 from processing.text import Text
-from processing.toml_lines import refused_line, short, toml_content, toml_of
-from processing.tools.parameters import MOST_LETTERS, filled_in, parameters_of, text
+from processing.toml_lines import line_error, short, toml_content, toml_of
+from processing.tools.parameters import MOST_LETTERS, fill_parameters, parameters_of, text
 
 _CORRECT = Text(
     "Correct this line of the file and try again; nothing was written.",
@@ -31,7 +31,7 @@ class WorkDetails:
             "帳票に記載する工事名です。空欄ではプロジェクト名とします。",
         ),
     )
-    place: str = text(
+    position: str = text(
         name=Text("Part", "測点・範囲"),
         explanation=Text(
             "Which part of the work is meant: stations, place.",
@@ -72,7 +72,7 @@ def details_of(values: Mapping[str, str]) -> WorkDetails:
     OutOfRange
         There is no such field, or a value is too long or no single line.
     """
-    return filled_in(WorkDetails, {name: value.strip() for name, value in values.items()})
+    return fill_parameters(WorkDetails, {name: value.strip() for name, value in values.items()})
 
 
 def read_work_details(path: Path) -> WorkDetails:
@@ -88,7 +88,7 @@ def read_work_details(path: Path) -> WorkDetails:
     for key, value in values.items():
         fault = _fault_of(key, value)
         if fault is not None:
-            raise refused_line(fault, path, _line_of(key, lines), _CORRECT)
+            raise line_error(fault, path, _line_of(key, lines), _CORRECT)
     return details_of(values)
 
 

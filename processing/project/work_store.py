@@ -10,7 +10,7 @@ from pathlib import Path
 from processing.earthwork.limits import AsBuiltLimits
 from processing.earthwork.limits_file import BUNDLED, as_built_limits, limits_of
 from processing.errors import BadFile, UserError
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.project.project_settings import JsonValue, ProjectSettings
 from processing.project.work_details import WorkDetails, details_of
 from processing.text import Text
@@ -135,7 +135,7 @@ class WorkStore:
         content = bundled.read_bytes()
         if self.limits().file_name:
             content = _text(stored["content"]).encode()
-        with written_safely(path, never=(bundled, *never)) as temporary:
+        with write_safely(path, never=(bundled, *never)) as temporary:
             temporary.write_bytes(content)
 
     def drop_limits(self) -> None:

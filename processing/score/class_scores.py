@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from processing.points.classes import point_classes
-from processing.score.point_classes import ClassCounts
+from processing.score.confusion_matrix import ClassCounts
 from processing.score.point_scores import (
     NOISE_CODES,
     ClassScore,
@@ -42,14 +42,14 @@ def class_score(counts: ClassCounts) -> PointScore:
         ClassScore(
             str(code),
             Text.same(f"{code} {{name}}").filled(name=names.get(code, Text.same(""))),
-            known.two_by_two((code,)),
+            known.confusion_matrix((code,)),
         )
         for code in met
     ]
     judged = {*true.tolist()} - NOISE_CODES
     of_class = {int(one.id): one.counts.f_measure for one in classes}
     own = [of_class[code] for code in judged]
-    ground = known.two_by_two(_GROUND)
+    ground = known.confusion_matrix(_GROUND)
     joined = [of_class[code] for code in judged - _GROUND]
     if judged & _GROUND:
         joined.append(ground.f_measure)

@@ -54,7 +54,7 @@ class CodedFile:
         Points.
     step_m : float
         What the coordinates are rounded to; 0 where they are as written, or there are none.
-    has_places : bool
+    has_positions : bool
         Whether its blocks have coordinates.
     blocks : callable
         Gives the points in the file's order, as often as asked, in blocks of any size.
@@ -63,12 +63,12 @@ class CodedFile:
     path: Path
     count: int
     step_m: float
-    has_places: bool
+    has_positions: bool
     blocks: Callable[[], Iterator[CodedPoints]]
 
 
 @dataclass(frozen=True)
-class Pair:
+class CodePairs:
     """The same points in the truth and in the result.
 
     Attributes
@@ -81,7 +81,7 @@ class Pair:
     result: CodedPoints
 
 
-def pairs_by_order(truth: CodedFile, result: CodedFile, monitor: Monitor) -> Iterator[Pair]:
+def pairs_by_order(truth: CodedFile, result: CodedFile, monitor: Monitor) -> Iterator[CodePairs]:
     """The points of two files of the same order, a block at a time.
 
     Raises
@@ -102,7 +102,7 @@ def pairs_by_order(truth: CodedFile, result: CodedFile, monitor: Monitor) -> Ite
                 raise _other_order(truth, result, done + int(np.argmax(far)) + 1)
         done += len(ours.codes)
         monitor.report(done / max(truth.count, 1))
-        yield Pair(ours, theirs)
+        yield CodePairs(ours, theirs)
 
 
 def _aligned(

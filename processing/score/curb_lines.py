@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.score.confusion_matrix import ConfusionMatrix
 from processing.score.curb_sections import (
     COVERED_SHARE,
     SECTION_M,
@@ -24,10 +25,15 @@ from processing.score.curb_sections import (
     pieces_of,
     sections_of,
 )
-from processing.score.file_scores import Counts, Errors, FileScore, errors_of, named_share
-from processing.score.line_places import Integers, Lines, middle_places
+from processing.score.file_scores import (
+    DetectionCounts,
+    ErrorStatistics,
+    FileScore,
+    errors_of,
+    named_share,
+)
+from processing.score.line_positions import Integers, PolylineIndex, middle_positions
 from processing.score.mapped_features import Floats, MappedFeature, MappedFile
-from processing.score.point_classes import TwoByTwo
 from processing.text import Text
 
 CURBS: dict[str, dict[str, object]] = {
@@ -50,7 +56,7 @@ _NAME = Text("curbs", "縁石")
 
 
 @dataclass(frozen=True)
-class JudgedLine:
+class ScoredLine:
     """A line of the result.
 
     Attributes
@@ -68,7 +74,7 @@ class JudgedLine:
 
 
 @dataclass(frozen=True)
-class JudgedEdge:
+class ScoredEdge:
     """One edge of all curbs, judged section by section.
 
     Attributes
@@ -77,7 +83,7 @@ class JudgedEdge:
         Those that have to be found.
     is_found : (n,) bool
         Which of them are.
-    lines : tuple of JudgedLine
+    lines : tuple of ScoredLine
         Those of the result.
     plan_off, height_off, step_off : (m,) float64
         Errors at places of found sections, and of the steps of found sections, m.
@@ -89,20 +95,20 @@ class JudgedEdge:
 
     asked: tuple[TrueSection, ...]
     is_found: NDArray[np.bool_]
-    lines: tuple[JudgedLine, ...]
+    lines: tuple[ScoredLine, ...]
     plan_off: Floats
     height_off: Floats
     step_off: Floats
     right_types: int
     unseen: int
 
-    def counts(self, *, with_dropped: bool) -> TwoByTwo:
+    def counts(self, *, with_dropped: bool) -> ConfusionMatrix:
         """Sections found, false and missed; dropped curbs count neither way where left out."""
         is_dropped = np.array([one.kind == "dropped" for one in self.asked], np.bool_)
         counted = self.is_found[with_dropped | ~is_dropped]
         hits = int(counted.sum())
         false = sum(len(one.false) for one in self.lines)
-        return TwoByTwo(hits, false, counted.size - hits, 0)
+        return ConfusionMatrix(hits, false, counted.size - hits, 0)
 
 
 def curb_score(
@@ -120,7 +126,7 @@ def curb_score(
     BadFile
         Features aren't lines of curbs, don't say which edge they are, or a measure is no number.
     """
-    edges = judged_edges(result, truth, tolerance_m)
+    edges = score_edges(result, truth, tolerance_m)
     return FileScore(
         "curbs",
         tuple(_counts(edges)),
@@ -143,9 +149,9 @@ def curb_score(
     )
 
 
-def judged_edges(
+def score_edges(
     result: MappedFile, truth: MappedFile, tolerance_m: float = TOLERANCE_M
-) -> dict[str, JudgedEdge]:
+) -> dict[str, ScoredEdge]:
     """What was found, missed and made up of each of `EDGES`, place by place.
 
     Raises
@@ -165,7 +171,7 @@ def judged_edges(
     }
 
 
-def _counts(edges: Mapping[str, JudgedEdge]) -> Iterator[Counts]:
+def _counts(edges: Mapping[str, ScoredEdge]) -> Iterator[DetectionCounts]:
     """What is counted, the thesis's own way first."""
     names = {
         False: Text("2 m sections, without dropped curbs", "2m区間（切下げを除く）"),
@@ -174,10 +180,10 @@ def _counts(edges: Mapping[str, JudgedEdge]) -> Iterator[Counts]:
     for with_dropped, name in names.items():
         counts = [one.counts(with_dropped=with_dropped) for one in edges.values()]
         id_ = "all" if with_dropped else "without_dropped"
-        yield Counts(id_, name, sum(counts, TwoByTwo(0, 0, 0, 0)))
+        yield DetectionCounts(id_, name, sum(counts, ConfusionMatrix(0, 0, 0, 0)))
     for edge, score in edges.items():
         name = Text(*_edge_name(edge, "2 m sections", "の2m区間"))
-        yield Counts(edge, name, score.counts(with_dropped=True))
+        yield DetectionCounts(edge, name, score.counts(with_dropped=True))
 
 
 def _by_edge(file: MappedFile) -> dict[str, list[MappedFeature]]:
@@ -194,18 +200,18 @@ def _judged(
     features: Sequence[MappedFeature],
     sections: Sequence[TrueSection],
     tolerance_m: float,
-) -> JudgedEdge:
+) -> ScoredEdge:
     asked = tuple(section for section in sections if section.is_asked)
-    at, of = _all_places([section.xyz for section in asked])
-    lines = Lines([one.xyz for one in features])
+    at, of = _all_positions([section.xyz for section in asked])
+    lines = PolylineIndex([one.xyz for one in features])
     near = lines.nearest(at, tolerance_m)
     is_found = _mostly(near.line >= 0, of, len(asked))
     used = np.flatnonzero((near.line >= 0) & is_found[of])
     found = _lines_of(near.line[used], of[used])
-    return JudgedEdge(
+    return ScoredEdge(
         asked,
         is_found,
-        _judged_lines(features, Lines([one.xyz for one in sections]), lines, tolerance_m),
+        _judged_lines(features, PolylineIndex([one.xyz for one in sections]), lines, tolerance_m),
         near.off_m[used],
         (near.xyz - at)[used, 2],
         np.array(
@@ -216,11 +222,11 @@ def _judged(
     )
 
 
-def _all_places(lines: Sequence[Floats]) -> tuple[Floats, Integers]:
+def _all_positions(lines: Sequence[Floats]) -> tuple[Floats, Integers]:
     """Judged places along lines, (n, 3), and of which line each is."""
-    places = [middle_places(line, _STEP_M) for line in lines]
-    of = np.repeat(np.arange(len(lines)), [len(one) for one in places])
-    return np.vstack([np.empty((0, 3)), *places]), of.astype(np.int64)
+    positions = [middle_positions(line, _STEP_M) for line in lines]
+    of = np.repeat(np.arange(len(lines)), [len(one) for one in positions])
+    return np.vstack([np.empty((0, 3)), *positions]), of.astype(np.int64)
 
 
 def _mostly(is_so: NDArray[np.bool_], of: Integers, count: int) -> NDArray[np.bool_]:
@@ -237,24 +243,27 @@ def _lines_of(line: Integers, of: Integers) -> dict[int, int]:
 
 
 def _judged_lines(
-    features: Sequence[MappedFeature], true_lines: Lines, lines: Lines, tolerance_m: float
-) -> tuple[JudgedLine, ...]:
+    features: Sequence[MappedFeature],
+    true_lines: PolylineIndex,
+    lines: PolylineIndex,
+    tolerance_m: float,
+) -> tuple[ScoredLine, ...]:
     """Lines of the result with what no true line, seen or not, accounts for."""
     parts = [pieces_of(one.xyz) for one in features]
     owner = np.repeat(np.arange(len(parts)), [len(one) for one in parts])
     pieces = list(itertools.chain.from_iterable(parts))
-    at, of = _all_places(pieces)
+    at, of = _all_positions(pieces)
     true = true_lines.nearest(at, tolerance_m)
     is_right = true.line >= 0
     # Of two lines along one true line only the nearer is right.
     beside = lines.nearest(true.xyz[is_right], tolerance_m)
     is_right[is_right] = beside.line == owner[of[is_right]]
     is_piece_right = _mostly(is_right, of, len(pieces))
-    places = np.bincount(owner[of], minlength=len(features))
-    share = np.bincount(owner[of[is_right]], minlength=len(features)) / np.maximum(places, 1)
+    positions = np.bincount(owner[of], minlength=len(features))
+    share = np.bincount(owner[of[is_right]], minlength=len(features)) / np.maximum(positions, 1)
     ends = np.cumsum([0, *map(len, parts)])
     return tuple(
-        JudgedLine(
+        ScoredLine(
             feature,
             float(share[number]),
             tuple(
@@ -267,7 +276,7 @@ def _judged_lines(
     )
 
 
-def _edge_errors(edge: str, score: JudgedEdge) -> Iterator[Errors]:
+def _edge_errors(edge: str, score: ScoredEdge) -> Iterator[ErrorStatistics]:
     yield errors_of(f"{edge}_plan", _edge_name(edge, "in plan", "の水平距離"), "m", score.plan_off)
     yield errors_of(f"{edge}_height", _edge_name(edge, "height", "の標高"), "m", score.height_off)
     yield errors_of(f"{edge}_step", _edge_name(edge, "curb's step", "の段差"), "m", score.step_off)

@@ -7,7 +7,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from processing.score.line_places import between, length_m
+from processing.score.line_positions import between, length_m
 from processing.score.mapped_features import Floats, MappedFeature, MappedFile
 from processing.text import Text
 

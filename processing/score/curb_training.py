@@ -17,40 +17,40 @@ from processing.formats.mapped_shapes import read_mapped
 from processing.monitor import SilentMonitor
 from processing.output_streams import write_every_character
 from processing.road.curbs.curb_confidence import CurbFacts, terms_of
-from processing.road.curbs.curb_doubts import step_runs
+from processing.road.curbs.curb_filters import step_runs
 from processing.score.curb_lines import FOUND_SHARE, TOLERANCE_M
 from processing.score.curb_sections import kind_of
-from processing.score.learnt_chances import Expected, Known, learnt
-from processing.score.line_places import Lines, length_m, middle_places
+from processing.score.learned_confidence import LabelledThings, WeightPrior, learn_weights
+from processing.score.line_positions import PolylineIndex, length_m, middle_positions
 from processing.score.mapped_features import MappedFile
 from processing.score.road_scenes import RoadScene
 from processing.score.training_streets import training_streets
-from processing.tools.curbs import CurbParameters, measured_curbs, step_settings
+from processing.tools.curbs import CurbParameters, measure_curbs, step_settings
 
-EXPECTED = Expected(
+EXPECTED = WeightPrior(
     (2.5, *CurbFacts(1.0, -25.0, -8.0, -1.0, -20.0, -8.0, -2.0, -1.0)),
     (2.0, *CurbFacts(0.3, 10.0, 5.0, 0.7, 8.0, 4.0, 1.0, 0.7)),
 )
 """Tens of streets have few false lines of each kind, so much is left to what reasoning expects."""
 
-_SHORTEST_M, _LONGEST_M, _PLACES_M = 0.75, 10.0, 0.1
+_SHORTEST_M, _LONGEST_M, _POSITIONS_M = 0.75, 10.0, 0.1
 
 
-def known_lines(scenes: Iterator[RoadScene]) -> Known:
+def known_lines(scenes: Iterator[RoadScene]) -> LabelledThings:
     """All lines on some streets; rear edges of kerb stones, which count neither way, left out."""
     rows: list[tuple[CurbFacts, bool, float, int]] = []
     for number, scene in enumerate(scenes):
         rows += [(*one, number) for one in _judged(scene, read_mapped(scene.truth("curbs")))]
         sys.stderr.write(f"{scene.name}: {len(rows)} lines\n")
-    known = Known.of(rows, len(CurbFacts._fields))
+    known = LabelledThings.of(rows, len(CurbFacts._fields))
     known.worth[:] /= known.worth.mean() if rows else 1.0
     return known
 
 
 def _judged(scene: RoadScene, truth: MappedFile) -> Iterator[tuple[CurbFacts, bool, float]]:
     lower = [one for one in truth.features if one.facts.get("edge") == "lower"]
-    fronts = Lines([one.xyz for one in lower if kind_of(one) != "back"])
-    rears = Lines([one.xyz for one in truth.features if kind_of(one) == "back"])
+    fronts = PolylineIndex([one.xyz for one in lower if kind_of(one) != "back"])
+    rears = PolylineIndex([one.xyz for one in truth.features if kind_of(one) == "back"])
     parameters = CurbParameters()
     settings, monitor = step_settings(parameters), SilentMonitor()
     runs = [
@@ -58,11 +58,11 @@ def _judged(scene: RoadScene, truth: MappedFile) -> Iterator[tuple[CurbFacts, bo
         for number, drive in enumerate(scene.drives)
         for run in step_runs(drive, number, settings, monitor)
     ]
-    for one in measured_curbs(scene.drives, runs, parameters, monitor):
+    for one in measure_curbs(scene.drives, runs, parameters, monitor):
         long_m = length_m(one.line.lower)
         if long_m < _SHORTEST_M:
             continue
-        at = middle_places(one.line.lower, _PLACES_M)
+        at = middle_positions(one.line.lower, _POSITIONS_M)
         shares = [
             float((lines.nearest(at, TOLERANCE_M).line >= 0).mean()) for lines in (fronts, rears)
         ]
@@ -76,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
     asked = training_streets("curb_training", arguments)
     known, check = known_lines(asked.learnt), known_lines(asked.check)
-    sys.stdout.write(learnt(CurbFacts._fields, EXPECTED, known, check))
+    sys.stdout.write(learn_weights(CurbFacts._fields, EXPECTED, known, check))
     return 0
 
 

@@ -24,8 +24,8 @@ _OTHER_SHAPES = {"circle": "square", "square": "circle"}
 def _moved(by_m: float) -> Disturbance:
     def move(truth: MappedFile) -> MappedFile:
         """All together, across the direction in which most of them lie."""
-        places = np.concatenate([one.xyz[:, :2] for one in truth.features])
-        across = np.linalg.svd(places - places.mean(axis=0), full_matrices=False)[2][-1]
+        positions = np.concatenate([one.xyz[:, :2] for one in truth.features])
+        across = np.linalg.svd(positions - positions.mean(axis=0), full_matrices=False)[2][-1]
         shift = by_m * np.array([*across, 0.0])
         return _with(truth, [replace(one, xyz=one.xyz + shift) for one in truth.features])
 
@@ -69,7 +69,7 @@ DISTURBANCES: dict[str, Disturbance] = {
 }
 
 
-def disturbed_rows(folder: Path) -> Iterator[list[str]]:
+def score_disturbed(folder: Path) -> Iterator[list[str]]:
     """Rows of cells, the head first: F-measure per kind of truth and disturbance.
 
     Parameters
@@ -83,12 +83,12 @@ def disturbed_rows(folder: Path) -> Iterator[list[str]]:
         if not truth.features:
             continue
         scores = [scorer.score(disturb(truth), truth) for disturb in DISTURBANCES.values()]
-        for place, counted in enumerate(scores[0].counts):
-            values = [one.counts[place].counts.f_measure for one in scores]
+        for position, counted in enumerate(scores[0].counts):
+            values = [one.counts[position].counts.f_measure for one in scores]
             if not np.isnan(values[0]):
                 yield [scorer.tool, counted.name.en, *map(_cell, values)]
-        for place, share in enumerate(scores[0].shares):
-            values = [one.shares[place].share.value for one in scores]
+        for position, share in enumerate(scores[0].shares):
+            values = [one.shares[position].share.value for one in scores]
             if not np.isnan(values[0]):
                 yield [scorer.tool, f"share: {share.name.en}", *map(_cell, values)]
 

@@ -9,15 +9,15 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from processing.score.confusion_matrix import ConfusionMatrix
 from processing.score.mapped_features import MappedFile
-from processing.score.point_classes import TwoByTwo
 from processing.score.point_scores import NamedFigure, NamedShare
 from processing.score.reliability import share_of
 from processing.text import Text
 
 
 @dataclass(frozen=True)
-class Counts:
+class DetectionCounts:
     """What was found, missed and made up.
 
     Attributes
@@ -25,19 +25,19 @@ class Counts:
     id : str
         Its name in JSON.
     name : Text
-    counts : TwoByTwo
+    counts : ConfusionMatrix
     has_rejections : bool
         Whether there are places where nothing is and nothing was found; else its TN says nothing.
     """
 
     id: str
     name: Text
-    counts: TwoByTwo
+    counts: ConfusionMatrix
     has_rejections: bool = False
 
 
 @dataclass(frozen=True)
-class Errors:
+class ErrorStatistics:
     """How far measured values are from the true ones: result minus truth, or a distance.
 
     Attributes
@@ -83,14 +83,14 @@ class FileScore:
     """
 
     tool: str
-    counts: tuple[Counts, ...] = ()
+    counts: tuple[DetectionCounts, ...] = ()
     shares: tuple[NamedShare, ...] = ()
-    errors: tuple[Errors, ...] = ()
+    errors: tuple[ErrorStatistics, ...] = ()
     figures: tuple[NamedFigure, ...] = ()
     left_out: Mapping[str, int] = field(default_factory=dict)
     limits: Mapping[str, float] = field(default_factory=dict)
 
-    def counts_of(self, id: str) -> TwoByTwo:  # noqa: A002 - the field's name
+    def counts_of(self, id: str) -> ConfusionMatrix:  # noqa: A002 - the field's name
         """The counts of one name.
 
         Raises
@@ -99,7 +99,7 @@ class FileScore:
         """
         return {one.id: one.counts for one in self.counts}[id]
 
-    def errors_of(self, id: str) -> Errors:  # noqa: A002 - the field's name
+    def errors_of(self, id: str) -> ErrorStatistics:  # noqa: A002 - the field's name
         """The errors of one name.
 
         Raises
@@ -152,14 +152,14 @@ class VolumeScorer:
     score: Callable[[Mapping[str, float], Mapping[str, float]], FileScore]
 
 
-def errors_of(id: str, name: tuple[str, str], unit: str, values: ArrayLike) -> Errors:  # noqa: A002
+def errors_of(id: str, name: tuple[str, str], unit: str, values: ArrayLike) -> ErrorStatistics:  # noqa: A002
     """Errors out of their values; those that are NaN, because a side lacks them, don't count."""
     off = np.asarray(values, dtype=np.float64).ravel()
     off = off[np.isfinite(off)]
     if not off.size:
-        return Errors(id, Text(*name), unit, 0, *[math.nan] * 5)
+        return ErrorStatistics(id, Text(*name), unit, 0, *[math.nan] * 5)
     size = np.abs(off)
-    return Errors(
+    return ErrorStatistics(
         id,
         Text(*name),
         unit,

@@ -18,7 +18,8 @@ from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.point_results import write_point_results
 from processing.runner import RunRequest, drives_of, run_together
-from processing.score.filter_scenes import Scene
+from processing.score.confusion_matrix import ClassCounts
+from processing.score.filter_scenes import FilterScene
 from processing.score.peer_filters import (
     Flags,
     ground_by_cloth,
@@ -28,13 +29,12 @@ from processing.score.peer_filters import (
     kept_by_open3d_statistics,
     kept_by_pcl,
 )
-from processing.score.point_classes import ClassCounts
 from processing.tools.ground import GROUND_TOOL, LOWEST, PUBLISHED, GroundParameters
 from processing.tools.noise import NOISE, RADIUS, STATISTICAL, NoiseParameters
 from processing.tools.tool import FinishedColumns, Tool
 
 Codes = NDArray[np.uint8]
-Settings = tuple[tuple[Any, ...], ...]  # a filter's own, of any types
+MethodSettings = tuple[tuple[Any, ...], ...]  # a filter's own, of any types
 
 _GROUND, _OBJECT, _KEPT, _NOISE = (np.uint8(code) for code in (2, 1, 0, 18))
 _RADIUS_M, _NEIGHBOURS, _DEVIATIONS = 0.5, 113, 1.5
@@ -46,7 +46,7 @@ _PCL_STATISTICS = ("-method", "statistical", "-mean_k", f"{_NEIGHBOURS}", "-std_
 
 
 @dataclass(frozen=True)
-class Method:
+class FilterMethod:
     """A filter with its settings.
 
     Attributes
@@ -60,33 +60,35 @@ class Method:
 
     name: str
     settings: str
-    codes: Callable[[Scene, Path], Codes | None]
+    codes: Callable[[FilterScene, Path], Codes | None]
     ours: bool = True
 
 
-def noise_methods() -> tuple[Method, ...]:
+def noise_methods() -> tuple[FilterMethod, ...]:
     """Filters of noise, at the road-surface study's values where they have any."""
     sor = f"{_NEIGHBOURS}, {_DEVIATIONS:g} σ"
     ror = f"{_RADIUS_M:g} m, {_NEIGHBOURS}"
     return (
-        Method("nothing removed", "", _nothing, ours=False),
-        Method("combined", "none to set", partial(_ours, NOISE, NoiseParameters())),
-        Method("radius", ror, partial(_ours, NOISE, NoiseParameters(method=RADIUS))),
-        Method("statistical", sor, partial(_ours, NOISE, NoiseParameters(method=STATISTICAL))),
-        Method("Open3D radius", ror, _open3d_radius, ours=False),
-        Method("Open3D statistical", sor, _open3d_statistics, ours=False),
-        Method("PCL radius", ror, partial(_pcl_noise, _PCL_RADIUS), ours=False),
-        Method("PCL statistical", sor, partial(_pcl_noise, _PCL_STATISTICS), ours=False),
+        FilterMethod("nothing removed", "", _nothing, ours=False),
+        FilterMethod("combined", "none to set", partial(_ours, NOISE, NoiseParameters())),
+        FilterMethod("radius", ror, partial(_ours, NOISE, NoiseParameters(method=RADIUS))),
+        FilterMethod(
+            "statistical", sor, partial(_ours, NOISE, NoiseParameters(method=STATISTICAL))
+        ),
+        FilterMethod("Open3D radius", ror, _open3d_radius, ours=False),
+        FilterMethod("Open3D statistical", sor, _open3d_statistics, ours=False),
+        FilterMethod("PCL radius", ror, partial(_pcl_noise, _PCL_RADIUS), ours=False),
+        FilterMethod("PCL statistical", sor, partial(_pcl_noise, _PCL_STATISTICS), ours=False),
     )
 
 
-def site_methods() -> tuple[Method, ...]:
+def site_methods() -> tuple[FilterMethod, ...]:
     """Filters of ground that are compared on sites: ours without a setting, the published, peers.
 
     A filter of a peer comes twice: as it is, and with the best of some settings.
     """
     lowest = [
-        Method(f"lowest points{words}", f"g = {grid:g} m", _our_ground(LOWEST, grid, band))
+        FilterMethod(f"lowest points{words}", f"g = {grid:g} m", _our_ground(LOWEST, grid, band))
         for words, band in ((", strict", 0.0), (f" and {_BAND_M:g} m above", _BAND_M))
         for grid in _PUBLISHED_GRIDS_M
     ]
@@ -95,24 +97,26 @@ def site_methods() -> tuple[Method, ...]:
     return (_ADAPTIVE, *published, *lowest, *peers)
 
 
-def airborne_methods() -> tuple[Method, ...]:
+def airborne_methods() -> tuple[FilterMethod, ...]:
     """The same for clouds with metres between points, where small cells hold no ground."""
     widest = _published_method(_PUBLISHED_GRIDS_M[-1])
     peers = _peers(_AIRBORNE_CLOTHS, _AIRBORNE_SMRFS, _AIRBORNE_MORPHOLOGIES)
     return (_ADAPTIVE, widest, *peers)
 
 
-def _peers(cloths: Settings, smrfs: Settings, morphologies: Settings) -> Iterator[Method]:
+def _peers(
+    cloths: MethodSettings, smrfs: MethodSettings, morphologies: MethodSettings
+) -> Iterator[FilterMethod]:
     """Each as it is, and with the best of some settings."""
-    known: tuple[tuple[str, Callable[..., Codes | None], tuple[Any, ...], Settings], ...] = (
+    known: tuple[tuple[str, Callable[..., Codes | None], tuple[Any, ...], MethodSettings], ...] = (
         ("CSF", _cloth, (1.0, 3, 0.5), cloths),
         ("SMRF", _smrf, (1.0, 5.0, 0.15), smrfs),
         ("PCL morphological", _pcl_ground, (), morphologies),
     )
     for name, codes_of, usual, settings in known:
         chosen = f"best of {len(settings)} by this truth"
-        yield Method(name, "its defaults", partial(codes_of, usual), ours=False)
-        yield Method(name, chosen, partial(_best, codes_of, settings), ours=False)
+        yield FilterMethod(name, "its defaults", partial(codes_of, usual), ours=False)
+        yield FilterMethod(name, chosen, partial(_best, codes_of, settings), ours=False)
 
 
 def _morphology(cell_m: float, slope: float, distance_m: float) -> tuple[str, ...]:
@@ -124,13 +128,13 @@ def _morphology(cell_m: float, slope: float, distance_m: float) -> tuple[str, ..
 
 def _our_ground(
     method: str, grid_m: float, tolerance_m: float = 0.0
-) -> Callable[[Scene, Path], Codes]:
+) -> Callable[[FilterScene, Path], Codes]:
     parameters = GroundParameters(method=method, grid_m=grid_m, tolerance_m=tolerance_m)
     return partial(_ours, GROUND_TOOL, parameters)
 
 
-def _published_method(grid_m: float) -> Method:
-    return Method("published", f"g = {grid_m:g} m", _our_ground(PUBLISHED, grid_m))
+def _published_method(grid_m: float) -> FilterMethod:
+    return FilterMethod("published", f"g = {grid_m:g} m", _our_ground(PUBLISHED, grid_m))
 
 
 _SITE_CLOTHS = tuple((cloth, rigid, _BAND_M) for cloth in (0.5, 1.0) for rigid in (1, 2, 3))
@@ -148,7 +152,7 @@ _AIRBORNE_MORPHOLOGIES = tuple(
 )
 
 
-def as_delivered(scene: Scene, folder: Path) -> Path:
+def as_delivered(scene: FilterScene, folder: Path) -> Path:
     """The scene's cloud as a LAS file without its truth: its own, or one made of text."""
     if scene.cloud is not None:
         return scene.cloud
@@ -163,7 +167,7 @@ def as_delivered(scene: Scene, folder: Path) -> Path:
     return path
 
 
-def _ours(tool: Tool, parameters: object, scene: Scene, folder: Path) -> Codes:
+def _ours(tool: Tool, parameters: object, scene: FilterScene, folder: Path) -> Codes:
     """What ``zuka run`` writes; the import is kept in the folder for the next method."""
     drives, results = _drives(scene, folder), folder / uuid4().hex
     results.mkdir()
@@ -178,7 +182,7 @@ def _ours(tool: Tool, parameters: object, scene: Scene, folder: Path) -> Codes:
     return np.concatenate([block.codes for block in read_result(path).blocks()])
 
 
-def _drives(scene: Scene, folder: Path) -> list[Drive]:
+def _drives(scene: FilterScene, folder: Path) -> list[Drive]:
     kept = folder / "drives"
     if not kept.exists():
         trajectories = () if scene.trajectory is None else (scene.trajectory,)
@@ -187,35 +191,38 @@ def _drives(scene: Scene, folder: Path) -> list[Drive]:
     return [Drive(path.parent) for path in sorted(kept.glob("*/drive.json"))]
 
 
-def _open3d_radius(scene: Scene, _: Path) -> Codes | None:
+def _open3d_radius(scene: FilterScene, _: Path) -> Codes | None:
     return _noise(kept_by_open3d_radius(scene.local_xyz, _RADIUS_M, _NEIGHBOURS))
 
 
-def _open3d_statistics(scene: Scene, _: Path) -> Codes | None:
+def _open3d_statistics(scene: FilterScene, _: Path) -> Codes | None:
     return _noise(kept_by_open3d_statistics(scene.local_xyz, _NEIGHBOURS, _DEVIATIONS))
 
 
-def _pcl_noise(settings: tuple[str, ...], scene: Scene, folder: Path) -> Codes | None:
+def _pcl_noise(settings: tuple[str, ...], scene: FilterScene, folder: Path) -> Codes | None:
     return _noise(kept_by_pcl(scene.local_xyz, settings, folder))
 
 
-def _cloth(settings: tuple[float, int, float], scene: Scene, _: Path) -> Codes | None:
+def _cloth(settings: tuple[float, int, float], scene: FilterScene, _: Path) -> Codes | None:
     found = ground_by_cloth(scene.local_xyz, *settings)
     return None if found is None else _ground(found)
 
 
-def _smrf(settings: tuple[float, float, float], scene: Scene, _: Path) -> Codes | None:
+def _smrf(settings: tuple[float, float, float], scene: FilterScene, _: Path) -> Codes | None:
     found = ground_by_smrf(scene.local_xyz, *settings)
     return None if found is None else _ground(found)
 
 
-def _pcl_ground(settings: tuple[str, ...], scene: Scene, folder: Path) -> Codes | None:
+def _pcl_ground(settings: tuple[str, ...], scene: FilterScene, folder: Path) -> Codes | None:
     found = ground_by_pcl(scene.local_xyz, ("-approximate", "1", *settings), folder)
     return None if found is None else _ground(found)
 
 
 def _best(
-    codes_of: Callable[..., Codes | None], settings: Settings, scene: Scene, folder: Path
+    codes_of: Callable[..., Codes | None],
+    settings: MethodSettings,
+    scene: FilterScene,
+    folder: Path,
 ) -> Codes | None:
     """The codes that agree best with the truth, by kappa."""
 
@@ -223,13 +230,13 @@ def _best(
         for one in settings:
             codes = codes_of(one, scene, folder)
             if codes is not None:
-                counts = ClassCounts.of(scene.truth, codes).two_by_two((int(_GROUND),))
+                counts = ClassCounts.of(scene.truth, codes).confusion_matrix((int(_GROUND),))
                 yield np.nan_to_num(counts.kappa), codes
 
     return max(found(), key=lambda pair: pair[0], default=(0.0, None))[1]
 
 
-def _nothing(scene: Scene, _: Path) -> Codes:
+def _nothing(scene: FilterScene, _: Path) -> Codes:
     return np.full(len(scene.xyz), _KEPT)
 
 
@@ -241,4 +248,4 @@ def _noise(is_kept: Flags | None) -> Codes | None:
     return None if is_kept is None else np.where(is_kept, _KEPT, _NOISE)
 
 
-_ADAPTIVE = Method("adaptive", "none to set", partial(_ours, GROUND_TOOL, GroundParameters()))
+_ADAPTIVE = FilterMethod("adaptive", "none to set", partial(_ours, GROUND_TOOL, GroundParameters()))

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.formats.png import write_png
-from processing.score.filter_scenes import Scene
-from processing.score.point_classes import is_one_of
+from processing.score.confusion_matrix import is_one_of
+from processing.score.filter_scenes import FilterScene
 
 Picture = NDArray[np.uint8]
 
@@ -37,7 +37,7 @@ class _Spot:
 
 
 def paint_errors(
-    scene: Scene, codes: NDArray[np.uint8], kept: Collection[int], folder: Path, name: str
+    scene: FilterScene, codes: NDArray[np.uint8], kept: Collection[int], folder: Path, name: str
 ) -> tuple[Path, ...]:
     """Paint a plan, and sections where most errors are.
 
@@ -88,13 +88,13 @@ def _worst_strips(
             yield strip == number
 
 
-def _painted(places: NDArray[np.float64], spots: tuple[_Spot, ...], longest_px: int) -> Picture:
+def _painted(positions: NDArray[np.float64], spots: tuple[_Spot, ...], longest_px: int) -> Picture:
     """Places (right, up) in m as dots; heights of a section are drawn as wide as lengths."""
-    low, high = _middle_extent(places)
+    low, high = _middle_extent(positions)
     px_per_m = (longest_px - 2 * _MARGIN_PX) / max(float((high - low).max()), 1e-6)
     size = np.ceil((high - low) * px_per_m).astype(np.int64) + 2 * _MARGIN_PX
     picture = np.full((int(size[1]), int(size[0]), 3), _BACKGROUND, np.uint8)
-    pixels = np.floor((places - low) * px_per_m).astype(np.int64) + _MARGIN_PX
+    pixels = np.floor((positions - low) * px_per_m).astype(np.int64) + _MARGIN_PX
     inside = np.all((pixels >= 1) & (pixels < size - 1), axis=1)
     columns, rows = pixels[:, 0], size[1] - 1 - pixels[:, 1]
     for spot in spots:
@@ -106,12 +106,14 @@ def _painted(places: NDArray[np.float64], spots: tuple[_Spot, ...], longest_px: 
 
 
 def _middle_extent(
-    places: NDArray[np.float64],
+    positions: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Without the few points that lie far off, which would shrink everything else."""
-    low, high = np.percentile(places, (0.05, 99.95), axis=0)
+    low, high = np.percentile(positions, (0.05, 99.95), axis=0)
     room = 0.05 * (high - low) + 0.2
-    return np.maximum(low - room, places.min(axis=0)), np.minimum(high + room, places.max(axis=0))
+    return np.maximum(low - room, positions.min(axis=0)), np.minimum(
+        high + room, positions.max(axis=0)
+    )
 
 
 def _write(path: Path, picture: Picture) -> None:

@@ -53,7 +53,7 @@ SITE_KINDS = {
 
 
 @dataclass(frozen=True)
-class Scene:
+class FilterScene:
     """One cloud with its truth, whole in memory.
 
     Attributes
@@ -83,7 +83,7 @@ class Scene:
         return local
 
 
-def noise_scenes(data: Path) -> Iterator[Scene]:
+def noise_scenes(data: Path) -> Iterator[FilterScene]:
     """Noise scenes in a folder, by name.
 
     Raises
@@ -103,7 +103,7 @@ def noise_scenes(data: Path) -> Iterator[Scene]:
         yield _scene(folder.name, cloud, trajectory, true)
 
 
-def sites(data: Path) -> Iterator[Scene]:
+def sites(data: Path) -> Iterator[FilterScene]:
     """Sites with machines in a folder, by name and date; errors as :func:`noise_scenes`."""
     for truth in sorted(data.glob("*/truth/labels_*.npy"), reverse=True):
         folder, date = truth.parents[1], truth.stem.removeprefix("labels_")
@@ -111,13 +111,13 @@ def sites(data: Path) -> Iterator[Scene]:
         yield _scene(f"{folder.name}, {date}", folder / "in" / f"{date}.laz", None, true)
 
 
-def airborne_samples(data: Path) -> Iterator[Scene]:
+def airborne_samples(data: Path) -> Iterator[FilterScene]:
     """Samples of the ISPRS filter test, by number; errors as :func:`noise_scenes`."""
     for path in sorted(data.glob("**/isprs/samp*.txt")):
         truth = _ground_truth(path)
         xyz = np.concatenate([block.xyz for block in truth.blocks() if block.xyz is not None])
         codes = np.concatenate([block.codes for block in truth.blocks()])
-        yield Scene(path.stem, None, None, xyz, codes, {})
+        yield FilterScene(path.stem, None, None, xyz, codes, {})
 
 
 def _ground_truth(path: Path) -> CodedFile:
@@ -129,10 +129,10 @@ def _ground_truth(path: Path) -> CodedFile:
     )
 
 
-def _scene(name: str, cloud: Path, trajectory: Path | None, truth: CodedFile) -> Scene:
-    places = [block.xyz for block in read_result(cloud).blocks() if block.xyz is not None]
+def _scene(name: str, cloud: Path, trajectory: Path | None, truth: CodedFile) -> FilterScene:
+    positions = [block.xyz for block in read_result(cloud).blocks() if block.xyz is not None]
     blocks = list(truth.blocks())
-    xyz = np.concatenate(places) if places else np.empty((0, 3))
+    xyz = np.concatenate(positions) if positions else np.empty((0, 3))
     codes = np.concatenate([block.codes for block in blocks])
     if len(xyz) != len(codes):
         raise MissingInput(
@@ -146,4 +146,4 @@ def _scene(name: str, cloud: Path, trajectory: Path | None, truth: CodedFile) ->
     kinds = {
         kind: np.concatenate([block.kinds[kind] for block in blocks]) for kind in blocks[0].kinds
     }
-    return Scene(name, cloud, trajectory, xyz, codes, kinds)
+    return FilterScene(name, cloud, trajectory, xyz, codes, kinds)

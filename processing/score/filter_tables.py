@@ -13,7 +13,7 @@ NOT_INSTALLED = "not installed"
 
 
 @dataclass(frozen=True)
-class Found:
+class FilterResult:
     """What one method scored on one scene.
 
     Attributes
@@ -31,7 +31,7 @@ class Found:
     score: PointScore | None
 
 
-def noise_table(found: Sequence[Found]) -> str:
+def noise_table(found: Sequence[FilterResult]) -> str:
     """Kept points as the study scores them, noise points, and what is kept of thin things."""
     thin = [NOISE_KINDS[kind] for kind in THIN_KINDS]
     head = ["scene", "method", "settings", "kept P", "R", "**F**", "noise P", "R", "**F**"]
@@ -57,7 +57,7 @@ def noise_table(found: Sequence[Found]) -> str:
     return markdown_table(rows)
 
 
-def sites_table(found: Sequence[Found]) -> str:
+def sites_table(found: Sequence[FilterResult]) -> str:
     """Both classes, both types of error, and kappa."""
     rows = [
         [
@@ -83,7 +83,7 @@ def sites_table(found: Sequence[Found]) -> str:
     return markdown_table(rows)
 
 
-def kinds_table(found: Iterable[Found], names: Mapping[int, str] = SITE_KINDS) -> str:
+def kinds_table(found: Iterable[FilterResult], names: Mapping[int, str] = SITE_KINDS) -> str:
     """Which share of the points of each kind got the right class, one column a method."""
     scored = [one for one in found if one.score is not None and one.score.kinds]
     kinds = sorted({kind for one in scored for kind in _right_of(one)}, key=lambda k: (k < 0, k))
@@ -95,7 +95,7 @@ def kinds_table(found: Iterable[Found], names: Mapping[int, str] = SITE_KINDS) -
     return markdown_table(rows)
 
 
-def airborne_table(found: Sequence[Found]) -> str:
+def airborne_table(found: Sequence[FilterResult]) -> str:
     """Total errors by sample, their mean, and the mean kappa."""
     samples = sorted({one.scene for one in found})
     rows = [["method", "settings", *samples, "**mean**", "mean kappa", "mean of all 15"]]
@@ -150,7 +150,7 @@ _PUBLISHED_AIRBORNE: tuple[tuple[str, str, Mapping[str, float], float], ...] = (
 )
 
 
-def _right_of(found: Found) -> dict[int, float]:
+def _right_of(found: FilterResult) -> dict[int, float]:
     return {} if found.score is None else _right(found.score)
 
 

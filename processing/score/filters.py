@@ -15,23 +15,28 @@ import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.output_streams import write_every_character
-from processing.score.coded_points import CodedPoints, Pair
-from processing.score.filter_methods import Method, airborne_methods, noise_methods, site_methods
+from processing.score.coded_points import CodedPoints, CodePairs
+from processing.score.filter_methods import (
+    FilterMethod,
+    airborne_methods,
+    noise_methods,
+    site_methods,
+)
 from processing.score.filter_pictures import paint_errors
-from processing.score.filter_scenes import Scene, airborne_samples, noise_scenes, sites
+from processing.score.filter_scenes import FilterScene, airborne_samples, noise_scenes, sites
 from processing.score.filter_tables import (
-    Found,
+    FilterResult,
     airborne_table,
     kinds_table,
     markdown_table,
     noise_table,
     sites_table,
 )
+from processing.score.held_out_scenes import unseen_rows
 from processing.score.point_scores import PointScorer
 from processing.score.scorers import GROUND_SCORER, NOISE_SCORER
-from processing.score.unseen_scenes import unseen_rows
 
 HEADINGS = {
     "noise": "## Noise",
@@ -56,13 +61,13 @@ def main(arguments: list[str]) -> int:
         if chosen.markdown is None:
             sys.stdout.write(section)
             continue
-        page = with_section(chosen.markdown.read_text("utf-8"), HEADINGS[part], section)
-        with written_safely(chosen.markdown) as path:
+        page = replace_section(chosen.markdown.read_text("utf-8"), HEADINGS[part], section)
+        with write_safely(chosen.markdown) as path:
             path.write_text(page, "utf-8")
     return 0
 
 
-def with_section(page: str, heading: str, section: str) -> str:
+def replace_section(page: str, heading: str, section: str) -> str:
     """A page with one of its sections replaced, or added at its end.
 
     Parameters
@@ -87,8 +92,8 @@ def write_sections(page: Path | None, sections: Mapping[str, str]) -> None:
         if page is None:
             sys.stdout.write(f"{section}\n")
             continue
-        whole = with_section(page.read_text("utf-8"), heading, section)
-        with written_safely(page) as path:
+        whole = replace_section(page.read_text("utf-8"), heading, section)
+        with write_safely(page) as path:
             path.write_text(whole, "utf-8")
 
 
@@ -118,11 +123,11 @@ def _of_airborne(chosen: argparse.Namespace) -> Iterator[str]:
 
 
 def _found(
-    scenes: Iterable[Scene],
+    scenes: Iterable[FilterScene],
     scorer: PointScorer,
-    methods: Sequence[Method],
+    methods: Sequence[FilterMethod],
     chosen: argparse.Namespace,
-) -> Iterator[Found]:
+) -> Iterator[FilterResult]:
     for scene in scenes:
         with tempfile.TemporaryDirectory(prefix="zuka-") as folder:
             for method in methods:
@@ -131,19 +136,23 @@ def _found(
 
 
 def _scored(
-    scene: Scene, method: Method, scorer: PointScorer, folder: Path, pictures: Path | None
-) -> Found:
+    scene: FilterScene,
+    method: FilterMethod,
+    scorer: PointScorer,
+    folder: Path,
+    pictures: Path | None,
+) -> FilterResult:
     sys.stderr.write(f"{scene.name}: {method.name} {method.settings}\n")
     codes = method.codes(scene, folder)
     score = None
     if codes is not None:
         truth = CodedPoints(scene.truth, kinds=scene.kinds)
-        score = scorer.score([Pair(truth, CodedPoints(codes))])
+        score = scorer.score([CodePairs(truth, CodedPoints(codes))])
         if pictures is not None and method.ours:
             kept = scorer.codes if scorer is GROUND_SCORER else frozenset(range(256)) - scorer.codes
             name = f"{method.name} {method.settings}".strip()
             paint_errors(scene, codes, kept, pictures, name)
-    return Found(scene.name, method.name, method.settings, method.ours, score)
+    return FilterResult(scene.name, method.name, method.settings, method.ours, score)
 
 
 _ABOUT = """\

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.score.line_places import middle_places
+from processing.score.line_positions import middle_positions
 from processing.score.mapped_features import Floats, MappedFeature, MappedFile
-from processing.score.placed_objects import is_in_span, shows_enough
+from processing.score.object_matches import is_in_span, shows_enough
 
 SLOT_M = 0.6
 """Mms.md 7.5: one slot is one usual lid."""
@@ -34,7 +34,7 @@ Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class Run:
+class GutterSlots:
     """The slots of one gutter.
 
     Attributes
@@ -78,7 +78,7 @@ def areas_of(features: Sequence[MappedFeature]) -> Areas:
     return np.asarray(shapely.make_valid(np.array(made, dtype=object)))
 
 
-def runs_of(truth: MappedFile, lids: Sequence[MappedFeature]) -> list[Run]:
+def runs_of(truth: MappedFile, lids: Sequence[MappedFeature]) -> list[GutterSlots]:
     """The runs of true lids: as the truth has them, or else lids that lie beside each other.
 
     Raises
@@ -112,23 +112,23 @@ def _beside(areas: Areas) -> list[object]:
 
 def _ordered(truth: MappedFile, lids: Sequence[MappedFeature], members: list[int]) -> list[int]:
     """Members of a run from one end to the other."""
-    places = [truth.number(lids[number], "order") for number in members]
-    if np.isnan(places).any():
+    positions = [truth.number(lids[number], "order") for number in members]
+    if np.isnan(positions).any():
         middles = np.array([lids[number].xyz[:, :2].mean(axis=0) for number in members])
         away = middles - middles.mean(axis=0)
-        places = list(away @ np.linalg.svd(away, full_matrices=False)[2][0])
-    return [members[place] for place in np.argsort(places, kind="stable")]
+        positions = list(away @ np.linalg.svd(away, full_matrices=False)[2][0])
+    return [members[position] for position in np.argsort(positions, kind="stable")]
 
 
-def _run(lids: Sequence[MappedFeature], areas: Areas, seen: Bools) -> Run:
+def _run(lids: Sequence[MappedFeature], areas: Areas, seen: Bools) -> GutterSlots:
     import shapely
 
     axis = _axis(lids)
-    slots = middle_places(axis, SLOT_M)
+    slots = middle_positions(axis, SLOT_M)
     (_, nearest), away_m = shapely.STRtree(areas).query_nearest(
         shapely.points(slots[:, :2]), return_distance=True, all_matches=False
     )
-    return Run(axis, slots, away_m <= JOINT_M, seen[nearest])
+    return GutterSlots(axis, slots, away_m <= JOINT_M, seen[nearest])
 
 
 def _axis(lids: Sequence[MappedFeature]) -> Floats:

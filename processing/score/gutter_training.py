@@ -19,8 +19,8 @@ from processing.monitor import SilentMonitor
 from processing.output_streams import write_every_character
 from processing.road.gutters.grating_confidence import GratingTerms, terms_of
 from processing.road.gutters.gutter_confidence import CoverFacts
-from processing.score.gutters import judged_gutters
-from processing.score.learnt_chances import Expected, Known, learnt
+from processing.score.gutters import score_gutters
+from processing.score.learned_confidence import LabelledThings, WeightPrior, learn_weights
 from processing.score.mapped_features import Floats, MappedFeature, MappedFile
 from processing.score.road_scenes import RoadScene
 from processing.score.training_streets import training_streets
@@ -28,11 +28,11 @@ from processing.tools.gutters import GutterParameters, gutter_evidence
 
 _FACTS = {"lids": CoverFacts._fields, "gratings": GratingTerms._fields}
 _EXPECTED = {
-    "lids": Expected(
+    "lids": WeightPrior(
         (-4.0, *CoverFacts(0.8, 1.0, 1.0, 0.5, -10.0, -0.5, -0.5, -0.5, -0.5, -2.0)),
         (3.0, *CoverFacts(0.5, 0.7, 0.7, 0.4, 10.0, 0.5, 0.5, 0.5, 0.5, 1.5)),
     ),
-    "gratings": Expected(
+    "gratings": WeightPrior(
         (-12.0, *GratingTerms(2.0, 0.5, 4.0, 2.0, 1.5, -10.0)),
         (6.0, *GratingTerms(2.0, 0.5, 3.0, 1.5, 1.0, 10.0)),
     ),
@@ -42,7 +42,7 @@ _EXPECTED = {
 _Row = tuple[Sequence[float], bool, float, int]
 
 
-def known_covers(scenes: Iterator[RoadScene]) -> dict[str, Known]:
+def known_covers(scenes: Iterator[RoadScene]) -> dict[str, LabelledThings]:
     """All covers on some streets, by where they are from: rows of joints, open rectangles."""
     rows: dict[str, list[_Row]] = {name: [] for name in _FACTS}
     for number, scene in enumerate(scenes):
@@ -50,7 +50,7 @@ def known_covers(scenes: Iterator[RoadScene]) -> dict[str, Known]:
             rows[name].append((terms, is_right, worth, number))
         counts = ", ".join(f"{len(rows[name])} {name}" for name in rows)
         sys.stderr.write(f"{scene.name}: {counts}\n")
-    return {name: Known.of(rows[name], len(_FACTS[name])) for name in rows}
+    return {name: LabelledThings.of(rows[name], len(_FACTS[name])) for name in rows}
 
 
 def _judged(scene: RoadScene) -> Iterator[tuple[str, Sequence[float], bool, float]]:
@@ -84,7 +84,7 @@ def _which_are_right(
         for number, (corners, is_grating) in enumerate(covers)
     )
     result = MappedFile(Path("gutters.geojson"), truth.crs, features)
-    for feature, is_right in judged_gutters(result, truth).is_right:
+    for feature, is_right in score_gutters(result, truth).is_right:
         yield feature.number, is_right
 
 
@@ -93,7 +93,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     asked = training_streets("gutter_training", arguments)
     known, check = known_covers(asked.learnt), known_covers(asked.check)
     for name, expected in _EXPECTED.items():
-        told = learnt(_FACTS[name], expected, known[name], check[name])
+        told = learn_weights(_FACTS[name], expected, known[name], check[name])
         sys.stdout.write(f"{name}\n{told}")
     return 0
 

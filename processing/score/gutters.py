@@ -13,21 +13,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.score.file_scores import Counts, FileScore, errors_of, named_share
+from processing.score.confusion_matrix import ConfusionMatrix
+from processing.score.file_scores import DetectionCounts, FileScore, errors_of, named_share
 from processing.score.gutter_runs import (
     JOINT_M,
     LEAST_SCANNED,
     LEAST_UNCOVERED,
     SLOT_M,
     Areas,
-    Run,
+    GutterSlots,
     areas_of,
     is_seen,
     runs_of,
 )
 from processing.score.mapped_features import Floats, MappedFeature, MappedFile
 from processing.score.one_to_one import best_pairs
-from processing.score.point_classes import TwoByTwo
 from processing.text import Text
 
 GUTTERS: dict[str, dict[str, object]] = {
@@ -50,7 +50,7 @@ _NAME = Text("lids of gutters", "側溝蓋")
 
 
 @dataclass(frozen=True)
-class JudgedGutters:
+class ScoredGutters:
     """What was found, missed and made up, place by place.
 
     Attributes
@@ -81,7 +81,7 @@ class _Pieces:
     is_on_unseen: NDArray[np.bool_]  # of the result: most of it lies on lids that nobody can see
     pairs: tuple[tuple[int, int], ...]
 
-    def counts(self, kind: str | None = None) -> TwoByTwo:
+    def counts(self, kind: str | None = None) -> ConfusionMatrix:
         """Of one type, or of both alike; one taken for the other is a miss and a false alarm."""
 
         def is_of(feature: MappedFeature) -> bool:
@@ -95,7 +95,7 @@ class _Pieces:
         left_out |= {i for i, j in self.pairs if not self.is_asked[j]}
         given = sum(is_of(one) for i, one in enumerate(self.result) if i not in left_out)
         wanted = sum(is_of(one) for j, one in enumerate(self.truth) if self.is_asked[j])
-        return TwoByTwo(int(hits), int(given - hits), int(wanted - hits), 0)
+        return ConfusionMatrix(int(hits), int(given - hits), int(wanted - hits), 0)
 
 
 def gutter_score(result: MappedFile, truth: MappedFile) -> FileScore:
@@ -116,10 +116,12 @@ def gutter_score(result: MappedFile, truth: MappedFile) -> FileScore:
     return FileScore(
         "gutters",
         (
-            Counts("slots", Text("0.6 m slots", "0.6m区間"), slots, has_rejections=True),
-            Counts("pieces", Text("lids and gratings", "側溝蓋・グレーチング"), pieces.counts()),
-            Counts("lids", Text("lids", "側溝蓋"), pieces.counts("lid")),
-            Counts("gratings", Text("gratings", "グレーチング"), pieces.counts("grating")),
+            DetectionCounts("slots", Text("0.6 m slots", "0.6m区間"), slots, has_rejections=True),
+            DetectionCounts(
+                "pieces", Text("lids and gratings", "側溝蓋・グレーチング"), pieces.counts()
+            ),
+            DetectionCounts("lids", Text("lids", "側溝蓋"), pieces.counts("lid")),
+            DetectionCounts("gratings", Text("gratings", "グレーチング"), pieces.counts("grating")),
         ),
         (named_share("runs", ("runs found", "検出した側溝"), found_runs, asked_runs),),
         (
@@ -142,7 +144,7 @@ def gutter_score(result: MappedFile, truth: MappedFile) -> FileScore:
     )
 
 
-def judged_gutters(result: MappedFile, truth: MappedFile) -> JudgedGutters:
+def score_gutters(result: MappedFile, truth: MappedFile) -> ScoredGutters:
     """The places behind the counts of :func:`gutter_score`.
 
     Raises
@@ -160,7 +162,7 @@ def judged_gutters(result: MappedFile, truth: MappedFile) -> JudgedGutters:
         false.append(run.slots[run.is_asked & ~run.has_lid & is_found])
     right = {i for i, j in pieces.pairs if _type(pieces.result[i]) == _type(pieces.truth[j])}
     paired = {i for i, _ in pieces.pairs}
-    return JudgedGutters(
+    return ScoredGutters(
         np.vstack(found),
         np.vstack(missed),
         np.vstack(false),
@@ -220,21 +222,21 @@ def _mostly_on(found: Areas, unseen: Areas) -> NDArray[np.bool_]:
 
 
 def _slot_counts(
-    runs: Sequence[Run], found: Sequence[MappedFeature], areas: Areas
-) -> tuple[TwoByTwo, int, int]:
+    runs: Sequence[GutterSlots], found: Sequence[MappedFeature], areas: Areas
+) -> tuple[ConfusionMatrix, int, int]:
     """Slots along all runs and beside them; how many runs were found, and of how many."""
-    counts, found_runs, asked_runs = TwoByTwo(0, 0, 0, 0), 0, 0
+    counts, found_runs, asked_runs = ConfusionMatrix(0, 0, 0, 0), 0, 0
     for run in runs:
         is_found, _ = _on_run(run, areas)
-        counts += TwoByTwo.of(run.has_lid[run.is_asked], is_found[run.is_asked])
+        counts += ConfusionMatrix.of(run.has_lid[run.is_asked], is_found[run.is_asked])
         wanted = run.has_lid & run.is_asked
         asked_runs += bool(wanted.any())
         found_runs += bool(wanted.any() and is_found[wanted].mean() >= RUN_SHARE)
     beside = sum(map(_slots_of, _beside_runs(runs, found, areas)))
-    return counts + TwoByTwo(0, beside, 0, 0), found_runs, asked_runs
+    return counts + ConfusionMatrix(0, beside, 0, 0), found_runs, asked_runs
 
 
-def _on_run(run: Run, areas: Areas) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _on_run(run: GutterSlots, areas: Areas) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Which slots of a run have a cover on them, and which covers lie on the run."""
     import shapely
 
@@ -249,7 +251,7 @@ def _on_run(run: Run, areas: Areas) -> tuple[NDArray[np.bool_], NDArray[np.bool_
 
 
 def _beside_runs(
-    runs: Sequence[Run], found: Sequence[MappedFeature], areas: Areas
+    runs: Sequence[GutterSlots], found: Sequence[MappedFeature], areas: Areas
 ) -> list[MappedFeature]:
     """Covers that lie on no run."""
     is_on = np.zeros(len(areas), np.bool_)

@@ -17,7 +17,7 @@ from processing.earthwork.volume_parameters import (
     TIN,
     VolumeParameters,
 )
-from processing.earthwork.within import Within
+from processing.earthwork.volume_scope import VolumeScope
 from processing.monitor import SilentMonitor
 
 Floats = NDArray[np.float64]
@@ -81,7 +81,7 @@ def body_rows() -> list[list[str]]:
     for method, name in _METHODS.items():
         parameters = VolumeParameters(method=method, interval_m=_INTERVAL_M)
         result = compare(
-            Level(float(_ORIGIN[2])), body, parameters, SilentMonitor(), Within(boundary, line)
+            Level(float(_ORIGIN[2])), body, parameters, SilentMonitor(), VolumeScope(boundary, line)
         )
         volumes = result.volumes
         rows.append(

@@ -15,12 +15,12 @@ from processing.errors import BadFile, Unsuitable
 from processing.text import Text
 
 Floats = NDArray[np.float64]
-Shape = Literal["point", "line", "area"]
+GeometryType = Literal["point", "line", "area"]
 
 IN_DEGREES = "OGC:CRS84"
 """What a GeoJSON means that names no reference system and whose places can be degrees."""
 
-SHAPE_NAMES: Mapping[Shape, Text] = {
+SHAPE_NAMES: Mapping[GeometryType, Text] = {
     "point": Text("a point", "点"),
     "line": Text("a line", "線"),
     "area": Text("an area", "面"),
@@ -45,7 +45,7 @@ class MappedFeature:
     """
 
     number: int
-    shape: Shape
+    shape: GeometryType
     xyz: Floats
     facts: Mapping[str, object]
 
@@ -69,7 +69,7 @@ class MappedFile:
     features: tuple[MappedFeature, ...]
 
     def of_kinds(
-        self, kinds: Mapping[str, Mapping[str, object]], shape: Shape, name: Text
+        self, kinds: Mapping[str, Mapping[str, object]], shape: GeometryType, name: Text
     ) -> list[MappedFeature]:
         """The features of some kinds; those that name no kind, and those a person didn't reject.
 
@@ -159,7 +159,7 @@ class MappedFile:
         number = f"{feature.number:,}"
         return Text(f"{self.path}, feature {number}", f"{self.path}、{number}番目の地物")
 
-    def _other_shape(self, feature: MappedFeature, wanted: Shape) -> BadFile:
+    def _other_shape(self, feature: MappedFeature, wanted: GeometryType) -> BadFile:
         return BadFile(
             Text("The feature is {is_}, not {wanted}.", "地物が{wanted}ではなく{is_}です。").filled(
                 is_=SHAPE_NAMES[feature.shape], wanted=SHAPE_NAMES[wanted]

@@ -17,9 +17,9 @@ from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
 from processing.runner import RunRequest, drives_of, run_together, tool_of
 from processing.score.asked_classes import ASKED
-from processing.score.point_classes import TwoByTwo, is_one_of
+from processing.score.confusion_matrix import ConfusionMatrix, is_one_of
 from processing.text import Text
-from processing.tools.parameters import Parameter, Value, filled_in, parameters_of
+from processing.tools.parameters import Parameter, ParameterValue, fill_parameters, parameters_of
 from processing.tools.tool import FinishedColumns
 
 MOST_PARAMETERS = 2
@@ -34,7 +34,7 @@ TruthOf = Callable[[Drive, int, int], NDArray[np.uint8]]
 
 
 @dataclass(frozen=True)
-class Varied:
+class VariedParameter:
     """One parameter and the values that it takes.
 
     Attributes
@@ -46,7 +46,7 @@ class Varied:
     """
 
     parameter: str
-    values: tuple[Value, ...]
+    values: tuple[ParameterValue, ...]
 
 
 @dataclass(frozen=True)
@@ -57,12 +57,12 @@ class StudyCell:
     ----------
     values : tuple
         Of the varied parameters, in their order.
-    counts : TwoByTwo
+    counts : ConfusionMatrix
         Positive are the points that the tool looks for.
     """
 
-    values: tuple[Value, ...]
-    counts: TwoByTwo
+    values: tuple[ParameterValue, ...]
+    counts: ConfusionMatrix
 
 
 @dataclass(frozen=True)
@@ -85,8 +85,8 @@ class StudyRequest:
 
     tool: str
     drives: tuple[Drive, ...]
-    fixed: Mapping[str, Value]
-    varied: tuple[Varied, ...]
+    fixed: Mapping[str, ParameterValue]
+    varied: tuple[VariedParameter, ...]
     beside: tuple[Drive, ...] = ()
 
 
@@ -102,8 +102,8 @@ class ParameterStudy:
 
     tool: str
     version: int
-    fixed: Mapping[str, Value]
-    varied: tuple[Varied, ...]
+    fixed: Mapping[str, ParameterValue]
+    varied: tuple[VariedParameter, ...]
     cells: tuple[StudyCell, ...]
 
     @property
@@ -113,9 +113,9 @@ class ParameterStudy:
         return max(scored, key=lambda cell: cell.counts.f_measure, default=None)
 
     @property
-    def untouched(self) -> TwoByTwo:
+    def untouched(self) -> ConfusionMatrix:
         """What leaving every point as it is would score."""
-        none = TwoByTwo(0, 0, 0, 0)
+        none = ConfusionMatrix(0, 0, 0, 0)
         return self.cells[0].counts.if_nothing_was_positive() if self.cells else none
 
 
@@ -139,7 +139,7 @@ def study(request: StudyRequest, truth: TruthOf, monitor: Monitor, into: Path) -
     tool = tool_of(request.tool)
     settings = settings_of(request)
     for setting in settings:
-        filled_in(tool.parameters, setting)
+        fill_parameters(tool.parameters, setting)
     _require_known(request, truth, monitor)
     cells = []
     for number, setting in enumerate(settings):
@@ -153,16 +153,16 @@ def study(request: StudyRequest, truth: TruthOf, monitor: Monitor, into: Path) -
 
 def _tried(
     request: StudyRequest,
-    setting: Mapping[str, Value],
+    setting: Mapping[str, ParameterValue],
     truth: TruthOf,
     monitor: Monitor,
     into: Path,
-) -> TwoByTwo:
+) -> ConfusionMatrix:
     """What one setting does to all drives of a study."""
     tool = tool_of(request.tool)
-    parameters = filled_in(tool.parameters, setting)
+    parameters = fill_parameters(tool.parameters, setting)
     everything = (*request.drives, *request.beside)
-    counts, left = TwoByTwo(0, 0, 0, 0), list(request.drives)
+    counts, left = ConfusionMatrix(0, 0, 0, 0), list(request.drives)
     while left:
         beside = tuple(other for other in everything if other is not left[0])
         wanted = RunRequest(tool.id, left[0], parameters, beside)
@@ -181,7 +181,7 @@ def _tried(
     return counts
 
 
-def settings_of(request: StudyRequest) -> tuple[dict[str, Value], ...]:
+def settings_of(request: StudyRequest) -> tuple[dict[str, ParameterValue], ...]:
     """Every setting of a study: the fixed values and one combination of the varied.
 
     Raises
@@ -208,16 +208,16 @@ def settings_of(request: StudyRequest) -> tuple[dict[str, Value], ...]:
     )
 
 
-def steps_of(parameter: Parameter, low: float, high: float, steps: int) -> Varied:
+def steps_of(parameter: Parameter, low: float, high: float, steps: int) -> VariedParameter:
     """Evenly spaced values of a number or a count, both ends among them; all words of a choice."""
     if parameter.kind == "choice":
-        return Varied(parameter.id, tuple(one.value for one in parameter.choices))
+        return VariedParameter(parameter.id, tuple(one.value for one in parameter.choices))
     if parameter.kind == "switch":
-        return Varied(parameter.id, (False, True))
+        return VariedParameter(parameter.id, (False, True))
     values = [float(f"{one:.6g}") for one in np.linspace(low, high, max(1, steps)).tolist()]
     if parameter.kind == "count":
         values = [round(one) for one in values]
-    return Varied(parameter.id, tuple(dict.fromkeys(values)))
+    return VariedParameter(parameter.id, tuple(dict.fromkeys(values)))
 
 
 def usual_range(parameter: Parameter) -> tuple[float, float]:
@@ -233,7 +233,7 @@ def can_vary(tool: str) -> tuple[Parameter, ...]:
     return tuple(one for one in parameters_of(tool_of(tool).parameters) if not one.is_typed)
 
 
-def varied_of(tool: str, words: Sequence[str]) -> tuple[Varied, ...]:
+def varied_of(tool: str, words: Sequence[str]) -> tuple[VariedParameter, ...]:
     """What the command line says to vary: ``name=from:to:steps``, or ``name`` for a choice.
 
     Raises
@@ -245,7 +245,7 @@ def varied_of(tool: str, words: Sequence[str]) -> tuple[Varied, ...]:
     return tuple(_varied_of(known, one) for one in words)
 
 
-def _varied_of(known: Mapping[str, Parameter], words: str) -> Varied:
+def _varied_of(known: Mapping[str, Parameter], words: str) -> VariedParameter:
     name, _, span = words.partition("=")
     parts = span.split(":")
     parameter = known.get(name)
@@ -276,15 +276,15 @@ def _counted(
     truth: TruthOf,
     codes: frozenset[int],
     monitor: Monitor,
-) -> TwoByTwo:
-    counts = TwoByTwo(0, 0, 0, 0)
+) -> ConfusionMatrix:
+    counts = ConfusionMatrix(0, 0, 0, 0)
     for start in range(0, drive.count, _AT_ONCE):
         monitor.check()
         stop = min(start + _AT_ONCE, drive.count)
         known = truth(drive, start, stop)
         is_known = known > 0
         found = result.read(_CLASS, start, stop)[is_known]
-        counts += TwoByTwo.of(is_one_of(known[is_known], codes), is_one_of(found, codes))
+        counts += ConfusionMatrix.of(is_one_of(known[is_known], codes), is_one_of(found, codes))
     return counts
 
 

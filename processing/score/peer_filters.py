@@ -92,11 +92,11 @@ def ground_by_cloth(
     if find_spec("CSF") is None:
         return None
     with tempfile.TemporaryDirectory(prefix="zuka-") as folder:
-        places, found = Path(folder) / "places.npy", Path(folder) / "ground.npy"
-        np.save(places, local_xyz)
+        positions, found = Path(folder) / "places.npy", Path(folder) / "ground.npy"
+        np.save(positions, local_xyz)
         # A process of its own, since it talks to standard output from C++; of one thread, since
         # with several its result changes from run to run.
-        told = [str(value) for value in (places, found, cloth_m, rigidness, distance_m)]
+        told = [str(value) for value in (positions, found, cloth_m, rigidness, distance_m)]
         subprocess.run(  # noqa: S603 - our own lines, with files of our own
             [sys.executable, "-c", _CLOTH, *told],
             check=True,
@@ -154,9 +154,9 @@ def _of_pcl(
     head, _, data = plain.read_bytes().partition(b"DATA binary\n")
     count = int(head.partition(b"\nPOINTS ")[2].split()[0])
     # PCL leaves room behind the last point.
-    places = np.frombuffer(data, "<f4", 3 * count).reshape(-1, 3)
-    return np.isin(_as_one(rounded), _as_one(places))
+    positions = np.frombuffer(data, "<f4", 3 * count).reshape(-1, 3)
+    return np.isin(_as_one(rounded), _as_one(positions))
 
 
-def _as_one(places: NDArray[np.float32]) -> NDArray[np.void]:
-    return places.view(np.dtype((np.void, places.dtype.itemsize * 3))).ravel()
+def _as_one(positions: NDArray[np.float32]) -> NDArray[np.void]:
+    return positions.view(np.dtype((np.void, positions.dtype.itemsize * 3))).ravel()

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from processing.score.coded_points import Pair
-from processing.score.point_classes import ClassCounts, TwoByTwo, is_one_of
-from processing.score.reliability import Share, share_of
+from processing.score.coded_points import CodePairs
+from processing.score.confusion_matrix import ClassCounts, ConfusionMatrix, is_one_of
+from processing.score.reliability import ShareInterval, share_of
 from processing.text import Text
 
 
@@ -22,12 +22,12 @@ class ClassScore:
     id : str
         Its name in JSON.
     name : Text
-    counts : TwoByTwo
+    counts : ConfusionMatrix
     """
 
     id: str
     name: Text
-    counts: TwoByTwo
+    counts: ConfusionMatrix
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class NamedShare:
 
     id: str
     name: Text
-    share: Share
+    share: ShareInterval
 
 
 @dataclass(frozen=True)
@@ -63,7 +63,7 @@ class KindShare:
 
     group: str
     kind: int
-    right: Share
+    right: ShareInterval
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class PointScore:
     figures: tuple[NamedFigure, ...] = ()
     kinds: tuple[KindShare, ...] = ()
 
-    def class_of(self, id: str) -> TwoByTwo:  # noqa: A002 - the field's name
+    def class_of(self, id: str) -> ConfusionMatrix:  # noqa: A002 - the field's name
         """The counts with one class positive.
 
         Raises
@@ -125,7 +125,7 @@ class PointScorer:
     flags: Mapping[str, tuple[int, int]]
     told: Callable[[ClassCounts], PointScore]
 
-    def score(self, pairs: Iterable[Pair]) -> PointScore:
+    def score(self, pairs: Iterable[CodePairs]) -> PointScore:
         """Score points that are paired with their truth, a block at a time."""
         counts = ClassCounts()
         kinds: dict[tuple[str, int], list[int]] = {}
@@ -155,7 +155,7 @@ def noise_score(counts: ClassCounts) -> PointScore:
     Specification noise_ground.md, A5 (kept points, equations 1 to 3) and A7 (what must be said
     beside them).
     """
-    noise = counts.two_by_two(NOISE_CODES)
+    noise = counts.confusion_matrix(NOISE_CODES)
     true_noise, kept = noise.hits + noise.misses, noise.turned()
     right_code = sum(counts.pairs((code,), (code,)) for code in NOISE_CODES)
     return PointScore(
@@ -202,7 +202,7 @@ def ground_score(counts: ClassCounts) -> PointScore:
     Specification noise_ground.md, B4 (positive: the removed point); Sithole and Vosselman 2004,
     ISPRS Journal 59, section 4.2 (types of error: I rejects ground, II accepts objects).
     """
-    ground = counts.two_by_two(GROUND_CODES)
+    ground = counts.confusion_matrix(GROUND_CODES)
     removed = ground.turned()
     true_ground, true_objects = ground.hits + ground.misses, removed.hits + removed.misses
     return PointScore(
@@ -244,7 +244,7 @@ def _share(id_: str, name: tuple[str, str], hits: int, of: int) -> NamedShare:
 
 
 def _count_kinds(
-    pair: Pair, codes: Collection[int], kinds: dict[tuple[str, int], list[int]]
+    pair: CodePairs, codes: Collection[int], kinds: dict[tuple[str, int], list[int]]
 ) -> None:
     if not pair.truth.kinds:
         return
@@ -254,9 +254,9 @@ def _count_kinds(
         else pair.truth.codes == pair.result.codes
     )
     for group, values in pair.truth.kinds.items():
-        found, place = np.unique(values, return_inverse=True)
-        of = np.bincount(place, minlength=found.size)
-        right = np.bincount(place[is_right], minlength=found.size)
+        found, position = np.unique(values, return_inverse=True)
+        of = np.bincount(position, minlength=found.size)
+        right = np.bincount(position[is_right], minlength=found.size)
         for kind, hits, count in zip(found.tolist(), right.tolist(), of.tolist(), strict=True):
             total = kinds.setdefault((group, kind), [0, 0])
             total[0] += hits

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from processing.score.file_scores import Counts, FileScore, errors_of, named_share
+from processing.score.file_scores import DetectionCounts, FileScore, errors_of, named_share
 from processing.score.mapped_features import MappedFile
-from processing.score.placed_objects import Differences, is_in_span, placed, shows_enough
+from processing.score.object_matches import Differences, is_in_span, match_objects, shows_enough
 from processing.text import Text
 
 POLES: dict[str, dict[str, object]] = {
@@ -38,14 +38,14 @@ def pole_score(result: MappedFile, truth: MappedFile) -> FileScore:
     """
     true = truth.of_kinds(POLES, "point", _NAME)
     asked = [is_in_span(one) and shows_enough(truth, one, "points", LEAST_POINTS) for one in true]
-    found = placed(result.of_kinds(POLES, "point", _NAME), true, asked, WITHIN_M)
+    found = match_objects(result.of_kinds(POLES, "point", _NAME), true, asked, WITHIN_M)
     typed = [one for one in found.partners if one.truth.facts.get("type") is not None]
     right = [one for one in typed if one.result.facts.get("type") == one.truth.facts["type"]]
     differences = Differences(result, truth, found.partners)
-    off = differences.places()
+    off = differences.positions()
     return FileScore(
         "poles",
-        (Counts("poles", _NAME, found.counts),),
+        (DetectionCounts("poles", _NAME, found.counts),),
         (
             named_share(
                 "type", ("found with the right type", "種類も正しい柱状物"), len(right), len(typed)

@@ -15,7 +15,7 @@ BINS = 10
 
 
 @dataclass(frozen=True)
-class Share:
+class ShareInterval:
     """So many of so many, with the interval in which the true share lies, 19 times of 20.
 
     Attributes
@@ -54,7 +54,7 @@ class ReliabilityBin:
     low: float
     high: float
     mean_confidence: float
-    accepted: Share
+    accepted: ShareInterval
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Reliability:
     calibration_error: float
 
 
-def share_of(hits: int, of: int) -> Share:
+def share_of(hits: int, of: int) -> ShareInterval:
     """A share with Wilson's 95 % interval.
 
     References
@@ -83,14 +83,14 @@ def share_of(hits: int, of: int) -> Share:
     equation 4.
     """
     if of == 0:
-        return Share(hits, of)
+        return ShareInterval(hits, of)
     share, square = hits / of, _Z_95**2
     middle = (share + square / (2 * of)) / (1 + square / of)
     inside = share * (1 - share) / of + square / (4 * of**2)
     half = _Z_95 * math.sqrt(inside) / (1 + square / of)
     low = 0.0 if hits == 0 else max(0.0, middle - half)
     high = 1.0 if hits == of else min(1.0, middle + half)
-    return Share(hits, of, low, high)
+    return ShareInterval(hits, of, low, high)
 
 
 def reliability_of(

@@ -58,8 +58,8 @@ def _curve(curve: Reliability, colour: str) -> Iterator[str]:
     filled = [one for one in curve.bins if one.accepted.of]
     if not filled:
         return
-    places = " ".join(f"{_x(one.mean_confidence)},{_y(one.accepted.value)}" for one in filled)
-    yield f'<polyline points="{places}" fill="none" stroke="{colour}" stroke-width="1.5"/>'
+    positions = " ".join(f"{_x(one.mean_confidence)},{_y(one.accepted.value)}" for one in filled)
+    yield f'<polyline points="{positions}" fill="none" stroke="{colour}" stroke-width="1.5"/>'
     most = max(one.accepted.of for one in filled)
     for one in filled:
         x, y = _x(one.mean_confidence), _y(one.accepted.value)

@@ -18,18 +18,18 @@ from pathlib import Path
 import numpy as np
 
 from processing.formats.mapped_shapes import read_mapped
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.output_streams import write_every_character
-from processing.score.curb_lines import curb_score, judged_edges
-from processing.score.filters import with_section
-from processing.score.gutters import gutter_score, judged_gutters
+from processing.score.curb_lines import curb_score, score_edges
+from processing.score.filters import replace_section
+from processing.score.gutters import gutter_score, score_gutters
 from processing.score.mapped_features import MappedFile
 from processing.score.reliability import Reliability, reliability_of
 from processing.score.reliability_svg import reliability_svg
 from processing.score.road_failures import curb_failures
 from processing.score.road_gutter_failures import gutter_failures
-from processing.score.road_pictures import Picture, RoadMaps, painted, write_sheets
-from processing.score.road_reach import Reached, reach_table, reached
+from processing.score.road_pictures import Picture, RoadMaps, paint_failure, write_sheets
+from processing.score.road_reach import Reached, count_by_reach, reach_table
 from processing.score.road_scenes import (
     BOTH,
     LENGTH_M,
@@ -40,7 +40,7 @@ from processing.score.road_scenes import (
     given_scenes,
     simulated_scenes,
 )
-from processing.score.road_surroundings import Failure, Surroundings
+from processing.score.road_surroundings import Failure, StreetSurroundings
 from processing.score.road_tables import (
     ScoredStreet,
     curbs_table,
@@ -61,7 +61,7 @@ _COMMAND = "`python -m processing.score.road_edges --markdown docs/accuracy.md`"
 
 
 @dataclass
-class Answers:
+class RoadScores:
     """What is known so far.
 
     Attributes
@@ -130,18 +130,18 @@ class Answers:
         *,
         with_pictures: bool,
     ) -> None:
-        around = Surroundings(scene, cloud_of(scene.delivery))
-        edges = judged_edges(runs["curbs"].result, truths["curbs"])
-        covers = judged_gutters(runs["gutters"].result, truths["gutters"])
+        around = StreetSurroundings(scene, cloud_of(scene.delivery))
+        edges = score_edges(runs["curbs"].result, truths["curbs"])
+        covers = score_gutters(runs["gutters"].result, truths["gutters"])
         found = [
             *curb_failures(scene.name, edges, around),
             *gutter_failures(scene.name, covers, truths["gutters"], around, truths["curbs"]),
         ]
         self.failures += found
-        self.reached.append(reached(edges, covers, around))
+        self.reached.append(count_by_reach(edges, covers, around))
         if with_pictures:
             maps = {tool: RoadMaps(truths[tool], runs[tool].result) for tool in TOOLS}
-            self.pictures += [(one, painted(one, maps[one.tool], around)) for one in found]
+            self.pictures += [(one, paint_failure(one, maps[one.tool], around)) for one in found]
 
 
 def certainties(tool: str, result: MappedFile, truth: MappedFile) -> list[tuple[float, bool]]:
@@ -151,15 +151,15 @@ def certainties(tool: str, result: MappedFile, truth: MappedFile) -> list[tuple[
     area with a true one of its type; covers on what nobody can see count neither way.
     """
     if tool == "gutters":
-        covers = judged_gutters(result, truth).is_right
+        covers = score_gutters(result, truth).is_right
         return [(result.number(one, "confidence"), is_right) for one, is_right in covers]
-    lines = chain.from_iterable(edge.lines for edge in judged_edges(result, truth).values())
+    lines = chain.from_iterable(edge.lines for edge in score_edges(result, truth).values())
     return [
         (result.number(one.feature, "confidence"), one.right_share >= LEAST_RIGHT) for one in lines
     ]
 
 
-def sections_of(answers: Answers) -> dict[str, str]:
+def sections_of(answers: RoadScores) -> dict[str, str]:
     """The sections of the page, by their headings."""
     curbs, gutters = answers.of_both("curbs"), answers.of_both("gutters")
     heads = {
@@ -195,31 +195,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seeds", type=int, nargs="*", default=list(SEEDS))
     parser.add_argument("--length", type=float, default=LENGTH_M)
     parser.add_argument("--pictures", type=Path)
-    wish = parser.parse_args(arguments)
-    answers = Answers()
-    for scene in _scenes(wish):
+    options = parser.parse_args(arguments)
+    answers = RoadScores()
+    for scene in _scenes(options):
         sys.stderr.write(f"{scene.name}: {scene.points:,} points\n")
-        answers.add(scene, with_pictures=wish.pictures is not None)
-    if wish.pictures is not None:
-        write_sheets(answers.pictures, wish.pictures)
+        answers.add(scene, with_pictures=options.pictures is not None)
+    if options.pictures is not None:
+        write_sheets(answers.pictures, options.pictures)
     for heading, body in sections_of(answers).items():
         section = f"{heading}\n{body}"
-        if wish.markdown is None:
+        if options.markdown is None:
             sys.stdout.write(f"{section}\n")
             continue
-        page = with_section(wish.markdown.read_text("utf-8"), heading, section)
-        with written_safely(wish.markdown) as path:
+        page = replace_section(options.markdown.read_text("utf-8"), heading, section)
+        with write_safely(options.markdown) as path:
             path.write_text(page, "utf-8")
-    if wish.markdown is not None:
+    if options.markdown is not None:
         curves = answers.reliabilities()
-        with written_safely(wish.markdown.with_name(PLOT)) as path:
+        with write_safely(options.markdown.with_name(PLOT)) as path:
             path.write_text(reliability_svg(curves, "confidence", "share that is right"), "utf-8")
     return 0
 
 
-def _scenes(wish: argparse.Namespace) -> Iterator[RoadScene]:
-    yield from given_scenes(wish.samples)
-    yield from simulated_scenes(wish.seeds, wish.length)
+def _scenes(options: argparse.Namespace) -> Iterator[RoadScene]:
+    yield from given_scenes(options.samples)
+    yield from simulated_scenes(options.seeds, options.length)
 
 
 def _has_heads(one: ScoredStreet, all_of_them: Sequence[ScoredStreet]) -> bool:

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from processing.score.curb_lines import JudgedEdge
+from processing.score.curb_lines import ScoredEdge
 from processing.score.curb_sections import TrueSection, kind_of
-from processing.score.line_places import Lines, length_m, middle_places
+from processing.score.line_positions import PolylineIndex, length_m, middle_positions
 from processing.score.mapped_features import Floats
 from processing.score.road_surroundings import (
     BUILDING,
@@ -21,12 +21,12 @@ from processing.score.road_surroundings import (
     SHARE,
     WALLS,
     Failure,
-    Surroundings,
-    What,
+    FailureKind,
+    StreetSurroundings,
     first_type,
 )
 
-CURB_TYPES: Mapping[What, tuple[str, ...]] = {
+CURB_TYPES: Mapping[FailureKind, tuple[str, ...]] = {
     "missed": (
         "vehicles",
         "hidden, few points",
@@ -66,12 +66,12 @@ _JOINED_M = 0.2
 
 
 def curb_failures(
-    street: str, edges: Mapping[str, JudgedEdge], around: Surroundings
+    street: str, edges: Mapping[str, ScoredEdge], around: StreetSurroundings
 ) -> Iterator[Failure]:
     """Sections of curbs that were missed or made up."""
     for edge, judged in edges.items():
-        lines = Lines([one.feature.xyz for one in judged.lines])
-        true = Lines([one.xyz for one in judged.asked])
+        lines = PolylineIndex([one.feature.xyz for one in judged.lines])
+        true = PolylineIndex([one.xyz for one in judged.asked])
         ends = _ends([one.xyz for one in judged.asked])
         for section, is_found in zip(judged.asked, judged.is_found, strict=True):
             if not is_found:
@@ -85,10 +85,12 @@ def curb_failures(
                 yield Failure("curbs", street, "false", kind, piece, detail)
 
 
-def _missed_curb(section: TrueSection, lines: Lines, ends: Floats, around: Surroundings) -> str:
+def _missed_curb(
+    section: TrueSection, lines: PolylineIndex, ends: Floats, around: StreetSurroundings
+) -> str:
     points = around.near(section.xyz, NEAR_M)
     on_curb = int((around.cloud.label[points] == CURB).sum())
-    is_beside = lines.nearest(middle_places(section.xyz, 0.4), _BESIDE_M).line >= 0
+    is_beside = lines.nearest(middle_positions(section.xyz, 0.4), _BESIDE_M).line >= 0
     is_low = section.kind == "dropped"
     facts: dict[str, Callable[[], bool]] = {
         "vehicles": lambda: around.has_vehicle(section.xyz),
@@ -104,13 +106,15 @@ def _missed_curb(section: TrueSection, lines: Lines, ends: Floats, around: Surro
     return first_type(CURB_TYPES["missed"], facts)
 
 
-def _false_curb(piece: Floats, true: Lines, ends: Floats, around: Surroundings) -> tuple[str, str]:
+def _false_curb(
+    piece: Floats, true: PolylineIndex, ends: Floats, around: StreetSurroundings
+) -> tuple[str, str]:
     points = around.near(piece, NEAR_M)
-    places = middle_places(piece, 0.2)
+    positions = middle_positions(piece, 0.2)
 
     facts: dict[str, Callable[[], bool]] = {
-        "second line along a curb": lambda: _is_along(true, places, _ALONG_M),
-        "10 to 30 cm beside a curb": lambda: _is_along(true, places, _BESIDE_M),
+        "second line along a curb": lambda: _is_along(true, positions, _ALONG_M),
+        "10 to 30 cm beside a curb": lambda: _is_along(true, positions, _BESIDE_M),
         "beyond the end of a curb": lambda: _is_at_end(piece, ends),
         "vehicles": lambda: around.has_vehicle(piece),
         "walls and fences": lambda: (
@@ -129,8 +133,8 @@ def _false_curb(piece: Floats, true: Lines, ends: Floats, around: Surroundings) 
     return first_type(CURB_TYPES["false"], facts, "other steps"), around.named(points)
 
 
-def _is_along(lines: Lines, places: Floats, within_m: float) -> bool:
-    return bool((lines.nearest(places, within_m).line >= 0).mean() >= _MOSTLY)
+def _is_along(lines: PolylineIndex, positions: Floats, within_m: float) -> bool:
+    return bool((lines.nearest(positions, within_m).line >= 0).mean() >= _MOSTLY)
 
 
 def _ends(lines: Sequence[Floats]) -> Floats:
@@ -145,7 +149,7 @@ def _ends(lines: Sequence[Floats]) -> Floats:
 def _is_at_end(xyz: Floats, ends: Floats) -> bool:
     if not len(ends):
         return False
-    middle = middle_places(xyz, max(length_m(xyz), 1e-6))[0]
+    middle = middle_positions(xyz, max(length_m(xyz), 1e-6))[0]
     return bool(np.hypot(*(ends - middle)[:, :2].T).min() < _END_M)
 
 

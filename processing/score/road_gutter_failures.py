@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from processing.score.gutters import JudgedGutters
-from processing.score.line_places import Lines
+from processing.score.gutters import ScoredGutters
+from processing.score.line_positions import PolylineIndex
 from processing.score.mapped_features import Floats, MappedFeature, MappedFile
 from processing.score.road_surroundings import (
     BUILDING,
@@ -20,12 +20,12 @@ from processing.score.road_surroundings import (
     SHARE,
     WALLS,
     Failure,
-    Surroundings,
-    What,
+    FailureKind,
+    StreetSurroundings,
     first_type,
 )
 
-GUTTER_TYPES: Mapping[What, tuple[str, ...]] = {
+GUTTER_TYPES: Mapping[FailureKind, tuple[str, ...]] = {
     "missed": (
         "covered by leaves, soil or plants",
         "irregular spacing",
@@ -61,11 +61,15 @@ _FIRST_COVERS = 2
 
 
 def gutter_failures(
-    street: str, judged: JudgedGutters, truth: MappedFile, around: Surroundings, curbs: MappedFile
+    street: str,
+    judged: ScoredGutters,
+    truth: MappedFile,
+    around: StreetSurroundings,
+    curbs: MappedFile,
 ) -> Iterator[Failure]:
     """Slots of gutters that were missed or made up, and covers that lie on no gutter."""
     covers = _Covers.of(truth)
-    stones = Lines([one.xyz for one in curbs.features if one.shape == "line"])
+    stones = PolylineIndex([one.xyz for one in curbs.features if one.shape == "line"])
     for slot in judged.missed:
         kind, detail = _missed_slot(slot, covers, around)
         yield Failure("gutters", street, "missed", kind, slot[None], detail)
@@ -92,17 +96,17 @@ class _Covers:
         middles = [one.xyz.mean(axis=0) for one in truth.features]
         return _Covers(truth.features, np.array(middles).reshape(-1, 3))
 
-    def nearest(self, place: Floats) -> tuple[MappedFeature | None, float]:
+    def nearest(self, position: Floats) -> tuple[MappedFeature | None, float]:
         """The nearest one, and how far its middle is."""
         if not self.features:
             return None, np.inf
-        away = np.hypot(*(self.middles - place)[:, :2].T)
+        away = np.hypot(*(self.middles - position)[:, :2].T)
         number = int(away.argmin())
         return self.features[number], float(away[number])
 
-    def is_irregular(self, place: Floats, cover: MappedFeature) -> bool:
+    def is_irregular(self, position: Floats, cover: MappedFeature) -> bool:
         """Whether covers about a place are of another length, or their joints are wide."""
-        away = np.hypot(*(self.middles - place)[:, :2].T)
+        away = np.hypot(*(self.middles - position)[:, :2].T)
         own = [
             one
             for one, near in zip(self.features, away < 1.5 * _LID_M, strict=True)
@@ -117,7 +121,7 @@ class _Covers:
         return bool((np.abs(gaps) > _PITCH_OFF_M).any())
 
 
-def _missed_slot(slot: Floats, covers: _Covers, around: Surroundings) -> tuple[str, str]:
+def _missed_slot(slot: Floats, covers: _Covers, around: StreetSurroundings) -> tuple[str, str]:
     cover, _ = covers.nearest(slot)
     if cover is None:
         return "other", ""
@@ -144,7 +148,7 @@ def _missed_slot(slot: Floats, covers: _Covers, around: Surroundings) -> tuple[s
 
 
 def _false_slot(
-    slot: Floats, covers: _Covers, stones: Lines, around: Surroundings
+    slot: Floats, covers: _Covers, stones: PolylineIndex, around: StreetSurroundings
 ) -> tuple[str, str]:
     _, away = covers.nearest(slot)
     points = around.near(slot[None], NEAR_M)

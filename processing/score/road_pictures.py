@@ -19,7 +19,7 @@ from processing.formats.png import write_png
 from processing.image.scanlines import ScanlineSettings, scanline_through
 from processing.points.drive import Drive
 from processing.score.mapped_features import Floats, MappedFile
-from processing.score.road_surroundings import Failure, Surroundings
+from processing.score.road_surroundings import Failure, StreetSurroundings
 
 Picture = NDArray[np.uint8]
 
@@ -50,7 +50,7 @@ class RoadMaps:
     result: MappedFile
 
 
-def painted(failure: Failure, maps: RoadMaps, around: Surroundings) -> Picture:
+def paint_failure(failure: Failure, maps: RoadMaps, around: StreetSurroundings) -> Picture:
     """One failure: (rows, columns, 3) uint8."""
     import cv2
 
@@ -64,8 +64,8 @@ def painted(failure: Failure, maps: RoadMaps, around: Surroundings) -> Picture:
     )
     for row, text in enumerate(words):
         colour = _INK if row else _WRONG
-        place = (4, 16 + 20 * row)
-        cv2.putText(caption, text, place, cv2.FONT_HERSHEY_SIMPLEX, 0.42, colour, 1, cv2.LINE_AA)
+        position = (4, 16 + 20 * row)
+        cv2.putText(caption, text, position, cv2.FONT_HERSHEY_SIMPLEX, 0.42, colour, 1, cv2.LINE_AA)
     return np.vstack([caption, np.hstack([plan, section])])
 
 
@@ -105,7 +105,7 @@ def _sheet(pictures: Sequence[Picture]) -> Picture:
     return sheet
 
 
-def _across(failure: Failure, around: Surroundings) -> Floats:
+def _across(failure: Failure, around: StreetSurroundings) -> Floats:
     """Unit vector in plan along which the section lies: square to the line, or to the way."""
     if len(failure.xyz) > 1:
         along = (failure.xyz[-1] - failure.xyz[0])[:2]
@@ -116,7 +116,7 @@ def _across(failure: Failure, around: Surroundings) -> Floats:
     return np.asarray(across / long) if long > 0 and np.isfinite(long) else np.array([1.0, 0.0])
 
 
-def _plan(failure: Failure, maps: RoadMaps, around: Surroundings) -> Picture:
+def _plan(failure: Failure, maps: RoadMaps, around: StreetSurroundings) -> Picture:
     middle = failure.middle
     picture = np.full((_PLAN_PX, _PLAN_PX, 3), _BACKGROUND, np.uint8)
     points = around.near(middle[None], _ROOM_M)
@@ -163,7 +163,7 @@ def _plan_pixels(xyz: Floats, middle: Floats) -> Floats:
     return np.column_stack([_PLAN_PX / 2 + off[:, 0], _PLAN_PX / 2 - off[:, 1]])
 
 
-def _section(middle: Floats, across: Floats, maps: RoadMaps, around: Surroundings) -> Picture:
+def _section(middle: Floats, across: Floats, maps: RoadMaps, around: StreetSurroundings) -> Picture:
     picture = np.full((_PLAN_PX, _SECTION_PX, 3), _BACKGROUND, np.uint8)
     picture[:, ::50] = 45  # a line each metre
     picture[::30] = 45  # and every ten centimetres up
@@ -171,10 +171,10 @@ def _section(middle: Floats, across: Floats, maps: RoadMaps, around: Surrounding
     off = around.cloud.xyz[points] - middle
     along = off[:, 0] * -across[1] + off[:, 1] * across[0]
     inside = np.abs(along) < _SLAB_M
-    places = np.column_stack([off[inside, :2] @ across, off[inside, 2]])
+    positions = np.column_stack([off[inside, :2] @ across, off[inside, 2]])
     colours = np.array(_HEIGHT_COLOURS, np.uint8)
     is_moving = around.cloud.label[points][inside] == _MOVING
-    _dots(picture, places, colours[np.where(is_moving, 0, 1)], size=2)
+    _dots(picture, positions, colours[np.where(is_moving, 0, 1)], size=2)
     for drive in around.drives:
         _draw_scanline(picture, drive, middle, across)
     for file, colour in ((maps.truth, _TRUE), (maps.result, _FOUND)):
@@ -191,8 +191,8 @@ def _draw_scanline(picture: Picture, drive: Drive, middle: Floats, across: Float
         return
     off = section.xyz(np.arange(section.point.size)) - middle
     near = np.hypot(*off[:, :2].T) < _ROOM_M
-    places = np.column_stack([off[:, :2] @ across, off[:, 2]])
-    pixels = np.rint(_section_pixels(places, picture)).astype(np.int32)
+    positions = np.column_stack([off[:, :2] @ across, off[:, 2]])
+    pixels = np.rint(_section_pixels(positions, picture)).astype(np.int32)
     for number in np.flatnonzero(near[1:] & near[:-1] & ~section.is_break[1:]).tolist():
         first, second = (tuple(one.tolist()) for one in pixels[number : number + 2])
         cv2.line(picture, first, second, _SCANLINE, 1, cv2.LINE_AA)
@@ -205,16 +205,16 @@ def _crossings(file: MappedFile, middle: Floats, across: Floats) -> Floats:
         line = one.xyz if one.shape == "line" else np.vstack([one.xyz, one.xyz[:1]])
         off = line - middle
         along = off[:, 0] * -across[1] + off[:, 1] * across[0]
-        places = np.column_stack([off[:, :2] @ across, off[:, 2]])
+        positions = np.column_stack([off[:, :2] @ across, off[:, 2]])
         crossing = np.flatnonzero(np.diff(np.sign(along)) != 0)
         share = along[crossing] / (along[crossing] - along[crossing + 1])
-        found.append(places[crossing] + share[:, None] * np.diff(places, axis=0)[crossing])
+        found.append(positions[crossing] + share[:, None] * np.diff(positions, axis=0)[crossing])
     return np.vstack(found)
 
 
-def _dots(picture: Picture, places: Floats, colours: Picture, *, size: int) -> None:
+def _dots(picture: Picture, positions: Floats, colours: Picture, *, size: int) -> None:
     high, wide = picture.shape[:2]
-    columns, rows = np.rint(_section_pixels(places, picture)).T
+    columns, rows = np.rint(_section_pixels(positions, picture)).T
     inside = (columns >= 0) & (columns < wide - size) & (rows >= 0) & (rows < high - size)
     chosen = np.flatnonzero(inside & np.isfinite(columns) & np.isfinite(rows))
     for right in range(size):
@@ -223,9 +223,9 @@ def _dots(picture: Picture, places: Floats, colours: Picture, *, size: int) -> N
             picture[at] = colours[chosen]
 
 
-def _section_pixels(places: Floats, picture: Picture) -> Floats:
+def _section_pixels(positions: Floats, picture: Picture) -> Floats:
     """Columns and rows of places (across, up) in m."""
     high, wide = picture.shape[:2]
     return np.column_stack(
-        [wide / 2 + places[:, 0] * _PX_PER_M, high / 2 - places[:, 1] * _UP_PX_PER_M]
+        [wide / 2 + positions[:, 0] * _PX_PER_M, high / 2 - positions[:, 1] * _UP_PX_PER_M]
     )

@@ -1,4 +1,4 @@
-"""How far from the vehicle's way curbs and gutters lie, and how many of them are found there."""
+"""How far from the vehicle's path curbs and gutters lie, and how many of them are found there."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.score.curb_lines import JudgedEdge
+from processing.score.curb_lines import ScoredEdge
 from processing.score.filter_tables import markdown_table
-from processing.score.gutters import JudgedGutters
+from processing.score.gutters import ScoredGutters
 from processing.score.mapped_features import Floats
-from processing.score.road_surroundings import Surroundings
+from processing.score.road_surroundings import StreetSurroundings
 
 BANDS_M = (0.0, 4.0, 6.5, 10.0, 15.0, np.inf)
 """The thesis looks for gutters up to 6.5 m from the way (mms.md, Table 7-3)."""
@@ -21,8 +21,8 @@ Reached = Mapping[str, NDArray[np.int64]]
 """By tool, how many were found and missed in each band: (bands, 2)."""
 
 
-def reached(
-    edges: Mapping[str, JudgedEdge], gutters: JudgedGutters, around: Surroundings
+def count_by_reach(
+    edges: Mapping[str, ScoredEdge], gutters: ScoredGutters, around: StreetSurroundings
 ) -> Reached:
     """What was asked for on one street, by how far away it lies."""
     sections = [
@@ -51,9 +51,11 @@ def _cells(streets: Sequence[Reached], band: int) -> Iterator[str]:
         yield f"{100 * found / (found + missed):.1f} %" if found + missed else "–"
 
 
-def _counted(places: Sequence[tuple[Floats, bool]], around: Surroundings) -> NDArray[np.int64]:
+def _counted(
+    positions: Sequence[tuple[Floats, bool]], around: StreetSurroundings
+) -> NDArray[np.int64]:
     counts = np.zeros((len(BANDS_M) - 1, 2), np.int64)
-    for xyz, is_found in places:
+    for xyz, is_found in positions:
         away_m = around.away_m(xyz)
         band = int(np.searchsorted(BANDS_M, away_m, "right")) - 1
         counts[min(band, len(counts) - 1), 0 if is_found else 1] += 1

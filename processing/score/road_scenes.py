@@ -17,8 +17,8 @@ from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from processing.runner import RunRequest, drives_of, run
 from processing.score.mapped_features import Floats, MappedFeature, MappedFile
+from processing.simulate.requests import StreetRequest
 from processing.simulate.streets import simulate_street
-from processing.simulate.wishes import StreetWish
 from processing.tools.registry import TOOLS
 from processing.tools.tool import Candidate, CandidateResult
 
@@ -65,7 +65,7 @@ class RoadScene:
 
 
 @dataclass(frozen=True)
-class Cloud:
+class StreetCloud:
     """All points of a delivery with what they are.
 
     Attributes
@@ -100,9 +100,9 @@ class RoadRun:
     notes: tuple[str, ...]
 
 
-def wish_of(number: int, seed: int, length_m: float = LENGTH_M) -> StreetWish:
+def options_of(number: int, seed: int, length_m: float = LENGTH_M) -> StreetRequest:
     """The street of a seed: styles, sensors, waits and second passes take turns."""
-    return StreetWish(
+    return StreetRequest(
         seed=seed,
         length_m=length_m,
         style=_STYLES[number % len(_STYLES)],
@@ -116,11 +116,11 @@ def wish_of(number: int, seed: int, length_m: float = LENGTH_M) -> StreetWish:
 def simulated_scenes(seeds: Sequence[int], length_m: float = LENGTH_M) -> Iterator[RoadScene]:
     """Streets of seeds, one after the other; each is gone when the next one is asked for."""
     for number, seed in enumerate(seeds):
-        wish = wish_of(number, seed, length_m)
-        name = f"{wish.style} {wish.sensor} {seed}" + (" twice" if wish.passes > 1 else "")
-        with TemporaryDirectory(prefix="zuka-") as place:
-            folder = Path(place) / "street"
-            simulate_street(wish, folder, SilentMonitor())
+        options = options_of(number, seed, length_m)
+        name = f"{options.style} {options.sensor} {seed}" + (" twice" if options.passes > 1 else "")
+        with TemporaryDirectory(prefix="zuka-") as position:
+            folder = Path(position) / "street"
+            simulate_street(options, folder, SilentMonitor())
             with opened_scene(name, folder) as scene:
                 yield scene
 
@@ -146,17 +146,17 @@ def opened_scene(name: str, delivery: Path) -> Iterator[RoadScene]:
         tuple(sorted(delivery.glob("trajectory*.csv"))),
         crs=_CRS,
     )
-    with TemporaryDirectory(prefix="zuka-") as place:
-        folders = import_drives(request, Path(place) / "drives", SilentMonitor())
+    with TemporaryDirectory(prefix="zuka-") as position:
+        folders = import_drives(request, Path(position) / "drives", SilentMonitor())
         yield RoadScene(name, delivery, tuple(Drive(folder) for folder in folders))
 
 
-def cloud_of(delivery: Path) -> Cloud:
+def cloud_of(delivery: Path) -> StreetCloud:
     """All points of a delivery, file by file."""
     paths = sorted(delivery.glob("*.laz"))
     parts = [laspy.read(path) for path in paths]
     truth = delivery / "truth"
-    return Cloud(
+    return StreetCloud(
         np.concatenate([np.asarray(one.xyz) for one in parts]),
         np.concatenate([np.asarray(one.intensity) for one in parts]),
         np.concatenate([np.load(truth / f"{path.stem}.labels.npy") for path in paths]),
@@ -175,21 +175,21 @@ def found_by(tool: str, drives: Sequence[Drive]) -> RoadRun:
     features: list[MappedFeature] = []
     notes: list[str] = []
     left = list(drives)
-    with TemporaryDirectory(prefix="zuka-") as place:
+    with TemporaryDirectory(prefix="zuka-") as position:
         while left:
             request = RunRequest(tool, left[0], TOOLS[tool].parameters(), tuple(left[1:]))
             together = {drive.id for drive in drives_of(request)}
-            result = run(request, SilentMonitor(), into=Path(place) / left[0].id)
+            result = run(request, SilentMonitor(), into=Path(position) / left[0].id)
             left = [drive for drive in left if drive.id not in together]
             if isinstance(result, CandidateResult):
                 for one in result.candidates:
                     if not one.is_drawing:
-                        features.append(mapped(one, len(features) + 1))
+                        features.append(map_candidate(one, len(features) + 1))
                 notes += [result.note.en] if result.note.en else []
     return RoadRun(MappedFile(Path(f"{tool}.geojson"), _CRS, tuple(features)), (*notes,))
 
 
-def mapped(candidate: Candidate, number: int) -> MappedFeature:
+def map_candidate(candidate: Candidate, number: int) -> MappedFeature:
     """A candidate as a result file has it."""
     facts = {"kind": candidate.kind, "confidence": candidate.confidence, "status": "candidate"}
     return MappedFeature(

@@ -12,11 +12,11 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.score.line_places import Lines, length_m, middle_places
+from processing.score.line_positions import PolylineIndex, length_m, middle_positions
 from processing.score.mapped_features import Floats
-from processing.score.road_scenes import Cloud, RoadScene
+from processing.score.road_scenes import RoadScene, StreetCloud
 
-What = Literal["missed", "false"]
+FailureKind = Literal["missed", "false"]
 
 ROAD, CURB, BUILDING, GROUND = 11, 67, 6, 2
 PLANTS = (3, 4, 5)
@@ -53,7 +53,7 @@ class Failure:
 
     tool: str
     street: str
-    what: What
+    what: FailureKind
     type: str
     xyz: Floats
     detail: str
@@ -63,18 +63,18 @@ class Failure:
         """(3,) its middle, m."""
         if len(self.xyz) == 1:
             return np.asarray(self.xyz[0])
-        return np.asarray(middle_places(self.xyz, max(length_m(self.xyz), 1e-6))[0])
+        return np.asarray(middle_positions(self.xyz, max(length_m(self.xyz), 1e-6))[0])
 
 
-class Surroundings:
+class StreetSurroundings:
     """What lies around places of a street."""
 
-    def __init__(self, scene: RoadScene, cloud: Cloud) -> None:
+    def __init__(self, scene: RoadScene, cloud: StreetCloud) -> None:
         self.cloud = cloud
         things = json.loads((scene.delivery / "truth/instance_kinds.json").read_text("utf-8"))
         self._kinds = {int(number): str(one["kind"]) for number, one in things.items()}
         paths = [drive.trajectory.xyz for drive in scene.drives if drive.trajectory is not None]
-        self.paths = Lines([path[::20] for path in paths])
+        self.paths = PolylineIndex([path[::20] for path in paths])
         self.drives = scene.drives
 
     @cached_property
@@ -85,12 +85,12 @@ class Surroundings:
 
     def near(self, xyz: Floats, within_m: float) -> NDArray[np.int64]:
         """Points within so much of any place along a line or of a single place."""
-        places = xyz if len(xyz) == 1 else middle_places(xyz, 0.4)
-        found = self._tree.query_ball_point(places[:, :2], within_m)
+        positions = xyz if len(xyz) == 1 else middle_positions(xyz, 0.4)
+        found = self._tree.query_ball_point(positions[:, :2], within_m)
         return np.unique(np.concatenate([np.asarray(one, np.int64) for one in found]))
 
     def away_m(self, xyz: Floats) -> float:
-        """How far the middle of a line is from the vehicle's way; NaN where that isn't known."""
+        """How far the middle of a line is from the vehicle's path; NaN where that isn't known."""
         off = float(self.paths.nearest(xyz[[len(xyz) // 2]], _FARTHEST_M).off_m[0])
         return off if np.isfinite(off) else np.nan
 

@@ -7,9 +7,9 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from processing.score.file_scores import Errors, FileScore
+from processing.score.confusion_matrix import ConfusionMatrix
+from processing.score.file_scores import ErrorStatistics, FileScore
 from processing.score.filter_tables import markdown_table
-from processing.score.point_classes import TwoByTwo
 from processing.score.reliability import Reliability
 from processing.score.road_failures import CURB_TYPES
 from processing.score.road_gutter_failures import GUTTER_TYPES
@@ -53,7 +53,7 @@ def curbs_table(streets: Sequence[ScoredStreet]) -> str:
         rows.append([*cells, percent(score.share_of("type")), *_pairs(errors), f"{one.candidates}"])
     cells = [ALL]
     for id_ in ("without_dropped", "all"):
-        cells += _figures(pooled(streets, id_))
+        cells += _figures(sum_counts(streets, id_))
     errors = [[one.score.errors_of(f"{edge}_{what}") for one in streets] for edge, what in _EDGES]
     types = [one.score.share_of("type") for one in streets]
     hits = [one.score.counts_of("all").hits for one in streets]
@@ -80,7 +80,7 @@ def gutters_table(streets: Sequence[ScoredStreet]) -> str:
     for one in streets:
         cells = [cell for kind in kinds for cell in _figures(one.score.counts_of(kind))]
         rows.append([one.name, *cells, *_pairs([[one.score.errors_of(name)] for name in _CORNERS])])
-    cells = [cell for kind in kinds for cell in _figures(pooled(streets, kind))]
+    cells = [cell for kind in kinds for cell in _figures(sum_counts(streets, kind))]
     errors = [[one.score.errors_of(name) for one in streets] for name in _CORNERS]
     rows.append([ALL, *cells, *_pairs(errors)])
     thesis = ["3,088, 900, 713", "77.4 %", "81.2 %", "79.3 %", *["–"] * 9]
@@ -98,8 +98,8 @@ def heads_table(curbs: Sequence[ScoredStreet], gutters: Sequence[ScoredStreet]) 
          "P", "R", "**F**"],
     ]  # fmt: skip
     for head in heads:
-        lines = pooled([one for one in curbs if one.head == head], "without_dropped")
-        slots = pooled([one for one in gutters if one.head == head], "slots")
+        lines = sum_counts([one for one in curbs if one.head == head], "without_dropped")
+        slots = sum_counts([one for one in gutters if one.head == head], "slots")
         counts = (slots.hits, slots.rejections, slots.false_alarms, slots.misses)
         rows.append([head, *_shares(lines), *(f"{count:,}" for count in counts), *_shares(slots)])
     rows += [[name, *["–"] * 3, *figures] for name, *figures in _THESIS_HEADS]
@@ -135,9 +135,9 @@ def reliability_table(of_tools: Mapping[str, Reliability]) -> str:
     return markdown_table(rows)
 
 
-def pooled(streets: Sequence[ScoredStreet], id_: str) -> TwoByTwo:
+def sum_counts(streets: Sequence[ScoredStreet], id_: str) -> ConfusionMatrix:
     """Counts of one name over all streets."""
-    return sum((one.score.counts_of(id_) for one in streets), TwoByTwo(0, 0, 0, 0))
+    return sum((one.score.counts_of(id_) for one in streets), ConfusionMatrix(0, 0, 0, 0))
 
 
 def percent(share: float) -> str:
@@ -155,22 +155,22 @@ _THESIS_HEADS = (
 )
 
 
-def _figures(counts: TwoByTwo) -> list[str]:
+def _figures(counts: ConfusionMatrix) -> list[str]:
     told = f"{counts.hits:,}, {counts.false_alarms:,}, {counts.misses:,}"
     return [told, *_shares(counts)]
 
 
-def _shares(counts: TwoByTwo) -> list[str]:
+def _shares(counts: ConfusionMatrix) -> list[str]:
     return [percent(one) for one in (counts.precision, counts.recall, counts.f_measure)]
 
 
-def _pairs(errors: Sequence[Sequence[Errors]]) -> list[str]:
+def _pairs(errors: Sequence[Sequence[ErrorStatistics]]) -> list[str]:
     """Of plan and height in turns: “1.2, 0.4”."""
     values = [_rms_cm(one) for one in errors]
     return [f"{plan}, {height}" for plan, height in zip(values[::2], values[1::2], strict=True)]
 
 
-def _rms_cm(errors: Sequence[Errors]) -> str:
+def _rms_cm(errors: Sequence[ErrorStatistics]) -> str:
     """Over all places of all streets."""
     count = sum(one.count for one in errors)
     if not count:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from processing.errors import named
+from processing.errors import name_with_type
 from processing.score.class_scores import class_score
 from processing.score.curb_lines import curb_score
 from processing.score.file_scores import FeatureScorer, VolumeScorer
@@ -79,7 +79,7 @@ def scorer_of(tool: str) -> Scorer:
     OutOfRange
         There is none; names those there are.
     """
-    return named(
+    return name_with_type(
         SCORERS,
         tool,
         Text("Results of this tool can't be scored.", "このツールの結果は評価できません。"),

@@ -9,16 +9,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from processing.score.file_scores import Counts, FileScore, errors_of, named_share
+from processing.score.confusion_matrix import ConfusionMatrix
+from processing.score.file_scores import DetectionCounts, FileScore, errors_of, named_share
 from processing.score.mapped_features import Floats, MappedFeature, MappedFile
-from processing.score.placed_objects import (
+from processing.score.object_matches import (
     Differences,
-    Partner,
+    ObjectMatch,
     is_in_span,
-    placed,
+    match_objects,
     shows_enough,
 )
-from processing.score.point_classes import TwoByTwo
 from processing.score.point_scores import NamedShare
 from processing.text import Text
 
@@ -35,7 +35,7 @@ SHAPES = ("circle", "triangle", "square", "diamond", "pentagon", "rectangle")
 WITHIN_M = 1.0
 """Plates on one post are some 0.6 m apart: a metre finds the partner and not the next post."""
 
-PLACE_M = 0.15
+POSITION_M = 0.15
 """A plate is in its place so near: half the size of the smallest standard one is 0.2 m."""
 
 SIZE_SHARE = 0.10
@@ -59,7 +59,7 @@ def sign_score(result: MappedFile, truth: MappedFile) -> FileScore:
     true = truth.of_kinds(SIGNS, "point", _NAME)
     for one in true:
         truth.word(one, "shape", SHAPES)
-    found = placed(
+    found = match_objects(
         result.of_kinds(SIGNS, "point", _NAME),
         true,
         [_is_seen(truth, one) for one in true],
@@ -77,11 +77,13 @@ def sign_score(result: MappedFile, truth: MappedFile) -> FileScore:
     return FileScore(
         "signs",
         (
-            Counts("signs", _NAME, TwoByTwo(len(main), false_signs, signs - len(main), 0)),
-            Counts(
+            DetectionCounts(
+                "signs", _NAME, ConfusionMatrix(len(main), false_signs, signs - len(main), 0)
+            ),
+            DetectionCounts(
                 "supplementary",
                 Text("supplementary plates", "補助標識"),
-                TwoByTwo(
+                ConfusionMatrix(
                     found.counts.hits - len(main),
                     false_plates,
                     plates - found.counts.hits + len(main),
@@ -99,7 +101,7 @@ def sign_score(result: MappedFile, truth: MappedFile) -> FileScore:
         left_out=found.left_out,
         limits={
             "within_m": WITHIN_M,
-            "place_m": PLACE_M,
+            "place_m": POSITION_M,
             "size_share": SIZE_SHARE,
             "least_front_points": LEAST_FRONT_POINTS,
         },
@@ -107,10 +109,10 @@ def sign_score(result: MappedFile, truth: MappedFile) -> FileScore:
 
 
 def _successes(
-    result: MappedFile, truth: MappedFile, signs: list[Partner], off: Floats, of: int
+    result: MappedFile, truth: MappedFile, signs: list[ObjectMatch], off: Floats, of: int
 ) -> tuple[NamedShare, ...]:
     """Of all signs that were asked for, those with this and that right."""
-    is_placed = off <= PLACE_M
+    is_placed = off <= POSITION_M
     has_shape = np.array(
         [one.result.facts.get("shape") == one.truth.facts["shape"] for one in signs], np.bool_
     )
@@ -150,25 +152,25 @@ def _is_supplementary(sign: MappedFeature) -> bool:
     return sign.facts.get("supplementary") in (True,)  # 1 in a GeoPackage
 
 
-def _off_centre(truth: MappedFile, signs: list[Partner]) -> Floats:
+def _off_centre(truth: MappedFile, signs: list[ObjectMatch]) -> Floats:
     """(n,) distances of centres, in plan where a side has no height.
 
     A truth may also know the middle of the plate's outline: who gives that isn't wrong either.
     """
     off = np.empty(len(signs))
     for number, one in enumerate(signs):
-        place, centres = one.result.xyz[0], [one.truth.xyz[0]]
+        position, centres = one.result.xyz[0], [one.truth.xyz[0]]
         middle = one.truth.facts.get("bbox_centre")
         if middle is not None:
-            if not _is_place(middle):
+            if not _is_position(middle):
                 raise truth.wrong(one.truth, "bbox_centre", Text("a place", "座標"))
             centres.append(np.array(middle, dtype=np.float64))
-        away = np.nan_to_num(place - np.array(centres))
+        away = np.nan_to_num(position - np.array(centres))
         off[number] = np.linalg.norm(away, axis=1).min()
     return off
 
 
-def _is_place(value: object) -> bool:
+def _is_position(value: object) -> bool:
     return (
         isinstance(value, list)
         and len(value) == len("xyz")
@@ -176,7 +178,7 @@ def _is_place(value: object) -> bool:
     )
 
 
-def _turned(result: MappedFile, truth: MappedFile, signs: list[Partner]) -> list[float]:
+def _turned(result: MappedFile, truth: MappedFile, signs: list[ObjectMatch]) -> list[float]:
     """By how many degrees plates face another way, -180 to 180, clockwise."""
     return [
         (result.number(one.result, "facing_deg") - truth.number(one.truth, "facing_deg") + 180)

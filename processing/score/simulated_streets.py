@@ -24,13 +24,13 @@ from processing.monitor import SilentMonitor
 from processing.output_streams import write_every_character
 from processing.points.point_source import PointColumns
 from processing.points.pulse_clock import estimate_clock
-from processing.score.disturbed_truths import disturbed_rows
+from processing.score.disturbed_truths import score_disturbed
 from processing.score.filter_tables import markdown_table
 from processing.score.filters import write_sections
+from processing.simulate.requests import StreetRequest
 from processing.simulate.scanning.density import road_density, survey_of
 from processing.simulate.scanning.sensors import sensor_of
 from processing.simulate.streets import simulate_street
-from processing.simulate.wishes import StreetWish
 
 HEADING = "## Simulated streets against their truth"
 DISTURBED_HEADING = "## Truths of simulated streets, disturbed"
@@ -71,7 +71,7 @@ _Members = list[dict[str, Any]]  # whatever JSON can hold
 
 
 @dataclass(frozen=True)
-class Cloud:
+class RecordedCloud:
     """All points of a simulated recording with their truth.
 
     Attributes
@@ -87,7 +87,7 @@ class Cloud:
 
 
 @dataclass(frozen=True)
-class Errors:
+class MeasureErrors:
     """How far measured values are from true ones.
 
     Attributes
@@ -102,12 +102,14 @@ class Errors:
     spread: float
 
     @staticmethod
-    def of(errors: Sequence[float]) -> Errors:
+    def of(errors: Sequence[float]) -> MeasureErrors:
         """Of some errors; NaN where there are none."""
         if not errors:
-            return Errors(0, np.nan, np.nan)
+            return MeasureErrors(0, np.nan, np.nan)
         middle = float(np.median(errors))
-        return Errors(len(errors), middle, float(np.median(np.abs(np.array(errors) - middle))))
+        return MeasureErrors(
+            len(errors), middle, float(np.median(np.abs(np.array(errors) - middle)))
+        )
 
     def cell(self, factor: float) -> str:
         """As a table's cell: middle ± spread (how many), times a factor."""
@@ -116,19 +118,19 @@ class Errors:
         return f"{factor * self.median:+.1f} ± {factor * self.spread:.1f} ({self.count})"
 
 
-def cloud_of(folder: Path) -> Cloud:
+def cloud_of(folder: Path) -> RecordedCloud:
     """The points of a simulated delivery."""
     parts = [laspy.read(path) for path in sorted(folder.glob("*.laz"))]
     truth = folder / "truth"
     names = sorted(path.stem for path in folder.glob("*.laz"))
-    return Cloud(
+    return RecordedCloud(
         np.concatenate([np.asarray(one.xyz) for one in parts]),
         np.concatenate([np.load(truth / f"{name}.labels.npy") for name in names]),
         np.concatenate([np.load(truth / f"{name}.instances.npy") for name in names]),
     )
 
 
-def curb_heights(cloud: Cloud, truth: Path) -> Errors:
+def curb_heights(cloud: RecordedCloud, truth: Path) -> MeasureErrors:
     """Steps of seen 2 m stretches, from the points before and behind the edges, against truth."""
     edges = [one for one in _members(truth / "curbs.geojson") if _facts(one)["type"] != "back"]
     lower = {_facts(one)["run"]: one for one in edges if _facts(one)["edge"] == "lower"}
@@ -148,10 +150,10 @@ def curb_heights(cloud: Cloud, truth: Path) -> Errors:
                 middle = (section["u0"] + section["u1"]) / 2
                 error = _step_error(xyz, high, low, _at(high, along, middle))
                 errors += [] if error is None else [error]
-    return Errors.of(errors)
+    return MeasureErrors.of(errors)
 
 
-def trunk_diameters(cloud: Cloud, truth: Path) -> Errors:
+def trunk_diameters(cloud: RecordedCloud, truth: Path) -> MeasureErrors:
     """Girth-diameters of trunks seen well from two sides, from circles through their points."""
     errors = []
     for one in _members(truth / "trees.geojson"):
@@ -163,10 +165,10 @@ def trunk_diameters(cloud: Cloud, truth: Path) -> Errors:
         ring = own[(above > _BREAST_M[0]) & (above < _BREAST_M[1]), :2]
         if len(ring) >= _FEWEST_POINTS:
             errors.append(_circle_diameter(ring) - facts["dbh_m"])
-    return Errors.of(errors)
+    return MeasureErrors.of(errors)
 
 
-def plate_distances(cloud: Cloud, truth: Path) -> tuple[Errors, Errors]:
+def plate_distances(cloud: RecordedCloud, truth: Path) -> tuple[MeasureErrors, MeasureErrors]:
     """Distances of plates' points from the true plane (m), and turns of their fitted one (°)."""
     away, turned = [], []
     for one in _members(truth / "signs.geojson"):
@@ -185,10 +187,10 @@ def plate_distances(cloud: Cloud, truth: Path) -> tuple[Errors, Errors]:
             matrix = np.column_stack([beside, own[:, 2] - centre[2], np.ones(beside.size)])
             slope = np.linalg.lstsq(matrix, off, rcond=None)[0][0]
             turned.append(float(np.degrees(np.arctan(slope))))
-    return Errors.of(away), Errors.of(turned)
+    return MeasureErrors.of(away), MeasureErrors.of(turned)
 
 
-def density_share(cloud: Cloud, folder: Path, wish: StreetWish) -> float:
+def density_share(cloud: RecordedCloud, folder: Path, options: StreetRequest) -> float:
     """Points counted on the road half a metre to a metre beside the path, of those told.
 
     The vehicle's height is taken from the points, as a density map doesn't know it.
@@ -212,10 +214,10 @@ def density_share(cloud: Cloud, folder: Path, wish: StreetWish) -> float:
     aside = np.abs(off[:, 0] * way[:, 1] - off[:, 1] * way[:, 0])
     counted = (aside > _DENSE_M[0]) & (aside < _DENSE_M[1]) & (np.abs(ahead) < 0.1)
     high = float(np.median(driven.xyz[middle, 2][nearest[counted]] - road[counted, 2]))
-    survey = survey_of(sensor_of(wish.sensor, "mobile"), 3.6 * long / seconds)
+    survey = survey_of(sensor_of(options.sensor, "mobile"), 3.6 * long / seconds)
     survey = replace(survey, height_m=high)
-    places = np.linspace(*_DENSE_M, 21)
-    told = float(road_density(survey, np.r_[-places, places]).mean())
+    positions = np.linspace(*_DENSE_M, 21)
+    told = float(road_density(survey, np.r_[-positions, positions]).mean())
     return float(counted.sum()) / (2 * long * (_DENSE_M[1] - _DENSE_M[0])) / told
 
 
@@ -255,14 +257,14 @@ def tables_of(seeds: Sequence[int] = SEEDS, length_m: float = _LENGTH_M) -> Tabl
     tables = Tables([list(_HEAD)], [])
     for number, seed in enumerate(seeds):
         style, sensor = _STYLES[number % len(_STYLES)], _SENSORS[number % len(_SENSORS)]
-        wish = StreetWish(seed=seed, length_m=length_m, style=style, sensor=sensor)
-        wish = replace(wish, drift_m=0.0, images=False)
-        with tempfile.TemporaryDirectory(prefix="zuka-") as place:
-            folder = Path(place) / "street"
-            simulate_street(wish, folder, SilentMonitor())
-            tables.streets.append([f"{style}, {sensor}, {seed}", *_cells(folder, wish)])
+        options = StreetRequest(seed=seed, length_m=length_m, style=style, sensor=sensor)
+        options = replace(options, drift_m=0.0, images=False)
+        with tempfile.TemporaryDirectory(prefix="zuka-") as position:
+            folder = Path(position) / "street"
+            simulate_street(options, folder, SilentMonitor())
+            tables.streets.append([f"{style}, {sensor}, {seed}", *_cells(folder, options)])
             if number < len(_STYLES):
-                head, *rows = disturbed_rows(folder / "truth")
+                head, *rows = score_disturbed(folder / "truth")
                 tables.disturbed += [] if tables.disturbed else [["street", *head]]
                 tables.disturbed += [[f"{style} {seed}", *row] for row in rows]
     return tables
@@ -274,8 +276,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--markdown", type=Path)
     parser.add_argument("--length", type=float, default=_LENGTH_M)
     parser.add_argument("--seeds", type=int, nargs="+", default=list(SEEDS))
-    wish = parser.parse_args(arguments)
-    tables = tables_of(wish.seeds, wish.length)
+    options = parser.parse_args(arguments)
+    tables = tables_of(options.seeds, options.length)
     sections = {
         HEADING: (_ABOUT, tables.streets),
         DISTURBED_HEADING: (_ABOUT_TRUTHS, tables.disturbed),
@@ -283,11 +285,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     written = {
         heading: f"{about}\n\n{markdown_table(rows)}" for heading, (about, rows) in sections.items()
     }
-    write_sections(wish.markdown, written)
+    write_sections(options.markdown, written)
     return 0
 
 
-def _cells(folder: Path, wish: StreetWish) -> list[str]:
+def _cells(folder: Path, options: StreetRequest) -> list[str]:
     truth = folder / "truth"
     scene = json.loads((truth / "scene.json").read_text("utf-8"))
     cloud = cloud_of(folder)
@@ -297,7 +299,7 @@ def _cells(folder: Path, wish: StreetWish) -> list[str]:
     return [
         f"{cloud.label.size:,}",
         f"{1e6 * (rate / true_rate - 1):+.0f}",
-        f"{density_share(cloud, folder, wish):.3f}",
+        f"{density_share(cloud, folder, options):.3f}",
         curb_heights(cloud, truth).cell(1000),
         trunk_diameters(cloud, truth).cell(1000),
         away.cell(1000),
@@ -323,26 +325,26 @@ def _at(line: _Floats, along: _Floats, middle: float) -> _Floats:
     return np.array([np.interp(middle, along, axis) for axis in line.T])
 
 
-def _step_error(xyz: _Floats, high: _Floats, low: _Floats, place: _Floats) -> float | None:
+def _step_error(xyz: _Floats, high: _Floats, low: _Floats, position: _Floats) -> float | None:
     """Measured less true height of the step within 25 cm of a place of the upper edge."""
-    nearest = low[np.argmin(np.hypot(*(low[:, :2] - place[:2]).T))]
-    behind = int(np.argmin(np.hypot(*(high[:, :2] - place[:2]).T)))
+    nearest = low[np.argmin(np.hypot(*(low[:, :2] - position[:2]).T))]
+    behind = int(np.argmin(np.hypot(*(high[:, :2] - position[:2]).T)))
     way = high[min(behind + 1, len(high) - 1)] - high[max(behind - 1, 0)]
     way = way[:2] / np.linalg.norm(way[:2])
     aside = np.array([-way[1], way[0]])
-    if (nearest[:2] - place[:2]) @ aside > 0:
+    if (nearest[:2] - position[:2]) @ aside > 0:
         aside = -aside  # away from the road
-    span = np.searchsorted(xyz[:, 0], [place[0] - 1, place[0] + 1])
+    span = np.searchsorted(xyz[:, 0], [position[0] - 1, position[0] + 1])
     own = xyz[span[0] : span[1]]
-    along, across = (own[:, :2] - place[:2]) @ way, (own[:, :2] - place[:2]) @ aside
-    foot = float((nearest[:2] - place[:2]) @ aside)
-    is_near = (np.abs(along) < _BESIDE_M) & (np.abs(own[:, 2] - place[2]) < 0.5)
+    along, across = (own[:, :2] - position[:2]) @ way, (own[:, :2] - position[:2]) @ aside
+    foot = float((nearest[:2] - position[:2]) @ aside)
+    is_near = (np.abs(along) < _BESIDE_M) & (np.abs(own[:, 2] - position[2]) < 0.5)
     profile = np.column_stack([across, own[:, 2]])
     top = profile[is_near & (across > 0.03) & (across < _STONE_M)]
     road = profile[is_near & (across < foot - 0.02) & (across > foot - _STONE_M)]
     if min(len(top), len(road)) < _FEWEST_POINTS:
         return None
-    return float(_level(top, 0.0) - _level(road, foot) - (place[2] - nearest[2]))
+    return float(_level(top, 0.0) - _level(road, foot) - (position[2] - nearest[2]))
 
 
 def _level(profile: _Floats, across: float) -> float:

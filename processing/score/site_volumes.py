@@ -27,7 +27,7 @@ from processing.earthwork.comparison import compare
 from processing.earthwork.epoch_ground import ground_of_drives
 from processing.earthwork.volume_parameters import VolumeParameters
 from processing.earthwork.volume_result import VolumeResult
-from processing.earthwork.within import Within
+from processing.earthwork.volume_scope import VolumeScope
 from processing.monitor import SilentMonitor
 from processing.output_streams import write_every_character
 from processing.points.drive import Drive
@@ -36,8 +36,8 @@ from processing.runner import mark_all
 from processing.score.filter_tables import markdown_table
 from processing.score.filters import write_sections
 from processing.score.known_body import BODY_ABOUT, BODY_HEADING, body_rows
+from processing.simulate.requests import SiteRequest
 from processing.simulate.site import DATES, simulate_site
-from processing.simulate.wishes import SiteWish
 from processing.tools.ground import GROUND_TOOL
 
 Floats = NDArray[np.float64]
@@ -107,7 +107,7 @@ class ScoredSite:
         return (self.result.volumes.net_m3 - self.truth["net_m3"]) / self.moved_m3
 
 
-def scored_site(name: str, folder: Path, parameters: VolumeParameters) -> ScoredSite:
+def score_site(name: str, folder: Path, parameters: VolumeParameters) -> ScoredSite:
     """Compare both dates of a delivery with its truth.
 
     Raises
@@ -123,7 +123,7 @@ def scored_site(name: str, folder: Path, parameters: VolumeParameters) -> Scored
             ground_of_drives(_with_ground(folder / "in" / f"{date}.laz", Path(scratch)), monitor)
             for date in DATES
         )
-        result = compare(before, after, parameters, monitor, Within(boundary))
+        result = compare(before, after, parameters, monitor, VolumeScope(boundary))
     change = result.change
     counted = change.is_measured & (change.inside > 0)
     own = np.where(counted, change.change_m * change.inside, 0.0) * change.grid.size_m**2
@@ -184,8 +184,8 @@ def simulated_sites(seeds: Sequence[int], kept: Path | None) -> Iterator[tuple[s
             sensor = _SENSORS[number % len(_SENSORS)]
             folder = root / f"{style}_{sensor}_{seed}"
             if not folder.exists():
-                wish = SiteWish(seed=seed, style=style, sensor=sensor)
-                simulate_site(wish, folder, SilentMonitor())
+                options = SiteRequest(seed=seed, style=style, sensor=sensor)
+                simulate_site(options, folder, SilentMonitor())
             yield f"{style}, {sensor}, {seed}", folder
             if kept is None:
                 shutil.rmtree(folder)
@@ -274,21 +274,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--seeds", type=int, nargs="*", default=list(SEEDS))
     parser.add_argument("--kept", type=Path)
     parser.add_argument("--mesh", type=float, default=VolumeParameters().grid_m)
-    wish = parser.parse_args(arguments)
-    parameters = VolumeParameters(grid_m=wish.mesh)
-    scenes = [(folder.name, folder) for folder in wish.samples]
+    options = parser.parse_args(arguments)
+    parameters = VolumeParameters(grid_m=options.mesh)
+    scenes = [(folder.name, folder) for folder in options.samples]
     sites = []
-    for name, folder in chain(scenes, simulated_sites(wish.seeds, wish.kept)):
-        sites.append(scored_site(name, folder, parameters))
+    for name, folder in chain(scenes, simulated_sites(options.seeds, options.kept)):
+        sites.append(score_site(name, folder, parameters))
         sys.stderr.write(f"{' | '.join(_row(sites[-1]))}\n")
     sections = {
-        HEADING: (_ABOUT.format(mesh=wish.mesh), rows_of(sites)),
+        HEADING: (_ABOUT.format(mesh=options.mesh), rows_of(sites)),
         BODY_HEADING: (BODY_ABOUT, body_rows()),
     }
     tables = {
         head: f"{about}\n\n{markdown_table(rows)}" for head, (about, rows) in sections.items()
     }
-    write_sections(wish.markdown, tables)
+    write_sections(options.markdown, tables)
     return 0
 
 

@@ -10,13 +10,13 @@ import math
 
 import numpy as np
 
-from processing.score.file_scores import Counts, Errors, FileScore, errors_of
+from processing.score.file_scores import DetectionCounts, ErrorStatistics, FileScore, errors_of
 from processing.score.mapped_features import MappedFeature, MappedFile
-from processing.score.placed_objects import (
+from processing.score.object_matches import (
     Differences,
-    Partner,
+    ObjectMatch,
     is_in_span,
-    placed,
+    match_objects,
     shows_enough,
 )
 from processing.text import Text
@@ -56,7 +56,7 @@ def tree_score(result: MappedFile, truth: MappedFile) -> FileScore:
         is_in_span(one) and shows_enough(truth, one, "trunk_points", LEAST_TRUNK_POINTS)
         for one in true
     ]
-    found = placed(result.of_kinds(TREES, "point", _NAME), true, asked, WITHIN_M)
+    found = match_objects(result.of_kinds(TREES, "point", _NAME), true, asked, WITHIN_M)
     measured = [
         one for one in found.partners if shows_enough(truth, one.truth, "arc_deg", LEAST_ARC_DEG)
     ]
@@ -64,10 +64,10 @@ def tree_score(result: MappedFile, truth: MappedFile) -> FileScore:
     free = [one for one, staked in zip(measured, has_stakes, strict=True) if not staked]
     staked = [one for one, staked in zip(measured, has_stakes, strict=True) if staked]
     differences = Differences(result, truth, found.partners)
-    off = differences.places()
+    off = differences.positions()
     return FileScore(
         "trees",
-        (Counts("trees", _NAME, found.counts),),
+        (DetectionCounts("trees", _NAME, found.counts),),
         errors=(
             _dbh(result, truth, free, "dbh", (f"{_DBH[0]}, no stakes", f"{_DBH[1]}（支木なし）")),
             _dbh(
@@ -96,10 +96,10 @@ def tree_score(result: MappedFile, truth: MappedFile) -> FileScore:
 def _dbh(
     result: MappedFile,
     truth: MappedFile,
-    partners: list[Partner],
+    partners: list[ObjectMatch],
     id_: str,
     name: tuple[str, str],
-) -> Errors:
+) -> ErrorStatistics:
     off = [_dbh_m(result, one.result) - _dbh_m(truth, one.truth) for one in partners]
     return errors_of(id_, name, "m", off)
 

@@ -94,9 +94,9 @@ class Cut:
             Offset to the right of the middle, height (m, as in the project), distance from the
             plane (away from the viewer positive).
         """
-        places = np.asarray(xyz, dtype=np.float64).reshape(-1, 3)
-        plan = places[:, :2] - np.array(self.middle[:2])
-        return np.column_stack([plan @ self.direction, places[:, 2], plan @ self.normal])
+        positions = np.asarray(xyz, dtype=np.float64).reshape(-1, 3)
+        plan = positions[:, :2] - np.array(self.middle[:2])
+        return np.column_stack([plan @ self.direction, positions[:, 2], plan @ self.normal])
 
     def to_space(self, section: ArrayLike) -> Floats:
         """Places of the section in space: what :meth:`to_section` undoes.

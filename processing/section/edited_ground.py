@@ -21,7 +21,7 @@ _NEAR_BINS = 2
 """Heights farther apart than these have nothing measured between them."""
 
 
-def edited_lines(
+def update_ground_lines(
     lines: Sequence[SurfaceLine],
     section: Floats,
     is_ground: NDArray[np.bool_],
@@ -62,7 +62,7 @@ def edited_lines(
         if ends[1] is not None:
             nodes = np.concatenate([nodes[nodes[:, 0] < high_m], [[high_m, ends[1]]]])
         new += _pieces(nodes)
-    return tuple(sorted((*left, *new), key=lambda one: float(one.places[0, 0])))
+    return tuple(sorted((*left, *new), key=lambda one: float(one.positions[0, 0])))
 
 
 def _stretches(offsets: Floats) -> Iterable[tuple[float, float]]:
@@ -91,7 +91,7 @@ def _ground_height(heights: Floats) -> float:
 
 def _height_at(lines: Iterable[SurfaceLine], offset_m: float) -> float | None:
     for one in lines:
-        offsets, heights = one.places.T
+        offsets, heights = one.positions.T
         if offsets[0] <= offset_m <= offsets[-1]:
             return float(np.interp(offset_m, offsets, heights))
     return None
@@ -99,17 +99,17 @@ def _height_at(lines: Iterable[SurfaceLine], offset_m: float) -> float | None:
 
 def _outside(line: SurfaceLine, low_m: float, high_m: float) -> Iterable[SurfaceLine]:
     """What of a line lies left and right of a stretch."""
-    offsets, heights = line.places.T
+    offsets, heights = line.positions.T
     for low, high in ((-np.inf, low_m), (high_m, np.inf)):
         inner = (offsets > low) & (offsets < high)
         cuts = [end for end in (low, high) if offsets[0] < end < offsets[-1]]
-        places = np.concatenate(
-            [line.places[inner], [(end, np.interp(end, offsets, heights)) for end in cuts]]
+        positions = np.concatenate(
+            [line.positions[inner], [(end, np.interp(end, offsets, heights)) for end in cuts]]
             if cuts
-            else [line.places[inner]]
+            else [line.positions[inner]]
         )
-        if len(places) > 1:
-            yield SurfaceLine(places[np.argsort(places[:, 0])], line.is_filled)
+        if len(positions) > 1:
+            yield SurfaceLine(positions[np.argsort(positions[:, 0])], line.is_filled)
 
 
 def _pieces(nodes: Floats) -> Iterable[SurfaceLine]:

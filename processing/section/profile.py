@@ -82,7 +82,7 @@ class Crossing:
 
 
 @dataclass(frozen=True)
-class Profile:
+class SectionProfile:
     """A section to be drawn.
 
     Attributes
@@ -122,7 +122,7 @@ def profile_of(
     *,
     station_m: float | None = None,
     title: Text = Text.same(""),
-) -> Profile:
+) -> SectionProfile:
     """What a cut shows of some drives, but for noise, and of the map.
 
     Parameters
@@ -134,7 +134,7 @@ def profile_of(
     section = np.concatenate([np.empty((0, 3)), *found])
     stride = max(1, -(-len(section) // _MOST_POINTS))
     crossings = [crossing for line in lines for crossing in crossings_of(cut, line)]
-    return Profile(
+    return SectionProfile(
         cut=cut,
         ground=ground_line(section[:, 0], section[:, 1]),
         points=section[::stride, :2].copy(),
@@ -173,13 +173,13 @@ def ground_line(offsets_m: ArrayLike, heights_m: ArrayLike) -> tuple[Floats, ...
     order = np.lexsort((heights, numbers))
     numbers, offsets, heights = numbers[order], offsets[order], heights[order]
     firsts = np.flatnonzero(np.diff(numbers, prepend=numbers[:1] - 1))
-    places = []
+    positions = []
     for start, stop in zip(firsts, [*firsts[1:], numbers.size], strict=True):
         lowest = start + int((stop - start) * _LOWEST_SHARE)
         end = int(np.searchsorted(heights[lowest:stop], heights[lowest] + _LAYER_M, "right"))
         layer = slice(lowest, lowest + end)
-        places.append((np.median(offsets[layer]), np.median(heights[layer])))
-    line = _without_spikes(np.array(places).reshape(-1, 2))
+        positions.append((np.median(offsets[layer]), np.median(heights[layer])))
+    line = _without_spikes(np.array(positions).reshape(-1, 2))
     gaps = np.flatnonzero(np.diff(line[:, 0]) > _GAP_M) + 1
     return tuple(part for part in np.split(line, gaps) if len(part) > 1)
 
@@ -198,15 +198,15 @@ def crossings_of(cut: Cut, line: DrawnLine) -> list[Crossing]:
     """Where a line passes through the plane of a cut; a point counts within the slab."""
     section = cut.to_section(line.xyz)
     if len(section) == 1:
-        places = section[cut.holds(section), :2]
+        positions = section[cut.holds(section), :2]
     else:
         if line.is_closed:
             section = np.concatenate([section, section[:1]])
-        places = plane_crossings(section)
-    inside = np.abs(places[:, 0]) <= cut.half_length_m
+        positions = plane_crossings(section)
+    inside = np.abs(positions[:, 0]) <= cut.half_length_m
     return [
         Crossing(line.name, line.layer, line.aci, offset, height)
-        for offset, height in places[inside].tolist()
+        for offset, height in positions[inside].tolist()
     ]
 
 
@@ -227,12 +227,12 @@ def segment_crossings(starts: Floats, ends: Floats) -> tuple[NDArray[np.int64], 
     -------
     numbers : (k,) int64
         Of the segments, rising.
-    places : (k, 2) float64
+    positions : (k, 2) float64
         Offsets and heights.
     """
     # A vertex in the plane belongs to the side that leaves it, so that it counts once.
     passes = np.flatnonzero((starts[:, 2] <= 0) != (ends[:, 2] <= 0))
     start, end = starts[passes], ends[passes]
     shares = start[:, 2] / (start[:, 2] - end[:, 2])
-    places: Floats = start[:, :2] + shares[:, None] * (end[:, :2] - start[:, :2])
-    return passes, places
+    positions: Floats = start[:, :2] + shares[:, None] * (end[:, :2] - start[:, :2])
+    return passes, positions

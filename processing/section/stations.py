@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from processing.errors import Unsuitable
-from processing.points.smooth_way import apart
+from processing.points.smooth_path import apart
 from processing.points.trajectory import Trajectory
 from processing.section.cut import Cut
 from processing.text import Text
@@ -56,39 +56,39 @@ class Stations:
     def __init__(
         self, xyz: ArrayLike, *, is_closed: bool = False, times: ArrayLike | None = None
     ) -> None:
-        places = np.asarray(xyz, dtype=np.float64).reshape(-1, 3)
-        if is_closed and len(places):
-            places = np.concatenate([places, places[:1]])
-        kept = _apart(places, _DRAWN_STEP_M if times is None else _DRIVEN_STEP_M)
+        positions = np.asarray(xyz, dtype=np.float64).reshape(-1, 3)
+        if is_closed and len(positions):
+            positions = np.concatenate([positions, positions[:1]])
+        kept = _apart(positions, _DRAWN_STEP_M if times is None else _DRIVEN_STEP_M)
         if kept.size < 2:
             raise Unsuitable(
                 Text("The line has no length.", "線の長さがありません。"),
-                Text("{count} places", "{count} 点").filled(count=len(places)),
+                Text("{count} places", "{count} 点").filled(count=len(positions)),
                 Text(
                     "Choose a line with two places that are apart in plan.",
                     "平面上で離れた2点以上をもつ線を選んでください。",
                 ),
             )
-        self._origin = places[kept[0]].copy()
-        self._local = places[kept] - self._origin
+        self._origin = positions[kept[0]].copy()
+        self._local = positions[kept] - self._origin
         self._axes = tuple(np.ascontiguousarray(axis) for axis in self._local.T)
         self._times = None if times is None else np.asarray(times, dtype=np.float64)[kept]
         steps = np.hypot(*np.diff(self._local[:, :2], axis=0).T)
         self._stations = np.concatenate([[0.0], np.cumsum(steps)])
         self.length_m = float(self._stations[-1])
-        low, high = places[:, :2].min(axis=0), places[:, :2].max(axis=0)
+        low, high = positions[:, :2].min(axis=0), positions[:, :2].max(axis=0)
         self.bounds: tuple[float, float, float, float] = (*low.tolist(), *high.tolist())
 
     @classmethod
     def of_trajectory(cls, trajectory: Trajectory) -> Self:
-        """The way of the vehicle's reference point."""
+        """The vehicle's path's reference point."""
         return cls(trajectory.xyz, times=trajectory.time)
 
-    def measured_places(self) -> tuple[Floats, Floats]:
+    def measured_positions(self) -> tuple[Floats, Floats]:
         """The stations (k,), m, rising, and places (k, 3), m, project CRS, it is measured by."""
         return self._stations.copy(), self._local + self._origin
 
-    def place_at(self, station_m: float) -> tuple[float, float, float]:
+    def position_at(self, station_m: float) -> tuple[float, float, float]:
         """Where a station is; before the beginning and behind the end straight on and level."""
         inside = min(max(station_m, 0.0), self.length_m)
         local = np.array([np.interp(inside, self._stations, axis) for axis in self._axes])
@@ -114,12 +114,12 @@ class Stations:
     def cut_at(self, station_m: float, width_m: float, half_length_m: float) -> Cut:
         """The cut across the line; one looks along it."""
         east, north = self.direction_at(station_m)
-        return Cut(self.place_at(station_m), (north, -east), width_m, half_length_m)
+        return Cut(self.position_at(station_m), (north, -east), width_m, half_length_m)
 
     def cut_along(self, station_m: float, width_m: float, half_length_m: float) -> Cut:
         """The cut along the line, which leads to the right; one looks to its left."""
         direction = self.direction_at(station_m)
-        return Cut(self.place_at(station_m), direction, width_m, half_length_m)
+        return Cut(self.position_at(station_m), direction, width_m, half_length_m)
 
     def nearest(self, xyz: ArrayLike, between: tuple[float, float] | None = None) -> float:
         """The station nearest to a place in plan, also straight on beyond the ends.
@@ -172,7 +172,7 @@ class Stations:
 
     def distance(self, xyz: ArrayLike, station_m: float) -> float:
         """How far a place is in plan from a station, or from the end that is nearest to it; m."""
-        east, north, _ = self.place_at(min(max(station_m, 0.0), self.length_m))
+        east, north, _ = self.position_at(min(max(station_m, 0.0), self.length_m))
         easting, northing, _ = np.asarray(xyz, dtype=np.float64).tolist()
         return float(np.hypot(easting - east, northing - north))
 
@@ -185,7 +185,7 @@ class Stations:
 
     def _ahead(self, station_m: float, xyz: ArrayLike) -> float:
         """How far a place lies ahead of the cut at a station; m."""
-        from_there = np.asarray(xyz, dtype=np.float64) - np.array(self.place_at(station_m))
+        from_there = np.asarray(xyz, dtype=np.float64) - np.array(self.position_at(station_m))
         return float(from_there[:2] @ np.array(self.direction_at(station_m)))
 
     def _beyond(self, station_m: float, plan: Floats) -> float:
@@ -197,9 +197,9 @@ class Stations:
         return station_m + ahead if is_outside else station_m
 
 
-def _apart(places: Floats, step_m: float) -> NDArray[np.int64]:
+def _apart(positions: Floats, step_m: float) -> NDArray[np.int64]:
     """Indices of places that are so far apart in plan; the last place ends the line."""
-    kept = apart(places, step_m)
+    kept = apart(positions, step_m)
     if kept.size > 1:
-        kept[-1] = len(places) - 1
+        kept[-1] = len(positions) - 1
     return kept

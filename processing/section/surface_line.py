@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # named in annotations only
 Floats = NDArray[np.float64]
 
 _STEPS_PER_CELL = 2
-_MOST_PLACES = 4000
+_MOST_POSITIONS = 4000
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,13 +26,13 @@ class SurfaceLine:
 
     Attributes
     ----------
-    places : (n, 2) float64
+    positions : (n, 2) float64
         Offset and height, m, by rising offset; two at least.
     is_filled : bool
         Whether nothing was measured there: the height follows from what lies around.
     """
 
-    places: Floats
+    positions: Floats
     is_filled: bool
 
 
@@ -57,11 +57,11 @@ def surface_lines(surface: StoredSurface, cut: Cut) -> tuple[SurfaceLine, ...]:
     """
     half_m = cut.half_length_m
     count = int(np.ceil(2 * half_m / surface.grid.size_m)) * _STEPS_PER_CELL
-    offsets = np.linspace(-half_m, half_m, min(max(count, 2), _MOST_PLACES))
+    offsets = np.linspace(-half_m, half_m, min(max(count, 2), _MOST_POSITIONS))
     nothing = np.zeros_like(offsets)
     xy = cut.to_space(np.column_stack([offsets, nothing, nothing]))[:, :2]
     heights, is_filled = surface.heights_at(xy), surface.is_filled_at(xy)
-    places = np.column_stack([offsets, heights])
+    positions = np.column_stack([offsets, heights])
     is_there = np.isfinite(heights)
     # A piece lies between two places; it is measured where both are.
     between = is_there[1:] & is_there[:-1]
@@ -70,13 +70,13 @@ def surface_lines(surface: StoredSurface, cut: Cut) -> tuple[SurfaceLine, ...]:
     starts = np.concatenate([[0], ends])
     stops = np.concatenate([ends, [state.size]])
     return tuple(
-        SurfaceLine(places[start : stop + 1], bool(state[start] == 2))
+        SurfaceLine(positions[start : stop + 1], bool(state[start] == 2))
         for start, stop in zip(starts.tolist(), stops.tolist(), strict=True)
         if state[start]
     )
 
 
-def without_doubles(lines: Iterable[tuple[SurfaceLine, ...]]) -> tuple[SurfaceLine, ...]:
+def remove_doubles(lines: Iterable[tuple[SurfaceLine, ...]]) -> tuple[SurfaceLine, ...]:
     """The lines of several drives, once where drives keep the same surface."""
     kept: list[tuple[SurfaceLine, ...]] = []
     for one in lines:
@@ -87,6 +87,6 @@ def without_doubles(lines: Iterable[tuple[SurfaceLine, ...]]) -> tuple[SurfaceLi
 
 def _are_same(one: tuple[SurfaceLine, ...], other: tuple[SurfaceLine, ...]) -> bool:
     return len(one) == len(other) and all(
-        mine.is_filled == theirs.is_filled and np.array_equal(mine.places, theirs.places)
+        mine.is_filled == theirs.is_filled and np.array_equal(mine.positions, theirs.positions)
         for mine, theirs in zip(one, other, strict=True)
     )

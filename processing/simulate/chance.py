@@ -10,15 +10,17 @@ from numpy.random import Generator
 _LONGEST = 1 << 32
 
 
-def chance(seed: int, *place: int | str) -> Generator:
+def chance(seed: int, *position: int | str) -> Generator:
     """A stream of random numbers of its own for every place.
 
     Parameters
     ----------
     seed : int
         Of the whole street or site.
-    place : int or str
+    position : int or str
         What is drawn, and where: ``chance(7, "trees", 12, -1)``. Numbers may be negative.
     """
-    words = [zlib.crc32(one.encode()) if isinstance(one, str) else one % _LONGEST for one in place]
+    words = [
+        zlib.crc32(one.encode()) if isinstance(one, str) else one % _LONGEST for one in position
+    ]
     return np.random.default_rng([seed % _LONGEST, *words])

@@ -1,16 +1,16 @@
-"""What a wish would give, told before it is fulfilled: points, room on the disk, density."""
+"""What a request would give, told before it is fulfilled: points, room on the disk, density."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 
+from processing.simulate.requests import SiteRequest, StreetRequest
 from processing.simulate.scanning.density import DensityMap, density_map, survey_of
 from processing.simulate.scanning.sensors import sensor_of
 from processing.simulate.sites.recording import duration_s, pattern_of
 from processing.simulate.sites.stations import count_for
 from processing.simulate.street.styles import Style, style_of
-from processing.simulate.wishes import SiteWish, StreetWish
 
 _KM_H = 3.6
 _SECONDS_OF_WAITS = 8.0
@@ -51,7 +51,7 @@ def usual_speed_km_h(style: Style) -> float:
     return sum(style.speed_m_s) / 2 * _KM_H
 
 
-def forecast_street(wish: StreetWish) -> Forecast:
+def forecast_street(request: StreetRequest) -> Forecast:
     """About what a street would give.
 
     Raises
@@ -59,18 +59,22 @@ def forecast_street(wish: StreetWish) -> Forecast:
     OutOfRange
         There is no such sensor or style.
     """
-    sensor = sensor_of(wish.sensor, "mobile", wish.own_sensor)
-    speed = wish.speed_km_h or usual_speed_km_h(style_of(wish.style))
-    survey = survey_of(sensor, speed, pulses=wish.pulses, turns_per_s=wish.turns_per_s)
-    seconds = wish.passes * (wish.length_m * _KM_H / speed + wish.stops * _SECONDS_OF_WAITS)
+    sensor = sensor_of(request.sensor, "mobile", request.own_sensor)
+    speed = request.speed_km_h or usual_speed_km_h(style_of(request.style))
+    survey = survey_of(sensor, speed, pulses=request.pulses, turns_per_s=request.turns_per_s)
+    seconds = request.passes * (
+        request.length_m * _KM_H / speed + request.stops * _SECONDS_OF_WAITS
+    )
     rate = survey.pulses * survey.turns_per_s * len(survey.heads)
     points = round(seconds * rate * _RETURNS_PER_PULSE)
-    images = wish.images * wish.passes * _CAMERAS * math.ceil(wish.length_m / _IMAGE_EVERY_M)
+    images = (
+        request.images * request.passes * _CAMERAS * math.ceil(request.length_m / _IMAGE_EVERY_M)
+    )
     size = round(points * _BYTES_PER_POINT) + images * _BYTES_PER_IMAGE
     return Forecast(points, size, seconds, density_map(survey))
 
 
-def forecast_site(wish: SiteWish) -> Forecast:
+def forecast_site(request: SiteRequest) -> Forecast:
     """About what a site would give.
 
     Raises
@@ -78,10 +82,10 @@ def forecast_site(wish: SiteWish) -> Forecast:
     OutOfRange
         There is no such sensor.
     """
-    sensor = sensor_of(wish.sensor, "standing", wish.own_sensor)
-    step_deg = math.degrees(wish.spacing_m / _SPACING_AT_M)
+    sensor = sensor_of(request.sensor, "standing", request.own_sensor)
+    step_deg = math.degrees(request.spacing_m / _SPACING_AT_M)
     pulses = (360.0 / step_deg) * ((_HIGHEST_DEG - _LOWEST_DEG) / step_deg)
-    stations = _EPOCHS * count_for(wish.length_m, wish.stations)
+    stations = _EPOCHS * count_for(request.length_m, request.stations)
     points = round(stations * pulses * _SITE_RETURNS_PER_PULSE)
-    seconds = duration_s(pattern_of(sensor, wish.spacing_m), stations)
+    seconds = duration_s(pattern_of(sensor, request.spacing_m), stations)
     return Forecast(points, round(points * _BYTES_PER_POINT), seconds)

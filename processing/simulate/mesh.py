@@ -13,7 +13,7 @@ from processing.simulate.materials import Material
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-Shape = tuple[Floats, Integers]
+TriangleShape = tuple[Floats, Integers]
 """Vertices (n, 3) float64, m, and triangles (m, 3) int64."""
 
 MOST_PIECES = 256
@@ -73,7 +73,7 @@ class MeshBuilder:
 
     def add(
         self,
-        shape: Shape,
+        shape: TriangleShape,
         material: Material | NDArray[np.uint8],
         label: int,
         instance: int,
@@ -118,7 +118,7 @@ class MeshBuilder:
         return Mesh(np.empty((0, 3)), none, empty, empty, np.empty(0, np.int32), empty)
 
 
-def grid(rows: Floats) -> Shape:
+def grid(rows: Floats) -> TriangleShape:
     """The surface through rows of places: (r, c, 3) float64; triangles in the rows' order."""
     count, width = rows.shape[:2]
     first = (np.arange(count - 1)[:, None] * width + np.arange(width - 1)).ravel()
@@ -127,7 +127,7 @@ def grid(rows: Floats) -> Shape:
     return rows.reshape(-1, 3), np.stack([one, other], axis=1).reshape(-1, 3)
 
 
-def tube(path: Floats, radii: Floats, sides: int, *, is_closed: bool = True) -> Shape:
+def tube(path: Floats, radii: Floats, sides: int, *, is_closed: bool = True) -> TriangleShape:
     """A round body along a path.
 
     Parameters
@@ -138,12 +138,12 @@ def tube(path: Floats, radii: Floats, sides: int, *, is_closed: bool = True) -> 
     is_closed : bool
         Whether both ends are shut by a fan.
     """
-    ways = np.gradient(path, axis=0)
-    ways /= np.linalg.norm(ways, axis=1)[:, None]
-    aside = np.where(np.abs(ways[:, 2:]) > 0.9, [[1.0, 0.0, 0.0]], [[0.0, 0.0, 1.0]])
-    first = np.cross(ways, aside)
+    directions = np.gradient(path, axis=0)
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    aside = np.where(np.abs(directions[:, 2:]) > 0.9, [[1.0, 0.0, 0.0]], [[0.0, 0.0, 1.0]])
+    first = np.cross(directions, aside)
     first /= np.linalg.norm(first, axis=1)[:, None]
-    second = np.cross(ways, first)
+    second = np.cross(directions, first)
     angles = np.linspace(0, 2 * np.pi, sides + 1)
     around = (
         np.cos(angles)[None, :, None] * first[:, None]
@@ -161,8 +161,8 @@ def tube(path: Floats, radii: Floats, sides: int, *, is_closed: bool = True) -> 
     return np.concatenate([vertices, path[:1], path[-1:]]), np.concatenate([triangles, low, high])
 
 
-def box(low: Sequence[float], high: Sequence[float]) -> Shape:
-    """A box between two corners, in its own frame (see `placed`)."""
+def box(low: Sequence[float], high: Sequence[float]) -> TriangleShape:
+    """A box between two corners, in its own frame (see `place_shape`)."""
     x0, y0, z0 = low
     x1, y1, z1 = high
     vertices = np.array(
@@ -182,14 +182,16 @@ def box(low: Sequence[float], high: Sequence[float]) -> Shape:
     return vertices, np.array(faces, np.int64)
 
 
-def plate(outline: Floats) -> Shape:
+def plate(outline: Floats) -> TriangleShape:
     """A convex plane figure from its corners in order: (n, 3) float64."""
     count = len(outline)
     rest = np.arange(1, count - 1)
     return np.asarray(outline, np.float64), np.column_stack([np.zeros_like(rest), rest, rest + 1])
 
 
-def placed(shape: Shape, where: Sequence[float] | Floats, heading_rad: float) -> Shape:
+def place_shape(
+    shape: TriangleShape, where: Sequence[float] | Floats, heading_rad: float
+) -> TriangleShape:
     """A shape whose own x axis points along a heading (anticlockwise from east), at a place."""
     vertices, triangles = shape
     cosine, sine = np.cos(heading_rad), np.sin(heading_rad)

@@ -11,29 +11,29 @@ import numpy as np
 from processing.monitor import Monitor, PartMonitor
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats, Integers
-from processing.simulate.scanning.casting import Scene
+from processing.simulate.requests import SiteRequest
+from processing.simulate.scanning.casting import RaycastScene
 from processing.simulate.scanning.returns import Weather
 from processing.simulate.scanning.sensors import Sensor, sensor_of
 from processing.simulate.simulated import Simulated
-from processing.simulate.sites.bodies import NAMES, Kind
+from processing.simulate.sites.bodies import NAMES, SiteKind
 from processing.simulate.sites.delivery import (
     CRS,
     CloudFile,
-    Place,
+    SiteReference,
     write_json,
     write_site,
     write_terrain,
 )
-from processing.simulate.sites.layout import Layout, layout_of, scene_mesh
+from processing.simulate.sites.layout import SiteLayout, layout_of, scene_mesh
 from processing.simulate.sites.movement import MovingThings, dust_of, tracks_of
-from processing.simulate.sites.recording import Survey, pattern_of, recorded, scans_at
+from processing.simulate.sites.recording import SiteSurvey, pattern_of, record_points, scans_at
 from processing.simulate.sites.stations import count_for, stations_of
-from processing.simulate.sites.terrain import Terrain, terrain_of
+from processing.simulate.sites.terrain import SiteTerrain, terrain_of
 from processing.simulate.sites.volumes import SEEN_CELL_M, cut_and_fill
-from processing.simulate.whole_folder import made_whole
-from processing.simulate.wishes import SiteWish
+from processing.simulate.whole_folder import write_whole_folder
 from processing.text import Text
-from processing.tools.parameters import filled_in
+from processing.tools.parameters import fill_parameters
 
 DATES = ("before", "after")
 _FIRST_S = 350_000_000.0  # adjusted standard GPS time
@@ -41,7 +41,7 @@ _DAY_S = 86_400.0
 
 
 def simulate_site(
-    wish: SiteWish, folder: Path, monitor: Monitor, *, registration_m: float = 0.0
+    request: SiteRequest, folder: Path, monitor: Monitor, *, registration_m: float = 0.0
 ) -> Simulated:
     """Make a site, record it on both dates, and write the delivery and its truth.
 
@@ -62,12 +62,12 @@ def simulate_site(
     MissingInput, NoSpace, BadFile
         What the operating system says; `Cancelled`.
     """
-    wish = filled_in(SiteWish, dataclasses.asdict(wish))
-    sensor = sensor_of(wish.sensor, "standing", wish.own_sensor)
-    with made_whole(folder) as hidden:
+    request = fill_parameters(SiteRequest, dataclasses.asdict(request))
+    sensor = sensor_of(request.sensor, "standing", request.own_sensor)
+    with write_whole_folder(folder) as hidden:
         for part in ("in", "truth"):
             (hidden / part).mkdir()
-        count = _write(wish, sensor, hidden, (monitor, registration_m))
+        count = _write(request, sensor, hidden, (monitor, registration_m))
     monitor.report(1.0)
     points = tuple(folder / "in" / f"{date}.laz" for date in DATES)
     return Simulated(folder, points, (), (), folder / "truth", CRS, count)
@@ -77,10 +77,10 @@ def simulate_site(
 class _Site:
     """What both dates have in common."""
 
-    wish: SiteWish
+    request: SiteRequest
     sensor: Sensor
-    terrain: Terrain
-    place: Place
+    terrain: SiteTerrain
+    position: SiteReference
     polygon: Floats
 
     @property
@@ -90,30 +90,32 @@ class _Site:
         return -(-(rows - 1) // per_cell), -(-(columns - 1) // per_cell)
 
 
-def _write(wish: SiteWish, sensor: Sensor, hidden: Path, work: tuple[Monitor, float]) -> int:
+def _write(request: SiteRequest, sensor: Sensor, hidden: Path, work: tuple[Monitor, float]) -> int:
     """Write all files; gives how many points there are."""
     monitor, registration_m = work
-    random = chance(wish.seed, "place")
-    terrain = terrain_of(wish.seed, wish.style, wish.length_m, monitor.check)
+    random = chance(request.seed, "place")
+    terrain = terrain_of(request.seed, request.style, request.length_m, monitor.check)
     east, north = np.round(random.uniform((-30_000, -60_000), (10_000, -20_000)))
-    place = Place(float(east), float(north))
-    site = _Site(wish, sensor, terrain, place, _polygon(wish.seed, terrain.before.heights.size_m))
+    position = SiteReference(float(east), float(north))
+    site = _Site(
+        request, sensor, terrain, position, _polygon(request.seed, terrain.before.heights.size_m)
+    )
     starts = [_FIRST_S + float(random.integers(0, 30_000)) * 1000.0]
     starts.append(starts[0] + round(float(random.uniform(5, 60))) * _DAY_S)
-    common = chance(wish.seed, "registration").normal(0, 1, 3) * registration_m
+    common = chance(request.seed, "registration").normal(0, 1, 3) * registration_m
     seen, epochs = [], {}
     for number, date in enumerate(DATES):
         part = PartMonitor(monitor, 0.48 * number, 0.48 * (number + 1))
         cloud, epoch = _record(site, date, hidden, starts[number], (part, common * number))
         epochs[date] = {**cloud.counts, **epoch}
         ground = terrain.before if date == "before" else terrain.after
-        write_terrain(hidden / "truth" / f"terrain_{date}.npz", ground.heights, place)
+        write_terrain(hidden / "truth" / f"terrain_{date}.npz", ground.heights, position)
         seen.append(cloud.seen)
         monitor.check()
-    on_map = place.on_map(site.polygon)
+    on_map = position.on_map(site.polygon)
     write_site(hidden / "in" / "site.geojson", on_map)
     write_json(hidden / "truth" / "volume.json", _volumes(site, seen[0], seen[1]))
-    scene = {"scene": "simulated site", **dataclasses.asdict(wish), "epochs": epochs}
+    scene = {"scene": "simulated site", **dataclasses.asdict(request), "epochs": epochs}
     write_json(hidden / "truth" / "scene.json", {**scene, "later_shift_m": common.tolist()})
     return sum(int(str(one["points"])) for one in epochs.values())
 
@@ -126,14 +128,15 @@ def _record(
     survey = _survey(site, date, monitor)
     text = Text("Scanning the site.", "現場をスキャンしています。")
     path, truth = hidden / "in" / f"{date}.laz", hidden / "truth"
-    with CloudFile(path, truth, site.place, starts_s, cells=site.cells) as cloud:
-        for share, points in recorded(survey):
+    with CloudFile(path, truth, site.position, starts_s, cells=site.cells) as cloud:
+        for share, points in record_points(survey):
             monitor.check()
             cloud.write(dataclasses.replace(points, xyz=points.xyz + shift))
             monitor.report(share, text)
-    east, north = site.place.easting_m, site.place.northing_m
+    east, north = site.position.easting_m, site.position.northing_m
     stations = [
-        [one.place[0] + east, one.place[1] + north, one.place[2]] for one in survey.stations
+        [one.position[0] + east, one.position[1] + north, one.position[2]]
+        for one in survey.stations
     ]
     objects = [
         {"kind": NAMES[one.kind], "x": one.x + east, "y": one.y + north}
@@ -149,28 +152,28 @@ def _record(
     }
 
 
-def _survey(site: _Site, date: str, monitor: Monitor) -> Survey:
-    wish, sensor = site.wish, site.sensor
-    pattern = pattern_of(sensor, wish.spacing_m)
-    layout = layout_of(wish.seed, date, site.terrain, monitor.check)
+def _survey(site: _Site, date: str, monitor: Monitor) -> SiteSurvey:
+    request, sensor = site.request, site.sensor
+    pattern = pattern_of(sensor, request.spacing_m)
+    layout = layout_of(request.seed, date, site.terrain, monitor.check)
     monitor.check()
     mesh = scene_mesh(layout)
     monitor.check()
     middle = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
-    scene = Scene(mesh, middle)
+    scene = RaycastScene(mesh, middle)
     monitor.check()
-    random = chance(wish.seed, "stations", date)
-    count = count_for(wish.length_m, wish.stations)
+    random = chance(request.seed, "stations", date)
+    count = count_for(request.length_m, request.stations)
     stations = stations_of(random, layout, scene, count, monitor.check)
     starts = scans_at(pattern, len(stations))
-    moving = chance(wish.seed, "moving", date)
+    moving = chance(request.seed, "moving", date)
     tracks = tracks_of(moving, layout, starts[-1] + pattern.scan_s)
     weather = Weather(
         float(moving.uniform(0, 0.6)) if moving.random() < 0.5 else 0.0,
         float(moving.uniform(0.4, 1.0)),
     )
-    return Survey(
-        wish.seed,
+    return SiteSurvey(
+        request.seed,
         date,
         sensor,
         pattern,
@@ -184,7 +187,7 @@ def _survey(site: _Site, date: str, monitor: Monitor) -> Survey:
     )
 
 
-def _kinds(layout: Layout, moving: list[Kind]) -> Integers:
+def _kinds(layout: SiteLayout, moving: list[SiteKind]) -> Integers:
     return np.concatenate([layout.kinds(), np.array([int(one) for one in moving], np.int64)])
 
 
@@ -223,7 +226,7 @@ def _volumes(site: _Site, before: Integers, after: Integers) -> dict[str, object
         "fill_m3": fill,
         "net_m3": fill - cut,
         "area_m2": area,
-        "polygon": site.place.on_map(site.polygon).tolist(),
+        "polygon": site.position.on_map(site.polygon).tolist(),
         "seen_in_both_share": 1.0 - unseen / area,
         "unseen_area_m2": unseen,
         "cut_where_seen_m3": float(found.cut_m3[seen].sum()),

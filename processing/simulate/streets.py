@@ -13,12 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import Monitor, PartMonitor
-from processing.simulate.cameras.photographs import Frame, write_image_list, write_images
+from processing.simulate.cameras.photographs import DeliveryFrame, write_image_list, write_images
 from processing.simulate.cameras.rigs import poses_of_pass, rig_of
 from processing.simulate.cameras.seen_street import SeenStreet
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats
-from processing.simulate.scanning.beams import Spin
+from processing.simulate.requests import StreetRequest
+from processing.simulate.scanning.beams import ScanPattern
 from processing.simulate.scanning.delivered_files import (
     CRS_NAME,
     ArrayFile,
@@ -26,25 +27,29 @@ from processing.simulate.scanning.delivered_files import (
     PointFile,
 )
 from processing.simulate.scanning.moving import MovingScene
-from processing.simulate.scanning.passes import Driving, Pass, pass_of
 from processing.simulate.scanning.recording import (
     Evidence,
-    Recording,
+    HeadChunk,
     Setup,
-    Stretch,
-    moved_by_errors,
+    SimulatedRecording,
+    add_trajectory_errors,
 )
 from processing.simulate.scanning.return_kernels import intensities
 from processing.simulate.scanning.returns import Weather
 from processing.simulate.scanning.sensors import Sensor, sensor_of
+from processing.simulate.scanning.simulated_passes import Driving, SimulatedPass, pass_of
 from processing.simulate.simulated import Simulated
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import style_of
 from processing.simulate.things import Mover, Thing, TrueFeature
 from processing.simulate.traffic.moving import movers_of
-from processing.simulate.truth import Seen, write_rough_positions, write_things, write_truth
-from processing.simulate.whole_folder import made_whole
-from processing.simulate.wishes import StreetWish
+from processing.simulate.truth import (
+    RecordingEvidence,
+    write_rough_positions,
+    write_things,
+    write_truth,
+)
+from processing.simulate.whole_folder import write_whole_folder
 from processing.text import Text
 
 _DRY_SHARE = 0.65
@@ -54,7 +59,7 @@ _KMH = 3.6
 _TRUTH_SHARE = 0.97  # of the progress; the rest is truth
 
 
-def simulate_street(wish: StreetWish, folder: Path, monitor: Monitor) -> Simulated:
+def simulate_street(request: StreetRequest, folder: Path, monitor: Monitor) -> Simulated:
     """Make a street and its recording.
 
     Parameters
@@ -65,20 +70,20 @@ def simulate_street(wish: StreetWish, folder: Path, monitor: Monitor) -> Simulat
     Raises
     ------
     OutOfRange
-        The wish names a style or a sensor that there is none of.
+        The request names a style or a sensor that there is none of.
     InUse
         There is something in the folder.
     NoSpace
         The disk is full.
     Cancelled
     """
-    style = style_of(wish.style)
-    sensor = sensor_of(wish.sensor, "mobile", wish.own_sensor)
-    with made_whole(folder) as hidden:
+    style = style_of(request.style)
+    sensor = sensor_of(request.sensor, "mobile", request.own_sensor)
+    with write_whole_folder(folder) as hidden:
         (hidden / "truth").mkdir()
-        work = _Work(wish, Street(wish.seed, style, wish.length_m), sensor, hidden)
-        for number in range(wish.passes):
-            share = _TRUTH_SHARE / wish.passes
+        work = _Work(request, Street(request.seed, style, request.length_m), sensor, hidden)
+        for number in range(request.passes):
+            share = _TRUTH_SHARE / request.passes
             work.drive(number, PartMonitor(monitor, number * share, (number + 1) * share))
         monitor.report(_TRUTH_SHARE, Text("Writing truth", "正解データを書き出し中"))
         work.finish()
@@ -105,9 +110,11 @@ class _Files:
 class _Work:
     """One simulation on its way: what is known of it so far."""
 
-    def __init__(self, wish: StreetWish, street: Street, sensor: Sensor, folder: Path) -> None:
-        self.wish, self.street, self.sensor, self.folder = wish, street, sensor, folder
-        random = chance(wish.seed, "place")
+    def __init__(
+        self, request: StreetRequest, street: Street, sensor: Sensor, folder: Path
+    ) -> None:
+        self.request, self.street, self.sensor, self.folder = request, street, sensor, folder
+        random = chance(request.seed, "place")
         self.origin = np.array(
             [random.uniform(-14_000, -8_000), random.uniform(-38_000, -32_000), 0.0]
         )
@@ -119,11 +126,13 @@ class _Work:
             float(random.uniform(0.3, 0.9)),
             float(random.choice([0.0, 0.5, 0.9])),
         )
-        self.spin = Spin(wish.pulses or sensor.pulses, wish.turns_per_s or sensor.turns_per_s, 0.0)
-        self.setup = Setup(sensor, self.spin, self.weather)
+        self.scan_pattern = ScanPattern(
+            request.pulses or sensor.pulses, request.turns_per_s or sensor.turns_per_s, 0.0
+        )
+        self.setup = Setup(sensor, self.scan_pattern, self.weather)
         slow, fast = street.style.speed_m_s
-        usual = float(chance(wish.seed, "speed").uniform(slow, fast))
-        self.driving = Driving(wish.speed_km_h / _KMH or usual, wish.stops, wish.drift_m)
+        usual = float(chance(request.seed, "speed").uniform(slow, fast))
+        self.driving = Driving(request.speed_km_h / _KMH or usual, request.stops, request.drift_m)
         self.evidence = Evidence()
         self.point_files: list[str] = []
         self.trajectories: list[str] = []
@@ -131,41 +140,43 @@ class _Work:
         self.counts: dict[str, int] = {}
         self.things: dict[int, Thing] = {}
         self.truth: dict[tuple[int, str, int], TrueFeature] = {}
-        self.passes: list[Pass] = []
+        self.passes: list[SimulatedPass] = []
 
     def drive(self, number: int, monitor: Monitor) -> None:
         """Drive once and write what was recorded."""
-        monitor.report(0.0, Text("Recording", "計測中"))
+        monitor.report(0.0, Text("SimulatedRecording", "計測中"))
         driven = pass_of(self.street, number, self.driving)
         movers = movers_of(self.street, driven)
         for mover in movers:
             instance = int(mover.mesh.instance[0])
             self.things[instance] = Thing(instance, mover.kind)
-        recording = Recording(self.street, self.setup, driven, MovingScene(self.street, movers))
-        points_share = _POINTS_SHARE if self.wish.images else 1.0
+        recording = SimulatedRecording(
+            self.street, self.setup, driven, MovingScene(self.street, movers)
+        )
+        points_share = _POINTS_SHARE if self.request.images else 1.0
         with self._files(number) as files:
-            for stretch in recording.stretches(PartMonitor(monitor, 0.0, points_share)):
-                self._write(driven, number, stretch, files[stretch.head.name])
+            for chunk in recording.chunks(PartMonitor(monitor, 0.0, points_share)):
+                self._write(driven, number, chunk, files[chunk.head.name])
         for section in recording.sections():
             monitor.check()
             self.things.update({one.instance: one for one in section.things})
-            for place, one in enumerate(section.truth):
-                if -_SHOWN_M < one.chainage_m < self.wish.length_m + _SHOWN_M:
-                    self.truth[one.instance, one.file, place] = one
+            for position, one in enumerate(section.truth):
+                if -_SHOWN_M < one.chainage_m < self.request.length_m + _SHOWN_M:
+                    self.truth[one.instance, one.file, position] = one
         self._write_trajectory(driven, number)
-        if self.wish.images:
+        if self.request.images:
             self._photograph(driven, movers, PartMonitor(monitor, points_share, 1.0))
         self.passes.append(driven)
 
     def finish(self) -> None:
         """Write truth, and what the whole is."""
         truth = self.folder / "truth"
-        seen = Seen.by(self.passes[0], self.evidence)
+        seen = RecordingEvidence.by(self.passes[0], self.evidence)
         features = list(self.truth.values())
         objects = write_truth(truth, features, seen, self.origin)
         write_things(truth / "instance_kinds.json", self.things.values())
         write_rough_positions(
-            truth / "sign_initial.csv", features, seen, self.origin, self.wish.seed
+            truth / "sign_initial.csv", features, seen, self.origin, self.request.seed
         )
         heads = {
             one.name: {
@@ -177,10 +188,10 @@ class _Work:
             for one in self.sensor.heads
         }
         scene: dict[str, Any] = {  # whatever JSON can hold
-            **asdict(self.wish),
+            **asdict(self.request),
             "heads": heads,
-            "pulses_per_revolution": self.spin.pulses,
-            "revolutions_per_s": self.spin.turns_per_s,
+            "pulses_per_revolution": self.scan_pattern.pulses,
+            "revolutions_per_s": self.scan_pattern.turns_per_s,
             "start_time_s": self.start_s,
             "duration_s": [one.duration_s for one in self.passes],
             "origin": self.origin.tolist(),
@@ -208,18 +219,18 @@ class _Work:
             for name, one in files.items():
                 self.counts[_numbered(name, number)] = one.points.count
 
-    def _write(self, driven: Pass, number: int, stretch: Stretch, files: _Files) -> None:
-        returns = stretch.returns
+    def _write(self, driven: SimulatedPass, number: int, chunk: HeadChunk, files: _Files) -> None:
+        returns = chunk.returns
         strength: NDArray[np.uint16] = np.empty(returns.pulse.size, np.uint16)
         intensities(returns.strength, self.weather.damping, strength)
         files.points.write(
             DeliveredPoints(
-                moved_by_errors(driven, returns) + self.origin,
+                add_trajectory_errors(driven, returns) + self.origin,
                 self._times(number) + returns.time_s,
                 strength,
                 returns.number,
                 returns.count,
-                stretch.head.source_id + number * len(self.sensor.heads),
+                chunk.head.source_id + number * len(self.sensor.heads),
             )
         )
         files.labels.write(returns.label)
@@ -231,25 +242,25 @@ class _Work:
         before = sum(one.duration_s for one in self.passes[:number])
         return self.start_s + before + 600.0 * number
 
-    def _photograph(self, driven: Pass, movers: list[Mover], monitor: Monitor) -> None:
-        frame = Frame(self.origin, self._times(driven.number), _prefix(driven.number))
+    def _photograph(self, driven: SimulatedPass, movers: list[Mover], monitor: Monitor) -> None:
+        frame = DeliveryFrame(self.origin, self._times(driven.number), _prefix(driven.number))
         images = write_images(
             self.folder,
             poses_of_pass(driven),
             SeenStreet(self.street, movers, monitor.check).at,
             monitor,
-            seed=self.wish.seed,
-            rig=rig_of(self.wish.seed),
+            seed=self.request.seed,
+            rig=rig_of(self.request.seed),
             frame=frame,
         )
         name = f"{_numbered('images', driven.number)}.csv"
         write_image_list(self.folder / name, images)
         self.image_lists.append(name)
 
-    def _write_trajectory(self, driven: Pass, number: int) -> None:
+    def _write_trajectory(self, driven: SimulatedPass, number: int) -> None:
         name = f"{_numbered('trajectory', number)}.csv"
-        places: Floats = driven.places + driven.errors + self.origin
-        table = np.column_stack([driven.time_s + self._times(number), places, driven.angles_deg])
+        positions: Floats = driven.positions + driven.errors + self.origin
+        table = np.column_stack([driven.time_s + self._times(number), positions, driven.angles_deg])
         np.savetxt(
             self.folder / name,
             table,

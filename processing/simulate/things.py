@@ -111,7 +111,7 @@ class Mover:
     course: Floats | None = None
     kind: str = "car"
 
-    def way_at(self, time_s: ArrayLike) -> tuple[Floats, Floats]:
+    def direction_at(self, time_s: ArrayLike) -> tuple[Floats, Floats]:
         """Chainages and offsets at times of the pass, m: (...) float64 each."""
         time = np.asarray(time_s, np.float64)
         surge = self.surge_m * np.sin(2 * np.pi * time / self.surge_s + self.phase_rad)
@@ -124,7 +124,7 @@ class Mover:
 
 
 @dataclass
-class Built:
+class SectionBuilder:
     """What makers add to: triangles, things and truth of one section of a street.
 
     Attributes

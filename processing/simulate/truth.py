@@ -15,8 +15,8 @@ from processing.formats.geojson import write_members
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats, Integers
 from processing.simulate.scanning.delivered_files import CRS_NAME
-from processing.simulate.scanning.passes import Pass
 from processing.simulate.scanning.recording import Evidence
+from processing.simulate.scanning.simulated_passes import SimulatedPass
 from processing.simulate.street.sweep import FACE_PIECE
 from processing.simulate.things import Thing, TrueFeature
 
@@ -29,11 +29,11 @@ LID_CELLS = 24
 _DIGITS = 4
 _INITIAL_ERROR_M = 0.5
 
-Facts = dict[str, Any]  # whatever JSON can hold
+TruthProperties = dict[str, Any]  # whatever JSON can hold
 
 
 @dataclass(frozen=True)
-class Seen:
+class RecordingEvidence:
     """What the recording shows.
 
     Attributes
@@ -48,14 +48,16 @@ class Seen:
     path: Floats
 
     @staticmethod
-    def by(driven: Pass, evidence: Evidence) -> Seen:
+    def by(driven: SimulatedPass, evidence: Evidence) -> RecordingEvidence:
         """What one pass, or several along the same street, show."""
-        return Seen(evidence, driven.places[:: max(1, driven.places.shape[0] // 200_000)])
+        return RecordingEvidence(
+            evidence, driven.positions[:: max(1, driven.positions.shape[0] // 200_000)]
+        )
 
-    def passes(self, places: Floats) -> list[bool]:
+    def passes(self, positions: Floats) -> list[bool]:
         """Whether the vehicle drove by places, with as much road before and behind as beside."""
         tree, along = self._search
-        away, nearest = tree.query(places[:, :2])
+        away, nearest = tree.query(positions[:, :2])
         room = np.minimum(along[nearest], along[-1] - along[nearest])
         found: list[bool] = ((room > 0) & (room >= away)).tolist()
         return found
@@ -70,7 +72,7 @@ class Seen:
 
 
 def write_truth(
-    folder: Path, features: Iterable[TrueFeature], seen: Seen, origin: Floats
+    folder: Path, features: Iterable[TrueFeature], seen: RecordingEvidence, origin: Floats
 ) -> dict[str, int]:
     """Write ``curbs.geojson`` and its like; how many of each there are.
 
@@ -79,7 +81,7 @@ def write_truth(
     origin : (3,) float64
         Of the street's frame in the project's CRS, m.
     """
-    by_file: dict[str, list[Facts]] = {name: [] for name in TRUTH_FILES}
+    by_file: dict[str, list[TruthProperties]] = {name: [] for name in TRUTH_FILES}
     for one in features:
         by_file[one.file].append(_member(one, seen, origin))
     for name, members in by_file.items():
@@ -94,7 +96,7 @@ def write_things(path: Path, things: Iterable[Thing]) -> None:
 
 
 def write_rough_positions(
-    path: Path, features: Iterable[TrueFeature], seen: Seen, origin: Floats, seed: int
+    path: Path, features: Iterable[TrueFeature], seen: RecordingEvidence, origin: Floats, seed: int
 ) -> None:
     """Write where stereo measurement of images would put the signs: off by half a metre or more."""
     lines = ["easting_m,northing_m,height_m"]
@@ -103,15 +105,17 @@ def write_rough_positions(
         if one.file != "signs" or one.facts.get("supplementary") or front == 0:
             continue
         off = chance(seed, "rough position", one.instance).normal(0, _INITIAL_ERROR_M, 3)
-        place = one.xyz[0] + origin + off * np.array([1.0, 1.0, 0.5])
-        lines.append(",".join(f"{value:.3f}" for value in place))
+        position = one.xyz[0] + origin + off * np.array([1.0, 1.0, 0.5])
+        lines.append(",".join(f"{value:.3f}" for value in position))
     path.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def _member(one: TrueFeature, seen: Seen, origin: Floats) -> Facts:
-    places = np.round(one.xyz + origin, _DIGITS).tolist()
-    coordinates = {"Point": places[0], "LineString": places, "Polygon": [places]}[one.geometry]
-    facts: Facts = {"confidence": 1.0, "status": "candidate", **one.facts}
+def _member(one: TrueFeature, seen: RecordingEvidence, origin: Floats) -> TruthProperties:
+    positions = np.round(one.xyz + origin, _DIGITS).tolist()
+    coordinates = {"Point": positions[0], "LineString": positions, "Polygon": [positions]}[
+        one.geometry
+    ]
+    facts: TruthProperties = {"confidence": 1.0, "status": "candidate", **one.facts}
     for name, value in one.facts.items():
         if isinstance(value, list) and name.endswith("centre"):
             facts[name] = np.round(np.array(value) + origin, _DIGITS).tolist()
@@ -131,7 +135,7 @@ def _member(one: TrueFeature, seen: Seen, origin: Floats) -> Facts:
     }
 
 
-def _curb(one: TrueFeature, pieces: Integers, seen: Seen) -> Facts:
+def _curb(one: TrueFeature, pieces: Integers, seen: RecordingEvidence) -> TruthProperties:
     """Stretches of 2 m with the points on them, and the share of half metres that have any.
 
     Points on the top of a stone show its upper edge only: at the far side of a median, say, no
@@ -163,12 +167,12 @@ def _curb(one: TrueFeature, pieces: Integers, seen: Seen) -> Facts:
     return {"length_m": round(long, 3), "sections": sections}
 
 
-def _gutter(pieces: Integers) -> Facts:
+def _gutter(pieces: Integers) -> TruthProperties:
     cells = pieces[:LID_CELLS]
     return {"points": int(pieces.sum()), "scanned": round(float(np.mean(cells > 0)), 3)}
 
 
-def _tree(pieces: Integers) -> Facts:
+def _tree(pieces: Integers) -> TruthProperties:
     breast = pieces[BREAST_PIECES.start : BREAST_PIECES.stop]
     return {
         "points": int(pieces.sum()),
@@ -178,16 +182,16 @@ def _tree(pieces: Integers) -> Facts:
     }
 
 
-def _sign(pieces: Integers) -> Facts:
+def _sign(pieces: Integers) -> TruthProperties:
     front, back = int(pieces[FRONT_PIECE]), int(pieces[BACK_PIECE])
     return {"points": front + back, "front_points": front}
 
 
-def _pole(pieces: Integers) -> Facts:
+def _pole(pieces: Integers) -> TruthProperties:
     return {"points": int(pieces.sum())}
 
 
-_SHOWN: Mapping[str, Callable[[Integers], Facts]] = {
+_SHOWN: Mapping[str, Callable[[Integers], TruthProperties]] = {
     "gutters": _gutter,
     "trees": _tree,
     "signs": _sign,

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from filelock import FileLock, Timeout
 
-from processing.errors import InUse, told_as_user_error
+from processing.errors import InUse, report_as_user_error
 from processing.owned_files import make_marked, refuse_link, remove_folder, remove_marked, unmark
 from processing.text import Text
 
@@ -18,7 +18,7 @@ _NAME_LETTERS = 24  # of at most 4 bytes each: names on a disk have 255 at most
 
 
 @contextmanager
-def made_whole(folder: Path) -> Iterator[Path]:
+def write_whole_folder(folder: Path) -> Iterator[Path]:
     """A hidden folder beside ``folder``; it takes the real name when the body is through.
 
     A lock beside it is held meanwhile: a second program that shall make the same folder is
@@ -37,7 +37,7 @@ def made_whole(folder: Path) -> Iterator[Path]:
     NoSpace, MissingInput, BadFile
         What the operating system says, of the body's own writing too.
     """
-    with told_as_user_error(folder):
+    with report_as_user_error(folder):
         # What a link leads to is replaced; the link stays.
         folder = folder.resolve()
         _refuse_what_is_there(folder)

@@ -13,11 +13,11 @@ from processing.errors import Unsuitable
 from processing.monitor import Monitor, SilentMonitor
 from processing.points.drive import Drive
 from processing.templates.fit_kernels import GRADE, HEIGHT, OFFSET, POSE, TILT, TURN
-from processing.templates.guide import LineDirection, RoadDirection
-from processing.templates.place_fit import TILTS_RAD, Expected, PlaceFit, refined, searched
+from processing.templates.line_directions import LineDirection, RoadDirection
+from processing.templates.pose_fit import TILTS_RAD, PoseFit, PosePrior, refine_pose, search_pose
 from processing.templates.profile_template import ProfileTemplate
-from processing.templates.shape import Shape
-from processing.templates.slab import STRETCH_M, Frame, SlabReader
+from processing.templates.shape import FittableTemplate
+from processing.templates.slab import STRETCH_M, SectionFrame, SlabReader
 from processing.text import Text
 
 _Floats = NDArray[np.float64]
@@ -69,21 +69,21 @@ class FitSettings:
 
 
 @dataclass(frozen=True)
-class Walk:
+class TemplatePath:
     """A template's way along the street, in the order of the direction it was drawn in.
 
     Attributes
     ----------
     template : ProfileTemplate
         As it was fitted, mirrored where it lies on the other side.
-    places : (n, 3) float64
+    positions : (n, 3) float64
         The anchor, m, project CRS.
     headings_rad, tilts_rad, scores : (n,) float64
         Where a score is below the least one, the place is only where the line would go on.
     """
 
     template: ProfileTemplate
-    places: _Floats
+    positions: _Floats
     headings_rad: _Floats
     tilts_rad: _Floats
     scores: _Floats
@@ -91,11 +91,11 @@ class Walk:
 
 @dataclass(frozen=True)
 class _Step:
-    frame: Frame
-    fit: PlaceFit
+    frame: SectionFrame
+    fit: PoseFit
 
     @property
-    def place(self) -> _Floats:
+    def position(self) -> _Floats:
         return self.frame.in_space(float(self.fit.pose[OFFSET]), float(self.fit.pose[HEIGHT]))
 
     @property
@@ -104,7 +104,7 @@ class _Step:
 
 
 @dataclass(frozen=True)
-class Start:
+class FitStart:
     """Where a template lies in one section.
 
     Attributes
@@ -117,7 +117,7 @@ class Start:
     """
 
     template: ProfileTemplate
-    frame: Frame
+    frame: SectionFrame
     tilt_rad: float
     score: float
 
@@ -125,10 +125,10 @@ class Start:
 def fit_at(
     drive: Drive,
     template: ProfileTemplate,
-    frame: Frame,
+    frame: SectionFrame,
     settings: FitSettings,
     monitor: Monitor | None = None,
-) -> Start:
+) -> FitStart:
     """The template where it was drawn: as it is, or mirrored if it fits only so.
 
     Raises
@@ -146,10 +146,10 @@ def fit_at(
 def fit_along(
     drive: Drive,
     template: ProfileTemplate,
-    frame: Frame,
+    frame: SectionFrame,
     settings: FitSettings,
     monitor: Monitor,
-) -> Walk:
+) -> TemplatePath:
     """Follow a template from where it was drawn, both ways.
 
     1. At the start the best place within 30 cm is looked for.
@@ -169,20 +169,20 @@ def fit_along(
     start = fit_at(drive, template, frame, settings, monitor)
     if start.score < settings.least_score:
         raise _not_here(template, start.score)
-    shape = Shape.of(start.template, settings.tolerance_m)
+    shape = FittableTemplate.of(start.template, settings.tolerance_m)
     ways = []
-    for number, way in enumerate((-1, 1)):
-        walker = _Walker(drive, shape, settings, way)
+    for number, direction in enumerate((-1, 1)):
+        walker = _Walker(drive, shape, settings, direction)
         ways.append(walker.walk(start.frame, start.tilt_rad, monitor))
         monitor.report((number + 1) / 2)
     behind, ahead = ways
     begin = _Step(
-        start.frame, PlaceFit(np.array([0.0, 0.0, start.tilt_rad, 0.0, 0.0]), start.score, 1.0)
+        start.frame, PoseFit(np.array([0.0, 0.0, start.tilt_rad, 0.0, 0.0]), start.score, 1.0)
     )
     steps = [*behind[::-1], begin, *ahead]
-    return Walk(
+    return TemplatePath(
         start.template,
-        np.array([step.place for step in steps]),
+        np.array([step.position for step in steps]),
         np.array([step.heading_rad for step in steps]),
         np.array([step.fit.pose[TILT] for step in steps]),
         np.array([step.fit.score for step in steps]),
@@ -192,48 +192,50 @@ def fit_along(
 def _start_of(
     drive: Drive,
     template: ProfileTemplate,
-    frame: Frame,
+    frame: SectionFrame,
     settings: FitSettings,
     monitor: Monitor,
-) -> Start:
+) -> FitStart:
     """The best place about a frame, turned by up to eight degrees and looked at twice more."""
-    shape = Shape.of(template, settings.tolerance_m)
+    shape = FittableTemplate.of(template, settings.tolerance_m)
     reader = SlabReader(drive, settings.width_m, shape.box(max(_FIRST_REACH_M)))
-    best: Start | None = None
+    best: FitStart | None = None
     for turn in _FIRST_TURNS.tolist():
         monitor.check()
         at = replace(frame, heading_rad=frame.heading_rad + turn)
-        unknown = Expected(np.zeros(POSE), _SPREAD)
+        unknown = PosePrior(np.zeros(POSE), _SPREAD)
         slab = reader.slab(at)
-        fit = searched(shape, slab, unknown, _FIRST_REACH_M, TILTS_RAD, monitor=monitor)
+        fit = search_pose(shape, slab, unknown, _FIRST_REACH_M, TILTS_RAD, monitor=monitor)
         for _ in range(2):
             monitor.check()
             step = _Step(at, fit)
-            at = Frame(step.place, step.heading_rad)
+            at = SectionFrame(step.position, step.heading_rad)
             pose = np.array([0.0, 0.0, fit.pose[TILT], 0.0, fit.pose[GRADE]])
-            fit = refined(shape, reader.slab(at), Expected(pose, _SPREAD))
+            fit = refine_pose(shape, reader.slab(at), PosePrior(pose, _SPREAD))
         step = _Step(at, fit)
-        on_line = Frame(step.place, step.heading_rad)
-        found = Start(template, on_line, float(fit.pose[TILT]), fit.score)
+        on_line = SectionFrame(step.position, step.heading_rad)
+        found = FitStart(template, on_line, float(fit.pose[TILT]), fit.score)
         best = found if best is None or found.score > best.score + _CLEARLY else best
-    return best or Start(template, frame, 0.0, 0.0)
+    return best or FitStart(template, frame, 0.0, 0.0)
 
 
 class _Walker:
     """One direction of a walk."""
 
-    def __init__(self, drive: Drive, shape: Shape, settings: FitSettings, way: int) -> None:
+    def __init__(
+        self, drive: Drive, shape: FittableTemplate, settings: FitSettings, direction: int
+    ) -> None:
         self._shape = shape
         self._settings = settings
-        self._way = way
+        self._direction = direction
         box = shape.box(max(_MOST_LOST_M))
         self._reader = SlabReader(drive, settings.width_m, box, settings.stretch_m)
         self._road = RoadDirection(drive.trajectory)
         scale = max(1.0, settings.step_m / _SPREAD_STEP_M)
         self._spread = _SPREAD * np.array([scale, scale, 1.0, 1.0, 1.0])
 
-    def walk(self, start: Frame, tilt: float, monitor: Monitor) -> list[_Step]:
-        direction = LineDirection(start, self._way)
+    def walk(self, start: SectionFrame, tilt: float, monitor: Monitor) -> list[_Step]:
+        direction = LineDirection(start, self._direction)
         steps: list[_Step] = []
         lost_m, settings = 0.0, self._settings
         patience = max(settings.longest_gap_m, settings.search_m)
@@ -253,43 +255,43 @@ class _Walker:
                 continue
             lost_m = 0.0
             tilt = 0.5 * (tilt + float(step.fit.pose[TILT]))
-            direction.take(step.place, step.heading_rad)
-            if self._is_back(step.place, start.place, len(steps)):
+            direction.take(step.position, step.heading_rad)
+            if self._is_back(step.position, start.position, len(steps)):
                 break
         return steps
 
     def _fit(
-        self, frame: Frame, tilt: float, grade: float, lost_m: float, *, monitor: Monitor
-    ) -> PlaceFit:
+        self, frame: SectionFrame, tilt: float, grade: float, lost_m: float, *, monitor: Monitor
+    ) -> PoseFit:
         pose = np.array([0.0, 0.0, tilt, 0.0, grade])
-        expected = Expected(pose, self._spread)
-        slab = self._reader.slab(frame, self._way)
-        fit = refined(self._shape, slab, expected)
+        expected = PosePrior(pose, self._spread)
+        slab = self._reader.slab(frame, self._direction)
+        fit = refine_pose(self._shape, slab, expected)
         if fit.score >= self._settings.least_score:
             return fit
         reach = tuple(
             min(most, near + more * lost_m)
             for near, more, most in zip(_LOST_REACH_M, _LOST_PER_M, _MOST_LOST_M, strict=True)
         )
-        again = searched(self._shape, slab, expected, (reach[0], reach[1]), monitor=monitor)
+        again = search_pose(self._shape, slab, expected, (reach[0], reach[1]), monitor=monitor)
         if again.score >= self._settings.least_score:
             return again
-        return PlaceFit(pose, max(fit.score, again.score), fit.seen)
+        return PoseFit(pose, max(fit.score, again.score), fit.seen)
 
     def _goes_on(self, direction: LineDirection, step: _Step) -> bool:
         """Whether the next section shows the shape too."""
         ahead = copy.copy(direction)
-        ahead.take(step.place, step.heading_rad)
+        ahead.take(step.position, step.heading_rad)
         frame = ahead.next_frame(self._settings.step_m, self._road, is_seen=True)
         pose = np.array([0.0, 0.0, step.fit.pose[TILT], 0.0, ahead.grade])
-        slab = self._reader.slab(frame, self._way)
-        fit = refined(self._shape, slab, Expected(pose, self._spread))
+        slab = self._reader.slab(frame, self._direction)
+        fit = refine_pose(self._shape, slab, PosePrior(pose, self._spread))
         return fit.score >= self._settings.least_score
 
-    def _is_back(self, place: _Floats, start: _Floats, steps: int) -> bool:
+    def _is_back(self, position: _Floats, start: _Floats, steps: int) -> bool:
         """Whether the line has come round to where it began."""
         step_m = self._settings.step_m
-        return steps * step_m > _NEAR_START_M and math.dist(place, start) < 1.5 * step_m
+        return steps * step_m > _NEAR_START_M and math.dist(position, start) < 1.5 * step_m
 
 
 def _not_here(template: ProfileTemplate, score: float) -> Unsuitable:

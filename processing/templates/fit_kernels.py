@@ -62,8 +62,8 @@ def _nearest(x: float, y: float, segments: _Floats, margin: float) -> tuple[int,
 
 @kernel
 def _bin_of(segment: _Floats, along: float) -> int:
-    place = int(along / segment[LENGTH] * segment[BINS])
-    return int(segment[FIRST_BIN]) + min(place, int(segment[BINS]) - 1)
+    position = int(along / segment[LENGTH] * segment[BINS])
+    return int(segment[FIRST_BIN]) + min(position, int(segment[BINS]) - 1)
 
 
 @kernel
@@ -124,10 +124,10 @@ def score_kernel(
                 break
         k, along, off = _nearest(x, y, segments, 0.0)
         if k >= 0 and abs(off) <= tolerance:
-            place = _bin_of(segments[k], along)
-            sums[place, 0] += 1.0
-            sums[place, 1] += 1.0
-            sums[place, 2] += math.exp(-off * off * softness)
+            position = _bin_of(segments[k], along)
+            sums[position, 0] += 1.0
+            sums[position, 1] += 1.0
+            sums[position, 2] += math.exp(-off * off * softness)
             on_shape += 1
         else:
             _add_misses(x, y, segments, (reach, softness), sums)
@@ -148,25 +148,25 @@ def _shares(sums: _Floats, segments: _Floats) -> tuple[float, float, float]:
         whole += segments[k, LENGTH]
         first, end = int(segments[k, FIRST_BIN]), int(segments[k, FIRST_BIN] + segments[k, BINS])
         before = -1
-        for place in range(first, end + 1):
-            if place < end and sums[place, 0] == 0.0:
+        for position in range(first, end + 1):
+            if position < end and sums[position, 0] == 0.0:
                 continue
             # What stands between the bin seen before and this one: shared, if they are near.
             start = before + 1 if before >= 0 else first
-            missing = (place - start) * size
-            sides = (before >= 0) + (place < end)
+            missing = (position - start) * size
+            sides = (before >= 0) + (position < end)
             if 0.0 < missing <= _SPARSE_M * sides:
                 for side in range(2):
-                    other = before if side == 0 else place
+                    other = before if side == 0 else position
                     if first <= other < end and (side == 1 or before >= 0):
                         seen += missing / sides
                         lies += missing / sides * sums[other, 1] / sums[other, 0]
                         softly += missing / sides * sums[other, 2] / sums[other, 0]
-            if place < end:
+            if position < end:
                 seen += size
-                lies += size * sums[place, 1] / sums[place, 0]
-                softly += size * sums[place, 2] / sums[place, 0]
-                before = place
+                lies += size * sums[position, 1] / sums[position, 0]
+                softly += size * sums[position, 2] / sums[position, 0]
+                before = position
     needed = max(seen, _LEAST_SEEN * whole)
     return lies / needed, softly / needed, seen / whole
 
@@ -181,9 +181,9 @@ def _add_misses(
         along = du * segments[k, ALONG_U] + dv * segments[k, ALONG_V]
         off = dv * segments[k, ALONG_U] - du * segments[k, ALONG_V]
         if 0.0 <= along <= segments[k, LENGTH] and abs(off) <= limits[0]:
-            place = _bin_of(segments[k], along)
-            sums[place, 0] += 1.0
-            sums[place, 2] += math.exp(-off * off * limits[1])
+            position = _bin_of(segments[k], along)
+            sums[position, 0] += 1.0
+            sums[position, 2] += math.exp(-off * off * limits[1])
 
 
 @kernel
@@ -235,25 +235,25 @@ def _weigh(
     """Weight, distance and place (about the anchor) of points; the shape's normal next to them."""
     tolerance, scale = limits
     counts = np.zeros(int(segments[-1, FIRST_BIN] + segments[-1, BINS]))
-    places = np.empty(slab.shape[0], np.int64)
+    positions = np.empty(slab.shape[0], np.int64)
     cos, sin = math.cos(pose[TILT]), math.sin(pose[TILT])
     for i in range(slab.shape[0]):
         u = slab[i, 0] - pose[OFFSET] - pose[TURN] * slab[i, 2]
         v = slab[i, 1] - pose[HEIGHT] - pose[GRADE] * slab[i, 2]
         k, along, off = _nearest(u * cos + v * sin, v * cos - u * sin, segments, tolerance)
-        places[i] = -1
+        positions[i] = -1
         seen[i, 0] = 0.0
         if k < 0 or abs(off) > 3.0 * scale:
             continue
-        places[i] = _bin_of(segments[k], along)
+        positions[i] = _bin_of(segments[k], along)
         seen[i, 0], seen[i, 1] = math.exp(-off * off / (2.0 * scale * scale)), off
         seen[i, 2], seen[i, 3] = u, v
-        counts[places[i]] += seen[i, 0]
+        counts[positions[i]] += seen[i, 0]
         normal[i, 0] = -segments[k, ALONG_V] * cos - segments[k, ALONG_U] * sin
         normal[i, 1] = segments[k, ALONG_U] * cos - segments[k, ALONG_V] * sin
     for i in range(slab.shape[0]):
-        if places[i] >= 0:
-            seen[i, 0] *= min(1.0, _MOST_PER_BIN / counts[places[i]]) / (_NOISE_M * _NOISE_M)
+        if positions[i] >= 0:
+            seen[i, 0] *= min(1.0, _MOST_PER_BIN / counts[positions[i]]) / (_NOISE_M * _NOISE_M)
 
 
 @kernel

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.drafting.needed_places import needed_places
+from processing.drafting.needed_positions import needed_positions
 from processing.image.nearest import nearest_point
 from processing.monitor import Monitor
 from processing.points.drive import Drive
-from processing.templates.fit import FitSettings, Walk
+from processing.templates.fit import FitSettings, TemplatePath
 from processing.templates.profile_template import MadeLine, ProfileTemplate
 
 _Floats = NDArray[np.float64]
@@ -20,7 +20,7 @@ _Integers = NDArray[np.int64]
 
 _SIMPLER_M = 0.005
 _RESTS_WITHIN_M = 0.05
-_FEWEST_PLACES = 3
+_FEWEST_POSITIONS = 3
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class FittedLine:
 
 
 def fitted_lines(
-    drive: Drive, walk: Walk, settings: FitSettings, monitor: Monitor
+    drive: Drive, walk: TemplatePath, settings: FitSettings, monitor: Monitor
 ) -> tuple[FittedLine, ...]:
     """The lines of a walk, in its order, those of one stretch beside each other.
 
@@ -74,40 +74,40 @@ def fitted_lines(
     return tuple(lines)
 
 
-def _stretches(walk: Walk, settings: FitSettings) -> list[tuple[int, int]]:
+def _stretches(walk: TemplatePath, settings: FitSettings) -> list[tuple[int, int]]:
     """First and end place of each line."""
     fits = np.flatnonzero(walk.scores >= settings.least_score)
-    between = _along(walk.places[fits])
+    between = _along(walk.positions[fits])
     gaps = np.diff(between, prepend=-math.inf) > settings.longest_gap_m + settings.step_m
     parts = np.split(fits, np.flatnonzero(gaps[1:]) + 1)
-    return [(int(part[0]), int(part[-1]) + 1) for part in parts if part.size >= _FEWEST_PLACES]
+    return [(int(part[0]), int(part[-1]) + 1) for part in parts if part.size >= _FEWEST_POSITIONS]
 
 
 def _line(
-    drive: Drive, walk: Walk, made: MadeLine, stretch: slice, settings: FitSettings
+    drive: Drive, walk: TemplatePath, made: MadeLine, stretch: slice, settings: FitSettings
 ) -> FittedLine:
     scores = walk.scores[stretch]
-    places = _places(walk, made)[stretch]
+    positions = _positions(walk, made)[stretch]
     fits = scores >= settings.least_score
-    xyz = places[fits]
-    xyz = xyz[needed_places(xyz, _SIMPLER_M)]
-    points = [nearest_point(drive, place, _RESTS_WITHIN_M) for place in xyz]
+    xyz = positions[fits]
+    xyz = xyz[needed_positions(xyz, _SIMPLER_M)]
+    points = [nearest_point(drive, position, _RESTS_WITHIN_M) for position in xyz]
     return FittedLine(
         made.kind,
         _edge(walk.template, made),
         xyz,
         np.array(points, dtype=np.int64),
-        _per_metre(_along(walk.places[stretch]), scores),
+        _per_metre(_along(walk.positions[stretch]), scores),
     )
 
 
-def _places(walk: Walk, made: MadeLine) -> _Floats:
+def _positions(walk: TemplatePath, made: MadeLine) -> _Floats:
     """(n, 3) where a vertex of the template came to lie."""
     offset, height = made.at
     cos, sin = np.cos(walk.tilts_rad), np.sin(walk.tilts_rad)
     across, up = offset * cos - height * sin, offset * sin + height * cos
     east, north = np.sin(walk.headings_rad), -np.cos(walk.headings_rad)
-    return walk.places + np.column_stack([across * east, across * north, up])
+    return walk.positions + np.column_stack([across * east, across * north, up])
 
 
 def _per_metre(along: _Floats, scores: _Floats) -> _Floats:
@@ -119,9 +119,9 @@ def _per_metre(along: _Floats, scores: _Floats) -> _Floats:
     return means
 
 
-def _along(places: _Floats) -> _Floats:
+def _along(positions: _Floats) -> _Floats:
     """(n,) plan distance from the first place along the line."""
-    steps = np.linalg.norm(np.diff(places[:, :2], axis=0), axis=1)
+    steps = np.linalg.norm(np.diff(positions[:, :2], axis=0), axis=1)
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 

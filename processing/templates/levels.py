@@ -11,7 +11,7 @@ from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.templates.fit import FitSettings, fit_at
 from processing.templates.profile_template import ProfileTemplate
-from processing.templates.slab import Frame, SlabReader
+from processing.templates.slab import SectionFrame, SlabReader
 from processing.text import Text
 
 _ASIDE_M = 0.3
@@ -22,10 +22,10 @@ _FEWEST = 5
 def levels_near(
     drive: Drive,
     template: ProfileTemplate,
-    frame: Frame,
+    frame: SectionFrame,
     settings: FitSettings,
     monitor: Monitor,
-) -> Frame:
+) -> SectionFrame:
     """The frame at the level at which the template fits best: the road, not a roof above it.
 
     Raises
@@ -33,7 +33,7 @@ def levels_near(
     Unsuitable
         No point is near the start.
     """
-    level = Frame(np.array([frame.place[0], frame.place[1], 0.0]), frame.heading_rad)
+    level = SectionFrame(np.array([frame.position[0], frame.position[1], 0.0]), frame.heading_rad)
     reader = SlabReader(drive, settings.width_m, (-_ASIDE_M, _ASIDE_M, -math.inf, math.inf))
     heights = np.sort(reader.slab(level).local[:, 1])
     best, most = None, -1.0
@@ -43,15 +43,15 @@ def levels_near(
         if height < lowest or not is_level:
             continue
         lowest = height + _APART_M
-        middle = np.array([frame.place[0], frame.place[1], height + _APART_M / 2])
-        tried = Frame(middle, frame.heading_rad)
+        middle = np.array([frame.position[0], frame.position[1], height + _APART_M / 2])
+        tried = SectionFrame(middle, frame.heading_rad)
         fit = fit_at(drive, template, tried, settings, monitor)
         if fit.score > most:
             best, most = tried, fit.score
     if best is None:
         raise Unsuitable(
             Text("No measured point is near the start.", "開始位置の近くに計測点がありません。"),
-            Text.same(f"{frame.place[0]:.2f}, {frame.place[1]:.2f}"),
+            Text.same(f"{frame.position[0]:.2f}, {frame.position[1]:.2f}"),
             Text(
                 "Begin where this drive has points.",
                 "この走行データに点がある位置から始めてください。",

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.points.drive import Drive
-from processing.templates.fit import FitSettings, Start, fit_at
+from processing.templates.fit import FitSettings, FitStart, fit_at
 from processing.templates.profile_template import ProfileTemplate
-from processing.templates.shape import Shape
-from processing.templates.slab import Frame, SlabReader
+from processing.templates.shape import FittableTemplate
+from processing.templates.slab import SectionFrame, SlabReader
 
 
 @dataclass(frozen=True)
@@ -28,18 +28,18 @@ class Preview:
         The section's points in the template's axes as it was drawn, m.
     """
 
-    start: Start
+    start: FitStart
     is_mirrored: bool
     points: NDArray[np.float64]
 
 
 def preview_at(
-    drive: Drive, template: ProfileTemplate, frame: Frame, settings: FitSettings
+    drive: Drive, template: ProfileTemplate, frame: SectionFrame, settings: FitSettings
 ) -> Preview:
     """Look for a template about a place of a section."""
     start = fit_at(drive, template, frame, settings)
     is_mirrored = start.template is not template
-    box = Shape.of(start.template, settings.tolerance_m).box(0.0)
+    box = FittableTemplate.of(start.template, settings.tolerance_m).box(0.0)
     local = SlabReader(drive, settings.width_m, box).slab(start.frame).local
     cos, sin = np.cos(start.tilt_rad), np.sin(start.tilt_rad)
     across = local[:, 0] * cos + local[:, 1] * sin

@@ -10,16 +10,16 @@ from dataclasses import dataclass, replace
 from processing.errors import OutOfRange
 from processing.text import Text
 
-ProfilePlace = tuple[float, float]
+ProfilePoint = tuple[float, float]
 """Offset to the right (looking along the line) and height, m, about the anchor."""
-Profile = tuple[ProfilePlace, ...]
+TemplateProfile = tuple[ProfilePoint, ...]
 
 USUAL_TOLERANCE_M = 0.02
 LEAST_TOLERANCE_M, MOST_TOLERANCE_M = 0.003, 0.20
 _LARGEST_M = 10.0
 _SMALLEST_M = 0.02
 _SAME_M = 1e-6
-_MOST_PLACES = 200
+_MOST_POSITIONS = 200
 _LONGEST_NAME = 80
 
 
@@ -31,12 +31,12 @@ class MadeLine:
     ----------
     kind : str
         Id of a feature kind of the catalogue.
-    at : ProfilePlace
+    at : ProfilePoint
         The vertex of the shape that the line follows.
     """
 
     kind: str
-    at: ProfilePlace = (0.0, 0.0)
+    at: ProfilePoint = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,9 @@ class ProfileTemplate:
     """
 
     name: str
-    shape: tuple[Profile, ...]
+    shape: tuple[TemplateProfile, ...]
     lines: tuple[MadeLine, ...]
-    empty: tuple[Profile, ...] = ()
+    empty: tuple[TemplateProfile, ...] = ()
     tolerance_m: float = USUAL_TOLERANCE_M
 
     def __post_init__(self) -> None:
@@ -77,9 +77,9 @@ class ProfileTemplate:
             )
 
     @property
-    def vertices(self) -> Profile:
+    def vertices(self) -> TemplateProfile:
         """The places of the shape, each once, in the order in which they were drawn."""
-        return _each_once(place for profile in self.shape for place in profile)
+        return _each_once(position for profile in self.shape for position in profile)
 
     @property
     def length_m(self) -> float:
@@ -93,8 +93,11 @@ class ProfileTemplate:
     @property
     def box(self) -> tuple[float, float, float, float]:
         """Least and largest offset, least and largest height of shape and empty zones, m."""
-        places = [place for profile in (*self.shape, *self.empty) for place in profile]
-        across, up = [place[0] for place in places], [place[1] for place in places]
+        positions = [position for profile in (*self.shape, *self.empty) for position in profile]
+        across, up = (
+            [position[0] for position in positions],
+            [position[1] for position in positions],
+        )
         return min(across), max(across), min(up), max(up)
 
     def mirrored(self) -> ProfileTemplate:
@@ -106,7 +109,7 @@ class ProfileTemplate:
             empty=tuple(_mirrored(profile) for profile in self.empty),
         )
 
-    def about(self, vertex: ProfilePlace) -> ProfileTemplate:
+    def about(self, vertex: ProfilePoint) -> ProfileTemplate:
         """The same shape with another of its vertices as the anchor."""
         return replace(
             self,
@@ -115,11 +118,11 @@ class ProfileTemplate:
             empty=tuple(_moved(profile, vertex) for profile in self.empty),
         )
 
-    def kind_at(self, vertex: ProfilePlace) -> str:
+    def kind_at(self, vertex: ProfilePoint) -> str:
         """The kind of the line made at a vertex; empty where none is."""
         return next((line.kind for line in self.lines if _is_same(line.at, vertex)), "")
 
-    def with_kind_at(self, vertex: ProfilePlace, kind: str) -> ProfileTemplate:
+    def with_kind_at(self, vertex: ProfilePoint, kind: str) -> ProfileTemplate:
         """Another kind for the line at a vertex; an empty one takes the line away."""
         others = tuple(line for line in self.lines if not _is_same(line.at, vertex))
         lines = (*others, MadeLine(kind, vertex)) if kind else others
@@ -127,7 +130,7 @@ class ProfileTemplate:
         return replace(self, lines=tuple(sorted(lines, key=lambda one: _index(order, one.at))))
 
     def _what_is_wrong(self) -> Text | None:
-        places = [place for profile in (*self.shape, *self.empty) for place in profile]
+        positions = [position for profile in (*self.shape, *self.empty) for position in profile]
         if not self.name.strip() or len(self.name) > _LONGEST_NAME:
             return Text("A template needs a name.", "テンプレートには名前が必要です。")
         if not self.shape or any(len(_each_once(profile)) < 2 for profile in self.shape):
@@ -138,9 +141,12 @@ class ProfileTemplate:
             return Text(
                 "An empty zone needs at least three places.", "空白域には3点以上が必要です。"
             )
-        finite = all(math.isfinite(value) for place in places for value in place)
-        far = not finite or max(abs(value) for place in places for value in place) > _LARGEST_M
-        if far or self.length_m < _SMALLEST_M or len(places) > _MOST_PLACES:
+        finite = all(math.isfinite(value) for position in positions for value in position)
+        far = (
+            not finite
+            or max(abs(value) for position in positions for value in position) > _LARGEST_M
+        )
+        if far or self.length_m < _SMALLEST_M or len(positions) > _MOST_POSITIONS:
             return Text(
                 "A template is 2 cm to 10 m large and has at most 200 places.",
                 "テンプレートの大きさは2cm～10m、点数は200点以内にしてください。",
@@ -159,27 +165,27 @@ class ProfileTemplate:
         return None
 
 
-def _mirrored(profile: Profile) -> Profile:
+def _mirrored(profile: TemplateProfile) -> TemplateProfile:
     return tuple((0.0 - offset, height) for offset, height in profile)
 
 
-def _moved(profile: Profile, origin: ProfilePlace) -> Profile:
+def _moved(profile: TemplateProfile, origin: ProfilePoint) -> TemplateProfile:
     return tuple((offset - origin[0], height - origin[1]) for offset, height in profile)
 
 
-def _is_same(one: ProfilePlace, other: ProfilePlace) -> bool:
+def _is_same(one: ProfilePoint, other: ProfilePoint) -> bool:
     return math.dist(one, other) <= _SAME_M
 
 
-def _index(places: Profile, wanted: ProfilePlace) -> int:
+def _index(positions: TemplateProfile, wanted: ProfilePoint) -> int:
     """Where a place stands among others; −1 where it doesn't."""
-    found = (number for number, place in enumerate(places) if _is_same(place, wanted))
+    found = (number for number, position in enumerate(positions) if _is_same(position, wanted))
     return next(found, -1)
 
 
-def _each_once(places: Iterable[ProfilePlace]) -> Profile:
-    kept: list[ProfilePlace] = []
-    for place in places:
-        if _index(tuple(kept), place) < 0:
-            kept.append(place)
+def _each_once(positions: Iterable[ProfilePoint]) -> TemplateProfile:
+    kept: list[ProfilePoint] = []
+    for position in positions:
+        if _index(tuple(kept), position) < 0:
+            kept.append(position)
     return tuple(kept)

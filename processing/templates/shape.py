@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.templates.fit_kernels import ALONG_U, ALONG_V, LENGTH, SEGMENT
-from processing.templates.profile_template import ProfilePlace, ProfileTemplate
+from processing.templates.profile_template import ProfilePoint, ProfileTemplate
 
 _Floats = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ _SHORTEST_M = 1e-4
 
 
 @dataclass(frozen=True)
-class Shape:
+class FittableTemplate:
     """A template ready to be fitted.
 
     Attributes
@@ -43,12 +43,12 @@ class Shape:
     reach_m: float
 
     @staticmethod
-    def of(template: ProfileTemplate, tolerance_m: float = 0.0) -> Shape:
+    def of(template: ProfileTemplate, tolerance_m: float = 0.0) -> FittableTemplate:
         """The arrays of a template, with a tolerance of its own or another one."""
         tolerance = tolerance_m or template.tolerance_m
-        heights = [place[1] for place in template.vertices]
+        heights = [position[1] for position in template.vertices]
         reach = max(heights) - min(heights) + 2 * tolerance
-        return Shape(
+        return FittableTemplate(
             template,
             _segments(template),
             _zones(template),
@@ -90,12 +90,12 @@ def _segments(template: ProfileTemplate) -> _Floats:
     return np.array(lines, dtype=np.float64).reshape(-1, SEGMENT)
 
 
-def _touching(pieces: list[tuple[ProfilePlace, ProfilePlace]], place: ProfilePlace) -> int:
+def _touching(pieces: list[tuple[ProfilePoint, ProfilePoint]], position: ProfilePoint) -> int:
     """How many pieces end at a place."""
-    return sum(math.dist(place, end) <= _SHORTEST_M for piece in pieces for end in piece)
+    return sum(math.dist(position, end) <= _SHORTEST_M for piece in pieces for end in piece)
 
 
 def _zones(template: ProfileTemplate) -> tuple[_Floats, NDArray[np.int64]]:
-    places = [place for ring in template.empty for place in ring]
+    positions = [position for ring in template.empty for position in ring]
     starts = np.cumsum([0, *(len(ring) for ring in template.empty)])
-    return np.array(places, dtype=np.float64).reshape(-1, 2), starts.astype(np.int64)
+    return np.array(positions, dtype=np.float64).reshape(-1, 2), starts.astype(np.int64)

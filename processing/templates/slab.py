@@ -24,18 +24,18 @@ _MOST_PER_SLAB = 2500
 
 
 @dataclass(frozen=True)
-class Frame:
+class SectionFrame:
     """Where a section is taken.
 
     Attributes
     ----------
-    place : (3,) float64
+    position : (3,) float64
         Where the anchor is expected, m, project CRS.
     heading_rad : float
         Direction in which one looks along the line, counter-clockwise from the easting.
     """
 
-    place: _Floats
+    position: _Floats
     heading_rad: float
 
     @property
@@ -50,12 +50,12 @@ class Frame:
 
     def in_space(self, offset: float, height: float) -> _Floats:
         """(3,) a place of the section, m, project CRS."""
-        found: _Floats = self.place + offset * self.right + np.array([0.0, 0.0, height])
+        found: _Floats = self.position + offset * self.right + np.array([0.0, 0.0, height])
         return found
 
 
 @dataclass(frozen=True)
-class Slab:
+class SlabPoints:
     """Points of a section.
 
     Attributes
@@ -100,49 +100,49 @@ class SlabReader:
         self._points: _Integers = np.empty(0, np.int64)
         self._local: _Floats = np.empty((0, 3))
 
-    def slab(self, frame: Frame, way: int = 1) -> Slab:
+    def slab(self, frame: SectionFrame, direction: int = 1) -> SlabPoints:
         """The points about a frame.
 
         Parameters
         ----------
-        way : {1, -1}
+        direction : {1, -1}
             Where the next frames are expected: ahead or behind.
         """
         if not self._holds(frame):
-            self._read(frame, way)
+            self._read(frame, direction)
         count = self._points.size
         local, chosen = np.empty((count, 3)), np.empty(count, np.int64)
         along = frame.along
         found = slab_kernel(
             self._local,
-            np.array([*(frame.place - self._origin), along[0], along[1]]),
+            np.array([*(frame.position - self._origin), along[0], along[1]]),
             np.array([*self._box, self._width_m / 2]),
             local,
             chosen,
         )
         thin = slice(0, found, max(1, found // _MOST_PER_SLAB))
-        return Slab(np.ascontiguousarray(local[thin]), self._points[chosen[thin]])
+        return SlabPoints(np.ascontiguousarray(local[thin]), self._points[chosen[thin]])
 
-    def _corners(self, frame: Frame) -> _Floats:
+    def _corners(self, frame: SectionFrame) -> _Floats:
         """(4, 3) the corners of a slab seen from above."""
         half = self._width_m / 2
         return np.array(
             [
-                frame.place + offset * frame.right + along * frame.along
+                frame.position + offset * frame.right + along * frame.along
                 for offset in self._box[:2]
                 for along in (-half, half)
             ]
         )
 
-    def _holds(self, frame: Frame) -> bool:
+    def _holds(self, frame: SectionFrame) -> bool:
         return self._cut is not None and bool(
             self._cut.holds(self._cut.to_section(self._corners(frame))).all()
         )
 
-    def _read(self, frame: Frame, way: int) -> None:
+    def _read(self, frame: SectionFrame, direction: int) -> None:
         half = max(-self._box[0], self._box[1]) + 0.5
         length = self._stretch_m + self._width_m
-        middle = frame.place + way * (self._stretch_m / 2 - self._width_m) * frame.along
+        middle = frame.position + direction * (self._stretch_m / 2 - self._width_m) * frame.along
         cut = Cut(
             (float(middle[0]), float(middle[1]), float(middle[2])),
             (float(frame.right[0]), float(frame.right[1])),

@@ -7,13 +7,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from processing.errors import UNCHANGED, BadFile, OutOfRange, told_as_user_error
+from processing.errors import UNCHANGED, BadFile, OutOfRange, report_as_user_error
 from processing.templates.profile_template import (
     USUAL_TOLERANCE_M,
     MadeLine,
-    Profile,
-    ProfilePlace,
+    ProfilePoint,
     ProfileTemplate,
+    TemplateProfile,
 )
 from processing.text import Text
 
@@ -56,7 +56,7 @@ def read_template(path: Path) -> ProfileTemplate:
     MissingInput, BadFile
         There is no such file, or it holds no template.
     """
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         if path.stat().st_size > _LARGEST_BYTES:
             raise _no_template(str(path), "too large")
         content = path.read_bytes()
@@ -64,10 +64,10 @@ def read_template(path: Path) -> ProfileTemplate:
         text = content.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise _no_template(str(path), "no UTF-8") from error
-    return parsed_template(text, str(path))
+    return parse_template(text, str(path))
 
 
-def parsed_template(text: str, where: str) -> ProfileTemplate:
+def parse_template(text: str, where: str) -> ProfileTemplate:
     """The template that a JSON text holds.
 
     Parameters
@@ -112,7 +112,7 @@ def template_of(values: JsonValue, where: str) -> ProfileTemplate:
         raise _no_template(where, str(error)) from error
 
 
-def _written(profile: Profile) -> list[JsonValue]:
+def _written(profile: TemplateProfile) -> list[JsonValue]:
     return [[round(offset, _DIGITS), round(height, _DIGITS)] for offset, height in profile]
 
 
@@ -132,14 +132,14 @@ def _list(values: Mapping[str, Any], key: str) -> list[Any]:  # what JSON can ho
     return value
 
 
-def _profile(value: JsonValue) -> Profile:
+def _profile(value: JsonValue) -> TemplateProfile:
     if not isinstance(value, list):
         message = f"{str(value)[:40]} is no list of places"
         raise TypeError(message)
-    return tuple(_place(one) for one in value)
+    return tuple(_position(one) for one in value)
 
 
-def _place(value: JsonValue) -> ProfilePlace:
+def _position(value: JsonValue) -> ProfilePoint:
     if not isinstance(value, list) or len(value) != 2:
         message = f"{str(value)[:40]} is no place [offset, height]"
         raise TypeError(message)
@@ -150,7 +150,7 @@ def _line(value: JsonValue) -> MadeLine:
     if not isinstance(value, dict):
         message = f"{str(value)[:40]} is no line"
         raise TypeError(message)
-    return MadeLine(_text(value, "kind"), _place(value.get("at", [0.0, 0.0])))
+    return MadeLine(_text(value, "kind"), _position(value.get("at", [0.0, 0.0])))
 
 
 def _number(value: JsonValue) -> float:

@@ -29,7 +29,7 @@ POINTS_PER_BLOCK = 1_000_000
 
 
 @dataclass(frozen=True)
-class Block:
+class RowBlock:
     """A stretch of rows.
 
     Attributes
@@ -46,7 +46,7 @@ class Block:
 
 def blocks_of(
     row_starts: NDArray[np.int64], overlap_rows: int, points_per_block: int = POINTS_PER_BLOCK
-) -> Iterator[Block]:
+) -> Iterator[RowBlock]:
     """Blocks that own every row once.
 
     Parameters
@@ -65,7 +65,7 @@ def blocks_of(
             wanted = np.searchsorted(row_starts, row_starts[first] + points_per_block, "right") - 1
             end = min(rows, max(first + 1, first + overlap_rows, int(wanted)))
         aside = max(overlap_rows, 0)
-        yield Block(range(first, end), range(max(0, first - aside), min(rows, end + aside)))
+        yield RowBlock(range(first, end), range(max(0, first - aside), min(rows, end + aside)))
         first = end
 
 
@@ -94,7 +94,7 @@ class JoinedResults:
             if output.name in COMPONENT_COLUMNS
         }
 
-    def add(self, block: Block, result: PointResult) -> None:
+    def add(self, block: RowBlock, result: PointResult) -> None:
         """Take in the next block's result.
 
         Raises

@@ -14,7 +14,7 @@ from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.text import Text
 from processing.tools.parameters import length, switch
-from processing.tools.tool import Compute, Needs, OutputColumn, PointBlock, PointResult, Tool
+from processing.tools.tool import Needs, OutputColumn, PointBlock, PointComputer, PointResult, Tool
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class ColourParameters:
 
 def colouring_of(
     drive: Drive, beside: tuple[Drive, ...], parameters: ColourParameters, monitor: Monitor
-) -> Compute:
+) -> PointComputer:
     """Colours a drive's blocks; all drives of the street may hide a point from a camera.
 
     Raises

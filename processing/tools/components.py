@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import OutOfRange, told_as_user_error
+from processing.errors import OutOfRange, report_as_user_error
 from processing.image.segment_kernels import renumber_kernel, roots_kernel, unite_kernel
 from processing.monitor import Monitor
 from processing.points.columns import ColumnWriter, column_path
@@ -89,7 +89,7 @@ class ComponentColumn:
         if not self._pairs:
             return
         gone, ranks = _united(np.concatenate(self._pairs, axis=1))
-        with told_as_user_error(self._path), self._path.open("r+b") as file:
+        with report_as_user_error(self._path), self._path.open("r+b") as file:
             start = 0
             while data := file.read(4 * _POINTS_AT_ONCE):
                 monitor.check()
@@ -118,10 +118,10 @@ class ComponentColumn:
 
 def _united(pairs: _Integers) -> tuple[_Integers, _Integers]:
     """Numbers that give way, rising, and the final number of each."""
-    numbers, places = np.unique(pairs, return_inverse=True)
-    places = places.reshape(pairs.shape)
+    numbers, positions = np.unique(pairs, return_inverse=True)
+    positions = positions.reshape(pairs.shape)
     parents = np.arange(numbers.size, dtype=np.int64)
-    unite_kernel(parents, np.ascontiguousarray(places[0]), np.ascontiguousarray(places[1]))
+    unite_kernel(parents, np.ascontiguousarray(positions[0]), np.ascontiguousarray(positions[1]))
     roots_kernel(parents)
     gives_way = parents != np.arange(parents.size)
     gone = numbers[gives_way]

@@ -7,23 +7,23 @@ from dataclasses import dataclass
 
 from processing.monitor import Monitor, PartMonitor, parts_of
 from processing.points.drive import Drive
+from processing.road.curbs.approximate_lines import ApproximateLine, approximate_lines_of
 from processing.road.curbs.curb_confidence import CurbFacts, chance_of
-from processing.road.curbs.curb_doubts import (
-    step_runs,
-    without_inner_faces,
-    without_lone_edging,
-    without_rears,
-)
-from processing.road.curbs.curb_edges import EdgeSettings, MeasuredEdges, measured_edges
+from processing.road.curbs.curb_edges import EdgeSettings, MeasuredEdges, measure_edges
 from processing.road.curbs.curb_evidence import facts_of, noise_of
+from processing.road.curbs.curb_extension import extend_lines
 from processing.road.curbs.curb_features import CurbFeature, EdgeLine, features_of
-from processing.road.curbs.curb_guides import Guide, guides_of
-from processing.road.curbs.curb_joins import pooled
+from processing.road.curbs.curb_filters import (
+    remove_inner_faces,
+    remove_lone_edging,
+    remove_rear_edges,
+    step_runs,
+)
+from processing.road.curbs.curb_joins import join_edges
 from processing.road.curbs.curb_lines import CurbLine, lines_of
 from processing.road.curbs.curb_notes import note_on
 from processing.road.curbs.curb_profile import StepSettings
 from processing.road.curbs.curb_runs import StepRun
-from processing.road.curbs.curb_tails import prolonged
 from processing.text import Text
 from processing.tools.parameters import angle, length, ratio
 from processing.tools.tool import Candidate, CandidateResult, Needs, Tool
@@ -158,7 +158,7 @@ class MeasuredCurb:
 
     Attributes
     ----------
-    guide : Guide
+    approximate_line : Guide
     line : CurbLine
     measured : tuple of MeasuredEdges
         Of each drive.
@@ -166,7 +166,7 @@ class MeasuredCurb:
         What tells whether it is one.
     """
 
-    guide: Guide
+    approximate_line: ApproximateLine
     line: CurbLine
     measured: tuple[MeasuredEdges, ...]
     facts: CurbFacts
@@ -195,17 +195,19 @@ def find_curbs(
         runs.extend(step_runs(drive, number, settings, part))
     # What hides the front of a stone from one scanner doesn't hide it from all.
     runs = list(
-        without_inner_faces(without_lone_edging(without_rears(runs, settings), settings), settings)
+        remove_inner_faces(
+            remove_lone_edging(remove_rear_edges(runs, settings), settings), settings
+        )
     )
     features: list[CurbFeature] = []
-    for one in measured_curbs(drives, runs, parameters, PartMonitor(monitor, _FINDING, 1.0)):
+    for one in measure_curbs(drives, runs, parameters, PartMonitor(monitor, _FINDING, 1.0)):
         chance = chance_of(one.facts)
         if chance >= parameters.least_confidence:
-            features.extend(features_of(one.guide, one.line, one.measured, chance))
+            features.extend(features_of(one.approximate_line, one.line, one.measured, chance))
     return CandidateResult(_candidates(features), note_on(drives, runs, settings, len(features)))
 
 
-def measured_curbs(
+def measure_curbs(
     drives: Sequence[Drive],
     runs: Sequence[StepRun],
     parameters: CurbParameters,
@@ -213,29 +215,31 @@ def measured_curbs(
 ) -> Iterator[MeasuredCurb]:
     """Exact edges of rough runs, by all that was measured about them."""
     bridge_m = max(parameters.bridge_m, parameters.joining_m)
-    guides = guides_of(runs, bridge_m)
-    if not guides:
+    approximate_lines = approximate_lines_of(runs, bridge_m)
+    if not approximate_lines:
         return
     settings = EdgeSettings(parameters.along_m, parameters.across_m, parameters.inlier_m)
     limits = (parameters.highest_m, bridge_m)
     monitor.report(0.0, _FOLLOWING)
-    guides = prolonged(guides, drives, settings, limits, PartMonitor(monitor, 0.0, 0.4))
+    approximate_lines = extend_lines(
+        approximate_lines, drives, settings, limits, PartMonitor(monitor, 0.0, 0.4)
+    )
     rest = PartMonitor(monitor, 0.4, 1.0)
     rest.report(0.0, _MEASURING)
     measured = [
-        measured_edges(drive, guides, settings, part)
+        measure_edges(drive, approximate_lines, settings, part)
         for drive, part in zip(drives, parts_of(rest, [d.count for d in drives]), strict=True)
     ]
     noise_m = noise_of([one.measures for ones in measured for one in ones])
-    for number, guide in enumerate(guides):
+    for number, approximate_line in enumerate(approximate_lines):
         monitor.check()
         ours = tuple(one[number] for one in measured)
         measures = [one.measures for one in ours]
-        edges = pooled(measures, parameters.highest_m)
-        for line in lines_of(guide, edges, bridge_m):
+        edges = join_edges(measures, parameters.highest_m)
+        for line in lines_of(approximate_line, edges, bridge_m):
             tolerances = (parameters.inlier_m, noise_m)
-            facts = facts_of((guide, line), runs, edges, measures, tolerances)
-            yield MeasuredCurb(guide, line, ours, facts)
+            facts = facts_of((approximate_line, line), runs, edges, measures, tolerances)
+            yield MeasuredCurb(approximate_line, line, ours, facts)
 
 
 def _candidates(features: Sequence[CurbFeature]) -> tuple[Candidate, ...]:

@@ -8,19 +8,19 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import OutOfRange, told_as_user_error
-from processing.ground.adaptive import GroundHabits
+from processing.errors import OutOfRange, report_as_user_error
+from processing.ground.adaptive import GroundAssumptions
 from processing.ground.drive_ground import adaptive_ground
 from processing.ground.drive_points import DrivePoints
 from processing.ground.drive_references import lowest_ground_of, published_ground_of
 from processing.ground.ground_columns import CLASS, GROUND, HEIGHT, OTHER
-from processing.ground.published import PublishedSteps
+from processing.ground.published_method import PublishedSteps
 from processing.ground.stored_surface import FILE_NAME
 from processing.monitor import Monitor
 from processing.noise.behind_surfaces import echoes_of
 from processing.points.drive import Drive
 from processing.text import Text
-from processing.tools.parameters import Choice, angle, choice, file, length, switch
+from processing.tools.parameters import ParameterChoice, angle, choice, file, length, switch
 from processing.tools.tool import FinishedColumns, Needs, OutputColumn, TogetherResult, Tool
 from processing.worked_ahead import in_order
 
@@ -39,9 +39,9 @@ class GroundParameters:
     method: str = choice(
         ADAPTIVE,
         choices=(
-            Choice(ADAPTIVE, Text("Adaptive", "自動調整")),
-            Choice(PUBLISHED, Text("Published (triangles)", "論文の方法（三角網）")),
-            Choice(LOWEST, Text("Lowest points", "最下点")),
+            ParameterChoice(ADAPTIVE, Text("Adaptive", "自動調整")),
+            ParameterChoice(PUBLISHED, Text("Published (triangles)", "論文の方法（三角網）")),
+            ParameterChoice(LOWEST, Text("Lowest points", "最下点")),
         ),
         name=Text("Method", "方法"),
         explanation=Text(
@@ -158,7 +158,7 @@ def mark_ground(
     """
     _check(parameters)
     folders = [into / str(number) if number else into for number in range(len(drives))]
-    with told_as_user_error(into):
+    with report_as_user_error(into):
         for folder in folders[1:]:
             folder.mkdir()
     echoes = _echoes(drives, monitor) if parameters.method == ADAPTIVE else ()
@@ -166,7 +166,7 @@ def mark_ground(
     grid_m = parameters.grid_m or _PAPER_GRID_M
     kept: tuple[Path, ...] = ()
     if parameters.method == ADAPTIVE:
-        habits = GroundHabits(grid_m=parameters.grid_m)
+        habits = GroundAssumptions(grid_m=parameters.grid_m)
         kept = (into / FILE_NAME,)
         grid_m = adaptive_ground(points, habits, folders, kept[0], monitor).size_m
     elif parameters.method == PUBLISHED:

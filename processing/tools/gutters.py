@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from processing.monitor import Monitor, PartMonitor, parts_of
 from processing.points.drive import Drive
 from processing.points.passes import passes_of
-from processing.road.curbs.curb_points import GuideCells
-from processing.road.gutters.grating_found import GratingFound, one_of_each
+from processing.road.curbs.curb_points import LineCells
+from processing.road.gutters.grating_facts import GratingFound, one_of_each
 from processing.road.gutters.gratings import GratingParameters, gratings_of
 from processing.road.gutters.gutter_confidence import CoverFacts, chance_of, facts_of
-from processing.road.gutters.gutter_gratings import SureCovers, with_gratings
-from processing.road.gutters.gutter_lids import POINTS_WITHIN_M, Cover, covers_of
+from processing.road.gutters.gutter_gratings import RatedCovers, add_gratings
+from processing.road.gutters.gutter_lids import POINTS_WITHIN_M, GutterCover, covers_of
 from processing.road.gutters.gutter_lines import REACH_M
 from processing.road.gutters.gutter_notches import notches_of
 from processing.road.gutters.gutter_outline import edge_lines
@@ -147,7 +147,7 @@ def find_gutters(
 
 
 @dataclass(frozen=True)
-class LaidGutter:
+class CoveredGutter:
     """One gutter with all its covers.
 
     Attributes
@@ -159,13 +159,13 @@ class LaidGutter:
     """
 
     run: GutterRun
-    covers: tuple[Cover, ...]
+    covers: tuple[GutterCover, ...]
     facts: tuple[CoverFacts, ...]
 
 
 def gutter_evidence(
     drives: tuple[Drive, ...], parameters: GutterParameters, monitor: Monitor
-) -> tuple[list[LaidGutter], tuple[GratingFound, ...]]:
+) -> tuple[list[CoveredGutter], tuple[GratingFound, ...]]:
     """All gutters and gratings of a survey, none left out that is not sure."""
     notches = _notches(drives, parameters, PartMonitor(monitor, 0.0, _FINDING))
     return _evidence(drives, notches, parameters, PartMonitor(monitor, _FINDING, 1.0))
@@ -176,7 +176,7 @@ def _evidence(
     notches: Sequence[Notches],
     parameters: GutterParameters,
     monitor: Monitor,
-) -> tuple[list[LaidGutter], tuple[GratingFound, ...]]:
+) -> tuple[list[CoveredGutter], tuple[GratingFound, ...]]:
     gratings = one_of_each(
         replace(found, drive=number)
         for number, (drive, own) in enumerate(zip(drives, notches, strict=True))
@@ -187,25 +187,25 @@ def _evidence(
     runs = gutter_runs(passes, notches, missed, reach_m, monitor) if passes else ()
     if not runs:
         return [], gratings
-    cells = GuideCells([one.axis for one in runs], POINTS_WITHIN_M)
+    cells = LineCells([one.axis for one in runs], POINTS_WITHIN_M)
     parts = parts_of(monitor, [drive.count for drive in drives])
     about = [cells.about(drive, part) for drive, part in zip(drives, parts, strict=True)]
     laid = []
     for number, run in enumerate(runs):
         monitor.check()
         covers = covers_of(run, number, about)
-        laid.append(LaidGutter(run, covers, tuple(facts_of(run, covers, notches))))
+        laid.append(CoveredGutter(run, covers, tuple(facts_of(run, covers, notches))))
     return laid, gratings
 
 
 def _chosen(
-    laid: Sequence[LaidGutter], gratings: tuple[GratingFound, ...], least: float
+    laid: Sequence[CoveredGutter], gratings: tuple[GratingFound, ...], least: float
 ) -> Iterator[Candidate]:
     """Covers of all gutters that are sure enough, then the gratings beside them."""
     gratings = tuple(one for one in gratings if one.confidence >= least)
     for number, one in enumerate(laid, 1):
         sure = np.array([chance_of(facts) for facts in one.facts])
-        own, gratings = with_gratings(one.run.axis, SureCovers(one.covers, sure), gratings)
+        own, gratings = add_gratings(one.run.axis, RatedCovers(one.covers, sure), gratings)
         is_kept = own.sure >= least
         kept = [cover for cover, keep in zip(own.covers, is_kept, strict=True) if keep]
         yield from _candidates(kept, own.sure[is_kept], number)
@@ -233,7 +233,7 @@ def _notches(
 
 
 def _candidates(
-    covers: Sequence[Cover], sure: NDArray[np.float64], run: int
+    covers: Sequence[GutterCover], sure: NDArray[np.float64], run: int
 ) -> Iterator[Candidate]:
     for one, confidence in zip(covers, sure.tolist(), strict=True):
         yield Candidate(

@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import told_as_user_error
+from processing.errors import report_as_user_error
 from processing.monitor import Monitor, PartMonitor
 from processing.noise.drive_noise import NoiseSearch
 from processing.noise.noise_codes import HIGH_NOISE, LOW_NOISE
 from processing.noise.scratch_files import scratch_array
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch, stretches
+from processing.points.ordering import chunk_ranges, read_chunk
 from processing.text import Text
-from processing.tools.parameters import Choice, choice, count, length, ratio
+from processing.tools.parameters import ParameterChoice, choice, count, length, ratio
 from processing.tools.tool import FinishedColumns, Needs, OutputColumn, Tool
 
 _CLASS = "classification"
@@ -34,9 +34,9 @@ class NoiseParameters:
     method: str = choice(
         COMBINED,
         choices=(
-            Choice(COMBINED, Text("Combined", "複合判定")),
-            Choice(RADIUS, Text("Radius (ROR)", "半径法（ROR）")),
-            Choice(STATISTICAL, Text("Statistical (SOR)", "統計法（SOR）")),
+            ParameterChoice(COMBINED, Text("Combined", "複合判定")),
+            ParameterChoice(RADIUS, Text("Radius (ROR)", "半径法（ROR）")),
+            ParameterChoice(STATISTICAL, Text("Statistical (SOR)", "統計法（SOR）")),
         ),
         name=Text("Method", "方法"),
         explanation=Text(
@@ -110,7 +110,7 @@ def mark_noise(
         The disk can't hold the column and some 20 bytes a point meanwhile.
     """
     scratch = into / "scratch"
-    with told_as_user_error(into):
+    with report_as_user_error(into):
         scratch.mkdir()
         codes = scratch_array(scratch / "codes", np.uint8, drive.count)
         search = NoiseSearch(drive, codes, scratch, points_at_once)
@@ -131,11 +131,11 @@ def mark_noise(
 def _write_classes(drive: Drive, codes: NDArray[np.uint8], into: Path, monitor: Monitor) -> None:
     with ColumnWriter(into) as writer:
         writer.append({_CLASS: np.empty(0, np.uint8)})
-        for start, stop in stretches(drive.count):
+        for start, stop in chunk_ranges(drive.count):
             monitor.check()
             found = np.asarray(codes[start:stop])
             if drive.columns.has(_CLASS):
-                delivered = read_stretch(drive.folder, _CLASS, start, stop)
+                delivered = read_chunk(drive.folder, _CLASS, start, stop)
                 found = np.where(found > 0, found, delivered)
             writer.append({_CLASS: found})
 

@@ -20,7 +20,7 @@ from processing.errors import OutOfRange, use_one_of
 from processing.text import Text
 
 ParameterKind = Literal["number", "count", "choice", "switch", "file", "text"]
-Value = float | int | str | bool
+ParameterValue = float | int | str | bool
 ParametersT = TypeVar("ParametersT")
 
 MOST_LETTERS = 100
@@ -32,7 +32,7 @@ _NONE = Text("", "")
 
 
 @dataclass(frozen=True)
-class Choice:
+class ParameterChoice:
     """One of a field's allowed words."""
 
     value: str
@@ -57,13 +57,13 @@ class Parameter:
 
     id: str
     kind: ParameterKind
-    default: Value
+    default: ParameterValue
     name: Text
     explanation: Text = _NONE
     unit: str = ""
     low: float = 0.0
     high: float = 0.0
-    choices: tuple[Choice, ...] = ()
+    choices: tuple[ParameterChoice, ...] = ()
     picture: str = ""
 
     @property
@@ -141,7 +141,7 @@ def count(
 def choice(
     default: str,
     *,
-    choices: tuple[Choice, ...],
+    choices: tuple[ParameterChoice, ...],
     name: Text,
     explanation: Text = _NONE,
     picture: str = "",
@@ -173,7 +173,9 @@ def parameters_of(parameters: type[object]) -> tuple[Parameter, ...]:
     return tuple(dataclasses.replace(field.metadata[_KEY], id=field.name) for field in fields)
 
 
-def filled_in(parameters: type[ParametersT], values: Mapping[str, Value | str]) -> ParametersT:
+def fill_parameters(
+    parameters: type[ParametersT], values: Mapping[str, ParameterValue | str]
+) -> ParametersT:
     """Parameters with some values replaced, each read and checked against its field.
 
     Parameters
@@ -204,7 +206,7 @@ _YES = {"yes": True, "true": True, "1": True, "on": True}
 _NO = {"no": False, "false": False, "0": False, "off": False}
 
 
-def _checked(parameter: Parameter, value: Value) -> Value:
+def _checked(parameter: Parameter, value: ParameterValue) -> ParameterValue:
     read = _read(parameter, value)
     if read is None:
         raise OutOfRange(
@@ -227,7 +229,7 @@ def _checked(parameter: Parameter, value: Value) -> Value:
     return read
 
 
-def _read(parameter: Parameter, value: Value) -> Value | None:
+def _read(parameter: Parameter, value: ParameterValue) -> ParameterValue | None:
     try:
         if parameter.kind == "number":
             return float(value)

@@ -13,11 +13,11 @@ from processing.monitor import Monitor, PartMonitor
 from processing.points.drive import Drive
 from processing.templates.fit import FitSettings, fit_along
 from processing.templates.fitted_lines import FittedLine, fitted_lines
-from processing.templates.guide import RoadDirection
 from processing.templates.levels import levels_near
+from processing.templates.line_directions import RoadDirection
 from processing.templates.profile_template import ProfileTemplate
-from processing.templates.slab import Frame
-from processing.templates.template_text import parsed_template, read_template
+from processing.templates.slab import SectionFrame
+from processing.templates.template_text import parse_template, read_template
 from processing.text import Text
 from processing.tools.parameters import angle, file, length, ratio
 from processing.tools.tool import Candidate, CandidateResult, Needs, Tool
@@ -177,7 +177,7 @@ def _template(given: str) -> ProfileTemplate:
             ),
         )
     if given.lstrip().startswith("{"):
-        return parsed_template(given, "template")
+        return parse_template(given, "template")
     return read_template(Path(given))
 
 
@@ -191,11 +191,11 @@ def _remark(drive: Drive) -> Text | None:
     )
 
 
-def _start(drive: Drive, parameters: TemplateParameters) -> Frame:
-    place = np.array([parameters.easting_m, parameters.northing_m, parameters.height_m])
+def _start(drive: Drive, parameters: TemplateParameters) -> SectionFrame:
+    position = np.array([parameters.easting_m, parameters.northing_m, parameters.height_m])
     if parameters.heading_deg != _ALONG_ROAD_DEG:
-        return Frame(place, math.radians(90.0 - parameters.heading_deg))
-    heading = RoadDirection(drive.trajectory).heading_near(place)
+        return SectionFrame(position, math.radians(90.0 - parameters.heading_deg))
+    heading = RoadDirection(drive.trajectory).heading_near(position)
     if heading is None:
         raise Unsuitable(
             Text(
@@ -208,7 +208,7 @@ def _start(drive: Drive, parameters: TemplateParameters) -> Frame:
                 "方位角を指定するか、断面ビューから開始してください。",
             ),
         )
-    return Frame(place, heading)
+    return SectionFrame(position, heading)
 
 
 def _candidate(line: FittedLine) -> Candidate:

@@ -18,13 +18,13 @@ from numpy.typing import NDArray
 
 from processing.earthwork.sides import Side
 from processing.earthwork.volume_result import VolumeResult
-from processing.earthwork.within import Within
+from processing.earthwork.volume_scope import VolumeScope
 from processing.image.grid import PixelGrid
 from processing.monitor import Monitor
 from processing.owned_files import remove_folder
 from processing.points.columns import Columns, column_path
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 from processing.text import Text
 
 CandidateValue = str | float | int | bool | None
@@ -36,7 +36,7 @@ class Needs(Enum):
 
     POINTS = "points"
     PIXELS = "pixels"
-    TURNS = "turns"
+    REVOLUTIONS = "turns"
     TRAJECTORY = "trajectory"
     IMAGES = "images"
 
@@ -99,7 +99,7 @@ class FinishedColumns:
 
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
         """Values of the points ``start … stop − 1``: (k,) or (k, width), of the column's dtype."""
-        return read_stretch(self.folder, name, start, stop)
+        return read_chunk(self.folder, name, start, stop)
 
     def hand_over(self, columns: Columns) -> None:
         """Make them the columns of a drive on the same disk; the folder is gone afterwards.
@@ -190,26 +190,26 @@ class CandidateResult:
 
 
 # A tool's parameters are its own frozen dataclass, so the runner can't know their type.
-Compute = Callable[[PointBlock, Any, Monitor], PointResult]
-Find = Callable[[Drive, Any, Monitor], CandidateResult]
+PointComputer = Callable[[PointBlock, Any, Monitor], PointResult]
+CandidateFinder = Callable[[Drive, Any, Monitor], CandidateResult]
 # Drives of one survey, the first being the one asked for, the tool's parameters.
-FindTogether = Callable[[tuple[Drive, ...], Any, Monitor], CandidateResult]
+JointCandidateFinder = Callable[[tuple[Drive, ...], Any, Monitor], CandidateResult]
 # A drive, the tool's parameters, an empty folder for the columns, points to hold at a time.
-Mark = Callable[[Drive, Any, Path, int, Monitor], FinishedColumns]
+PointMarker = Callable[[Drive, Any, Path, int, Monitor], FinishedColumns]
 # Drives recorded together, the tool's parameters, an empty folder, points to hold at a time: the
 # columns of the first drive come to lie in it, and folders for those of the others.
-MarkTogether = Callable[[tuple[Drive, ...], Any, Path, int, Monitor], TogetherResult]
+JointPointMarker = Callable[[tuple[Drive, ...], Any, Path, int, Monitor], TogetherResult]
 # A drive, the other drives of its street, the tool's parameters, whom to tell what is lacking.
-ComputeOf = Callable[[Drive, tuple[Drive, ...], Any, Monitor], Compute]
+PointComputerFactory = Callable[[Drive, tuple[Drive, ...], Any, Monitor], PointComputer]
 
 
 # Two grounds, the earlier first, the tool's parameters, whom to tell, and what the volume is
 # limited to.
-Compare = Callable[[Side, Side, Any, Monitor, Within], VolumeResult]
+VolumeComparer = Callable[[Side, Side, Any, Monitor, VolumeScope], VolumeResult]
 
 
 # What a person should know before the tool is run on a drive.
-Remark = Callable[[Drive], Text | None]
+RemarkFinder = Callable[[Drive], Text | None]
 
 
 def nothing_to_remark(_drive: Drive) -> Text | None:
@@ -263,7 +263,7 @@ class Tool:
         The codes that a tool with the output ``classification`` may give; a new run in a project
         takes back those of an earlier one.
     find : callable or None
-        Candidates on a whole drive, of which it reads a stretch at a time; None for a tool that
+        Candidates on a whole drive, of which it reads a chunk at a time; None for a tool that
         says something about points. It reports its own progress.
     find_together : callable or None
         The same on all drives of one survey at once, for a tool that gives one result for what
@@ -283,18 +283,18 @@ class Tool:
     group: Text
     needs: Needs
     parameters: type[Any]  # a frozen dataclass of fields from processing.tools.parameters
-    compute: Compute = nothing_per_point
+    compute: PointComputer = nothing_per_point
     outputs: tuple[OutputColumn, ...] = ()
     overlap_rows: int = 0
     version: int = 1
-    compute_of: ComputeOf | None = None
-    mark: Mark | None = None
-    mark_together: MarkTogether | None = None
+    compute_of: PointComputerFactory | None = None
+    mark: PointMarker | None = None
+    mark_together: JointPointMarker | None = None
     gives_classes: tuple[int, ...] = ()
-    find: Find | None = None
-    find_together: FindTogether | None = None
-    compare: Compare | None = None
-    remark: Remark = nothing_to_remark
+    find: CandidateFinder | None = None
+    find_together: JointCandidateFinder | None = None
+    compare: VolumeComparer | None = None
+    remark: RemarkFinder = nothing_to_remark
     sought: tuple[str, ...] = ()
 
     @property

@@ -773,7 +773,7 @@ kept</source>
     </message>
 </context>
 <context>
-    <name>Header</name>
+    <name>PaneHeader</name>
     <message>
         <source>Close this image</source>
         <translation>この画像を閉じる</translation>
@@ -811,7 +811,7 @@ kept</source>
     </message>
 </context>
 <context>
-    <name>ImageChoice</name>
+    <name>ImageViewSettings</name>
     <message>
         <source>Direction of travel in the image; exchange its sides</source>
         <translation>画像内の進行方向・左右反転</translation>
@@ -837,7 +837,7 @@ kept</source>
     </message>
 </context>
 <context>
-    <name>ImageLay</name>
+    <name>ImageOrientation</name>
     <message>
         <source>Street from left to right</source>
         <translation>道路を左から右へ（横向き）</translation>
@@ -1080,7 +1080,7 @@ kept</source>
     </message>
 </context>
 <context>
-    <name>LookForm</name>
+    <name>VolumeStyleForm</name>
     <message>
         <source>Show the heat map</source>
         <translation>ヒートマップを表示</translation>

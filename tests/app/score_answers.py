@@ -12,8 +12,8 @@ from app.cli.terminal import BAD_INPUT, DONE, run_in_terminal
 
 def scored(capsys: pytest.CaptureFixture[str], *arguments: object) -> dict[str, Any]:
     assert run_in_terminal(["score", *map(str, arguments), "--json"]) == DONE
-    told: dict[str, Any] = json.loads(capsys.readouterr().out)
-    return told
+    reported: dict[str, Any] = json.loads(capsys.readouterr().out)
+    return reported
 
 
 def refused(capsys: pytest.CaptureFixture[str], *arguments: object) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.document import Document
-from app.jobs import JobQueue, Lane
+from app.jobs import JobLane, JobQueue
 from processing.project.catalogue import Geometry
 from processing.project.change import Change
 from processing.project.feature import Feature, Vertex
@@ -46,9 +46,9 @@ def delivery(tmp_path):
 
 def test_a_change_is_told_to_views_and_taken_back(document, tmp_path, qtbot):
     assert document.create(tmp_path / "p.zuka", "EPSG:6677")
-    with qtbot.waitSignal(document.shared.map_changes.features_changed) as told:
+    with qtbot.waitSignal(document.shared.map_changes.features_changed) as reported:
         assert document.apply(LABEL, Change(added=(SIGN,)))
-    assert told.args == [("f1",)]
+    assert reported.args == [("f1",)]
     document.shared.selection.choose_features(frozenset({"f1"}))
     assert document.undo()
     assert document.shared.selection.features == frozenset()
@@ -87,7 +87,9 @@ def test_what_was_prepared_does_not_replace_what_was_asked_for(
     asked = np.array(drive.columns["segment"])
     ended = []
     jobs.finished.connect(lambda job, _: ended.append(job))
-    prepared = document.start_run(SEGMENTS.id, drive.id, SegmentsParameters(), lane=Lane.PREPARED)
+    prepared = document.start_run(
+        SEGMENTS.id, drive.id, SegmentsParameters(), lane=JobLane.PREPARED
+    )
     qtbot.waitUntil(lambda: prepared in ended, timeout=WAIT_MS)
     assert list((tmp_path / "p.zuka" / "tmp").iterdir()) == []
     np.testing.assert_array_equal(drive.columns["segment"], asked)
@@ -96,9 +98,9 @@ def test_what_was_prepared_does_not_replace_what_was_asked_for(
 def test_an_import_that_is_refused_leaves_no_project(document, tmp_path, qtbot):
     damaged = tmp_path / "壊れた.laz"
     damaged.write_bytes(b"LASF" + bytes(300))
-    with qtbot.waitSignal(document.refused, timeout=WAIT_MS) as told:
+    with qtbot.waitSignal(document.refused, timeout=WAIT_MS) as reported:
         document.import_into_new(tmp_path / "p.zuka", ImportRequest((damaged,)))
-    assert "壊れた.laz" in told.args[0].line("ja")
+    assert "壊れた.laz" in reported.args[0].line("ja")
     assert document.project is None
     assert not (tmp_path / "p.zuka").exists()
 

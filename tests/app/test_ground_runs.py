@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.class_judging import ClassJudging
 from app.cli.run import command
 from app.document import Document
 from app.jobs import JobQueue
+from app.truth_evaluations import TruthEvaluations
 from processing.errors import InUse, UserError
 from processing.ground.stored_surface import ground_surface_of
 from processing.labels.label_column import labels_of
@@ -22,7 +22,7 @@ from processing.points.clock import DAY_S
 from processing.project.change import Change
 from processing.project.importing import ImportRequest
 from processing.project.label_change import label_changes
-from processing.project.truth_making import Checked
+from processing.project.truth_making import CheckedPoints
 from processing.project.truth_store import has_truth
 from processing.text import Text
 from processing.tools.ground import GroundParameters
@@ -48,12 +48,12 @@ def delivery(heads: tuple[SimulatedDrive, SimulatedDrive], tmp_path: Path) -> Im
 def test_one_run_labels_both_heads_and_one_undo_takes_it_back(
     street: Document, tmp_path: Path, qtbot: QtBot
 ) -> None:
-    told: list[Text] = []
-    street.told.connect(told.append)
+    reported: list[Text] = []
+    street.reported.connect(reported.append)
     first, second = street.drives()
-    wish = GroundParameters(surface=str(tmp_path / "地表面.tif"))
-    with qtbot.waitSignal(street.told, timeout=WAIT_MS):
-        street.start_run("ground", second.id, wish)
+    request = GroundParameters(surface=str(tmp_path / "地表面.tif"))
+    with qtbot.waitSignal(street.reported, timeout=WAIT_MS):
+        street.start_run("ground", second.id, request)
     for drive in (first, second):
         labels = labels_of(drive, np.arange(drive.count))
         assert set(np.unique(labels)) == {1, 2}
@@ -63,7 +63,7 @@ def test_one_run_labels_both_heads_and_one_undo_takes_it_back(
         off = np.abs(surface.heights_at(ground[:, :2]) - ground[:, 2])
         # Ground that is not near the surface lies on the face of a step.
         assert (off <= 0.3).mean() > 0.99
-    assert "cells of 0." in told[-1].en
+    assert "cells of 0." in reported[-1].en
     (run,) = street.runs()
     assert set(run.drives) == {first.id, second.id}
     assert (tmp_path / "地表面.tif").is_file()
@@ -74,29 +74,29 @@ def test_one_run_labels_both_heads_and_one_undo_takes_it_back(
 def test_a_truth_made_by_hand_is_about_all_that_was_recorded_together(
     street: Document, jobs: JobQueue, qtbot: QtBot
 ) -> None:
-    judging = ClassJudging(street, jobs)
+    evaluations = TruthEvaluations(street, jobs)
     first, second = street.drives()
     street.shared.view_settings.show_image(second.id, second.image_kinds[0])
-    with qtbot.waitSignal(judging.truth_made, timeout=WAIT_MS):
-        judging.make_truth(Checked.WHOLE, None)
-    (whole,) = judging.truths()
+    with qtbot.waitSignal(evaluations.truth_made, timeout=WAIT_MS):
+        evaluations.make_truth(CheckedPoints.WHOLE, None)
+    (whole,) = evaluations.truths()
     assert whole.known == {first.id: first.count, second.id: second.count}
     assert whole.name.en == f"{second.info.name} and 1 more: all checked"
     refused: list[UserError] = []
     street.refused.connect(refused.append)
     with qtbot.waitSignal(street.refused, timeout=WAIT_MS):
-        judging.make_truth(Checked.PAINTED, None)
+        evaluations.make_truth(CheckedPoints.PAINTED, None)
     assert refused[0].what.en == "No point was painted by hand."
     points = np.arange(10, 30)
     none = labels_of(first, points)
     assert street.apply(Text.same("p"), Change(labels=label_changes(first.id, points, none, 2)))
-    with qtbot.waitSignal(judging.truth_made, timeout=WAIT_MS):
-        judging.make_truth(Checked.PAINTED, None)
-    assert judging.truths()[-1].known == {first.id: 20}
-    assert not has_truth(second, judging.truths()[-1].id)
+    with qtbot.waitSignal(evaluations.truth_made, timeout=WAIT_MS):
+        evaluations.make_truth(CheckedPoints.PAINTED, None)
+    assert evaluations.truths()[-1].known == {first.id: 20}
+    assert not has_truth(second, evaluations.truths()[-1].id)
 
 
-def _wish(delivery: ImportRequest, output: Path, *settings: str) -> Namespace:
+def _request(delivery: ImportRequest, output: Path, *settings: str) -> Namespace:
     return Namespace(
         columns="",
         tool="ground",
@@ -113,7 +113,7 @@ def test_the_command_line_gives_classes_heights_and_the_surface(
     heads: tuple[SimulatedDrive, SimulatedDrive], delivery: ImportRequest, tmp_path: Path
 ) -> None:
     out = tmp_path / "out"
-    assert command(_wish(delivery, out / "g.laz", f"surface={out / 's.tif'}")) == 0
+    assert command(_request(delivery, out / "g.laz", f"surface={out / 's.tif'}")) == 0
     assert {path.name for path in out.iterdir()} == {"g-l.laz", "g-r.laz", "s.tif"}
     for head, name in zip(heads, "lr", strict=True):
         cloud = laspy.read(out / f"g-{name}.laz")
@@ -136,7 +136,7 @@ def test_two_dates_with_the_same_station_numbers_are_judged_apart(tmp_path: Path
         for number, (name, site) in enumerate(sites.items())
     )
     out = tmp_path / "out"
-    assert command(_wish(ImportRequest(clouds), out / "g.laz", f"surface={out / 's.tif'}")) == 0
+    assert command(_request(ImportRequest(clouds), out / "g.laz", f"surface={out / 's.tif'}")) == 0
     surfaces = {f"s-{name} (1).tif" for name in sites}
     assert {path.name for path in out.iterdir()} == {*surfaces, "g-before.laz", "g-after.laz"}
     for name, site in sites.items():
@@ -154,5 +154,5 @@ def test_a_surface_never_overwrites_a_delivered_file(
     request = ImportRequest((taken, delivery.inputs[1]), delivery.trajectories)
     before = taken.read_bytes()
     with pytest.raises(InUse):
-        command(_wish(request, tmp_path / "out" / "g.laz", f"surface={taken}"))
+        command(_request(request, tmp_path / "out" / "g.laz", f"surface={taken}"))
     assert taken.read_bytes() == before

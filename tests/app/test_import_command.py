@@ -36,8 +36,8 @@ def zuka(capsys, delivery):
         capsys.readouterr()
         status = run_in_terminal([str(one) for one in arguments])
         out, err = capsys.readouterr()
-        told = [line for line in err.replace("\r", "\n").splitlines() if "%" not in line]
-        return status, out.splitlines(), [line for line in told if line.strip()]
+        reported = [line for line in err.replace("\r", "\n").splitlines() if "%" not in line]
+        return status, out.splitlines(), [line for line in reported if line.strip()]
 
     return run
 
@@ -48,10 +48,10 @@ def _drives(folder: Path) -> list[Drive]:
 
 
 def test_an_import_without_trajectory_names_the_one_beside_and_does_not_take_it(zuka, delivery):
-    status, out, told = zuka("import", "a.zuka", "street.laz")
+    status, out, reported = zuka("import", "a.zuka", "street.laz")
     assert status == 0
     assert len(out) == 1
-    assert told == [
+    assert reported == [
         "street.laz has no trajectory; trajectory.csv beside it covers it: "
         "add --trajectory trajectory.csv"
     ]
@@ -60,18 +60,18 @@ def test_an_import_without_trajectory_names_the_one_beside_and_does_not_take_it(
 
 def test_where_none_lies_beside_it_is_said_how_to_add_one(zuka, delivery):
     (delivery / "trajectory.csv").unlink()
-    status, _, told = zuka("import", "a.zuka", "street.laz")
+    status, _, reported = zuka("import", "a.zuka", "street.laz")
     assert status == 0
-    assert len(told) == 1
-    assert "zuka import PROJECT --trajectory FILE" in told[0]
+    assert len(reported) == 1
+    assert "zuka import PROJECT --trajectory FILE" in reported[0]
 
 
 def test_a_trajectory_alone_completes_the_drive_that_it_covers(zuka, delivery):
     zuka("import", "a.zuka", "street.laz")
     (before,) = _drives(delivery / "a.zuka")
     (delivery / "street.laz").unlink()  # the points are the drive's own
-    status, out, told = zuka("import", "a.zuka", "--trajectory", "trajectory.csv")
-    assert (status, told) == (0, [])
+    status, out, reported = zuka("import", "a.zuka", "--trajectory", "trajectory.csv")
+    assert (status, reported) == (0, [])
     assert "(trajectory)" in out[0]
     (drive,) = _drives(delivery / "a.zuka")
     assert drive.id == before.id
@@ -86,8 +86,8 @@ def test_the_same_file_again_changes_nothing_also_under_another_name(zuka, deliv
     (before,) = _drives(delivery / "a.zuka")
     shutil.copy(delivery / "street.laz", delivery / "copy.laz")
     for name in ("street.laz", "copy.laz"):
-        status, out, told = zuka("import", "a.zuka", name)
-        assert (status, told) == (0, [])
+        status, out, reported = zuka("import", "a.zuka", name)
+        assert (status, reported) == (0, [])
         assert out == [f"In the project already, so not imported again: {name}"]
         assert [drive.folder for drive in _drives(delivery / "a.zuka")] == [before.folder]
 
@@ -96,10 +96,10 @@ def test_a_known_file_with_a_trajectory_completes_its_drive_and_a_new_one_comes_
     zuka("import", "a.zuka", "street.laz")
     other = simulated_drive(seed=3, length_m=4.0)
     write_laz(other, delivery / "other.laz")
-    status, out, told = zuka(
+    status, out, reported = zuka(
         "import", "a.zuka", "street.laz", "other.laz", "--trajectory", "trajectory.csv"
     )
-    assert (status, told) == (0, [])
+    assert (status, reported) == (0, [])
     assert [line.partition(":")[0] for line in out] == [
         "other", "street", "In the project already, so not imported again",
     ]  # fmt: skip
@@ -110,9 +110,9 @@ def test_a_trajectory_of_another_day_is_bad_input_and_the_drive_stays(zuka, deli
     zuka("import", "a.zuka", "street.laz")
     other = simulated_drive(length_m=4.0, start_time_s=405_000.0)
     write_trajectory_csv(other, delivery / "other.csv")
-    status, out, told = zuka("import", "a.zuka", "--trajectory", "other.csv")
+    status, out, reported = zuka("import", "a.zuka", "--trajectory", "other.csv")
     assert (status, out) == (2, [])
-    assert "lie outside those of the trajectory" in told[0]
+    assert "lie outside those of the trajectory" in reported[0]
     assert _drives(delivery / "a.zuka")[0].trajectory is None
     assert not any((delivery / "a.zuka" / "tmp").iterdir())
 
@@ -125,10 +125,10 @@ def test_a_new_day_with_its_trajectory_comes_in_beside_a_known_one_that_it_does_
     other = simulated_drive(length_m=4.0, start_time_s=405_000.0)
     write_laz(other, delivery / "day2.laz")
     write_trajectory_csv(other, delivery / "day2.csv")
-    status, out, told = zuka(
+    status, out, reported = zuka(
         "import", "a.zuka", "street.laz", "day2.laz", "--trajectory", "day2.csv"
     )
-    assert (status, told) == (0, [])
+    assert (status, reported) == (0, [])
     assert out[0].startswith("day2: ")
     first, second = _drives(delivery / "a.zuka")
     assert first.folder == before.folder
@@ -146,9 +146,9 @@ def test_a_reference_system_alone_is_given_to_the_project(zuka, delivery):
 @pytest.mark.parametrize("project", ["a.zuka", "new.zuka"])
 def test_nothing_at_all_is_refused(zuka, delivery, project):
     zuka("import", "a.zuka", "street.laz")
-    status, out, told = zuka("import", project)
+    status, out, reported = zuka("import", project)
     assert (status, out) == (2, [])
-    assert told[0].startswith("No point files were given.")
+    assert reported[0].startswith("No point files were given.")
     assert not (delivery / "new.zuka").exists()
 
 

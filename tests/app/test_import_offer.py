@@ -62,7 +62,7 @@ def _button(parts, words: str) -> QToolButton:
 def test_going_on_brings_the_drive_into_the_project(qtbot, parts, interrupted):
     assert parts.document.open(interrupted)
     assert "通り.laz" in parts.message_bar.text
-    with qtbot.waitSignal(parts.document.told, timeout=30_000):
+    with qtbot.waitSignal(parts.document.reported, timeout=30_000):
         _button(parts, "Go on").click()
     assert [drive.info.name for drive in parts.document.drives()] == ["通り"]
     assert unfinished_imports(interrupted) == ()

@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from app.jobs import JobQueue, JobState, Lane
+from app.jobs import JobLane, JobQueue, JobState
 from processing.errors import BadFile, Cancelled, Interrupted
 from processing.text import Text
 
@@ -30,9 +30,9 @@ def test_a_finished_job_gives_its_result_on_the_thread_of_the_window(qtbot, jobs
     endings = _endings(jobs)
     threads = []
     jobs.finished.connect(lambda *_: threads.append(threading.current_thread()))
-    with qtbot.waitSignal(jobs.finished) as told:
+    with qtbot.waitSignal(jobs.finished) as reported:
         job = jobs.start(TITLE, lambda monitor: 42)
-    assert told.args == [job, 42]
+    assert reported.args == [job, 42]
     assert threads == [threading.main_thread()]
     assert [status.state for status in endings] == [JobState.FINISHED]
     assert not jobs.is_busy
@@ -40,11 +40,11 @@ def test_a_finished_job_gives_its_result_on_the_thread_of_the_window(qtbot, jobs
 
 def test_progress_is_told_with_its_words(qtbot, jobs):
     words = Text("half", "半分")
-    told = []
-    jobs.changed.connect(lambda status: told.append((status.fraction, status.text)))
+    reported = []
+    jobs.changed.connect(lambda status: reported.append((status.fraction, status.text)))
     with qtbot.waitSignal(jobs.finished, timeout=30_000):
         jobs.start(TITLE, lambda monitor: monitor.report(0.5, words))
-    assert (0.5, words) in told
+    assert (0.5, words) in reported
 
 
 def test_a_job_cancelled_in_the_middle_is_told_as_cancelled_and_gives_nothing(qtbot, jobs):
@@ -59,9 +59,9 @@ def test_a_job_cancelled_in_the_middle_is_told_as_cancelled_and_gives_nothing(qt
     jobs.finished.connect(lambda *args: finished.append(args))
     job = jobs.start(TITLE, work)
     assert running.wait(10)
-    with qtbot.waitSignal(jobs.cancelled) as told:
+    with qtbot.waitSignal(jobs.cancelled) as reported:
         jobs.cancel(job)
-    assert told.args == [job]
+    assert reported.args == [job]
     assert not finished
 
 
@@ -100,10 +100,10 @@ def test_a_waiting_job_can_be_cancelled_before_it_starts(qtbot, jobs):
 
 def test_what_is_prepared_does_not_hold_up_what_is_asked_for(qtbot, jobs):
     gate = threading.Event()
-    jobs.start(TITLE, lambda monitor: gate.wait(10), lane=Lane.PREPARED)
-    with qtbot.waitSignal(jobs.finished) as told:
+    jobs.start(TITLE, lambda monitor: gate.wait(10), lane=JobLane.PREPARED)
+    with qtbot.waitSignal(jobs.finished) as reported:
         asked = jobs.start(TITLE, lambda monitor: "asked")
-    assert told.args == [asked, "asked"]
+    assert reported.args == [asked, "asked"]
     with qtbot.waitSignal(jobs.finished, timeout=30_000):
         gate.set()
 
@@ -114,19 +114,19 @@ def test_what_the_user_can_mend_is_told_in_its_three_parts(qtbot, jobs):
     def work(monitor):
         raise error
 
-    with qtbot.waitSignal(jobs.failed) as told:
+    with qtbot.waitSignal(jobs.failed) as reported:
         job = jobs.start(TITLE, work)
-    assert told.args == [job, error]
+    assert reported.args == [job, error]
 
 
 def test_a_defect_is_told_in_one_sentence_and_logged(qtbot, jobs):
-    with qtbot.waitSignal(jobs.failed) as told:
+    with qtbot.waitSignal(jobs.failed) as reported:
         jobs.start(TITLE, lambda monitor: 1 / 0)
-    assert "ZeroDivisionError" in told.args[1].line("en")
-    assert "\n" not in told.args[1].line("ja")
+    assert "ZeroDivisionError" in reported.args[1].line("en")
+    assert "\n" not in reported.args[1].line("ja")
 
 
-@pytest.mark.parametrize("lane", [Lane.ASKED, Lane.AT_HAND])
+@pytest.mark.parametrize("lane", [JobLane.ASKED, JobLane.INTERACTIVE])
 def test_what_nobody_waits_for_pauses_while_something_was_asked_for(qtbot, jobs, lane):
     order = []
     started, asked, may_end = threading.Event(), threading.Event(), threading.Event()
@@ -142,7 +142,7 @@ def test_what_nobody_waits_for_pauses_while_something_was_asked_for(qtbot, jobs,
         may_end.wait(30)
         order.append("asked")
 
-    jobs.start(TITLE, prepare, lane=Lane.PREPARED)
+    jobs.start(TITLE, prepare, lane=JobLane.PREPARED)
     assert started.wait(30)
     jobs.start(TITLE, do, lane=lane)
     assert asked.wait(30)
@@ -163,11 +163,11 @@ def test_a_job_that_pauses_can_be_cancelled(qtbot, jobs):
         asked.set()
         may_end.wait(30)
 
-    prepared = jobs.start(TITLE, prepare, lane=Lane.PREPARED)
+    prepared = jobs.start(TITLE, prepare, lane=JobLane.PREPARED)
     assert started.wait(30)
     jobs.start(TITLE, do)
     assert asked.wait(30)
-    with qtbot.waitSignal(jobs.cancelled, timeout=30_000) as told:
+    with qtbot.waitSignal(jobs.cancelled, timeout=30_000) as reported:
         jobs.cancel(prepared)
-    assert told.args == [prepared]
+    assert reported.args == [prepared]
     may_end.set()

@@ -28,11 +28,11 @@ def test_a_change_of_labels_is_told_to_views(
     )
     monkeypatch.setattr(label_news, "_MANY_POINTS", 39 if are_many else 40)
     map_changes, tiles = MapChanges(), TileCache()
-    told: list[tuple[str, int]] = []
+    reported: list[tuple[str, int]] = []
     columns: list[str] = []
-    map_changes.labels_changed.connect(lambda id_, some: told.append((id_, some.size)))
+    map_changes.labels_changed.connect(lambda id_, some: reported.append((id_, some.size)))
     map_changes.drive_columns_changed.connect(columns.append)
-    label_news.tell_labels(changes, (), tiles, map_changes)
+    label_news.report_labels(changes, (), tiles, map_changes)
     tiles.close()
-    assert told == ([(drive.id, 0)] if are_many else [(drive.id, 20), (drive.id, 20)])
+    assert reported == ([(drive.id, 0)] if are_many else [(drive.id, 20), (drive.id, 20)])
     assert columns == ([drive.id] if are_many else [])

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.document import Document
-from app.jobs import JobQueue, Lane
+from app.jobs import JobLane, JobQueue
 from processing.labels.label_column import labels_of
 from processing.points.columns import column_path
 from processing.points.drive import Drive
@@ -34,16 +34,16 @@ from tests.processing.project.labelled import labelled_project, project_of
 ROAD, WALL, SIGN = 11, 6, 65
 
 
-class Desk:
+class LabelSession:
     """An open project, and a gate that holds the jobs of a lane back."""
 
     def __init__(self, folder: Path, bot: QtBot) -> None:
         self.bot, self.folder = bot, folder
         self.jobs = JobQueue()
         self.document = Document(self.jobs)
-        self.told: list[str] = []
+        self.reported: list[str] = []
         self.refused: list[str] = []
-        self.document.told.connect(lambda text: self.told.append(text.en))
+        self.document.reported.connect(lambda text: self.reported.append(text.en))
         self.document.refused.connect(lambda error: self.refused.append(error.what.en))
         assert self.document.open(folder)
         self.rest()
@@ -69,7 +69,7 @@ class Desk:
         labels = label_changes(self.drive.id, rising, labels_of(self.drive, rising), code)
         assert self.document.apply(Text.same(f"paint {code}"), Change(labels=labels))
 
-    def hold(self, lane: Lane) -> threading.Event:
+    def hold(self, lane: JobLane) -> threading.Event:
         """Nothing of a lane begins until the event is set."""
         gate, is_held = threading.Event(), threading.Event()
 
@@ -99,15 +99,17 @@ def desk(
     tmp_path: Path,
     qtbot: QtBot,
     monkeypatch: pytest.MonkeyPatch,
-) -> Iterator[Desk]:
+) -> Iterator[LabelSession]:
     monkeypatch.setattr("processing.project.label_filing.MANY_POINTS", 100)
     monkeypatch.setattr("processing.project.label_change.MOST_POINTS", 300)
-    desk = Desk(Path(shutil.copytree(street, tmp_path / "街路.zuka")), qtbot)
+    desk = LabelSession(Path(shutil.copytree(street, tmp_path / "街路.zuka")), qtbot)
     yield desk
     desk.close()
 
 
-def test_many_labels_are_one_step_that_is_taken_back_and_survives_a_restart(desk: Desk) -> None:
+def test_many_labels_are_one_step_that_is_taken_back_and_survives_a_restart(
+    desk: LabelSession,
+) -> None:
     desk.paint(range(50), SIGN)
     painted = desk.labels
     desk.paint(range(20, 2000), ROAD)
@@ -132,8 +134,8 @@ def test_many_labels_are_one_step_that_is_taken_back_and_survives_a_restart(desk
     assert not desk.refused
 
 
-def test_what_is_painted_while_many_labels_are_stored_stays(desk: Desk) -> None:
-    gate = desk.hold(Lane.STEPS)
+def test_what_is_painted_while_many_labels_are_stored_stays(desk: LabelSession) -> None:
+    gate = desk.hold(JobLane.STEPS)
     desk.paint(range(20, 2000), ROAD)
     desk.paint(range(500, 540), SIGN)
     desk.paint(range(5), WALL)
@@ -151,8 +153,8 @@ def test_what_is_painted_while_many_labels_are_stored_stays(desk: Desk) -> None:
     assert not desk.labels.any()
 
 
-def test_of_two_that_label_the_same_many_points_the_later_one_counts(desk: Desk) -> None:
-    gate = desk.hold(Lane.STEPS)
+def test_of_two_that_label_the_same_many_points_the_later_one_counts(desk: LabelSession) -> None:
+    gate = desk.hold(JobLane.STEPS)
     desk.paint(range(2000), ROAD)
     desk.paint(range(1000, 3000), WALL)
     gate.set()
@@ -165,9 +167,11 @@ def test_of_two_that_label_the_same_many_points_the_later_one_counts(desk: Desk)
     assert not desk.labels.any()
 
 
-def test_undo_while_many_labels_are_stored_takes_these_back_and_leaves_nothing(desk: Desk) -> None:
+def test_undo_while_many_labels_are_stored_takes_these_back_and_leaves_nothing(
+    desk: LabelSession,
+) -> None:
     desk.paint(range(50), SIGN)
-    gate = desk.hold(Lane.STEPS)
+    gate = desk.hold(JobLane.STEPS)
     desk.paint(range(20, 2000), ROAD)
     assert desk.document.undo()
     label = desk.document.undo_stack.undo_label
@@ -175,14 +179,14 @@ def test_undo_while_many_labels_are_stored_takes_these_back_and_leaves_nothing(d
     desk.rest()
     assert desk.document.undo_stack.undo_label == label == Text.same(f"paint {SIGN}")
     assert (desk.labels > 0).sum() == 50
-    assert desk.told[-1] == f"Taken back: paint {ROAD}"
+    assert desk.reported[-1] == f"Taken back: paint {ROAD}"
     assert desk.step_files == []
     assert desk.document.undo()
     assert not desk.labels.any()
 
 
 def test_undo_after_the_job_has_ended_but_before_its_end_is_heard_takes_it_back_too(
-    desk: Desk,
+    desk: LabelSession,
 ) -> None:
     desk.paint(range(20, 2000), ROAD)
     steps = desk.folder / "label_steps"
@@ -197,17 +201,17 @@ def test_undo_after_the_job_has_ended_but_before_its_end_is_heard_takes_it_back_
     assert desk.document.undo_stack.undo_label is None
 
 
-def test_an_undo_is_given_up_where_something_is_painted_meanwhile(desk: Desk) -> None:
+def test_an_undo_is_given_up_where_something_is_painted_meanwhile(desk: LabelSession) -> None:
     desk.paint(range(20, 2000), ROAD)
     desk.rest()
-    gate = desk.hold(Lane.STEPS)
+    gate = desk.hold(JobLane.STEPS)
     assert desk.document.undo()
     assert not desk.document.undo()
-    assert desk.told[-1].startswith("Still at it")
+    assert desk.reported[-1].startswith("Still at it")
     desk.paint(range(500, 540), SIGN)
     gate.set()
     desk.rest()
-    assert desk.told[-1].startswith("The map was changed meanwhile")
+    assert desk.reported[-1].startswith("The map was changed meanwhile")
     assert (desk.labels[500:540] == SIGN).all()
     assert (desk.labels[540:2000] == ROAD).all()
     assert desk.step_files == ["parts.bin"]
@@ -217,8 +221,8 @@ def test_an_undo_is_given_up_where_something_is_painted_meanwhile(desk: Desk) ->
     assert not desk.labels.any()
 
 
-def test_to_close_the_project_keeps_what_was_painted_on_many_points(desk: Desk) -> None:
-    gate = desk.hold(Lane.STEPS)
+def test_to_close_the_project_keeps_what_was_painted_on_many_points(desk: LabelSession) -> None:
+    gate = desk.hold(JobLane.STEPS)
     desk.paint(range(20, 2000), ROAD)
     desk.paint(range(500, 540), SIGN)
     desk.document.close()
@@ -233,7 +237,7 @@ def test_to_close_the_project_keeps_what_was_painted_on_many_points(desk: Desk) 
     assert not desk.labels.any()
 
 
-def test_labels_that_another_program_changed_are_not_taken_back(desk: Desk) -> None:
+def test_labels_that_another_program_changed_are_not_taken_back(desk: LabelSession) -> None:
     desk.paint(range(20, 2000), ROAD)
     desk.rest()
     path = column_path(desk.drive.folder, "label")
@@ -249,7 +253,7 @@ def test_labels_that_another_program_changed_are_not_taken_back(desk: Desk) -> N
 
 @pytest.mark.parametrize("is_undone", [False, True])
 def test_a_program_killed_before_the_column_took_its_place_lets_the_next_one_do_it(
-    desk: Desk, is_undone: bool
+    desk: LabelSession, is_undone: bool
 ) -> None:
     desk.paint(range(50), SIGN)
     before = desk.labels
@@ -279,7 +283,7 @@ def test_a_program_killed_before_the_column_took_its_place_lets_the_next_one_do_
     assert len(list((desk.folder / "label_steps").iterdir())) == 1
 
 
-def test_a_damaged_file_of_labels_is_told_and_nothing_is_taken_back(desk: Desk) -> None:
+def test_a_damaged_file_of_labels_is_told_and_nothing_is_taken_back(desk: LabelSession) -> None:
     desk.paint(range(20, 2000), ROAD)
     desk.rest()
     (parts,) = (desk.folder / "label_steps").rglob("parts.bin")
@@ -298,22 +302,22 @@ def test_a_run_leaves_points_to_who_painted_them_while_it_was_stored(
     scene = noisy_street(7, length_m=5.0)
     cloud = write_laz(scene.drive, tmp_path / "左.laz")
     way = write_trajectory_csv(scene.drive, tmp_path / "軌跡.csv")
-    desk = Desk(project_of(tmp_path / "p.zuka", ImportRequest((cloud,), (way,))), qtbot)
+    desk = LabelSession(project_of(tmp_path / "p.zuka", ImportRequest((cloud,), (way,))), qtbot)
     with closing(desk):
-        asked = desk.hold(Lane.ASKED)
+        asked = desk.hold(JobLane.ASKED)
         desk.document.start_run("noise", desk.drive.id, NoiseParameters(method="radius"))
         asked.set()
         desk.rest()
         first = desk.labels
         assert (first > 0).sum() > 10
-        gate = desk.hold(Lane.STEPS)
+        gate = desk.hold(JobLane.STEPS)
         desk.document.start_run("noise", desk.drive.id, NoiseParameters())
         noise = np.flatnonzero(first > 0)[:5]
         desk.paint(noise, SIGN)
         gate.set()
         desk.rest()
         assert (desk.labels[noise] == SIGN).all()
-        assert "points classified" in desk.told[-1]
+        assert "points classified" in desk.reported[-1]
         # Whatever came first, both steps are taken back one by one.
         for _ in range(2):
             assert desk.document.undo()

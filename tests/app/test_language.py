@@ -23,7 +23,7 @@ from processing.project.importing import ImportRequest
 from processing.text import Text
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from widgets.mouse_tools.mouse_tool import Hit
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 WAIT_MS = 60_000
 
@@ -71,7 +71,7 @@ def drive_of(parts: WindowParts) -> Drive:
 
 def hit_on(parts: WindowParts, point: int) -> Hit:
     x, y, z = drive_of(parts).xyz(np.array([point]))[0].tolist()
-    return Hit(Place((x, y, z), PointReference(drive_of(parts).id, point)))
+    return Hit(PickedPosition((x, y, z), PointReference(drive_of(parts).id, point)))
 
 
 def line_kind(parts: WindowParts):
@@ -115,12 +115,12 @@ def test_choosing_the_language_that_is_spoken_changes_nothing(
 
 def test_what_is_looked_at_is_looked_at_again(qtbot: QtBot, street: WindowParts) -> None:
     shared = street.document.shared
-    place = hit_on(street, 5).place
-    assert place is not None
-    shared.cursor.move_to(place)
+    position = hit_on(street, 5).position
+    assert position is not None
+    shared.cursor.move_to(position)
     street.image_view.show_one_to_one()
     street.image_view.zoom_by(3.0)
-    street.image_view.center_on(place)
+    street.image_view.center_on(position)
     street.scene_view.look_from_above()
     street.scene_view.set_shading(is_on=False)
     street.window.area.stand_side_by_side(beside=True)
@@ -133,7 +133,7 @@ def test_what_is_looked_at_is_looked_at_again(qtbot: QtBot, street: WindowParts)
     after = street.image_view.viewport
     assert (after.zoom, after.centre, after.extent) == (before.zoom, before.centre, before.extent)
     assert street.scene_view.camera == camera
-    assert shared.cursor.place == place
+    assert shared.cursor.position == position
     assert (shared.view_settings.drive_id, shared.view_settings.image_kind) == (drive, kind)
     assert street.window.area.is_beside
     assert street.window.actions_by_id["side-by-side"].isChecked()
@@ -171,8 +171,8 @@ def test_a_line_that_is_being_drawn_goes_on_in_the_new_views(
     street.toolbox.choose_kind(line_kind(street))
     tool = street.toolbox.name
     for point in (10, 400):
-        street.image_view.center_on(hit_on(street, point).place)
-        spot = street.image_view.position_of(hit_on(street, point).place).toPoint()
+        street.image_view.center_on(hit_on(street, point).position)
+        spot = street.image_view.position_of(hit_on(street, point).position).toPoint()
         qtbot.mouseClick(street.image_view, Qt.MouseButton.LeftButton, pos=spot)
     drawn = street.document.shared.sketch.drawing.vertices
     assert len(drawn) == 2
@@ -195,8 +195,8 @@ def positions(vertices: tuple[Vertex, ...]) -> list[tuple[float, float, float]]:
 def test_selection_and_undo_survive(qtbot: QtBot, street: WindowParts) -> None:
     street.toolbox.choose_kind(line_kind(street))
     for point in (10, 400):
-        street.image_view.center_on(hit_on(street, point).place)
-        spot = street.image_view.position_of(hit_on(street, point).place).toPoint()
+        street.image_view.center_on(hit_on(street, point).position)
+        spot = street.image_view.position_of(hit_on(street, point).position).toPoint()
         qtbot.mouseClick(street.image_view, Qt.MouseButton.LeftButton, pos=spot)
     qtbot.keyClick(street.image_view, Qt.Key.Key_Return)
     street.window.actions_by_id["select-all"].trigger()

@@ -43,12 +43,12 @@ def delivery(scene: NoisyStreet, tmp_path: Path) -> ImportRequest:
 
 def find_noise(document: Document, qtbot: QtBot, **parameters: float | str) -> Text:
     """Run the tool; gives what was told."""
-    told: list[Text] = []
-    document.told.connect(told.append)
+    reported: list[Text] = []
+    document.reported.connect(reported.append)
     (drive,) = document.drives()
-    with qtbot.waitSignal(document.told, timeout=WAIT_MS):
+    with qtbot.waitSignal(document.reported, timeout=WAIT_MS):
         document.start_run("noise", drive.id, NoiseParameters(**parameters))  # type: ignore[arg-type] - by name
-    return told[-1]
+    return reported[-1]
 
 
 def all_labels(drive: Drive) -> NDArray[np.uint8]:
@@ -67,12 +67,12 @@ def test_noise_is_a_layer_of_labels_that_one_undo_takes_back(
 ) -> None:
     (drive,) = street.drives()
     delivered = np.array(drive.columns["classification"])
-    told = find_noise(street, qtbot)
+    reported = find_noise(street, qtbot)
     labels = all_labels(drive)
     assert set(np.unique(labels)) == {0, 7, 18}
     is_noise = scene.noise > 0
     assert ((labels > 0) == is_noise)[50:].mean() > 0.99
-    assert told.en == f"Noise: {(labels > 0).sum():,} points classified"
+    assert reported.en == f"Noise: {(labels > 0).sum():,} points classified"
     # What was delivered as noise has that class already.
     np.testing.assert_array_equal(drive.columns["classification"], delivered)
     (run,) = street.runs()
@@ -92,11 +92,11 @@ def test_labels_by_hand_stay_and_those_of_an_earlier_run_are_taken_back(
     find_noise(street, qtbot, method="radius", neighbours=2000)
     by_radius = all_labels(drive)
     assert (by_radius[50:] > 0).all()
-    told = find_noise(street, qtbot)
+    reported = find_noise(street, qtbot)
     labels = all_labels(drive)
     assert (labels[noise] == SIGN).all()
     assert (labels > 0).mean() < 0.1
-    assert "taken back" in told.en
+    assert "taken back" in reported.en
     assert street.undo()
     np.testing.assert_array_equal(all_labels(drive), by_radius)
 
@@ -120,12 +120,12 @@ def test_points_painted_while_the_tool_runs_keep_what_was_painted(
     before = all_labels(drive)
     assert street.undo()
     noise = np.flatnonzero(before > 0)[:20]
-    told: list[Text] = []
-    street.told.connect(told.append)
+    reported: list[Text] = []
+    street.reported.connect(reported.append)
     street.start_run("noise", drive.id, NoiseParameters())
     # The job's result comes on this thread, so what is painted now is painted before it comes.
     paint(street, noise, SIGN)
-    qtbot.waitUntil(lambda: bool(told), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(reported), timeout=WAIT_MS)
     labels = all_labels(drive)
     assert (labels[noise] == SIGN).all()
     rest = np.setdiff1d(np.arange(drive.count), noise)

@@ -89,12 +89,12 @@ def test_the_help_of_every_command_is_shown(terminal: Terminal) -> None:
 def test_signs_of_our_own_sentences_read_on_where_they_are_lacking(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    told = {
+    reported = {
         encoding: Terminal(monkeypatch, encoding).run("simulate", "--help")[1]
         for encoding in ("utf-8", "cp932")
     }
-    assert "points/m² beside a vehicle" in told["utf-8"]
-    assert "points/m2 beside a vehicle" in told["cp932"]
+    assert "points/m² beside a vehicle" in reported["utf-8"]
+    assert "points/m2 beside a vehicle" in reported["cp932"]
 
 
 @pytest.mark.usefixtures("language")

@@ -32,7 +32,7 @@ from processing.project.change import Change
 from processing.project.feature import Feature, Status, Vertex
 from processing.text import Text
 from tests.widgets.builders import OpenMap
-from tests.widgets.panels.table_hand import menu_of
+from tests.widgets.panels.table_user import menu_of
 from widgets.panels.attribute_panel import AttributePanel
 from widgets.panels.candidate_card import CandidateCard
 from widgets.panels.feature_table import FeatureTable
@@ -85,8 +85,8 @@ def check_labels(widget: QWidget, *words: str) -> None:
         assert first.heightForWidth(5_000) < TALL_PX
 
 
-def tooltip_over(qtbot: QtBot, widget: QWidget, place: QPoint) -> QLabel:
-    event = QHelpEvent(QHelpEvent.Type.ToolTip, place, widget.mapToGlobal(place))
+def tooltip_over(qtbot: QtBot, widget: QWidget, position: QPoint) -> QLabel:
+    event = QHelpEvent(QHelpEvent.Type.ToolTip, position, widget.mapToGlobal(position))
     QApplication.sendEvent(widget, event)
     qtbot.waitUntil(lambda: bool(QToolTip.text()))
     (label,) = [
@@ -131,8 +131,8 @@ def open_map(harm: str) -> MapOfHarm:
 
 @pytest.fixture
 def feature(open_map: MapOfHarm, harm: str) -> Feature:
-    places = (Vertex((0.0, 0.0, 0.0)), Vertex((1.0, 0.0, 0.0)))
-    made = Feature("f", "curb", Geometry.LINE, places, {"note": harm, harm: harm})
+    positions = (Vertex((0.0, 0.0, 0.0)), Vertex((1.0, 0.0, 0.0)))
+    made = Feature("f", "curb", Geometry.LINE, positions, {"note": harm, harm: harm})
     made = replace(made, status=Status.CANDIDATE)
     open_map.apply(Text.same("d"), Change(added=(made,)))
     return made
@@ -169,8 +169,8 @@ def test_any_tooltip_shows_its_words(qtbot: QtBot, harm: str) -> None:
     lists.addItem("one")
     lists.item(0).setToolTip(harm)
     lists.show()
-    place = lists.visualItemRect(lists.item(0)).center()
-    check_tooltip(tooltip_over(qtbot, lists.viewport(), place), harm)
+    position = lists.visualItemRect(lists.item(0)).center()
+    check_tooltip(tooltip_over(qtbot, lists.viewport(), position), harm)
     lists.setToolTip(f"1 {harm}")
     check_tooltip(tooltip_over(qtbot, lists, QPoint(2, 2)), f"1 {harm}")
 
@@ -264,8 +264,8 @@ def test_the_window_shows_names_of_projects_and_steps(
     document = parts.document
     with qtbot.waitSignal(document.shared.map_changes.drives_changed, timeout=30_000):
         document.create(tmp_path / f"{HARMLESS}.zuka", "EPSG:6677")
-    places = (Vertex((0.0, 0.0, 0.0)), Vertex((1.0, 0.0, 0.0)))
-    drawn = Feature("f", "curb", Geometry.LINE, places, {})
+    positions = (Vertex((0.0, 0.0, 0.0)), Vertex((1.0, 0.0, 0.0)))
+    drawn = Feature("f", "curb", Geometry.LINE, positions, {})
     document.undo_stack.push(Text.same(HARMLESS), Change(added=(drawn,)))
     check_labels(parts.window)
     assert HARMLESS in parts.window.windowTitle()

@@ -73,8 +73,8 @@ def test_columns_are_named_on_the_command_line(tmp_path: Path, capsys) -> None:
     words = ["--columns", "-, y,x,z"]
     command, arguments = read_arguments(["info", str(path), *words])
     command(arguments)
-    told = capsys.readouterr().out
-    assert "lowest: 30.000, 20.000, 40.000" in told
+    reported = capsys.readouterr().out
+    assert "lowest: 30.000, 20.000, 40.000" in reported
     _, arguments = read_arguments(["import", "p.zuka", str(path), *words])
     assert request_of(arguments).columns == ("-", "y", "x", "z")
 
@@ -106,9 +106,9 @@ def test_a_drop_with_an_unclear_header_is_asked_about_and_read_as_answered(
     for box, column in zip(boxes, ("z", "-", "y", "x"), strict=True):
         box.setCurrentIndex(box.findData(column))
     assert accept.isEnabled()
-    with qtbot.waitSignal(window.document.told, timeout=60_000) as told:
+    with qtbot.waitSignal(window.document.reported, timeout=60_000) as reported:
         accept.click()
-    assert "points.txt: columns taken as z - y x" in told.args[0].en
+    assert "points.txt: columns taken as z - y x" in reported.args[0].en
     (drive,) = window.document.drives()
     order = np.argsort(drive.xyz(np.arange(drive.count))[:, 2])
     found = drive.xyz(np.arange(drive.count))[order]

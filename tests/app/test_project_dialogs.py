@@ -18,8 +18,8 @@ from PySide6.QtWidgets import (
 from pytestqt.qtbot import QtBot
 
 from app.application import build_window, make_application
-from app.class_judging import ClassJudging
 from app.settings import Settings
+from app.truth_evaluations import TruthEvaluations
 from app.window_parts import WindowParts
 from widgets.dialogs.export_map import ExportForm
 from widgets.dialogs.import_drive import ImportForm
@@ -165,7 +165,7 @@ def test_a_question_about_a_project_is_answered_with_no_when_it_closes(
     qtbot: QtBot, parts: WindowParts
 ) -> None:
     removed: list[str] = []
-    parts.of(ClassJudging).remove_truth = removed.append
+    parts.of(TruthEvaluations).remove_truth = removed.append
     parts.class_panel.truths.removal_requested.emit("one")
     (box,) = shown(parts, QMessageBox)
     assert isinstance(box, QMessageBox)

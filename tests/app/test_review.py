@@ -20,22 +20,22 @@ from processing.text import Text
 from processing.tools.tool import CandidateResult
 from tests.processing.project.candidates import found as candidates_of
 from tests.processing.project.candidates import found_lines, line
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 LABEL = Text("Edit", "編集")
 COUNT = 50
 
 
 @dataclass
-class Desk:
+class ReviewSession:
     """An operator's desk: an open project, its review, and what was said and shown."""
 
     folder: Path
     document: Document
     review: Review
     now_s: list[float]
-    shown: list[tuple[str, Place]] = field(default_factory=list)
-    told: list[str] = field(default_factory=list)
+    shown: list[tuple[str, PickedPosition]] = field(default_factory=list)
+    reported: list[str] = field(default_factory=list)
 
     def store(self, found: FoundFeatures) -> str:
         assert self.document.store_run(found)
@@ -55,14 +55,14 @@ class Desk:
 
 
 @pytest.fixture
-def desk(qapp: QApplication, tmp_path: Path) -> Iterator[Desk]:
+def desk(qapp: QApplication, tmp_path: Path) -> Iterator[ReviewSession]:
     jobs = JobQueue()
     document = Document(jobs)
     now_s = [100.0]
     review = Review(document, clock=lambda: now_s[0])
-    made = Desk(tmp_path / "p.zuka", document, review, now_s)
-    review.shown.connect(lambda feature, place: made.shown.append((feature.id, place)))
-    document.told.connect(lambda text: made.told.append(text.en))
+    made = ReviewSession(tmp_path / "p.zuka", document, review, now_s)
+    review.shown.connect(lambda feature, position: made.shown.append((feature.id, position)))
+    document.reported.connect(lambda text: made.reported.append(text.en))
     assert document.create(made.folder, "EPSG:6677")
     yield made
     jobs.close()
@@ -71,7 +71,7 @@ def desk(qapp: QApplication, tmp_path: Path) -> Iterator[Desk]:
 
 
 @pytest.fixture
-def found(desk: Desk) -> FoundFeatures:
+def found(desk: ReviewSession) -> FoundFeatures:
     """Fifty candidates on the map, under review, the least certain one shown."""
     made = found_lines(COUNT)
     desk.store(made)
@@ -84,7 +84,7 @@ def by_confidence(found: FoundFeatures) -> list[str]:
 
 
 def test_fifty_candidates_are_judged_from_the_least_certain_to_the_last(
-    desk: Desk, found: FoundFeatures
+    desk: ReviewSession, found: FoundFeatures
 ) -> None:
     for number in range(COUNT):
         desk.take(1.5)
@@ -95,26 +95,30 @@ def test_fifty_candidates_are_judged_from_the_least_certain_to_the_last(
     assert progress.state.decisions == COUNT
     assert progress.state.total_s == 75.0
     assert desk.review.current is None
-    assert desk.told[-1] == "All candidates of the review are decided."
+    assert desk.reported[-1] == "All candidates of the review are decided."
     assert not desk.review.accept()
 
 
-def test_what_is_shown_is_chosen_and_under_the_cursor(desk: Desk, found: FoundFeatures) -> None:
-    coming: list[tuple[Place, ...]] = []
+def test_what_is_shown_is_chosen_and_under_the_cursor(
+    desk: ReviewSession, found: FoundFeatures
+) -> None:
+    coming: list[tuple[PickedPosition, ...]] = []
     desk.review.coming.connect(coming.append)
     desk.review.accept()
     feature = desk.current()
-    _, place = desk.shown[-1]
-    assert desk.document.shared.cursor.place == place
+    _, position = desk.shown[-1]
+    assert desk.document.shared.cursor.position == position
     assert desk.document.shared.selection.features == {feature.id}
-    assert place.xyz == feature.vertices[1].xyz
-    assert place.measured == feature.vertices[1].measured
+    assert position.xyz == feature.vertices[1].xyz
+    assert position.measured == feature.vertices[1].measured
     desk.review.accept()
     assert desk.shown[-1][1] == coming[-2][0]
     assert len(coming[-1]) == 3
 
 
-def test_undo_brings_the_queue_back_to_what_was_judged(desk: Desk, found: FoundFeatures) -> None:
+def test_undo_brings_the_queue_back_to_what_was_judged(
+    desk: ReviewSession, found: FoundFeatures
+) -> None:
     first, second, third = by_confidence(found)[:3]
     desk.review.accept()
     desk.review.reject()
@@ -133,7 +137,7 @@ def test_undo_brings_the_queue_back_to_what_was_judged(desk: Desk, found: FoundF
 
 
 def test_all_from_a_confidence_up_are_accepted_in_one_step(
-    desk: Desk, found: FoundFeatures
+    desk: ReviewSession, found: FoundFeatures
 ) -> None:
     sure = {one.id for one in found.change.added if one.provenance.confidence >= 0.9}
     assert len(sure) == desk.review.count_from(0.9) == 5
@@ -148,7 +152,7 @@ def test_all_from_a_confidence_up_are_accepted_in_one_step(
 
 
 def test_next_leaves_a_candidate_for_later_and_back_returns_to_it(
-    desk: Desk, found: FoundFeatures
+    desk: ReviewSession, found: FoundFeatures
 ) -> None:
     first, second, third = by_confidence(found)[:3]
     desk.review.next()
@@ -167,7 +171,9 @@ def test_next_leaves_a_candidate_for_later_and_back_returns_to_it(
     assert desk.current().id == first
 
 
-def test_those_left_for_later_come_again_at_the_end(desk: Desk, found: FoundFeatures) -> None:
+def test_those_left_for_later_come_again_at_the_end(
+    desk: ReviewSession, found: FoundFeatures
+) -> None:
     first = desk.current().id
     desk.review.next()
     for _ in range(COUNT - 1):
@@ -177,7 +183,9 @@ def test_those_left_for_later_come_again_at_the_end(desk: Desk, found: FoundFeat
     assert desk.current().id == first
 
 
-def test_agreeing_again_to_what_was_accepted_only_goes_on(desk: Desk, found: FoundFeatures) -> None:
+def test_agreeing_again_to_what_was_accepted_only_goes_on(
+    desk: ReviewSession, found: FoundFeatures
+) -> None:
     desk.review.accept()
     desk.review.back()
     label = desk.document.undo_stack.undo_label
@@ -188,7 +196,7 @@ def test_agreeing_again_to_what_was_accepted_only_goes_on(desk: Desk, found: Fou
 
 
 def test_a_review_goes_on_after_a_restart_where_it_was_left(
-    desk: Desk, found: FoundFeatures
+    desk: ReviewSession, found: FoundFeatures
 ) -> None:
     desk.review.put_in_order(ReviewOrder.STREET)
     for _ in range(20):
@@ -206,7 +214,9 @@ def test_a_review_goes_on_after_a_restart_where_it_was_left(
     assert [id_ for id_, _ in desk.shown] == [left]
 
 
-def test_along_the_street_is_the_order_of_measuring(desk: Desk, found: FoundFeatures) -> None:
+def test_along_the_street_is_the_order_of_measuring(
+    desk: ReviewSession, found: FoundFeatures
+) -> None:
     with_drive_gone = [one.id for one in found.change.added]
     desk.review.put_in_order(ReviewOrder.STREET)
     seen = []
@@ -217,7 +227,7 @@ def test_along_the_street_is_the_order_of_measuring(desk: Desk, found: FoundFeat
 
 
 def test_a_candidate_that_is_corrected_stays_until_it_is_judged(
-    desk: Desk, found: FoundFeatures
+    desk: ReviewSession, found: FoundFeatures
 ) -> None:
     wished: list[Feature] = []
     desk.review.edit_requested.connect(wished.append)
@@ -231,7 +241,9 @@ def test_a_candidate_that_is_corrected_stays_until_it_is_judged(
     assert desk.document.feature(before.id) == replace(after, status=Status.ACCEPTED)
 
 
-def test_an_edit_elsewhere_does_not_move_the_queue(desk: Desk, found: FoundFeatures) -> None:
+def test_an_edit_elsewhere_does_not_move_the_queue(
+    desk: ReviewSession, found: FoundFeatures
+) -> None:
     desk.review.accept()
     desk.review.back()
     decided = desk.current().id
@@ -243,7 +255,7 @@ def test_an_edit_elsewhere_does_not_move_the_queue(desk: Desk, found: FoundFeatu
 
 
 def test_a_candidate_judged_in_the_attribute_panel_is_done_with(
-    desk: Desk, found: FoundFeatures
+    desk: ReviewSession, found: FoundFeatures
 ) -> None:
     feature = desk.current()
     accepted = replace(feature, status=Status.ACCEPTED)
@@ -253,19 +265,19 @@ def test_a_candidate_judged_in_the_attribute_panel_is_done_with(
 
 
 def test_a_run_taken_back_while_its_queue_is_open_empties_it_and_says_so(
-    desk: Desk, found: FoundFeatures
+    desk: ReviewSession, found: FoundFeatures
 ) -> None:
     desk.document.undo()
     assert desk.review.current is None
     assert desk.review.progress.total == 0
-    assert "50 features of the review are gone; 0 candidates are left." in desk.told
+    assert "50 features of the review are gone; 0 candidates are left." in desk.reported
     assert not desk.review.reject()
     desk.document.redo()
     assert desk.current().id == by_confidence(found)[0]
     assert desk.review.progress.left == COUNT
 
 
-def test_of_two_runs_one_can_be_deleted_and_the_other_goes_on(desk: Desk) -> None:
+def test_of_two_runs_one_can_be_deleted_and_the_other_goes_on(desk: ReviewSession) -> None:
     first, second = found_lines(10), found_lines(10, seed=2, drive="right")
     runs = (desk.store(first), desk.store(second))
     desk.review.open(runs, ReviewOrder.CONFIDENCE)
@@ -279,16 +291,18 @@ def test_of_two_runs_one_can_be_deleted_and_the_other_goes_on(desk: Desk) -> Non
     desk.document.apply(LABEL, Change(removed=gone))
     assert desk.current().provenance.run == runs[1] or desk.current() not in gone
     assert desk.review.progress.left == 20 - 1 - len(gone)
-    assert desk.told[-1].startswith(f"{len(gone)} features of the review are gone")
+    assert desk.reported[-1].startswith(f"{len(gone)} features of the review are gone")
     while desk.review.current is not None:
         desk.review.accept()
     assert desk.review.progress.left == 0
 
 
 def test_the_queue_goes_on_with_what_a_second_run_put_in_the_place_of_the_undecided(
-    desk: Desk,
+    desk: ReviewSession,
 ) -> None:
-    apart = CandidateResult(tuple(line(3 * place, place / COUNT) for place in range(COUNT)))
+    apart = CandidateResult(
+        tuple(line(3 * position, position / COUNT) for position in range(COUNT))
+    )
     first, again = candidates_of(apart), candidates_of(apart)
     desk.store(first)
     desk.review.open((first.run.id,), ReviewOrder.CONFIDENCE)
@@ -298,7 +312,7 @@ def test_the_queue_goes_on_with_what_a_second_run_put_in_the_place_of_the_undeci
     progress = desk.review.progress
     assert (progress.accepted, progress.rejected, progress.left) == (1, 1, COUNT - 2)
     assert desk.current().provenance.run == again.run.id
-    assert desk.told[-1] == (
+    assert desk.reported[-1] == (
         "Curbs: 48 candidates; 48 earlier undecided ones were replaced, 2 places had been decided"
     )
     desk.document.undo()
@@ -310,7 +324,7 @@ def test_the_queue_goes_on_with_what_a_second_run_put_in_the_place_of_the_undeci
 
 
 def test_a_queue_of_a_second_run_goes_back_to_the_first_by_undo(
-    desk: Desk, found: FoundFeatures
+    desk: ReviewSession, found: FoundFeatures
 ) -> None:
     again = found_lines(COUNT, seed=2)
     desk.review.close()
@@ -321,7 +335,9 @@ def test_a_queue_of_a_second_run_goes_back_to_the_first_by_undo(
     assert desk.review.progress.left == COUNT
 
 
-def test_the_pieces_of_a_cut_candidate_are_judged_next(desk: Desk, found: FoundFeatures) -> None:
+def test_the_pieces_of_a_cut_candidate_are_judged_next(
+    desk: ReviewSession, found: FoundFeatures
+) -> None:
     whole = desk.current()
     pieces = (
         replace(whole, id="a", vertices=whole.vertices[:2]),
@@ -330,19 +346,19 @@ def test_the_pieces_of_a_cut_candidate_are_judged_next(desk: Desk, found: FoundF
     desk.document.apply(LABEL, Change(added=pieces, removed=(whole,)))
     assert desk.current().id in {"a", "b"}
     assert desk.review.progress.total == COUNT + 1
-    assert not any("gone" in words for words in desk.told)
+    assert not any("gone" in words for words in desk.reported)
 
 
 def test_a_candidate_of_a_drive_that_is_gone_is_shown_at_its_coordinates(
-    desk: Desk, found: FoundFeatures
+    desk: ReviewSession, found: FoundFeatures
 ) -> None:
     assert desk.document.drives() == ()
-    _, place = desk.shown[-1]
-    assert place.xyz == desk.current().vertices[1].xyz
+    _, position = desk.shown[-1]
+    assert position.xyz == desk.current().vertices[1].xyz
 
 
 def test_a_review_that_is_ended_judges_nothing_and_stays_ended(
-    desk: Desk, found: FoundFeatures
+    desk: ReviewSession, found: FoundFeatures
 ) -> None:
     desk.review.close()
     assert not desk.review.is_open
@@ -354,7 +370,7 @@ def test_a_review_that_is_ended_judges_nothing_and_stays_ended(
 
 
 def test_a_damaged_state_is_told_once_and_the_project_opens(
-    desk: Desk, found: FoundFeatures
+    desk: ReviewSession, found: FoundFeatures
 ) -> None:
     project = desk.document.project
     assert project is not None
@@ -369,7 +385,7 @@ def test_a_damaged_state_is_told_once_and_the_project_opens(
     assert desk.review.progress.left == COUNT
 
 
-def test_nothing_is_under_review_while_no_project_is_open(desk: Desk) -> None:
+def test_nothing_is_under_review_while_no_project_is_open(desk: ReviewSession) -> None:
     desk.document.close()
     desk.review.open(("run",), ReviewOrder.CONFIDENCE)
     assert not desk.review.is_open
@@ -379,9 +395,9 @@ def test_nothing_is_under_review_while_no_project_is_open(desk: Desk) -> None:
     assert desk.review.current is None
 
 
-def test_a_run_that_found_nothing_is_remembered_and_told(desk: Desk) -> None:
+def test_a_run_that_found_nothing_is_remembered_and_told(desk: ReviewSession) -> None:
     nothing = found_lines(0)
     assert not desk.document.store_run(nothing)
-    assert desk.told[-1] == "Curbs: nothing found"
+    assert desk.reported[-1] == "Curbs: nothing found"
     assert [run.id for run in desk.document.runs()] == [nothing.run.id]
     assert desk.document.undo_stack.undo_label is None

@@ -113,8 +113,8 @@ def test_a_run_in_the_background_puts_its_candidates_on_the_map_in_one_step(
     street: Document, qtbot: QtBot
 ) -> None:
     (drive,) = street.drives()
-    told: list[Text] = []
-    street.told.connect(told.append)
+    reported: list[Text] = []
+    street.reported.connect(reported.append)
     with qtbot.waitSignal(street.shared.map_changes.features_changed, timeout=WAIT_MS):
         street.start_run("finder", drive.id, NormalsParameters(radius_m=0.4))
     features = list(street.features())
@@ -129,7 +129,7 @@ def test_a_run_in_the_background_puts_its_candidates_on_the_map_in_one_step(
     assert street.undo_stack.undo_label == Text(
         f"Curbs: {count} candidates", f"縁石: 候補{count}件"
     )
-    assert told[-1] == street.undo_stack.undo_label
+    assert reported[-1] == street.undo_stack.undo_label
     street.undo()
     assert not list(street.features())
 
@@ -179,9 +179,9 @@ def test_the_command_line_writes_candidates_of_delivered_files(
         set=["radius_m=0.4"],
     )
     assert command(given) == 0
-    told = json.loads((tmp_path / "結果.geojson").read_text("utf-8"))
-    assert told["crs"]["properties"]["name"].endswith("6677")
-    properties = [one["properties"] for one in told["features"]]
+    reported = json.loads((tmp_path / "結果.geojson").read_text("utf-8"))
+    assert reported["crs"]["properties"]["name"].endswith("6677")
+    properties = [one["properties"] for one in reported["features"]]
     assert {one["status"] for one in properties} == {"candidate"}
     assert {one["kind"] for one in properties} == {"sign"}
     assert {one["size_m"] for one in properties} == {0.4}
@@ -252,7 +252,7 @@ def test_the_command_line_joins_all_heads_and_draws_what_follows_only_in_drawing
     for output in ("a.geojson", "a.dxf"):
         assert command(arguments(tmp_path, list(two_heads.inputs), output, **given)) == 0
     assert "Only one line was seen." in told_lines.getvalue()
-    told = json.loads((tmp_path / "a.geojson").read_text("utf-8"))
-    assert [one["properties"]["kind"] for one in told["features"]] == ["curb_upper"]
+    reported = json.loads((tmp_path / "a.geojson").read_text("utf-8"))
+    assert [one["properties"]["kind"] for one in reported["features"]] == ["curb_upper"]
     drawing = ezdxf.readfile(tmp_path / "a.dxf").modelspace()
     assert len(drawing.query("POLYLINE LWPOLYLINE")) == 2

@@ -18,7 +18,7 @@ RESULT = np.array([0, 0, 0, 0, 1, 7, 7, 18, 18, 0], np.uint8)
 KINDS = np.array([1, 1, 2, 2, 0, 0, -1, -1, -1, -1], np.int8)
 
 
-def places(count: int = 10) -> NDArray[np.int64]:
+def positions(count: int = 10) -> NDArray[np.int64]:
     random = np.random.default_rng(3)
     return random.integers(0, 40_000, (count, 3))
 
@@ -38,23 +38,23 @@ def write_las(
 def test_noise_is_scored_by_both_classes_with_what_doing_nothing_would_give(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    result = write_las(tmp_path / "結果.laz", places(), RESULT)
+    result = write_las(tmp_path / "結果.laz", positions(), RESULT)
     np.savez(tmp_path / "truth.npz", code=TRUTH, kind=KINDS, ground_z=np.zeros(10, np.float32))
-    told = scored(capsys, "noise", result, tmp_path / "truth.npz")
-    assert told["points"] == 10
-    assert told["paired_by"] == "order"
-    kept, nothing, noise = told["classes"].values()
-    assert list(told["classes"]) == ["kept", "kept_if_nothing_is_removed", "noise"]
+    reported = scored(capsys, "noise", result, tmp_path / "truth.npz")
+    assert reported["points"] == 10
+    assert reported["paired_by"] == "order"
+    kept, nothing, noise = reported["classes"].values()
+    assert list(reported["classes"]) == ["kept", "kept_if_nothing_is_removed", "noise"]
     assert (kept["tp"], kept["fp"], kept["fn"], kept["tn"]) == (5, 1, 1, 3)
     assert kept["precision"] == kept["recall"] == kept["f"] == pytest.approx(5 / 6)
     assert (nothing["precision"], nothing["recall"]) == (0.6, 1.0)
     assert (noise["precision"], noise["recall"], noise["f"]) == (0.75, 0.75, 0.75)
-    assert told["shares"]["noise_share"] == {"points": 4, "of": 10, "share": 0.4}
-    assert told["shares"]["noise_left"]["points"] == 1
-    assert told["shares"]["true_lost"] == {"points": 1, "of": 6, "share": pytest.approx(1 / 6)}
+    assert reported["shares"]["noise_share"] == {"points": 4, "of": 10, "share": 0.4}
+    assert reported["shares"]["noise_left"]["points"] == 1
+    assert reported["shares"]["true_lost"] == {"points": 1, "of": 6, "share": pytest.approx(1 / 6)}
     # Three noise points were found, and one of them lies below although it was called 18.
-    assert told["shares"]["right_code"] == {"points": 2, "of": 3, "share": pytest.approx(2 / 3)}
-    shares = {kind: one["share"] for kind, one in told["kinds"]["kind"].items()}
+    assert reported["shares"]["right_code"] == {"points": 2, "of": 3, "share": pytest.approx(2 / 3)}
+    shares = {kind: one["share"] for kind, one in reported["kinds"]["kind"].items()}
     assert shares == {"-1": 0.75, "0": 0.5, "1": 1.0, "2": 1.0}
 
 
@@ -63,29 +63,29 @@ def test_ground_is_scored_with_both_types_of_error(
 ) -> None:
     truth = np.array([2, 2, 2, 2, 2, 2, 1, 1, 1, 7], np.uint8)
     codes = np.array([2, 2, 2, 2, 1, 18, 1, 1, 2, 7], np.uint8)
-    result = write_las(tmp_path / "result.las", places(), codes)
+    result = write_las(tmp_path / "result.las", positions(), codes)
     np.save(tmp_path / "labels_after.npy", truth)
     np.save(tmp_path / "kinds_after.npy", np.array([0, 0, 0, 0, 0, 0, 1, 1, 3, -2], np.int8))
-    told = scored(capsys, "ground", result, tmp_path / "labels_after.npy")
-    removed, ground = told["classes"]["removed"], told["classes"]["ground"]
+    reported = scored(capsys, "ground", result, tmp_path / "labels_after.npy")
+    removed, ground = reported["classes"]["removed"], reported["classes"]["ground"]
     assert (removed["precision"], removed["recall"]) == (0.6, 0.75)
     assert removed["f"] == pytest.approx(2 * 0.6 * 0.75 / 1.35)
     assert (ground["tp"], ground["fp"], ground["fn"], ground["tn"]) == (4, 1, 2, 3)
-    assert told["shares"]["type_1"]["share"] == pytest.approx(2 / 6)
-    assert told["shares"]["type_2"]["share"] == pytest.approx(1 / 4)
-    assert told["shares"]["total_error"] == {"points": 3, "of": 10, "share": 0.3}
-    assert told["figures"]["kappa"] == pytest.approx((0.7 - 0.5) / 0.5)
-    assert told["kinds"]["kind"]["3"] == {"points": 0, "of": 1, "share": 0.0}
+    assert reported["shares"]["type_1"]["share"] == pytest.approx(2 / 6)
+    assert reported["shares"]["type_2"]["share"] == pytest.approx(1 / 4)
+    assert reported["shares"]["total_error"] == {"points": 3, "of": 10, "share": 0.3}
+    assert reported["figures"]["kappa"] == pytest.approx((0.7 - 0.5) / 0.5)
+    assert reported["kinds"]["kind"]["3"] == {"points": 0, "of": 1, "share": 0.0}
 
 
 def test_a_perfect_result_scores_one_and_undefined_figures_are_null(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    truth = write_las(tmp_path / "truth.laz", places(), np.full(10, 2, np.uint8))
-    told = scored(capsys, "ground", truth, truth)
-    assert told["classes"]["ground"]["f"] == 1.0
-    assert told["classes"]["removed"]["f"] is None
-    assert told["figures"]["kappa"] is None
+    truth = write_las(tmp_path / "truth.laz", positions(), np.full(10, 2, np.uint8))
+    reported = scored(capsys, "ground", truth, truth)
+    assert reported["classes"]["ground"]["f"] == 1.0
+    assert reported["classes"]["removed"]["f"] is None
+    assert reported["figures"]["kappa"] is None
     assert run_in_terminal(["score", "ground", str(truth), str(truth)]) == DONE
     assert "–" in capsys.readouterr().out
 
@@ -95,25 +95,25 @@ def test_all_classes_are_scored_each_against_the_others_and_by_their_mean(
 ) -> None:
     truth = np.array([2, 2, 2, 2, 11, 11, 65, 65, 0, 18], np.uint8)
     codes = np.array([2, 2, 2, 11, 11, 11, 65, 1, 5, 18], np.uint8)
-    result = write_las(tmp_path / "result.las", places(), codes)
+    result = write_las(tmp_path / "result.las", positions(), codes)
     np.save(tmp_path / "left.labels.npy", truth)
-    told = scored(capsys, "classify", result, tmp_path / "left.labels.npy")
-    assert told["points"] == 9
-    f = {code: one["f"] for code, one in told["classes"].items()}
+    reported = scored(capsys, "classify", result, tmp_path / "left.labels.npy")
+    assert reported["points"] == 9
+    f = {code: one["f"] for code, one in reported["classes"].items()}
     assert f == pytest.approx(
         {"1": 0, "2": 6 / 7, "11": 0.8, "18": 1, "65": 2 / 3, "ground_and_road": 1}
     )
-    assert told["figures"]["mean_f"] == pytest.approx((6 / 7 + 0.8 + 2 / 3) / 3)
-    assert told["figures"]["mean_f_ground_joined"] == pytest.approx((1 + 2 / 3) / 2)
-    assert told["shares"]["right"]["points"] == 7
-    truth_of_points = write_las(tmp_path / "truth.laz", places(), truth)
-    assert scored(capsys, "classify", result, truth_of_points)["figures"] == told["figures"]
+    assert reported["figures"]["mean_f"] == pytest.approx((6 / 7 + 0.8 + 2 / 3) / 3)
+    assert reported["figures"]["mean_f_ground_joined"] == pytest.approx((1 + 2 / 3) / 2)
+    assert reported["shares"]["right"]["points"] == 7
+    truth_of_points = write_las(tmp_path / "truth.laz", positions(), truth)
+    assert scored(capsys, "classify", result, truth_of_points)["figures"] == reported["figures"]
 
 
 def test_text_of_the_isprs_test_has_ground_0_and_object_1(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    integers = places() // 10
+    integers = positions() // 10
     written = integers * 0.01 + np.array(OFFSET)
     is_object = np.array([0, 1] * 5)
     lines = [
@@ -123,16 +123,16 @@ def test_text_of_the_isprs_test_has_ground_0_and_object_1(
     (tmp_path / "samp.txt").write_text("\n".join(lines) + "\n", "ascii")
     codes = np.where(is_object == 1, 1, 2).astype(np.uint8)
     result = write_las(tmp_path / "result.laz", integers, codes, scale=0.01)
-    told = scored(capsys, "ground", result, tmp_path / "samp.txt")
-    assert told["paired_by"] == "order"
-    assert told["classes"]["removed"]["f"] == told["classes"]["ground"]["f"] == 1.0
-    assert told["classes"]["removed"]["tp"] == 5
+    reported = scored(capsys, "ground", result, tmp_path / "samp.txt")
+    assert reported["paired_by"] == "order"
+    assert reported["classes"]["removed"]["f"] == reported["classes"]["ground"]["f"] == 1.0
+    assert reported["classes"]["removed"]["tp"] == 5
 
 
 def test_points_in_another_order_are_paired_by_their_places_duplicates_one_to_one(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    integers = places(500)
+    integers = positions(500)
     integers[100:150] = integers[:50]
     integers[150:160] = integers[:10]
     codes = np.random.default_rng(1).choice(np.array([1, 2], np.uint8), 500)
@@ -141,16 +141,16 @@ def test_points_in_another_order_are_paired_by_their_places_duplicates_one_to_on
     truth = write_las(tmp_path / "truth.laz", integers, codes)
     order = np.random.default_rng(2).permutation(500)
     result = write_las(tmp_path / "result.las", integers[order], codes[order])
-    told = scored(capsys, "ground", result, truth)
-    assert told["paired_by"] == "place"
-    assert told["points"] == 500
-    assert told["classes"]["removed"]["f"] == told["classes"]["ground"]["f"] == 1.0
+    reported = scored(capsys, "ground", result, truth)
+    assert reported["paired_by"] == "place"
+    assert reported["points"] == 500
+    assert reported["classes"]["removed"]["f"] == reported["classes"]["ground"]["f"] == 1.0
 
 
 def test_a_result_that_lacks_points_is_refused_with_their_number(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    integers, codes = places(100), np.full(100, 2, np.uint8)
+    integers, codes = positions(100), np.full(100, 2, np.uint8)
     truth = write_las(tmp_path / "truth.laz", integers, codes)
     result = write_las(tmp_path / "result.laz", integers[:90], codes[:90])
     line = refused(capsys, "ground", result, truth)
@@ -176,7 +176,7 @@ def test_arrays_that_are_no_codes_are_refused(
     array: NDArray[np.generic],
     says: str,
 ) -> None:
-    result = write_las(tmp_path / "result.laz", places(), RESULT)
+    result = write_las(tmp_path / "result.laz", positions(), RESULT)
     np.save(tmp_path / name, array)
     assert says in refused(capsys, "noise", result, tmp_path / name)
 
@@ -184,7 +184,7 @@ def test_arrays_that_are_no_codes_are_refused(
 def test_a_truth_that_is_missing_cut_off_or_of_another_tool_is_refused(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    result = write_las(tmp_path / "result.laz", places(), RESULT)
+    result = write_las(tmp_path / "result.laz", positions(), RESULT)
     assert "no such file" in refused(capsys, "noise", result, tmp_path / "none.npz")
     np.savez(tmp_path / "truth.npz", ground=np.zeros(10, bool))
     assert "no array of true classes" in refused(capsys, "noise", result, tmp_path / "truth.npz")
@@ -204,7 +204,7 @@ def test_the_table_lines_up_in_japanese_too(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("ZUKA_LANGUAGE", "ja")
-    result = write_las(tmp_path / "result.laz", places(), RESULT)
+    result = write_las(tmp_path / "result.laz", positions(), RESULT)
     np.savez(tmp_path / "truth.npz", signal=TRUTH == 0)
     assert run_in_terminal(["score", "noise", str(result), str(tmp_path / "truth.npz")]) == DONE
     lines = capsys.readouterr().out.splitlines()

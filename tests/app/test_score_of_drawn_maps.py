@@ -54,8 +54,8 @@ def project(tmp_path: Path) -> Path:
         for tool, file in (("curbs", found), ("gutters", map_of(GUTTER.features[2:]))):
             now = datetime.now(UTC)
             run = Run(f"run-{tool}", tool, 1, {}, (), now, now, Text.same(tool))
-            told = Provenance(tool, 1, {}, 0.8, run.id)
-            change = Change(added=tuple(drawn(file, tool, told)))
+            reported = Provenance(tool, 1, {}, 0.8, run.id)
+            change = Change(added=tuple(drawn(file, tool, reported)))
             made.features.apply(run.summary, change, run=run)
         rejected = next(one for one in made.features.all() if one.status is Status.CANDIDATE)
         turned_down = Replacement(rejected, replace(rejected, status=Status.REJECTED))

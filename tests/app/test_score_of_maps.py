@@ -23,10 +23,10 @@ def write_map(path: Path, features: Any = None, crs: str | None = "EPSG:6677") -
     members = [
         {
             "type": "Feature",
-            "geometry": {"type": kind, "coordinates": shifted(places)},
+            "geometry": {"type": kind, "coordinates": shifted(positions)},
             "properties": facts,
         }
-        for kind, places, facts in (TREES if features is None else features)
+        for kind, positions, facts in (TREES if features is None else features)
     ]
     name = crs and f"urn:ogc:def:crs:EPSG::{crs.removeprefix('EPSG:')}"
     member = name and {"type": "name", "properties": {"name": name}}
@@ -35,10 +35,10 @@ def write_map(path: Path, features: Any = None, crs: str | None = "EPSG:6677") -
     return path
 
 
-def shifted(places: Any) -> Any:
-    if isinstance(places[0], list):
-        return [shifted(one) for one in places]
-    return [one + float(origin) for one, origin in zip(places, ORIGIN, strict=True)]
+def shifted(positions: Any) -> Any:
+    if isinstance(positions[0], list):
+        return [shifted(one) for one in positions]
+    return [one + float(origin) for one, origin in zip(positions, ORIGIN, strict=True)]
 
 
 def test_the_json_has_every_count_error_and_limit(
@@ -47,20 +47,20 @@ def test_the_json_has_every_count_error_and_limit(
     truth = write_map(tmp_path / "truth.geojson")
     thick = [("Point", [x + 0.3, y, z], {**facts, "dbh_m": 0.14}) for _, (x, y, z), facts in TREES]
     result = write_map(tmp_path / "結果.geojson", thick[:-1])
-    told = scored(capsys, "trees", result, truth)
-    assert (told["tool"], told["result"]) == ("trees", str(result))
-    trees = told["classes"]["trees"]
+    reported = scored(capsys, "trees", result, truth)
+    assert (reported["tool"], reported["result"]) == ("trees", str(result))
+    trees = reported["classes"]["trees"]
     assert (trees["tp"], trees["fp"], trees["fn"], trees["tn"]) == (5, 0, 1, None)
     assert (trees["precision"], trees["recall"]) == (1.0, pytest.approx(5 / 6))
-    assert told["errors"]["dbh"]["mean_abs"] == pytest.approx(0.02)
-    assert told["errors"]["place"]["max"] == pytest.approx(0.3)
-    assert told["errors"]["crown"] == {
+    assert reported["errors"]["dbh"]["mean_abs"] == pytest.approx(0.02)
+    assert reported["errors"]["place"]["max"] == pytest.approx(0.3)
+    assert reported["errors"]["crown"] == {
         "unit": "m",
         "count": 0,
         **dict.fromkeys(("mean", "mean_abs", "rms", "p95", "max")),
     }
-    assert told["limits"]["within_m"] == 2.0
-    assert told["left_out"]["unseen"] == 0
+    assert reported["limits"]["within_m"] == 2.0
+    assert reported["left_out"]["unseen"] == 0
 
 
 @pytest.mark.parametrize("tool", ["curbs", "gutters"])
@@ -71,9 +71,9 @@ def test_a_truth_against_itself_is_all_right_in_a_table_that_lines_up(
     made = {"curbs": street_curbs(), "gutters": gutter()}[tool]
     features = []
     for one in made.features:
-        places = (one.xyz - ORIGIN).tolist()
+        positions = (one.xyz - ORIGIN).tolist()
         is_area = one.shape == "area"
-        shape = [[*places, places[0]]] if is_area else places
+        shape = [[*positions, positions[0]]] if is_area else positions
         features.append(("Polygon" if is_area else "LineString", shape, dict(one.facts)))
     path = write_map(tmp_path / "a.geojson", features)
     assert run_in_terminal(["score", tool, str(path), str(path)]) == DONE
@@ -92,9 +92,9 @@ def test_volumes_are_scored_from_their_json(
     (tmp_path / "truth.json").write_text(json.dumps({**truth, "polygon": [[0, 1]]}), "utf-8")
     found = {**truth, "cut_m3": 190.0, "uncertainty_m3": 20.0, "method": "grid"}
     (tmp_path / "result.json").write_text(json.dumps(found), "utf-8")
-    told = scored(capsys, "volume", tmp_path / "result.json", tmp_path / "truth.json")
-    assert told["figures"]["cut_off"] == pytest.approx(-0.05)
-    assert told["shares"]["within_uncertainty"] == {"count": 3, "of": 3, "share": 1.0}
+    reported = scored(capsys, "volume", tmp_path / "result.json", tmp_path / "truth.json")
+    assert reported["figures"]["cut_off"] == pytest.approx(-0.05)
+    assert reported["shares"]["within_uncertainty"] == {"count": 3, "of": 3, "share": 1.0}
     assert (
         run_in_terminal(
             ["score", "volume", str(tmp_path / "result.json"), str(tmp_path / "truth.json")]

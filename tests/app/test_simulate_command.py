@@ -14,7 +14,7 @@ import pytest
 
 from app.cli.terminal import BAD_INPUT, CANCELLED, DONE, run_in_terminal
 from processing.simulate.forecast import forecast_street
-from processing.simulate.wishes import StreetWish
+from processing.simulate.requests import StreetRequest
 
 SMALL = (
     "--style",
@@ -54,8 +54,8 @@ def test_a_street_is_written_as_a_delivery_with_a_label_for_every_point(
             assert file.header.point_count == labels.size
         points += labels.size
     assert first == f"{out}: {points:,} points, EPSG:6677"
-    wish = StreetWish(style="highway", length_m=10.0, pulses=100, turns_per_s=20.0)
-    assert forecast_street(wish).points == pytest.approx(points, rel=0.5)
+    request = StreetRequest(style="highway", length_m=10.0, pulses=100, turns_per_s=20.0)
+    assert forecast_street(request).points == pytest.approx(points, rel=0.5)
     assert str(out / "trajectory.csv") in files
     assert truth == f"truth: {out / 'truth'}"
     assert "There is something in this folder" in refused(capsys, "street", "--out", out, *SMALL)
@@ -84,9 +84,9 @@ def test_help_lists_what_can_be_set_with_units_and_defaults(
 ) -> None:
     with pytest.raises(SystemExit):
         run_in_terminal(["simulate", "street", "--help"])
-    told = capsys.readouterr().out
-    assert "--set length_m=120.0 m (10 … 100000)" in told
-    assert "--set style=urban urban | rural | highway" in told
+    reported = capsys.readouterr().out
+    assert "--set length_m=120.0 m (10 … 100000)" in reported
+    assert "--set style=urban urban | rural | highway" in reported
 
 
 # What runs in the background of a shell is started deaf to Ctrl-C.

@@ -9,12 +9,12 @@ from PySide6.QtWidgets import QApplication, QLabel, QPushButton, QToolButton
 
 from app.application import build_window, make_application
 from app.settings import Settings
-from processing.simulate.wishes import StreetWish
-from widgets.dialogs.simulate import SimulateForm, SimulationWish
+from processing.simulate.requests import StreetRequest
+from widgets.dialogs.simulate import SimulateForm, SimulationRequest
 from widgets.parts.density_view import DensityView
 
 WAIT_MS = 60_000
-SMALL = StreetWish(
+SMALL = StreetRequest(
     style="highway", length_m=10.0, pulses=200, turns_per_s=30.0, speed_km_h=20.0, images=False
 )
 
@@ -38,9 +38,9 @@ def form_of(parts) -> SimulateForm:
     )
 
 
-def ask(parts, folder: Path, wish: StreetWish = SMALL) -> None:
+def ask(parts, folder: Path, request: StreetRequest = SMALL) -> None:
     form = form_of(parts)
-    form.simulation_requested.emit(SimulationWish("street", wish, folder))
+    form.simulation_requested.emit(SimulationRequest("street", request, folder))
     form.close()
 
 
@@ -48,15 +48,15 @@ def test_a_simulation_is_opened_as_a_project_and_says_where_its_truth_is(
     qtbot, parts, tmp_path
 ) -> None:
     folder = tmp_path / "通り"
-    told = []
-    parts.document.told.connect(lambda text: told.append(text.en))
+    reported = []
+    parts.document.reported.connect(lambda text: reported.append(text.en))
     ask(parts, folder)
-    qtbot.waitUntil(lambda: any("truth" in one for one in told), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: any("truth" in one for one in reported), timeout=WAIT_MS)
     assert parts.document.project.folder == tmp_path / "通り.zuka"
     assert [one.info.name for one in parts.document.drives()] == ["left", "right"]
     assert parts.document.crs() == "EPSG:6677"
-    assert str(folder / "truth") in told[-1]
-    assert parts.document.drives()[0].turns is not None
+    assert str(folder / "truth") in reported[-1]
+    assert parts.document.drives()[0].revolutions is not None
 
 
 def test_an_open_project_is_only_put_away_when_one_says_so(qtbot, parts, tmp_path) -> None:
@@ -73,7 +73,7 @@ def test_an_open_project_is_only_put_away_when_one_says_so(qtbot, parts, tmp_pat
 def test_a_cancelled_simulation_leaves_nothing_and_opens_nothing(qtbot, parts, tmp_path) -> None:
     folder = tmp_path / "sub" / "long"
     with qtbot.waitSignal(parts.jobs.cancelled, timeout=WAIT_MS):
-        ask(parts, folder, StreetWish(length_m=400.0, images=False))
+        ask(parts, folder, StreetRequest(length_m=400.0, images=False))
         qtbot.waitUntil(
             lambda: any(one.fraction > 0 for one in parts.jobs.statuses), timeout=WAIT_MS
         )
@@ -112,10 +112,10 @@ def test_the_form_tells_what_is_wrong_with_an_own_sensor(qtbot, parts, tmp_path)
     own = tmp_path / "センサー.toml"
     own.write_text("[[sensor]]\n", encoding="utf-8")
     form = form_of(parts)
-    wish = StreetWish(own_sensor=str(own))
-    form.forecast_wanted.emit(SimulationWish("street", wish, tmp_path / "a"))
-    told = form.findChildren(QLabel)
-    qtbot.waitUntil(lambda: any(own.name in one.text() for one in told), timeout=WAIT_MS)
+    request = StreetRequest(own_sensor=str(own))
+    form.forecast_wanted.emit(SimulationRequest("street", request, tmp_path / "a"))
+    reported = form.findChildren(QLabel)
+    qtbot.waitUntil(lambda: any(own.name in one.text() for one in reported), timeout=WAIT_MS)
     create = next(one for one in form.findChildren(QPushButton) if one.text() == "Create")
     assert not create.isEnabled()
     form.close()

@@ -19,8 +19,8 @@ from tests.app.volume_command import (
     CORNER,
     SIDE_M,
     refused,
+    reported,
     run,
-    told,
     write_design,
     write_polygon,
 )
@@ -71,7 +71,7 @@ def test_a_pit_is_found_and_told_on_paper_and_as_a_map(
     around = [[3.0, 3.0], [17.0, 3.0], [17.0, 16.0], [3.0, 16.0]]
     boundary = write_polygon(tmp_path / "境界.geojson", around)
     tif, pdf = tmp_path / "差.tif", tmp_path / "土量.pdf"
-    found = told(
+    found = reported(
         tmp_path / "out.json", *epochs, f"boundary={boundary}", f"map={tif}", f"report={pdf}"
     )
     assert found["cut_m3"] == pytest.approx(PIT_M3, rel=0.02)
@@ -90,9 +90,9 @@ def test_a_pit_is_found_and_told_on_paper_and_as_a_map(
 
 def test_a_level_and_a_design_are_grounds_too(epochs: tuple[Path, Path], tmp_path: Path) -> None:
     design = write_design(tmp_path / "設計.xml", "計画面", "上の面")
-    level = told(tmp_path / "level.json", epochs[0], CORNER[2] + 2.0)
-    named = told(tmp_path / "design.json", epochs[0], f"{design}#計画面")
-    higher = told(tmp_path / "higher.json", epochs[0], f"{design}#上の面")
+    level = reported(tmp_path / "level.json", epochs[0], CORNER[2] + 2.0)
+    named = reported(tmp_path / "design.json", epochs[0], f"{design}#計画面")
+    higher = reported(tmp_path / "higher.json", epochs[0], f"{design}#上の面")
     assert named["fill_m3"] == pytest.approx(level["fill_m3"], rel=1e-6)
     assert higher["net_m3"] - named["net_m3"] == pytest.approx(named["area_m2"], rel=1e-6)
 
@@ -101,14 +101,14 @@ def test_heights_of_another_datum_are_brought_to_tokyo_peil(
     epochs: tuple[Path, Path], tmp_path: Path
 ) -> None:
     design = write_design(tmp_path / "設計.xml", "計画面")
-    plain = told(tmp_path / "plain.json", epochs[0], design)
+    plain = reported(tmp_path / "plain.json", epochs[0], design)
     text = design.read_text(encoding="utf-8")
     said = '<Feature><Property label="differTP" value="-0.5"/></Feature>'
     told_there = rf"<CoordinateSystem \1>{said}</CoordinateSystem>"
     text, times = re.subn(r"<CoordinateSystem ([^>]*)/>", told_there, text)
     assert times == 1
     design.write_text(text, encoding="utf-8")
-    lower = told(tmp_path / "lower.json", epochs[0], design)
+    lower = reported(tmp_path / "lower.json", epochs[0], design)
     fallen = plain["net_m3"] - lower["net_m3"]
     assert fallen == pytest.approx(0.5 * plain["area_m2"], rel=1e-6)
     assert any("-0.5" in note["en"] for note in lower["notes"])
@@ -118,10 +118,10 @@ def test_a_shift_is_told_and_corrected_where_asked_for(
     epochs: tuple[Path, Path], tmp_path: Path
 ) -> None:
     moved = write_epoch(tmp_path / "moved.laz", is_later=True, moved=(0.0, 0.0, 0.05))
-    off = told(tmp_path / "off.json", epochs[0], moved)
+    off = reported(tmp_path / "off.json", epochs[0], moved)
     assert off["registration"]["shift_m"][2] == pytest.approx(0.05, abs=0.003)
     assert any("not corrected" in note["en"] for note in off["notes"])
-    right = told(tmp_path / "right.json", epochs[0], moved, "correct_shift=true")
+    right = reported(tmp_path / "right.json", epochs[0], moved, "correct_shift=true")
     assert right["registration"]["is_corrected"]
     assert right["net_m3"] == pytest.approx(-PIT_M3, rel=0.05)
 

@@ -21,7 +21,7 @@ from processing.project.work_details import WorkDetails
 from processing.project.work_store import WorkStore
 from processing.tools.parameters import parameters_of
 from resources import path_of
-from tests.app.volume_command import CORNER, SIDE_M, refused, told, write_design
+from tests.app.volume_command import CORNER, SIDE_M, refused, reported, write_design
 
 TOO_HIGH_M = 0.03
 WORK = 'work = "造成工事その1"\nclient = "A県"\nsurveyor = "測量 花子"\nheight_datum = "JGD2024"\n'
@@ -100,7 +100,7 @@ def test_the_form_tells_the_verdict_on_every_kind_of_paper(
 ) -> None:
     for ending in (".pdf", ".xlsx", ".csv"):
         form = tmp_path / f"様式{ending}"
-        found = told(tmp_path / "out.json", *site, f"form={form}", "work_type=cutting")
+        found = reported(tmp_path / "out.json", *site, f"form={form}", "work_type=cutting")
         assert found["as_built"] == {"work_type": "cutting", "passes": True}
         assert str(found["cut_m3"]) == "0.0", "nothing was cut"
         assert form.stat().st_size > 0
@@ -115,7 +115,9 @@ def test_it_is_the_same_whichever_side_the_design_is_on(
     site: tuple[Path, Path], tmp_path: Path
 ) -> None:
     for name, sides in (("a", site), ("b", site[::-1])):
-        told(tmp_path / f"{name}.json", *sides, f"form={tmp_path / name}.csv", "work_type=cutting")
+        reported(
+            tmp_path / f"{name}.json", *sides, f"form={tmp_path / name}.csv", "work_type=cutting"
+        )
     assert (tmp_path / "a.csv").read_bytes() == (tmp_path / "b.csv").read_bytes()
 
 
@@ -123,11 +125,11 @@ def test_an_office_s_own_limits_decide(site: tuple[Path, Path], tmp_path: Path) 
     """Three centimetres are too much for it; its only work type needs no naming."""
     limits = own_table(tmp_path / "事務所.toml")
     form = tmp_path / "form.csv"
-    found = told(tmp_path / "out.json", *site, f"form={form}", f"limits={limits}")
+    found = reported(tmp_path / "out.json", *site, f"form={form}", f"limits={limits}")
     assert found["as_built"] == {"work_type": "levelling", "passes": False}
     assert "±10 mm" in form.read_text(encoding="utf-8-sig")
     own_table(limits, mean_mm=40.0)
-    found = told(tmp_path / "out.json", *site, f"form={form}", f"limits={limits}")
+    found = reported(tmp_path / "out.json", *site, f"form={form}", f"limits={limits}")
     assert found["as_built"]["passes"]
 
 
@@ -138,7 +140,7 @@ def test_details_of_a_file_stand_on_report_and_form(
     work.write_text(WORK, encoding="utf-8")
     form, report = tmp_path / "form.pdf", tmp_path / "report.csv"
     settings = (f"form={form}", f"report={report}", f"work={work}", "work_type=cutting")
-    told(tmp_path / "out.json", *site, *settings)
+    reported(tmp_path / "out.json", *site, *settings)
     for words in (words_of(form), report.read_text(encoding="utf-8-sig")):
         for said in ("造成工事その1", "A県", "測量 花子", "JGD2024"):
             assert said in words
@@ -146,7 +148,7 @@ def test_details_of_a_file_stand_on_report_and_form(
 
 def test_without_details_blanks_are_left(site: tuple[Path, Path], tmp_path: Path) -> None:
     report = tmp_path / "report.csv"
-    told(tmp_path / "out.json", *site, f"report={report}")
+    reported(tmp_path / "out.json", *site, f"report={report}")
     rows = rows_of(report)
     assert (rows["Work"], rows["Client"], rows["Contractor"]) == ("", "", "")
 
@@ -158,14 +160,14 @@ def test_a_project_brings_its_details_and_limits(
     shutil.copytree(project, copy)
     form = tmp_path / "form.csv"
     sides = (site[0], copy)
-    told(tmp_path / "out.json", *sides, f"form={form}", "work_type=cutting")
+    reported(tmp_path / "out.json", *sides, f"form={form}", "work_type=cutting")
     assert rows_of(form)["Work"] == "造成", "the project's name where no other is entered"
     opened = Project.open(copy)
     store = WorkStore(opened.settings)
     store.keep_details(WorkDetails(work="本工事", client="B市"))
     store.adopt_limits(own_table(tmp_path / "own.toml"))
     opened.close()
-    found = told(tmp_path / "out.json", *sides, f"form={form}")
+    found = reported(tmp_path / "out.json", *sides, f"form={form}")
     rows = rows_of(form)
     assert (rows["Work"], rows["Client"]) == ("本工事", "B市")
     assert found["as_built"] == {"work_type": "levelling", "passes": False}
@@ -173,7 +175,7 @@ def test_a_project_brings_its_details_and_limits(
     work.write_text(WORK, encoding="utf-8")
     limits = path_of("catalogue/as_built_limits.toml")
     settings = (f"work={work}", f"limits={limits}", "work_type=cutting")
-    found = told(tmp_path / "out.json", *sides, f"form={form}", *settings)
+    found = reported(tmp_path / "out.json", *sides, f"form={form}", *settings)
     assert rows_of(form)["Client"] == "A県", "what is named goes before what is kept"
     assert found["as_built"]["passes"]
 
@@ -231,12 +233,14 @@ def test_a_layer_of_the_boundary_is_named_behind_the_file(
     drawing = ezdxf.filemanagement.new("R2018")
     for layer, size_m in (("工区1", 10.0), ("工区2", 15.0)):
         ring = [(2.0, 2.0), (2.0 + size_m, 2.0), (2.0 + size_m, 12.0), (2.0, 12.0)]
-        places = [tuple(CORNER[:2] + place) for place in ring]
-        drawing.modelspace().add_lwpolyline(places, close=True, dxfattribs={"layer": layer})
+        positions = [tuple(CORNER[:2] + position) for position in ring]
+        drawing.modelspace().add_lwpolyline(positions, close=True, dxfattribs={"layer": layer})
     drawing.saveas(path)
     report = tmp_path / "report.csv"
     for layer, area_m2 in (("工区1", 100.0), ("工区2", 150.0)):
-        found = told(tmp_path / "out.json", *site, f"boundary={path}#{layer}", f"report={report}")
+        found = reported(
+            tmp_path / "out.json", *site, f"boundary={path}#{layer}", f"report={report}"
+        )
         assert found["area_m2"] == pytest.approx(area_m2, rel=1e-6)
         assert f"範囲.dxf#{layer}" in report.read_text(encoding="utf-8-sig")
     sides = ("--before", site[0], "--after", site[1])

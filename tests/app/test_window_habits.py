@@ -20,11 +20,11 @@ from app.window_parts import WindowParts
 from widgets.dialogs.shortcuts import ShortcutsForm
 from widgets.parts.command_palette import CommandPalette
 
-Start = Callable[[], WindowParts]
+WindowStarter = Callable[[], WindowParts]
 
 
 @pytest.fixture
-def start(qtbot: QtBot, tmp_path: Path) -> Iterator[Start]:
+def start(qtbot: QtBot, tmp_path: Path) -> Iterator[WindowStarter]:
     """Starts the program with the same settings each time; the window before is closed first."""
     make_application()
     running: list[WindowParts] = []
@@ -49,7 +49,7 @@ def start(qtbot: QtBot, tmp_path: Path) -> Iterator[Start]:
 
 
 @pytest.fixture
-def parts(start: Start) -> WindowParts:
+def parts(start: WindowStarter) -> WindowParts:
     return start()
 
 
@@ -127,7 +127,7 @@ def test_all_buttons_of_the_toolbar_are_seen_at_1366_pixels(
 
 
 def test_a_new_key_works_at_once_and_at_the_next_start(
-    qtbot: QtBot, start: Start, form: ShortcutsForm, parts: WindowParts
+    qtbot: QtBot, start: WindowStarter, form: ShortcutsForm, parts: WindowParts
 ) -> None:
     form.key_chosen.emit("manual", "Ctrl+M")
     assert keys_of(parts, "manual") == ["Ctrl+M"]
@@ -136,7 +136,7 @@ def test_a_new_key_works_at_once_and_at_the_next_start(
 
 
 def test_the_pressed_key_does_what_it_was_given_to(
-    qtbot: QtBot, start: Start, parts: WindowParts, tmp_path: Path
+    qtbot: QtBot, start: WindowStarter, parts: WindowParts, tmp_path: Path
 ) -> None:
     parts.settings.keep_shortcuts({"show-height": ("Ctrl+J",)})
     parts = start()
@@ -186,7 +186,7 @@ def test_a_list_that_can_not_be_saved_is_told(
 
 
 def test_a_panel_that_was_closed_stays_closed_at_the_next_start(
-    qtbot: QtBot, start: Start, parts: WindowParts, tmp_path: Path
+    qtbot: QtBot, start: WindowStarter, parts: WindowParts, tmp_path: Path
 ) -> None:
     assert parts.document.create(tmp_path / "p.zuka", "EPSG:6677")
     parts.window.actions_by_id["panel-jobs"].trigger()
@@ -202,7 +202,7 @@ def test_a_panel_that_was_closed_stays_closed_at_the_next_start(
 
 
 def test_a_panel_that_is_opened_stands_before_those_that_share_its_place(
-    start: Start, tmp_path: Path, qtbot: QtBot
+    start: WindowStarter, tmp_path: Path, qtbot: QtBot
 ) -> None:
     parts = start()
     assert parts.document.create(tmp_path / "p.zuka", "EPSG:6677")
@@ -212,7 +212,7 @@ def test_a_panel_that_is_opened_stands_before_those_that_share_its_place(
 
 
 def test_a_window_left_without_a_project_shows_its_panels_the_next_time(
-    qtbot: QtBot, start: Start, parts: WindowParts, tmp_path: Path
+    qtbot: QtBot, start: WindowStarter, parts: WindowParts, tmp_path: Path
 ) -> None:
     parts = start()
     assert parts.document.create(tmp_path / "p.zuka", "EPSG:6677")

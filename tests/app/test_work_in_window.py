@@ -177,9 +177,9 @@ def test_the_table_is_written_for_an_office_to_start_from(
 ) -> None:
     path = tmp_path / "own.toml"
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(path), ""))
-    with qtbot.waitSignal(parts.document.told) as told:
+    with qtbot.waitSignal(parts.document.reported) as reported:
         pick(parts.volume_panel.limits, "Write this table as a file…")
-    assert told.args[0].en == "Wrote own.toml."
+    assert reported.args[0].en == "Wrote own.toml."
     assert read_limits(path) == as_built_limits()
     monkeypatch.setattr(QFileDialog, "getSaveFileName", lambda *_: (str(tmp_path), ""))
     with qtbot.waitSignal(parts.document.refused):
@@ -199,9 +199,9 @@ def test_a_bad_table_is_said_in_a_sentence_and_nothing_changes(
     path = tmp_path / "bad.toml"
     path.write_bytes(content)
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
-    with qtbot.waitSignal(parts.document.refused) as told:
+    with qtbot.waitSignal(parts.document.refused) as reported:
         pick(box, "Other table…")
-    assert "bad.toml" in told.args[0].where.en
+    assert "bad.toml" in reported.args[0].where.en
     assert box.currentText() == "Cutting"
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: ("", ""))
     pick(box, "Other table…")

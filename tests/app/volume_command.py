@@ -18,7 +18,7 @@ SIDE_M = 20.0
 
 
 def write_polygon(path: Path, corners: list[list[float]]) -> Path:
-    ring = [[*(CORNER[:2] + place).tolist()] for place in [*corners, corners[0]]]
+    ring = [[*(CORNER[:2] + position).tolist()] for position in [*corners, corners[0]]]
     shape = {"type": "Polygon", "coordinates": [ring]}
     member = {"type": "Feature", "properties": {}, "geometry": shape}
     path.write_text(json.dumps({"type": "FeatureCollection", "features": [member]}))
@@ -46,7 +46,7 @@ def run(output: Path, *words: object) -> int:
     return status
 
 
-def told(output: Path, before: object, after: object, *settings: str) -> dict[str, Any]:
+def reported(output: Path, before: object, after: object, *settings: str) -> dict[str, Any]:
     words = [word for setting in settings for word in ("--set", setting)]
     assert run(output, "--before", before, "--after", after, *words) == DONE
     found: dict[str, Any] = json.loads(output.read_text(encoding="utf-8"))

@@ -18,9 +18,9 @@ _MOST_BYTES = 200 << 20
 def check_refusal(error: UserError, path: Path) -> None:
     """The message names the file and a remedy, in both languages, on one line."""
     for language in ("en", "ja"):
-        assert path.name in error.where.spoken(language)
-        assert len(error.what.spoken(language)) > 5
-        assert len(error.remedy.spoken(language)) > 5
+        assert path.name in error.where.in_language(language)
+        assert len(error.what.in_language(language)) > 5
+        assert len(error.remedy.in_language(language)) > 5
         assert "\n" not in error.line(language)
 
 
@@ -48,8 +48,8 @@ def flipped(data: bytes, count: int, seed: int) -> Iterator[bytes]:
     for number in range(count):
         damaged = bytearray(data)
         reach = len(data) if number % 2 else min(len(data), 400)
-        for place in random.integers(0, reach, random.integers(1, 4)):
-            damaged[place] ^= 1 << int(random.integers(0, 8))
+        for position in random.integers(0, reach, random.integers(1, 4)):
+            damaged[position] ^= 1 << int(random.integers(0, 8))
         yield bytes(damaged)
 
 
@@ -58,7 +58,7 @@ def overwritten(data: bytes, count: int, seed: int) -> Iterator[bytes]:
     random = np.random.default_rng(seed)
     for number in range(count):
         damaged = bytearray(data)
-        for place in random.integers(0, len(data), random.integers(1, 12)):
+        for position in random.integers(0, len(data), random.integers(1, 12)):
             fill = (b"\0" * 8, b"\xff" * 4, random.bytes(3))[number % 3]
-            damaged[place : place + len(fill)] = fill
+            damaged[position : position + len(fill)] = fill
         yield bytes(damaged[: len(data)])

@@ -63,7 +63,7 @@ def main(project: Path, name: str, seed: int) -> int:
             with closing(Project.open(project)) as opened:
                 said += _use(opened.drives[0], random)
         except UserError as error:
-            said += _is_told(error)
+            said += _is_reported(error)
     sys.stdout.write(f"{said}\n")
     return 0
 
@@ -87,16 +87,18 @@ def _damage(path: Path, random: np.random.Generator) -> None:
 def _altered(values: np.ndarray, random: np.random.Generator) -> np.ndarray:
     """Some values become others: any at all, near ones, or the ends of what there is."""
     flat = values.reshape(-1)
-    places = random.integers(0, flat.size, min(47, flat.size))
+    positions = random.integers(0, flat.size, min(47, flat.size))
     way = random.integers(3)
     if way == 0:
-        flat.view(np.uint8).reshape(flat.size, -1)[places] = random.integers(
-            0, 256, (places.size, flat.itemsize)
+        flat.view(np.uint8).reshape(flat.size, -1)[positions] = random.integers(
+            0, 256, (positions.size, flat.itemsize)
         )
     elif way == 1:
-        flat[places] = flat[places] + random.integers(-5000, 5000, places.size).astype(flat.dtype)
+        flat[positions] = flat[positions] + random.integers(-5000, 5000, positions.size).astype(
+            flat.dtype
+        )
     else:
-        flat[places] = -flat[places]
+        flat[positions] = -flat[positions]
     return values
 
 
@@ -107,11 +109,11 @@ def _use(drive: Drive, random: np.random.Generator) -> int:
             with np.errstate(all="ignore"):
                 act()
         except UserError as error:
-            said += _is_told(error)
+            said += _is_reported(error)
     return said
 
 
-def _is_told(error: UserError) -> int:
+def _is_reported(error: UserError) -> int:
     assert all(error.line(language) for language in ("en", "ja"))
     return 1
 
@@ -125,8 +127,8 @@ def _looks(drive: Drive, random: np.random.Generator) -> Iterator[Callable[[], o
         yield lambda point=point: neighbours(drive, point, 0.5)
         yield lambda point=point: edge_beside(drive, point)
     middle = (np.array(drive.info.lowest) + np.array(drive.info.highest)) / 2
-    place = (float(middle[0]), float(middle[1]), float(middle[2]))
-    yield lambda: points_in_cut(drive, Cut(place, (1.0, 0.0)))
+    position = (float(middle[0]), float(middle[1]), float(middle[2]))
+    yield lambda: points_in_cut(drive, Cut(position, (1.0, 0.0)))
     yield lambda: nearest_point(drive, middle, 5.0)
     yield lambda: _rays(drive, middle)
     for attribute in available(drive):

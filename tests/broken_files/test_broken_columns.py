@@ -61,8 +61,8 @@ def altered(drive: Drive, seed: int, count: int = 47) -> NDArray[np.int64]:
     """The drive's pulses with some values that are any at all."""
     random = np.random.default_rng(seed)
     pulses = np.array(drive.columns["pulse"])
-    places = random.integers(0, pulses.size, count)
-    pulses[places] = random.integers(-(1 << 62), 1 << 62, count)
+    positions = random.integers(0, pulses.size, count)
+    pulses[positions] = random.integers(-(1 << 62), 1 << 62, count)
     return pulses
 
 

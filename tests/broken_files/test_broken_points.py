@@ -122,16 +122,18 @@ def test_a_record_longer_than_the_file_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("place", "value"),
+    ("position", "value"),
     [(0, 1), (0, 99), (2, 7), (12, 0), (12, 7), (12, 2**31), (32, 60_000), (34, 99), (36, 29)],
 )
-def test_a_compressor_record_that_lies_is_refused(tmp_path: Path, place: int, value: int) -> None:
+def test_a_compressor_record_that_lies_is_refused(
+    tmp_path: Path, position: int, value: int
+) -> None:
     path = tmp_path / "a.laz"
     make_las(path, count=300)
     data = bytearray(path.read_bytes())
     record = data.index(b"laszip encoded") + 52
-    form = "<I" if place == 12 else "<H"
-    data[record + place : record + place + struct.calcsize(form)] = struct.pack(form, value)
+    form = "<I" if position == 12 else "<H"
+    data[record + position : record + position + struct.calcsize(form)] = struct.pack(form, value)
     path.write_bytes(data)
     error = outcome(lambda: _read_all(path), path)
     # One chunk of 300 points is whole whatever larger size the record gives to chunks.
@@ -177,8 +179,8 @@ def test_a_coordinate_far_outside_is_told_with_its_point(tmp_path: Path, value: 
     path = tmp_path / "a.las"
     make_las(path, count=100)
     data = bytearray(path.read_bytes())
-    place = read_header(path).points_at + 30 * 40 + 4
-    data[place : place + 4] = struct.pack("<i", value)
+    position = read_header(path).points_at + 30 * 40 + 4
+    data[position : position + 4] = struct.pack("<i", value)
     path.write_bytes(data)
     error = _refusal(path)
     assert "Y of point 41" in error.what.en

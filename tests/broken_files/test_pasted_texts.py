@@ -13,7 +13,7 @@ from processing.errors import BadFile, UserError
 from processing.project.catalogue import Catalogue, FeatureKind, Geometry
 from processing.project.catalogue_file import read_catalogue
 from processing.project.feature import Feature, PointReference, Vertex
-from processing.project.feature_clips import Pasted, clip_of, features_of_clip
+from processing.project.feature_clips import PastedFeatures, clip_of, features_of_clip
 from processing.text import Text
 from resources import path_of
 from tests.processing.project.drawn import curb
@@ -37,7 +37,7 @@ def bundled() -> Catalogue:
     return read_catalogue(path_of("catalogue/level500.toml"))
 
 
-def _outcome(text: str, crs: str, catalogue: Catalogue) -> Pasted | UserError:
+def _outcome(text: str, crs: str, catalogue: Catalogue) -> PastedFeatures | UserError:
     try:
         return features_of_clip(text, crs, catalogue, ("left",), kind_for=_KIND_FOR)
     except UserError as error:
@@ -119,9 +119,9 @@ def test_a_text_cut_or_altered_anywhere_ends_in_features_or_in_a_sentence(
     text = clip_of([_LID, curb("a")], "EPSG:6677", bundled)
     random = np.random.default_rng(5)
     texts = [text[:size] for size in range(0, len(text), 7)]
-    for place in random.integers(0, len(text), 600):
+    for position in random.integers(0, len(text), 600):
         other = '[]{},:"0aé\\-e'[int(random.integers(13))]
-        texts.append(text[:place] + other + text[place + 1 :])
+        texts.append(text[:position] + other + text[position + 1 :])
     for damaged in texts:
         outcome = _outcome(damaged, "EPSG:6677", bundled)
         if isinstance(outcome, UserError):

@@ -65,10 +65,10 @@ def steps_to(action: Action, language: Language) -> tuple[str, ...]:
     """Menu, submenu and name of an action, as they are read in the window."""
     menus = dict(MENUS)
     top, _, below = action.menu.partition("/")
-    steps = [menus[top].spoken(language)] if top else []
+    steps = [menus[top].in_language(language)] if top else []
     if below:
-        steps.append(SUBMENUS[action.menu].spoken(language))
-    return tuple(bare(step) for step in (*steps, action.text.spoken(language)))
+        steps.append(SUBMENUS[action.menu].in_language(language))
+    return tuple(bare(step) for step in (*steps, action.text.in_language(language)))
 
 
 def ends_in(steps: tuple[str, ...], quoted: str) -> bool:
@@ -109,9 +109,9 @@ def test_every_link_leads_somewhere() -> None:
     broken = []
     for page in every_page():
         for link in page.links:
-            name, _, place = link.partition("#")
+            name, _, position = link.partition("#")
             path = (page.path.parent / name).resolve() if name else page.path
-            is_there = path.is_file() and (not place or place in read_page(path).ids)
+            is_there = path.is_file() and (not position or position in read_page(path).ids)
             if not is_there:
                 broken.append((page.path.name, link))
     assert broken == []
@@ -186,8 +186,8 @@ def test_every_fixed_key_is_listed() -> None:
     for language in LANGUAGES:
         told = page_of(language, "shortcuts").paragraphs["in-views"]
         for one in FIXED:
-            assert one.gesture.spoken(language) in told
-            assert one.name.spoken(language) in told
+            assert one.gesture.in_language(language) in told
+            assert one.name.in_language(language) in told
 
 
 def test_the_number_keys_choose_the_kinds_that_are_listed() -> None:
@@ -195,7 +195,7 @@ def test_the_number_keys_choose_the_kinds_that_are_listed() -> None:
     keyed = {kind.id: kind for kind in catalogue if kind.key}
     for language in LANGUAGES:
         page = page_of(language, "kinds")
-        assert page.kinds == {id_: kind.name.spoken(language) for id_, kind in keyed.items()}
+        assert page.kinds == {id_: kind.name.in_language(language) for id_, kind in keyed.items()}
         listed = [key.words for key in page.keys if key.action.startswith("kind-key")]
         assert listed == [keyed[id_].key for id_ in page.kinds]
 

@@ -13,10 +13,10 @@ from installer.translations import ENGLISH, FOLDER, JAPANESE, collect
 from tests.house_rules.shown_text import shown_literals
 from tests.house_rules.sources import ROOT, python_files, text_of
 
-Entry = tuple[str, str, str]
+TranslationEntry = tuple[str, str, str]
 
 
-def entries(path: Path) -> dict[Entry, bool]:
+def entries(path: Path) -> dict[TranslationEntry, bool]:
     """Give context, source and comment of each entry of a ``.ts`` file: is it translated?"""
     found = {}
     for context in ET.parse(path).getroot().iter("context"):  # noqa: S314 - our own file
@@ -38,7 +38,7 @@ def _is_translated(message: ET.Element) -> bool:
     return all((form.text or "").strip() for form in forms)
 
 
-def unfinished(path: Path) -> list[Entry]:
+def unfinished(path: Path) -> list[TranslationEntry]:
     return [entry for entry, is_translated in entries(path).items() if not is_translated]
 
 

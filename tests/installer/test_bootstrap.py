@@ -11,7 +11,7 @@ import pytest
 from installer.bootstrap import version_complaint
 from installer.display import has_display, virtual_display
 from installer.environment import was_moved
-from installer.steps import Stamp, Stop, fingerprint, run, status_of
+from installer.steps import InputStamp, Stop, fingerprint, run, status_of
 from installer.system_packages import PACKAGES, not_installed
 from tests.house_rules.sources import ROOT, text_of
 
@@ -70,7 +70,7 @@ def test_a_failed_command_stops_with_its_own_status(tmp_path: Path) -> None:
 def test_a_stamp_fits_only_the_inputs_it_was_set_for(tmp_path: Path) -> None:
     lock = tmp_path / "lock"
     lock.write_text("numpy==1\n")
-    stamp = Stamp(tmp_path / "lock.stamp")
+    stamp = InputStamp(tmp_path / "lock.stamp")
     assert not stamp.fits(fingerprint([lock]))
     stamp.set(fingerprint([lock]))
     assert stamp.fits(fingerprint([lock]))

@@ -20,7 +20,7 @@ from processing.points.drive import Drive
 from processing.project.dropped_files import request_of_files
 from processing.project.feature import PointReference
 from resources import path_of
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 WAIT_MS = 60_000
 
@@ -42,10 +42,10 @@ class Surveyor:
     def drive(self) -> Drive:
         return self.document.drive(self.document.shared.view_settings.drive_id)
 
-    def place_of(self, point: int) -> Place:
+    def position_of(self, point: int) -> PickedPosition:
         x, y, z = self.drive.xyz(np.array([point]))[0]
         reference = PointReference(self.drive.id, point)
-        return Place((float(x), float(y), float(z)), reference)
+        return PickedPosition((float(x), float(y), float(z)), reference)
 
     def shown_point(self, row: int, column: int) -> int:
         """The point in or near a pixel of the image that is shown."""
@@ -56,11 +56,11 @@ class Surveyor:
 
     def pixel_of(self, point: int) -> QPoint:
         """Where a point is painted; the view goes there first."""
-        view, place = self.parts.image_view, self.place_of(point)
+        view, position = self.parts.image_view, self.position_of(point)
         view.show_one_to_one()
         view.zoom_by(4.0)
-        view.center_on(place)
-        return view.position_of(place).toPoint()
+        view.center_on(position)
+        return view.position_of(position).toPoint()
 
     def click(self, point: int) -> None:
         """Left click on a point's pixel."""

@@ -12,7 +12,7 @@ from processing.bench.street_candidates import street_candidates
 from processing.project.feature import Feature, Position, Status
 from processing.project.feature_middle import middle_of
 from tests.processing.project.candidates import found
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 COUNT = 50
 WITHIN_M = 0.10
@@ -70,10 +70,10 @@ def test_keys_type_in_forms_and_draw_while_something_is_drawn(desk, qtbot):
     parts.layers_panel.setFocus()
     parts.drawing_bar.setFocus()
     parts.toolbox.choose_kind(parts.document.catalogue()["curb_lower"])
-    place = desk.place_of(int(made.change.added[0].vertices[0].measured.point))
+    position = desk.position_of(int(made.change.added[0].vertices[0].measured.point))
     for shift in (0, 900):
-        desk.click(desk.place_of(place.measured.point + shift).measured.point)
-    assert parts.toolbox.hand.is_busy
+        desk.click(desk.position_of(position.measured.point + shift).measured.point)
+    assert parts.toolbox.current_tool.is_busy
     desk.key(Qt.Key.Key_Return)
     assert review.current == first
     assert len(list(parts.document.features())) == 7
@@ -82,19 +82,19 @@ def test_keys_type_in_forms_and_draw_while_something_is_drawn(desk, qtbot):
 def assert_centred(parts: WindowParts, qtbot, feature: Feature) -> bool:
     """Every view has the candidate in its middle; says whether a camera image shows it."""
     middle = middle_of(feature)
-    place = Place(middle.xyz, middle.measured, middle.is_occluded)
+    position = PickedPosition(middle.xyz, middle.measured, middle.is_occluded)
     for view, centre in centres(parts):
-        at = view.position_of(place)
+        at = view.position_of(position)
         assert at is not None
         away_px = np.hypot(at.x() - centre.x(), at.y() - centre.y())
-        assert away_px <= max(1.0, pixels_of(view, place, WITHIN_M))
+        assert away_px <= max(1.0, pixels_of(view, position, WITHIN_M))
     assert parts.section_view.cut is not None
-    _, _, aside = parts.section_view.cut.to_section(np.array([place.xyz]))[0]
+    _, _, aside = parts.section_view.cut.to_section(np.array([position.xyz]))[0]
     assert abs(aside) <= WITHIN_M
     camera = parts.camera_view
-    if camera.lay() is None:
+    if camera.projection() is None:
         return False
-    at = camera.position_of(place)
+    at = camera.position_of(position)
     centre = QPointF(camera.width() / 2, camera.height() / 2)
     return at is not None and np.hypot(at.x() - centre.x(), at.y() - centre.y()) <= 1.0
 
@@ -108,14 +108,14 @@ def centres(parts: WindowParts):
         yield view, QPointF(view.width() / 2, view.height() / 2)
 
 
-def pixels_of(view, place: Place, metres: float) -> float:
+def pixels_of(view, position: PickedPosition, metres: float) -> float:
     """How many pixels a length is at a place, in the direction in which it is longest."""
-    at, spots = view.position_of(place), []
+    at, spots = view.position_of(position), []
     for axis in range(3):
         moved: Position = tuple(
-            value + (metres if number == axis else 0.0) for number, value in enumerate(place.xyz)
+            value + (metres if number == axis else 0.0) for number, value in enumerate(position.xyz)
         )
-        spot = view.position_of(Place(moved))
+        spot = view.position_of(PickedPosition(moved))
         if spot is not None:
             spots.append(np.hypot(spot.x() - at.x(), spot.y() - at.y()))
     return float(max(spots, default=0.0))

@@ -18,8 +18,8 @@ from processing.points.drive import Drive
 from processing.project.dropped_files import request_of_files
 from processing.project.export import ExportRequest
 from tests.journeys.conftest import Surveyor
-from tests.journeys.hand_at_street import Hand
 from tests.journeys.true_street import TrueStreet
+from tests.journeys.window_user import WindowUser
 
 Floats = NDArray[np.float64]
 
@@ -39,23 +39,23 @@ def _length(line: Floats) -> float:
     return float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
 
 
-def _off(places: Floats, line: Floats) -> Floats:
+def _off(positions: Floats, line: Floats) -> Floats:
     """(n,) distances of places from a line, m."""
     begins, ways = line[:-1], np.diff(line, axis=0)
-    offset = places[:, None] - begins
+    offset = positions[:, None] - begins
     squares = np.maximum((ways**2).sum(-1), 1e-12)
     share = np.clip((offset * ways).sum(-1) / squares, 0.0, 1.0)
     return np.linalg.norm(offset - share[..., None] * ways, axis=-1).min(axis=1)
 
 
-def _nearest(drive: Drive, place: Floats) -> int:
-    return int(cKDTree(drive.xyz(slice(0, drive.count))).query(place)[1])
+def _nearest(drive: Drive, position: Floats) -> int:
+    return int(cKDTree(drive.xyz(slice(0, drive.count))).query(position)[1])
 
 
-def _off_plate(places: Floats, centre: Floats, facing_deg: float) -> Floats:
+def _off_plate(positions: Floats, centre: Floats, facing_deg: float) -> Floats:
     """How far places lie before or behind a plate."""
     facing = np.radians(facing_deg)
-    return np.abs((places - centre) @ np.array([np.sin(facing), np.cos(facing), 0.0]))
+    return np.abs((positions - centre) @ np.array([np.sin(facing), np.cos(facing), 0.0]))
 
 
 def _on_plate(drive: Drive, centre: Floats, facing_deg: float) -> int:
@@ -65,9 +65,9 @@ def _on_plate(drive: Drive, centre: Floats, facing_deg: float) -> int:
     return int(np.argmin(np.where(is_on, np.linalg.norm(xyz - centre, axis=1), np.inf)))
 
 
-def _off_trunk(places: Floats, foot: Floats, dbh_m: float) -> Floats:
+def _off_trunk(positions: Floats, foot: Floats, dbh_m: float) -> Floats:
     """How far places lie from the bark of a trunk."""
-    return np.abs(np.hypot(*(places - foot)[:, :2].T) - dbh_m / 2)
+    return np.abs(np.hypot(*(positions - foot)[:, :2].T) - dbh_m / 2)
 
 
 def _on_trunk(drive: Drive, foot: Floats, dbh_m: float) -> int:
@@ -78,30 +78,30 @@ def _on_trunk(drive: Drive, foot: Floats, dbh_m: float) -> int:
     return int(np.argmin(np.where(is_low, above, np.inf)))
 
 
-def _draw_curbs(hand: Hand, truth: TrueStreet) -> list[tuple[str, tuple[Floats, ...]]]:
-    keys = {kind.id: kind.key for kind in hand.parts.document.catalogue()}
+def _draw_curbs(user: WindowUser, truth: TrueStreet) -> list[tuple[str, tuple[Floats, ...]]]:
+    keys = {kind.id: kind.key for kind in user.parts.document.catalogue()}
     drawn = []
     for name, kind, pieces in sorted(truth.curbs, key=lambda one: one[0]):
-        drive, since = hand.drive(name), hand.actions
-        hand.trace(
+        drive, since = user.drive(name), user.actions
+        user.trace(
             drive, keys[kind], _nearest(drive, pieces[0][0]), _nearest(drive, pieces[-1][-1])
         )
-        hand.note("curbs", since)
+        user.note("curbs", since)
         drawn.append((kind, pieces))
     return drawn
 
 
-def _draw_points(hand: Hand, truth: TrueStreet) -> None:
-    since = hand.actions
+def _draw_points(user: WindowUser, truth: TrueStreet) -> None:
+    since = user.actions
     for name, centre, _, facing_deg in truth.signs[:3]:
-        drive = hand.drive(name)
-        hand.put_point(drive, "sign", _on_plate(drive, centre, facing_deg))
-    hand.note("signs", since)
-    since = hand.actions
+        drive = user.drive(name)
+        user.put_point(drive, "sign", _on_plate(drive, centre, facing_deg))
+    user.note("signs", since)
+    since = user.actions
     for name, foot, dbh_m in truth.trees[:10]:
-        drive = hand.drive(name)
-        hand.put_point(drive, "street_tree", _on_trunk(drive, foot, dbh_m))
-    hand.note("trees", since)
+        drive = user.drive(name)
+        user.put_point(drive, "street_tree", _on_trunk(drive, foot, dbh_m))
+    user.note("trees", since)
 
 
 def _exported(surveyor: Surveyor, folder: Path) -> dict[str, list[Floats]]:
@@ -112,8 +112,8 @@ def _exported(surveyor: Surveyor, folder: Path) -> dict[str, list[Floats]]:
     space = ezdxf.readfile(path).modelspace()
     found: dict[str, list[Floats]] = {}
     for line in space.query("POLYLINE"):
-        places = np.array([tuple(vertex.dxf.location) for vertex in line.vertices])
-        found.setdefault(line.dxf.layer, []).append(places)
+        positions = np.array([tuple(vertex.dxf.location) for vertex in line.vertices])
+        found.setdefault(line.dxf.layer, []).append(positions)
     for point in space.query("POINT"):
         found.setdefault(point.dxf.layer, []).append(np.array([tuple(point.dxf.location)]))
     return found
@@ -144,9 +144,9 @@ def street(surveyor: Surveyor, tmp_path: Path) -> Surveyor:
 def test_a_street_is_drawn_undone_redone_and_exported(
     street: Surveyor, truth: TrueStreet, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    hand = Hand(street.bot, street.parts)
-    curbs = _draw_curbs(hand, truth)
-    _draw_points(hand, truth)
+    user = WindowUser(street.bot, street.parts)
+    curbs = _draw_curbs(user, truth)
+    _draw_points(user, truth)
     features = {feature.id: feature for feature in street.document.features()}
     count = len(curbs) + 3 + len(truth.trees[:10])
     assert len(features) == count
@@ -164,9 +164,9 @@ def test_a_street_is_drawn_undone_redone_and_exported(
 
     metres = sum(_length(piece) for _, pieces in curbs for piece in pieces)
     with capsys.disabled():
-        sys.stdout.write(f"\n{hand.counted}, {metres:.0f} m of curb edges\n")
-    assert metres / hand.counted["curbs"] >= METRES_AN_ACTION, hand.counted
-    _go_back_and_forth(hand, street, features)
+        sys.stdout.write(f"\n{user.counted}, {metres:.0f} m of curb edges\n")
+    assert metres / user.counted["curbs"] >= METRES_AN_ACTION, user.counted
+    _go_back_and_forth(user, street, features)
 
 
 def _check_curbs(
@@ -177,7 +177,7 @@ def _check_curbs(
     near, total = 0.0, 0.0
     for kind, pieces in curbs:
         start, end = pieces[0][0], pieces[-1][-1]
-        line = min(drawn[kind], key=lambda places: _off(np.array([start, end]), places).sum())
+        line = min(drawn[kind], key=lambda positions: _off(np.array([start, end]), positions).sum())
         # At a lowered curb both edges are 3 cm apart: which one is clicked can't be told there.
         off_ends = np.min([_off(line[[0, -1]], edge) for edge in edges], axis=0)
         assert off_ends.max() < CLICKED_M, kind
@@ -193,19 +193,19 @@ def _longer(line: Floats) -> Floats:
     return np.concatenate([2 * line[:1] - line[1:2], line, 2 * line[-1:] - line[-2:-1]])
 
 
-def _go_back_and_forth(hand: Hand, street: Surveyor, features: dict[str, object]) -> None:
+def _go_back_and_forth(user: WindowUser, street: Surveyor, features: dict[str, object]) -> None:
     """All is undone, redone, and after a restart undone again."""
     document = street.document
     for _ in features:
-        hand.key(Qt.Key.Key_Z, CONTROL)
+        user.key(Qt.Key.Key_Z, CONTROL)
     assert not list(document.features())
     for _ in features:
-        hand.key(Qt.Key.Key_Y, CONTROL)
+        user.key(Qt.Key.Key_Y, CONTROL)
     assert {feature.id: feature for feature in document.features()} == features
     folder = document.project.folder
     document.close()
     assert document.open(folder)
     assert {feature.id: feature for feature in document.features()} == features
     for _ in features:
-        hand.key(Qt.Key.Key_Z, CONTROL)
+        user.key(Qt.Key.Key_Z, CONTROL)
     assert not list(document.features())

@@ -24,11 +24,11 @@ from processing.project.volume import SideKind
 from resources import path_of
 from tests.earthwork_site import CORNER, GRADE
 from tests.journeys.conftest import WAIT_MS
-from tests.journeys.earthwork_hand import CUT_M3, DEPTH_M, FILL_M3, HEIGHT_M, Builder, two_epochs
+from tests.journeys.earthwork_user import CUT_M3, DEPTH_M, FILL_M3, HEIGHT_M, Builder, two_epochs
 from tests.mouse_events import move_mouse
 from widgets.dialogs.work_details import WorkDetailsForm
-from widgets.panels.volume.look_form import LookForm
-from widgets.shared.cursor import Place
+from widgets.panels.volume.style_form import VolumeStyleForm
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.shown_volume import ContourOf
 
 
@@ -74,13 +74,13 @@ def _look_at_the_map(builder: Builder) -> None:
     volume.use_look(replace(volume.look, opacity=1.0))
     picture = view.grab().toImage()
     classes = change_classes(volume.look.limit_m)
-    for place, change_m in (((8.0, 9.0), -DEPTH_M), ((23.0, 6.0), HEIGHT_M)):
-        spot = builder.spot(*place)
+    for position, change_m in (((8.0, 9.0), -DEPTH_M), ((23.0, 6.0), HEIGHT_M)):
+        spot = builder.spot(*position)
         move_mouse(view, spot)
         reading = volume.reading
         assert reading is not None
         assert reading.change_m == pytest.approx(change_m, abs=0.03)
-        height_m = CORNER[2] + GRADE * place[1]
+        height_m = CORNER[2] + GRADE * position[1]
         assert reading.before_m == pytest.approx(height_m, abs=0.06)
         assert "Δ" in builder.parts.status_line.change_text
         rgb = next(one.rgb for one in classes if one.low <= reading.change_m < one.high)
@@ -90,9 +90,9 @@ def _look_at_the_map(builder: Builder) -> None:
 def _look_at_the_section(builder: Builder) -> None:
     section = builder.parts.section_view
     easting, northing = np.add(CORNER[:2], (8.0, 9.0)).tolist()
-    place = Place((easting, northing, float(CORNER[2] + GRADE * 9.0)))
+    position = PickedPosition((easting, northing, float(CORNER[2] + GRADE * 9.0)))
     with builder.bot.waitSignal(section.sharpened, timeout=WAIT_MS):
-        section.show_place(place)
+        section.show_position(position)
     cut = section.cut
     assert cut is not None
     plain = section.panes[0].grab().toImage()
@@ -104,7 +104,7 @@ def _look_at_the_section(builder: Builder) -> None:
 
 
 def _change_range_and_contours(builder: Builder) -> None:
-    form = builder.panel.findChildren(LookForm)[0]
+    form = builder.panel.findChildren(VolumeStyleForm)[0]
     builder.pick(builder.box_with("Of the ground after"), "Of the ground after")
     assert builder.volume.look.contours is ContourOf.AFTER
     with builder.bot.waitSignal(
@@ -214,8 +214,8 @@ def test_only_what_a_selected_area_or_the_area_of_a_layer_holds_counts(
     assert builder.number("fill") < 1.0
     kept = builder.earthwork.shown
     assert kept is not None
-    assert kept.wish.boundary is not None
-    assert kept.wish.boundary.area == pytest.approx(120.0)
+    assert kept.request.boundary is not None
+    assert kept.request.boundary.area == pytest.approx(120.0)
     _compute_within_a_layer(builder, tmp_path, monkeypatch)
 
 
@@ -224,14 +224,14 @@ def _compute_within_a_layer(builder: Builder, folder: Path, monkeypatch) -> None
     drawing = ezdxf.filemanagement.new("R2018")
     ring = CORNER[:2] + np.array([[1.0, 1.0], [15.0, 1.0], [15.0, 11.0], [1.0, 11.0]])
     for layer, east_m in (("工区1", 0.0), ("工区2", 14.0)):
-        places = [(east + east_m, north) for east, north in ring.tolist()]
-        drawing.modelspace().add_lwpolyline(places, close=True, dxfattribs={"layer": layer})
+        positions = [(east + east_m, north) for east, north in ring.tolist()]
+        drawing.modelspace().add_lwpolyline(positions, close=True, dxfattribs={"layer": layer})
     path = folder / "工区.dxf"
     drawing.saveas(path)
     monkeypatch.setattr(QFileDialog, "getOpenFileName", lambda *_: (str(path), ""))
     box = builder.box_with("Selected areas")
     with builder.bot.waitSignal(
-        builder.surveyor.document.told,
+        builder.surveyor.document.reported,
         timeout=WAIT_MS,
         check_params_cb=lambda text: "several layers" in text.en,
     ):
@@ -249,9 +249,9 @@ def _compute_within_a_layer(builder: Builder, folder: Path, monkeypatch) -> None
     assert builder.number("fill") == pytest.approx(FILL_M3, rel=0.06)
     assert builder.number("cut") < 1.0
     path.write_bytes(b"nothing")
-    with builder.bot.waitSignal(builder.surveyor.document.refused, timeout=WAIT_MS) as told:
+    with builder.bot.waitSignal(builder.surveyor.document.refused, timeout=WAIT_MS) as reported:
         builder.pick(box, "Area from a file…")
-    assert "工区.dxf" in told.args[0].where.en
+    assert "工区.dxf" in reported.args[0].where.en
     assert box.currentText() == "工区.dxf: 工区2"
 
 
@@ -265,7 +265,7 @@ def test_an_epoch_against_a_level(
     builder.compute()
     kept = builder.earthwork.shown
     assert kept is not None
-    assert kept.wish.before.kind is SideKind.LEVEL
+    assert kept.request.before.kind is SideKind.LEVEL
     # The slope above its own foot, less the pit, with the heap.
     whole = 0.5 * GRADE * 20.0 * 600.0 - CUT_M3 + FILL_M3
     assert kept.volumes.net_m3 == pytest.approx(whole, rel=0.03)

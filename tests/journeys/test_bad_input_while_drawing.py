@@ -15,7 +15,7 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QApplication, QMessageBox
 
 from app.application import build_window
-from app.catalogue_wish import adopt_catalogue
+from app.catalogue_update import adopt_catalogue
 from app.settings import Settings
 from processing.errors import InUse, MissingInput, NoSpace, OutOfRange, Unsuitable
 from processing.image.images_of_drives import image_of
@@ -25,7 +25,7 @@ from processing.project.change import Change, Replacement
 from processing.project.project import Project
 from processing.text import Text
 from tests.journeys.conftest import WAIT_MS, Surveyor
-from widgets.mouse_tools.draw_path import CROSSES, RESTORED
+from widgets.mouse_tools.draw_line import CROSSES, RESTORED
 from widgets.mouse_tools.drawing_tool import NO_POINT, TOO_FEW
 
 LABEL = Text("Edit", "編集")
@@ -41,11 +41,11 @@ def street(surveyor: Surveyor, tmp_path: Path) -> Surveyor:
 
 
 @pytest.fixture
-def told(street: Surveyor) -> list[Text]:
+def reported(street: Surveyor) -> list[Text]:
     """All sentences of the status line."""
     sentences: list[Text] = []
-    street.parts.toolbox.told.connect(sentences.append)
-    street.document.told.connect(sentences.append)
+    street.parts.toolbox.reported.connect(sentences.append)
+    street.document.reported.connect(sentences.append)
     return sentences
 
 
@@ -102,29 +102,29 @@ def full_disk() -> Iterator[None]:
         resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
 
 
-def test_a_click_where_there_is_no_point_says_so_and_adds_nothing(street, told):
+def test_a_click_where_there_is_no_point_says_so_and_adds_nothing(street, reported):
     choose(street, Geometry.LINE)
     points = points_on_road(street, 2)
     click_all(street, points)
     street.parts.image_view.show_everything()
     street.bot.mouseClick(street.parts.image_view, Qt.MouseButton.LeftButton, pos=sky(street))
-    assert told[-1] == NO_POINT
+    assert reported[-1] == NO_POINT
     assert drawing(street) == points
 
 
-def test_a_line_of_one_vertex_is_not_stored_and_goes_on(street, told):
+def test_a_line_of_one_vertex_is_not_stored_and_goes_on(street, reported):
     choose(street, Geometry.LINE)
     first, second = points_on_road(street, 2)
     street.click(first)
     street.key(Qt.Key.Key_Return)
-    assert told[-1] == TOO_FEW[Geometry.LINE]
+    assert reported[-1] == TOO_FEW[Geometry.LINE]
     assert drawing(street) == [first]
     street.click(second)
     street.key(Qt.Key.Key_Return)
     assert drawn_points(street) == [[first, second]]
 
 
-def test_an_area_that_crosses_itself_says_where_and_is_stored_once_it_does_not(street, told):
+def test_an_area_that_crosses_itself_says_where_and_is_stored_once_it_does_not(street, reported):
     choose(street, Geometry.AREA)
     image = image_of(street.drive, street.document.shared.view_settings.image_kind)
     middle = image.width // 2
@@ -132,7 +132,7 @@ def test_an_area_that_crosses_itself_says_where_and_is_stored_once_it_does_not(s
     a, b, c, d = (street.shown_point(*pixel) for pixel in pixels)
     click_all(street, [a, b, c, d])
     street.key(Qt.Key.Key_Return)
-    assert told[-1].en.startswith(CROSSES.en.split("{", maxsplit=1)[0])
+    assert reported[-1].en.startswith(CROSSES.en.split("{", maxsplit=1)[0])
     assert drawing(street) == [a, b, c, d]
     street.key(Qt.Key.Key_Backspace)
     street.key(Qt.Key.Key_Backspace)
@@ -209,7 +209,7 @@ def test_on_a_full_disk_the_drawing_stays_in_the_hand_until_there_is_room(street
     assert shown_error(street) is None
 
 
-def test_on_a_full_disk_a_continued_line_and_a_moved_vertex_stay_as_they_were(street, told):
+def test_on_a_full_disk_a_continued_line_and_a_moved_vertex_stay_as_they_were(street, reported):
     choose(street, Geometry.LINE)
     points = points_on_road(street, 5)
     click_all(street, points[:3])
@@ -230,7 +230,7 @@ def test_on_a_full_disk_a_continued_line_and_a_moved_vertex_stay_as_they_were(st
     assert street.document.shared.sketch.drawing is None
     street.parts.toolbox.choose("line")
     street.key(Qt.Key.Key_Backspace)
-    assert told[-1] == RESTORED
+    assert reported[-1] == RESTORED
     street.key(Qt.Key.Key_Return)
     assert drawn_points(street) == [points]
 
@@ -308,7 +308,7 @@ def test_a_catalogue_that_gives_a_drawn_kind_another_shape_is_refused(street, tm
 
 
 def test_features_of_another_plane_system_are_pasted_where_they_are_on_the_ground(
-    street, told, tmp_path
+    street, reported, tmp_path
 ):
     assert street.document.crs() == "EPSG:6677"
     choose(street, Geometry.LINE)
@@ -324,7 +324,7 @@ def test_features_of_another_plane_system_are_pasted_where_they_are_on_the_groun
     (pasted,) = street.document.features()
     moved = np.array([a.xyz for a in pasted.vertices]) - [a.xyz for a in line.vertices]
     assert np.hypot(moved[:, 0], moved[:, 1]).min() > 1000.0
-    assert any("6676" in sentence.en or "6677" in sentence.en for sentence in told)
+    assert any("6676" in sentence.en or "6677" in sentence.en for sentence in reported)
     street.document.shared.selection.choose_features(frozenset({pasted.id}))
     actions["copy"].trigger()
     assert street.document.open(folder)

@@ -42,21 +42,21 @@ def project(tmp_path_factory):
 
 def test_info_tells_scanners_rows_and_rates_of_a_project(project):
     done = zuka("info", project, "--json")
-    told = json.loads(done.stdout)
-    assert told["crs"] == "EPSG:6677"
-    assert [drive["scanner"] for drive in told["drives"]] == [1, 2]
-    for drive in told["drives"]:
+    reported = json.loads(done.stdout)
+    assert reported["crs"] == "EPSG:6677"
+    assert [drive["scanner"] for drive in reported["drives"]] == [1, 2]
+    for drive in reported["drives"]:
         assert abs(drive["turns_per_s"] - 100.0) < 0.05
         assert abs(drive["pulses_per_s"] - 100_000.0) < 1.0
         assert 440 < drive["revolutions"] < 460
 
 
 def test_info_tells_what_a_file_holds():
-    told = json.loads(zuka("info", STREET / "left.laz", "--json").stdout)
-    assert told["points"] == 290_429
-    assert told["scanners"] == [1]
-    assert told["crs"] == "EPSG:6677"
-    assert told["waveforms"] is False
+    reported = json.loads(zuka("info", STREET / "left.laz", "--json").stdout)
+    assert reported["points"] == 290_429
+    assert reported["scanners"] == [1]
+    assert reported["crs"] == "EPSG:6677"
+    assert reported["waveforms"] is False
 
 
 def test_an_image_is_written_with_a_row_for_each_turn(project, tmp_path):
@@ -96,9 +96,9 @@ def test_an_empty_map_is_exported_as_whole_files(project, tmp_path):
 
 
 def test_tools_are_listed_with_parameters_and_limits():
-    told = json.loads(zuka("tools", "--json").stdout)
-    assert {"normals", "segments"} <= {tool["id"] for tool in told}
-    for tool in told:
+    reported = json.loads(zuka("tools", "--json").stdout)
+    assert {"normals", "segments"} <= {tool["id"] for tool in reported}
+    for tool in reported:
         for parameter in tool["parameters"]:
             assert parameter["name"]["ja"]
             assert parameter["name"]["en"]

@@ -46,7 +46,7 @@ def _import(surveyor, *files: Path) -> None:
     document = surveyor.document
     if document.project is None:
         assert document.create(files[0].parent.parent / "通り.zuka", "")
-    with surveyor.bot.waitSignal(document.drive_taking.taken, timeout=WAIT_MS):
+    with surveyor.bot.waitSignal(document.drive_results.taken, timeout=WAIT_MS):
         surveyor.parts.window.files_dropped.emit(files)
 
 
@@ -81,7 +81,7 @@ def test_without_a_trajectory_the_one_beside_is_offered_and_added_by_one_click(s
     assert "without a trajectory" in parts.message_bar.text
     assert "trajectory.csv" in parts.message_bar.text
     assert not curbs.isEnabled()
-    with surveyor.bot.waitSignal(document.drive_taking.taken, timeout=WAIT_MS):
+    with surveyor.bot.waitSignal(document.drive_results.taken, timeout=WAIT_MS):
         _button(parts, "Add trajectory.csv").click()
     assert parts.message_bar.text == ""
     (drive,) = document.drives()
@@ -94,8 +94,8 @@ def test_a_trajectory_that_is_dropped_completes_the_drive_and_the_map_stays(surv
     document = surveyor.document
     _import(surveyor, delivery / "left.laz")
     drive = surveyor.drive
-    place = surveyor.place_of(1000)
-    on_point = Vertex(place.xyz, PointReference(drive.id, 1000))
+    position = surveyor.position_of(1000)
+    on_point = Vertex(position.xyz, PointReference(drive.id, 1000))
     vertices = (on_point, Vertex((0.0, 0.0, 0.0)))
     line = Feature("line", "curb", Geometry.LINE, vertices)
     labels = label_changes(drive.id, np.arange(200), np.zeros(200, np.uint8), 5)
@@ -106,7 +106,7 @@ def test_a_trajectory_that_is_dropped_completes_the_drive_and_the_map_stays(surv
     assert surveyor.drive.trajectory is not None
     rests = document.feature("line").vertices[0].measured
     assert isinstance(rests, PointReference)
-    assert surveyor.place_of(rests.point).xyz == place.xyz
+    assert surveyor.position_of(rests.point).xyz == position.xyz
     assert (labels_of(surveyor.drive, np.arange(400)) == 5).sum() == 200
     assert document.undo()
     assert document.feature("line") is None
@@ -125,16 +125,16 @@ def test_a_drive_that_was_shown_from_above_gets_rows_and_the_map_stays_on_its_po
     assert document.open(project.folder)
     settings = document.shared.view_settings
     assert settings.image_kind is ImageKind.TOP_VIEW
-    places = [surveyor.place_of(point).xyz for point in (5, 70_000)]
+    positions = [surveyor.position_of(point).xyz for point in (5, 70_000)]
     rests = [PointReference(surveyor.drive.id, point) for point in (5, 70_000)]
-    vertices = tuple(Vertex(*one) for one in zip(places, rests, strict=True))
+    vertices = tuple(Vertex(*one) for one in zip(positions, rests, strict=True))
     assert document.apply(LABEL, Change(added=(Feature("line", "curb", Geometry.LINE, vertices),)))
     _import(surveyor, delivery / "trajectory.csv")
     assert settings.image_kind in surveyor.drive.image_kinds
     assert surveyor.drive.turns is not None
     now = [vertex.measured for vertex in document.feature("line").vertices]
     assert now != rests
-    assert [surveyor.place_of(one.point).xyz for one in now if one is not None] == places
+    assert [surveyor.position_of(one.point).xyz for one in now if one is not None] == positions
     assert document.undo_stack.undo_label is None
     assert not document.undo()
     moved = document.feature("line")
@@ -159,11 +159,11 @@ def test_what_a_tool_finds_on_a_drive_that_was_removed_meanwhile_is_dropped(surv
 def test_a_file_that_is_there_already_makes_no_second_drive_and_is_told(surveyor, delivery):
     document = surveyor.document
     _import(surveyor, delivery / "left.laz", delivery / "trajectory.csv")
-    told = []
-    document.told.connect(lambda text: told.append(text.en))
+    reported = []
+    document.reported.connect(lambda text: reported.append(text.en))
     _import(surveyor, delivery / "left.laz")
     assert len(document.drives()) == 1
-    assert told == ["In the project already, so not imported again: left.laz"]
+    assert reported == ["In the project already, so not imported again: left.laz"]
 
 
 def test_images_come_later_too(surveyor, delivery):
@@ -233,7 +233,7 @@ def test_the_import_form_offers_the_trajectory_beside_the_points(surveyor, deliv
     wishes = []
     form.import_requested.connect(wishes.append)
     buttons = form.findChild(QDialogButtonBox)
-    with surveyor.bot.waitSignal(surveyor.document.drive_taking.taken, timeout=WAIT_MS):
+    with surveyor.bot.waitSignal(surveyor.document.drive_results.taken, timeout=WAIT_MS):
         buttons.accepted.emit()
     assert wishes[0].files == (delivery / "left.laz", delivery / "trajectory.csv")
     assert surveyor.drive.trajectory is not None

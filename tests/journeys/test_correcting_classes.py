@@ -105,8 +105,8 @@ class Corrector:
 
     def spots(self, xyz: np.ndarray) -> np.ndarray:
         """Where places are in the section's window."""
-        lay = self.pane.lay()
-        return self.pane.viewport.to_screen(lay.on_plane(lay.cut.to_section(xyz)))
+        projection = self.pane.projection()
+        return self.pane.viewport.to_screen(projection.on_plane(projection.cut.to_section(xyz)))
 
     def lasso(self, xyz: np.ndarray, by_px: float) -> None:
         """Draw round all of some places with the mouse."""
@@ -131,7 +131,7 @@ class Corrector:
         return {
             "section": [
                 (drive.id, picture.points[numbers == n], picture.colours[numbers == n])
-                for n, drive in enumerate(picture.wish.drives)
+                for n, drive in enumerate(picture.request.drives)
             ],
             "3D": [
                 (one.tile.id.drive_id, one.tile.points, one.tile.colours)
@@ -143,7 +143,7 @@ class Corrector:
                     np.where(plan.picture.drives == n, plan.picture.points, -1).ravel(),
                     plan.picture.pixels[:, :, 2::-1].reshape(-1, 3),
                 )
-                for n, (drive, _) in enumerate(plan.wish.drives)
+                for n, (drive, _) in enumerate(plan.request.drives)
             ],
             "image": [
                 (shown, pixels.points.ravel(), pixels.colours.reshape(-1, 3))
@@ -196,109 +196,109 @@ def all_in(code: int) -> dict[str, set[tuple[int, int, int]]]:
 def test_a_machine_left_as_ground_is_taken_off_it_by_a_lasso_in_the_section(
     corrector, surveyor, tmp_path
 ):
-    hand, document, site = corrector, corrector.document, corrector.site
-    assert (hand.classes()[site.truth == OTHER] == GROUND).all()
-    before = hand.classes()
-    hand.cut_at(SIZE_M[0] / 2)
-    hand.do("tool-paint-lasso")
-    hand.key("1")
+    user, document, site = corrector, corrector.document, corrector.site
+    assert (user.classes()[site.truth == OTHER] == GROUND).all()
+    before = user.classes()
+    user.cut_at(SIZE_M[0] / 2)
+    user.do("tool-paint-lasso")
+    user.key("1")
     assert document.shared.labels.rule.code == OTHER
     box = site.truth == OTHER
-    cut = hand.pane.cut
+    cut = user.pane.cut
     in_slab = np.abs(cut.to_section(site.xyz)[:, 2]) <= cut.width_m / 2
     assert cut.width_m == 1.0
     wanted = box & in_slab
-    hand.lasso(site.xyz[wanted], 2.0)
-    hand.until(lambda: (hand.classes() != before).any())
-    after = hand.classes()
+    user.lasso(site.xyz[wanted], 2.0)
+    user.until(lambda: (user.classes() != before).any())
+    after = user.classes()
     assert (after[wanted] == OTHER).all()
     # A foot of ground may lie within two pixels of the box, but nothing outside the slab.
     assert not (after != before)[~in_slab].any()
     assert ((after != before) & ~wanted).sum() <= 20
     assert document.undo_stack.undo_label.en == "Label points: Other"
-    hand.until(lambda: hand.colours_of(wanted) == all_in(OTHER))
+    user.until(lambda: user.colours_of(wanted) == all_in(OTHER))
     # Handed in: every point in its place, with what counts.
     surveyor.wait_for_job(
-        lambda: document.export(ExportRequest(("las",), tmp_path / "out", never=(hand.file,)))
+        lambda: document.export(ExportRequest(("las",), tmp_path / "out", never=(user.file,)))
     )
     (out,) = (tmp_path / "out").glob("*.la[sz]")
     np.testing.assert_array_equal(np.asarray(laspy.read(out).classification), after)
-    hand.key(Qt.Key.Key_Z, CONTROL)
-    np.testing.assert_array_equal(hand.classes(), before)
-    hand.until(lambda: hand.colours_of(wanted) == all_in(GROUND))
-    hand.key(Qt.Key.Key_Y, CONTROL)
-    np.testing.assert_array_equal(hand.classes(), after)
+    user.key(Qt.Key.Key_Z, CONTROL)
+    np.testing.assert_array_equal(user.classes(), before)
+    user.until(lambda: user.colours_of(wanted) == all_in(GROUND))
+    user.key(Qt.Key.Key_Y, CONTROL)
+    np.testing.assert_array_equal(user.classes(), after)
     document.close()
     assert document.open(tmp_path / "現場.zuka")
-    np.testing.assert_array_equal(hand.classes(), after)
+    np.testing.assert_array_equal(user.classes(), after)
     assert document.undo()
-    np.testing.assert_array_equal(hand.classes(), before)
+    np.testing.assert_array_equal(user.classes(), before)
 
 
 def test_what_the_tool_ground_found_is_seen_at_once_with_its_line(corrector, surveyor):
-    hand, document, site = corrector, corrector.document, corrector.site
+    user, document, site = corrector, corrector.document, corrector.site
     assert document.undo()
-    assert not hand.classes().any()
-    hand.shared.view_settings.change_look(attribute="intensity")
-    hand.until(lambda: hand.pane.picture is not None)
-    assert hand.pane.picture.ground == ()
+    assert not user.classes().any()
+    user.shared.view_settings.change_look(attribute="intensity")
+    user.until(lambda: user.pane.picture is not None)
+    assert user.pane.picture.ground == ()
     drive = document.drives()[0]
     surveyor.wait_for_job(lambda: document.start_run("ground", drive.id, GroundParameters()))
-    assert (hand.classes() == site.truth)[site.truth != LOW_NOISE].mean() > 0.98
-    assert hand.shared.view_settings.look.attribute == "class"
-    found = hand.classes()
-    hand.until(lambda: hand.colours_of(found == OTHER) == all_in(OTHER))
-    hand.until(lambda: hand.colours_of(found == GROUND) == all_in(GROUND))
-    hand.cut_at(2.0)
-    hand.until(lambda: bool(hand.pane.picture.ground))
-    (line, *_) = hand.pane.picture.ground
+    assert (user.classes() == site.truth)[site.truth != LOW_NOISE].mean() > 0.98
+    assert user.shared.view_settings.look.attribute == "class"
+    found = user.classes()
+    user.until(lambda: user.colours_of(found == OTHER) == all_in(OTHER))
+    user.until(lambda: user.colours_of(found == GROUND) == all_in(GROUND))
+    user.cut_at(2.0)
+    user.until(lambda: bool(user.pane.picture.ground))
+    (line, *_) = user.pane.picture.ground
     assert not line.is_filled
-    north = hand.pane.cut.to_space(np.insert(line.places, 2, 0.0, axis=1))
+    north = user.pane.cut.to_space(np.insert(line.positions, 2, 0.0, axis=1))
     wanted = CORNER[2] + GRADE * (north[:, 1] - CORNER[1])
-    np.testing.assert_allclose(line.places[:, 1], wanted, atol=0.1)
+    np.testing.assert_allclose(line.positions[:, 1], wanted, atol=0.1)
     assert document.undo()
-    assert not hand.classes().any()
+    assert not user.classes().any()
 
 
 def test_noise_is_hidden_in_all_views_by_a_key_and_painted_back(corrector, tmp_path):
-    hand, document, site = corrector, corrector.document, corrector.site
-    hand.cut_at(SIZE_M[0] / 2)
+    user, document, site = corrector, corrector.document, corrector.site
+    user.cut_at(SIZE_M[0] / 2)
     noise = site.truth == LOW_NOISE
-    hand.until(lambda: all(hand.noise_seen().values()))
-    shown_map = hand.parts.map_view._pictures.newest
-    hand.key(Qt.Key.Key_N, SHIFT)
+    user.until(lambda: all(user.noise_seen().values()))
+    shown_map = user.parts.map_view._pictures.newest
+    user.key(Qt.Key.Key_N, SHIFT)
     look = document.shared.view_settings.look
     assert look.hides_noise
-    assert hand.parts.window.actions_by_id["hide-noise"].isChecked()
-    hand.until(lambda: hand.parts.map_view._pictures.newest is not shown_map)
-    hand.until(lambda: not any(hand.noise_seen().values()))
-    assert all(any(points.size for _, points, _ in parts) for parts in hand.drawn().values())
+    assert user.parts.window.actions_by_id["hide-noise"].isChecked()
+    user.until(lambda: user.parts.map_view._pictures.newest is not shown_map)
+    user.until(lambda: not any(user.noise_seen().values()))
+    assert all(any(points.size for _, points, _ in parts) for parts in user.drawn().values())
     # Nothing under the mouse where a point of noise was, and no lasso holds it.
-    cut = hand.pane.cut
+    cut = user.pane.cut
     in_slab = np.abs(cut.to_section(site.xyz)[:, 2]) <= cut.width_m / 2
     wanted = noise & in_slab
-    x, y = hand.spots(site.xyz[wanted][:1])[0].tolist()
-    spot = hand.pane.viewport.to_plane(x, y)
-    found = partial(hand.pane.place_at, spot, 0.2, exact=True)
+    x, y = user.spots(site.xyz[wanted][:1])[0].tolist()
+    spot = user.pane.viewport.to_plane(x, y)
+    found = partial(user.pane.position_at, spot, 0.2, exact=True)
     assert found() is None
-    hand.do("tool-paint-lasso")
-    hand.key("2")
-    before = hand.classes()
-    hand.lasso(site.xyz[wanted], 3.0)
-    np.testing.assert_array_equal(hand.classes(), before)
+    user.do("tool-paint-lasso")
+    user.key("2")
+    before = user.classes()
+    user.lasso(site.xyz[wanted], 3.0)
+    np.testing.assert_array_equal(user.classes(), before)
     # Shown again it is painted back, and stays when noise is hidden.
-    hand.key(Qt.Key.Key_N, SHIFT)
-    hand.until(lambda: hand.noise_seen()["section"] > 0)
+    user.key(Qt.Key.Key_N, SHIFT)
+    user.until(lambda: user.noise_seen()["section"] > 0)
     assert found() is not None
-    hand.lasso(site.xyz[wanted], 3.0)
-    hand.until(lambda: (hand.classes()[wanted] == GROUND).all())
-    assert (hand.classes() != before).sum() == wanted.sum()
-    hand.key(Qt.Key.Key_N, SHIFT)
-    hand.until(lambda: not any(hand.noise_seen().values()))
-    hand.until(lambda: hand.colours_of(wanted)["section"] == {lifted(GROUND)})
+    user.lasso(site.xyz[wanted], 3.0)
+    user.until(lambda: (user.classes()[wanted] == GROUND).all())
+    assert (user.classes() != before).sum() == wanted.sum()
+    user.key(Qt.Key.Key_N, SHIFT)
+    user.until(lambda: not any(user.noise_seen().values()))
+    user.until(lambda: user.colours_of(wanted)["section"] == {lifted(GROUND)})
     # Undone while it is hidden, it goes at once.
-    hand.key(Qt.Key.Key_Z, CONTROL)
-    hand.until(lambda: not hand.colours_of(wanted)["section"])
+    user.key(Qt.Key.Key_Z, CONTROL)
+    user.until(lambda: not user.colours_of(wanted)["section"])
     document.close()
     assert not document.shared.view_settings.look.hides_noise
     assert document.open(tmp_path / "現場.zuka")

@@ -75,8 +75,8 @@ def test_clicked_pixels_are_the_measured_coordinates_in_dxf_and_csv(
 
 def _coordinates(header, row):
     names = ("東", "北", "標高")
-    places = [next(i for i, h in enumerate(header) if name in h) for name in names]
-    return [row[place] for place in places]
+    positions = [next(i for i, h in enumerate(header) if name in h) for name in names]
+    return [row[position] for position in positions]
 
 
 def test_undo_goes_back_to_the_empty_drawing_and_redo_gives_it_back(street):
@@ -115,9 +115,9 @@ def test_backspace_takes_back_the_last_vertex_and_escape_the_whole_line(street):
 def test_the_cursor_set_in_the_image_is_the_same_point_in_3d(street):
     point = _points_down_the_road(street, 1)[0]
     street.click(point)
-    place = street.document.shared.cursor.place
-    assert place.measured.point == point
-    assert place == street.place_of(point)
+    position = street.document.shared.cursor.position
+    assert position.measured.point == point
+    assert position == street.position_of(point)
 
 
 def test_a_deleted_feature_is_gone_in_both_views_and_comes_back(street):

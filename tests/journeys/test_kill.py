@@ -38,9 +38,9 @@ def test_after_a_kill_in_the_middle_of_drawing_all_finished_steps_are_there(tmp_
         [sys.executable, "-c", DRAWING, folder], stdout=subprocess.PIPE, text=True
     )
     with drawing:
-        told = 0
-        while told < steps:
-            told = int(drawing.stdout.readline())
+        reported = 0
+        while reported < steps:
+            reported = int(drawing.stdout.readline())
         drawing.send_signal(signal.SIGKILL)
     project = Project.open(folder)
     drawn = len(project.features)

@@ -19,7 +19,7 @@ HOLDING = """
 import sys
 from pathlib import Path
 from PySide6.QtCore import QPoint, Qt
-from tests.properties.operator_hands import Operator
+from tests.properties.operator_input import Operator
 home, what = Path(sys.argv[1]), sys.argv[2]
 operator = Operator(home, home / "street.zuka")
 view, document = operator.view, operator.parts.document

@@ -61,8 +61,8 @@ def street(tmp_path_factory) -> Path:
 def replayed(project: Project) -> np.ndarray:
     """The labels that the stored changes make, one after the other, from none."""
     labels = np.zeros(project.drives[0].count, np.uint8)
-    for place in range(1, project.history.position + 1):
-        step = project.history._change(place)
+    for position in range(1, project.history.position + 1):
+        step = project.history._change(position)
         filed = () if step.filed is None else step.filed.changes()
         for change in (*step.labels, *filed):
             points = change.unpacked_points()
@@ -93,9 +93,9 @@ def test_killed_again_and_again_the_labels_are_what_the_history_makes(street, tm
             np.testing.assert_array_equal(all_labels(project.drives[0]), replayed(project))
 
 
-@pytest.mark.parametrize("wish", ["apply", "undo", "redo"])
+@pytest.mark.parametrize("wanted", ["apply", "undo", "redo"])
 @pytest.mark.parametrize("written", [0, 700, 1500])
-def test_killed_between_database_and_file_the_step_is_completed(street, tmp_path, wish, written):
+def test_killed_between_database_and_file_the_step_is_completed(street, tmp_path, wanted, written):
     folder = Path(shutil.copytree(street, tmp_path / "a.zuka"))
     points = np.arange(500, 2000)
     with closing(Project.open(folder)) as project:
@@ -103,11 +103,11 @@ def test_killed_between_database_and_file_the_step_is_completed(street, tmp_path
         without = all_labels(project.drives[0])
         paint(project, points, 11)
         with_it = all_labels(project.drives[0])
-        if wish != "apply":
+        if wanted != "apply":
             project.features.undo()
-        if wish == "redo":
+        if wanted == "redo":
             project.features.redo()
-        before, after = (with_it, without) if wish == "undo" else (without, with_it)
+        before, after = (with_it, without) if wanted == "undo" else (without, with_it)
         # What a kill leaves: the database knows, of the file only a part was written.
         half = points[written:]
         write_labels(project.drives[0], half, before[half])

@@ -28,7 +28,7 @@ FEW = 25
     ],
 )
 def test_what_is_done_again_and_again_leaves_no_objects_in_the_window(
-    sample_project: Path, tmp_path: Path, action: actions.Action
+    sample_project: Path, tmp_path: Path, action: actions.OperatorAction
 ) -> None:
     choice = random.Random(1)  # noqa: S311 - chance, no secret
     with Session.on(sample_project, tmp_path / "day") as session:

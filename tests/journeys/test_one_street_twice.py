@@ -60,20 +60,20 @@ def test_a_click_in_one_image_is_the_nearest_point_in_the_other_driven_back(at_s
     views = at_street.parts.image_views
     other = views.show_beside(back.id)
     assert other is not None
-    assert other.viewport.lay.is_reversed_along
+    assert other.viewport.orientation.is_reversed_along
     image = image_of(there, at_street.document.shared.view_settings.image_kind)
     point = at_street.shown_point(image.rows // 2, image.width // 2)
     at_street.click(point)
-    place = at_street.document.shared.cursor.place
-    assert place is not None
-    away = np.linalg.norm(back.xyz(slice(None)) - np.array(place.xyz), axis=1)
+    position = at_street.document.shared.cursor.position
+    assert position is not None
+    away = np.linalg.norm(back.xyz(slice(None)) - np.array(position.xyz), axis=1)
     assert away.min() < NEAR_M
-    shown = other.position_of(place)
+    shown = other.position_of(position)
     rows, columns = other.picture.image.pixel_of(np.array([int(away.argmin())]))
-    spot = other.picture.places(rows, columns.astype(np.int64))[0]
+    spot = other.picture.positions(rows, columns.astype(np.int64))[0]
     assert (shown.x(), shown.y()) == other.viewport.position_of(*spot.tolist())
     # Locked scrolling has brought it into the window, about where it is in the first image.
-    first = views.main.position_of(place)
+    first = views.main.position_of(position)
     assert other.viewport.shows(*spot.tolist(), 0.0)
     assert abs(first.x() - shown.x()) < 0.25 * other.width()
 

@@ -75,8 +75,8 @@ def test_a_stroke_is_seen_undone_redone_and_kept(painter, surveyor, tmp_path):
     painter.do("brush-larger")
     assert document.shared.labels.radius_m == 0.375
     painter.stroke()
-    place = np.array(surveyor.place_of(painter.point).xyz)
-    under = points_under_brush(surveyor.drive, place, place, 0.375)
+    position = np.array(surveyor.position_of(painter.point).xyz)
+    under = points_under_brush(surveyor.drive, position, position, 0.375)
     painted = painter.labels
     assert under.size > 5
     assert (painted[under] == 6).all()
@@ -152,7 +152,7 @@ def test_a_lasso_in_3d_labels_every_measured_point_inside_it(painter, surveyor):
     for spot in spots[1:]:
         # The view looks at where the mouse is as often as it can, not at every event.
         move_mouse(picture, spot, LEFT)
-        scene._hand._on_look_up_timeout()
+        scene._mouse._on_look_up_timeout()
     projection = scene._hits.projection
     QTest.mouseRelease(picture, LEFT, NO_KEYS, spots[-1])
     bot.waitUntil(lambda: document.undo_stack.undo_label is not None, timeout=WAIT_MS)
@@ -172,13 +172,13 @@ def test_a_lasso_in_3d_labels_every_measured_point_inside_it(painter, surveyor):
         assert not labelled[~inside[1]].any()
         found += int(inside[0].sum())
     assert found > sum(one.tile.points.size for one in scene._hits.drawn) / 100
-    told: list[object] = []
-    document.told.connect(told.append)
-    document.refused.connect(told.append)
+    reported: list[object] = []
+    document.reported.connect(reported.append)
+    document.refused.connect(reported.append)
     assert document.undo()
     every = [(drive, np.arange(drive.count)) for drive in document.drives()]
 
     def is_taken_back() -> None:
-        assert not any(labels_of(*one).any() for one in every), told
+        assert not any(labels_of(*one).any() for one in every), reported
 
     bot.waitUntil(is_taken_back, timeout=WAIT_MS)

@@ -13,11 +13,11 @@ import pytest
 
 from app.cli.terminal import DONE, run_in_terminal
 from processing.monitor import SilentMonitor
+from processing.simulate.requests import StreetRequest
 from processing.simulate.streets import simulate_street
-from processing.simulate.wishes import StreetWish
 from tests.app.score_answers import scored
 
-STREET = StreetWish(seed=418, length_m=30.0, style="rural", images=False)
+STREET = StreetRequest(seed=418, length_m=30.0, style="rural", images=False)
 GEOMETRY = {"curbs": "LineString", "gutters": "Polygon"}
 WORDS = {
     "curbs": {"edge": {"upper", "lower"}, "type": {"curb", "dropped"}},
@@ -77,9 +77,9 @@ def test_geojson_has_what_the_contract_names(
             assert facts[name] in known
         for name in MEASURES[tool]:
             assert 0.0 < facts[name] < 3.0
-        places = one["geometry"]["coordinates"]
-        for place in places[0] if tool == "gutters" else places:
-            assert len(place) == 3
+        positions = one["geometry"]["coordinates"]
+        for position in positions[0] if tool == "gutters" else positions:
+            assert len(position) == 3
 
 
 def test_every_curb_has_both_edges_along_the_drive(results: dict[tuple[str, str], Path]) -> None:
@@ -108,8 +108,8 @@ def test_table_and_geopackage_hold_the_same_features(
     layers = pyogrio.list_layers(results[tool, "gpkg"])[:, 0]
     frames = [pyogrio.raw.read(results[tool, "gpkg"], layer=layer) for layer in layers]
     assert sum(len(shapes) for _, _, shapes, _ in frames) == len(features)
-    for told, _, _, _ in frames:
-        assert {"confidence", "status", "run", "type", *MEASURES[tool]} <= set(told["fields"])
+    for reported, _, _, _ in frames:
+        assert {"confidence", "status", "run", "type", *MEASURES[tool]} <= set(reported["fields"])
 
 
 @BOTH
@@ -138,6 +138,6 @@ def test_the_result_scores_as_promised(
 ) -> None:
     truth = street / "street" / "truth" / f"{tool}.geojson"
     capsys.readouterr()
-    told = scored(capsys, tool, results[tool, ending], truth)["classes"]
+    reported = scored(capsys, tool, results[tool, ending], truth)["classes"]
     for name in COUNTS[tool]:
-        assert told[name]["f"] >= LEAST_F[name], (name, told[name])
+        assert reported[name]["f"] >= LEAST_F[name], (name, reported[name])

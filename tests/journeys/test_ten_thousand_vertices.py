@@ -17,7 +17,7 @@ from processing.project.export import ExportRequest
 from processing.project.feature import PointReference
 from tests.journeys.conftest import Surveyor
 from widgets.mouse_tools.mouse_tool import Hit
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 COUNT = 10_000
 
@@ -29,7 +29,7 @@ def street(surveyor: Surveyor, tmp_path: Path) -> Iterator[Surveyor]:
     return surveyor
 
 
-def _places(street: Surveyor) -> list[Place]:
+def _positions(street: Surveyor) -> list[PickedPosition]:
     """Measured points along the street, in the order of their rows."""
     image = image_of(street.drive, street.document.shared.view_settings.image_kind)
     per_row = -(-COUNT // (image.rows - 40))
@@ -41,7 +41,7 @@ def _places(street: Surveyor) -> list[Place]:
     chosen = points[:COUNT]
     xyz = street.drive.xyz(np.array(chosen)).tolist()
     return [
-        Place((east, north, up), PointReference(street.drive.id, point))
+        PickedPosition((east, north, up), PointReference(street.drive.id, point))
         for (east, north, up), point in zip(xyz, chosen, strict=True)
     ]
 
@@ -49,23 +49,23 @@ def _places(street: Surveyor) -> list[Place]:
 def test_a_line_of_ten_thousand_vertices_is_drawn_edited_undone_and_exported(
     street: Surveyor, tmp_path: Path, record_property
 ) -> None:
-    places = _places(street)
-    assert len(places) == COUNT
+    positions = _positions(street)
+    assert len(positions) == COUNT
     kinds = street.document.catalogue().kinds
     street.parts.toolbox.choose_kind(next(k for k in kinds if k.geometry is Geometry.LINE))
-    hand = street.parts.toolbox.hand
+    user = street.parts.toolbox.current_tool
     started = time.perf_counter()
-    for number, place in enumerate(places):
+    for number, position in enumerate(positions):
         if number % 100 == 0:
-            hand.move(Hit(place))
-        hand.press(Hit(place))
+            user.move(Hit(position))
+        user.press(Hit(position))
     record_property("drawn_s", time.perf_counter() - started)
     street.key(Qt.Key.Key_Return)
     (line,) = street.document.features()
-    assert [vertex.xyz for vertex in line.vertices] == [place.xyz for place in places]
+    assert [vertex.xyz for vertex in line.vertices] == [position.xyz for position in positions]
 
     street.parts.toolbox.choose("edit")
-    middle, view = places[COUNT // 2], street.parts.image_view
+    middle, view = positions[COUNT // 2], street.parts.image_view
     spot = street.pixel_of(middle.measured.point)
     street.bot.mousePress(view, Qt.MouseButton.LeftButton, pos=spot)
     moves = []

@@ -19,7 +19,7 @@ from processing.project.feature import Feature, Vertex, new_feature_id
 from processing.text import Text
 from tests.journeys.conftest import Surveyor
 from tests.mouse_events import NO_KEYS, move_mouse
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 LEFT = Qt.MouseButton.LeftButton
 FREE = Qt.KeyboardModifier.ControlModifier
@@ -46,7 +46,7 @@ def street(surveyor: Surveyor, tmp_path: Path, qtbot):
 
 def test_a_vertex_moved_in_any_view_is_exported_alike(street: Surveyor, qtbot, tmp_path):
     parts = street.parts
-    start, goal = places_on_a_curb(street)
+    start, goal = positions_on_a_curb(street)
     line, other = line_from(start, "curb_upper"), line_from(goal, "curb_lower")
     assert parts.document.apply(Text("Draw", "作図"), Change(added=(line, other)))
     exported = {}
@@ -67,10 +67,10 @@ def test_a_vertex_moved_in_any_view_is_exported_alike(street: Surveyor, qtbot, t
         assert np.allclose(of_point, freely.xyz, atol=SAME_M), name
         assert np.linalg.norm(of_point - goal.xyz) < NEAR_M, name
         undo(street)
-    assert {tuple(np.round(place, 3).tolist()) for place in exported.values()} == {goal.xyz}
+    assert {tuple(np.round(position, 3).tolist()) for position in exported.values()} == {goal.xyz}
 
 
-def places_on_a_curb(street: Surveyor) -> tuple[Place, Place]:
+def positions_on_a_curb(street: Surveyor) -> tuple[PickedPosition, PickedPosition]:
     """Two points of the road within one section, a step apart, that a camera image shows."""
     drive = street.drive
     image = image_of(drive, street.document.shared.view_settings.image_kind)
@@ -89,53 +89,53 @@ def places_on_a_curb(street: Surveyor) -> tuple[Place, Place]:
                 camera = Camera(taken)
                 away = camera.distances_to(xyz)
                 if away.max() < 14.0 and camera.shows(camera.pixels_of(xyz)).all():
-                    return street.place_of(point), street.place_of(other)
+                    return street.position_of(point), street.position_of(other)
     message = "no image shows the road"
     raise AssertionError(message)
 
 
-def line_from(start: Place, kind: str) -> Feature:
+def line_from(start: PickedPosition, kind: str) -> Feature:
     """Draw a line from a place to one two metres away, across the road."""
     x, y, z = start.xyz
     vertices = (Vertex(start.xyz, start.measured), Vertex((x + 2.0, y + 2.0, z)))
     return Feature(new_feature_id(), kind, Geometry.LINE, vertices)
 
 
-def show(street: Surveyor, name: str, place: Place) -> None:
+def show(street: Surveyor, name: str, position: PickedPosition) -> None:
     """Bring a view to the front, close to a place, and wait until it is sharp."""
     parts, bot = street.parts, street.bot
     if name != "image":
         parts.view_docks.show_view(name)
-    parts.document.shared.cursor.move_to(place)
+    parts.document.shared.cursor.move_to(position)
     if name == "image":
         parts.image_view.show_one_to_one()
         parts.image_view.zoom_by(8.0)
-        parts.image_view.center_on(place)
+        parts.image_view.center_on(position)
     elif name == "scene":
         camera = parts.scene_view.camera
         parts.scene_view.look_from_above()
-        parts.scene_view.center_on(place)
+        parts.scene_view.center_on(position)
         parts.scene_view.zoom_by(camera.distance_m / 4.0)
         bot.waitUntil(lambda: parts.scene_view.is_settled, timeout=WAIT_MS)
     elif name == "section":
-        parts.section_view.show_place(place)
+        parts.section_view.show_position(position)
         with bot.waitSignal(parts.section_view.sharpened, timeout=WAIT_MS):
             parts.section_view.set_pinned(False)
             parts.section_view.step(1)
             parts.section_view.step(-1)
-            parts.section_view.show_place(place)
+            parts.section_view.show_position(position)
         parts.section_view.panes[0].zoom_by(8.0)
-        parts.section_view.panes[0].center_on(place)
+        parts.section_view.panes[0].center_on(position)
     elif name == "camera":
-        parts.camera_view.show_place(place)
+        parts.camera_view.show_position(position)
         bot.waitUntil(lambda: parts.camera_view.is_sharp, timeout=WAIT_MS)
         parts.camera_view.zoom_by(6.0)
-        parts.camera_view.center_on(place)
+        parts.camera_view.center_on(position)
     else:
         # Clicks find the points that are in the picture, so it has to be there.
         with bot.waitSignal(parts.map_view.sharpened, timeout=WAIT_MS):
             parts.map_view.zoom_by(40.0)
-            parts.map_view.center_on(place)
+            parts.map_view.center_on(position)
 
 
 def undo(street: Surveyor) -> None:
@@ -144,7 +144,9 @@ def undo(street: Surveyor) -> None:
     QApplication.processEvents()
 
 
-def drag(street: Surveyor, name: str, start: Place, goal: Place, keys=NO_KEYS) -> None:
+def drag(
+    street: Surveyor, name: str, start: PickedPosition, goal: PickedPosition, keys=NO_KEYS
+) -> None:
     """Take hold of the vertex and let it go at the goal, snapping to what is drawn there."""
     parts, bot = street.parts, street.bot
     view = getattr(parts, f"{name}_view")
@@ -155,8 +157,8 @@ def drag(street: Surveyor, name: str, start: Place, goal: Place, keys=NO_KEYS) -
         target = parts.section_view.panes[0]
     source = target if name == "section" else view
 
-    def spot(place: Place) -> QPoint:
-        at = source.position_of(place)
+    def spot(position: PickedPosition) -> QPoint:
+        at = source.position_of(position)
         assert at is not None, name
         assert target.rect().contains(at.toPoint()), name
         return at.toPoint()

@@ -141,8 +141,8 @@ def _every_step(line: Floats) -> Floats:
 
 def _stretch(tree: cKDTree, dense: list[Floats]) -> tuple[int, int, int]:
     """The longest stretch that was seen: number of its places, the first and the last."""
-    places = np.concatenate(dense)
-    counts = tree.query_ball_point(places, _SEEN_M, return_length=True)
+    positions = np.concatenate(dense)
+    counts = tree.query_ball_point(positions, _SEEN_M, return_length=True)
     filled = np.flatnonzero(counts >= _SEEN_POINTS)
     if not filled.size:
         return 0, 0, 0
@@ -156,12 +156,12 @@ def _stretch(tree: cKDTree, dense: list[Floats]) -> tuple[int, int, int]:
 def _cut(dense: list[Floats], first: int, last: int) -> tuple[Floats, ...]:
     """Pieces between two places counted along all of them; every fifth place and the ends."""
     pieces, start = [], 0
-    for places in dense:
-        low, high = max(first - start, 0), min(last - start, len(places) - 1)
-        start += len(places)
+    for positions in dense:
+        low, high = max(first - start, 0), min(last - start, len(positions) - 1)
+        start += len(positions)
         if high - low >= 3:
             chosen = np.unique(np.append(np.arange(low, high + 1, 5), high))
-            pieces.append(places[chosen])
+            pieces.append(positions[chosen])
     return tuple(pieces)
 
 

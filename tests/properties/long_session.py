@@ -44,23 +44,23 @@ def main() -> int:
                     if number % _CHECKED_EACH == 0:
                         session.check_all()
                 except BaseException:
-                    _tell(f"action {number} of seed {wishes.seed}: {action.__name__}")
+                    _report(f"action {number} of seed {wishes.seed}: {action.__name__}")
                     raise
                 if number % wishes.told_each == 0:
                     passed = time.perf_counter() - started
-                    _tell(f"{number} actions, {passed:.0f} s, {_counted(session)}")
-            _tell(str(dict(session.done.most_common())))
+                    _report(f"{number} actions, {passed:.0f} s, {_counted(session)}")
+            _report(str(dict(session.done.most_common())))
             refusals = Counter(error.what.en for error in session.operator.refused)
-            _tell(f"refused: {dict(refusals)}")
-            _tell(f"told: {len(set(session.operator.told))} different sentences")
+            _report(f"refused: {dict(refusals)}")
+            _report(f"told: {len(set(session.operator.reported))} different sentences")
         steps = check_whole_history(home / "work" / "通り.zuka")
-        _tell(f"{steps} steps undone and done again; the project reopened the same")
+        _report(f"{steps} steps undone and done again; the project reopened the same")
     return 0
 
 
 def _counted(session: Session) -> str:
     operator = session.operator
-    operator.parts.toolbox.hand.put_down()
+    operator.parts.toolbox.current_tool.put_down()
     operator.settle()
     gc.collect()
     widgets = len(QApplication.allWidgets())
@@ -78,7 +78,7 @@ def resident_mb() -> float:
     return pages * resource.getpagesize() / 1e6
 
 
-def _tell(line: str) -> None:
+def _report(line: str) -> None:
     sys.stdout.write(line + "\n")
     sys.stdout.flush()
 

@@ -19,10 +19,10 @@ from PySide6.QtWidgets import (
 )
 
 from processing.image.attributes import available
-from tests.properties.operator_hands import CTRL, FREE, RIGHT, SHIFT, Operator
+from tests.properties.operator_input import CTRL, FREE, RIGHT, SHIFT, Operator
 from tests.properties.operator_views import review, stand_otherwise
 
-Action = Callable[[Operator, random.Random], None]
+OperatorAction = Callable[[Operator, random.Random], None]
 
 TOOLS = (
     *("line", "area", "point", "trace", "arc", "spline", "rectangle", "circle", "parallel"),
@@ -365,25 +365,25 @@ def reopen(operator: Operator, choice: random.Random) -> None:
     assert operator.parts.document.open(operator.project)
 
 
-OFTEN: tuple[Action, ...] = (
+OFTEN: tuple[OperatorAction, ...] = (
     *(take_tool, take_tool, take_kind, click_anywhere, click_anywhere, click_anywhere),
     *(click_on_vertex, click_on_vertex, click_on_line, click_on_line),
     *(draw_some, draw_some, draw_some, draw_some, put_points, put_points),
     *(end_drawing, end_drawing, close_drawing, press_right, double_click),
 )
-EDITING: tuple[Action, ...] = (
+EDITING: tuple[OperatorAction, ...] = (
     *(drag_vertex, drag_vertex, hold_vertex, drag_box, drag_features, edit_lines, edit_lines),
     *(judge, choose, choose, cut_and_paste, cut_and_paste, delete, step_back, step_back),
     *(type_attribute, type_attribute, use_table, use_table, hide_kinds),
 )
-LOOKING: tuple[Action, ...] = (
+LOOKING: tuple[OperatorAction, ...] = (
     *(look_elsewhere, look_elsewhere, look_elsewhere, look_at_all, snap_to, work_on_plane),
     *(change_look, change_drive, open_palette, stand_otherwise, stand_otherwise, review),
 )
-SELDOM: tuple[Action, ...] = (click_in_3d, change_theme, change_language, run_tool, reopen)
+SELDOM: tuple[OperatorAction, ...] = (click_in_3d, change_theme, change_language, run_tool, reopen)
 
 
-def any_action(choice: random.Random) -> Action:
+def any_action(choice: random.Random) -> OperatorAction:
     """One of them, as often as in a day's work."""
     share = choice.random()
     if share < 0.50:

@@ -17,8 +17,8 @@ from processing.points.drive import Drive
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature
 from processing.project.project import Project
-from tests.properties.operator_actions import Action
-from tests.properties.operator_hands import Operator
+from tests.properties.operator_actions import OperatorAction
+from tests.properties.operator_input import Operator
 from tests.properties.watched import watched
 from widgets.mouse_tools.drawing_tool import LEAST_VERTICES
 
@@ -59,7 +59,7 @@ class Session:
             assert not troubles, "\n".join(troubles)
         assert _read(session.operator.project) == seen
 
-    def do(self, action: Action, choice: random.Random) -> None:
+    def do(self, action: OperatorAction, choice: random.Random) -> None:
         """Do one thing and look whether all is well."""
         self.done[action.__name__] += 1
         action(self.operator, choice)
@@ -83,7 +83,7 @@ class Session:
         self._checked = features
         assert document.shared.selection.features <= features.keys(), "chosen, but not there"
         history, actions = document.project.history, parts.window.actions_by_id
-        if not parts.toolbox.hand.is_busy:
+        if not parts.toolbox.current_tool.is_busy:
             assert document.shared.sketch.drawing is None, f"left by {parts.toolbox.name}"
             assert actions["undo"].isEnabled() == history.can_undo
         assert actions["redo"].isEnabled() == history.can_redo
@@ -98,9 +98,9 @@ class Session:
         table = operator.parts.feature_table
         if table.isVisible():
             assert table._model.rows.total == len(features)
-        assert operator.view._places._features == features
+        assert operator.view._positions._features == features
         assert _read(operator.project) == seen
-        operator.parts.toolbox.hand.put_down()
+        operator.parts.toolbox.current_tool.put_down()
         self._check_back_and_forth()
 
     def _check_back_and_forth(self) -> None:
@@ -120,10 +120,10 @@ class Session:
         kind = document.catalogue()[feature.kind]
         assert kind.geometry is feature.geometry, what
         assert len(feature.vertices) >= LEAST_VERTICES[feature.geometry], what
-        places = [vertex.xyz for vertex in feature.vertices]
-        assert np.isfinite(places).all(), what
+        positions = [vertex.xyz for vertex in feature.vertices]
+        assert np.isfinite(positions).all(), what
         if feature.geometry is Geometry.AREA:
-            assert crosses_itself(places, is_closed=True) is None, f"{what} crosses itself"
+            assert crosses_itself(positions, is_closed=True) is None, f"{what} crosses itself"
         for drive in document.drives():
             self._check_measured(feature, drive, what)
 
@@ -136,8 +136,8 @@ class Session:
             if one.measured is not None and one.measured.drive == drive.id
         ]
         if own:
-            points, places = zip(*own, strict=True)
-            off = np.abs(drive.xyz(np.array(points)) - np.array(places)).max()
+            points, positions = zip(*own, strict=True)
+            off = np.abs(drive.xyz(np.array(points)) - np.array(positions)).max()
             assert off < _BESIDE_M, f"{what} is {off} m off its points"
 
 

@@ -8,7 +8,7 @@ from app.review import Review
 from processing.bench.street_candidates import street_candidates
 from processing.project.review_state import ReviewOrder
 from tests.processing.project.candidates import found
-from tests.properties.operator_hands import Operator
+from tests.properties.operator_input import Operator
 
 _STANDINGS = (
     *("layout-drawing", "layout-checking", "layout-earthwork", "layout-two-screens"),

@@ -18,8 +18,8 @@ from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
-from processing.road.curbs.curb_guides import Guide, outwards_of
-from processing.road.curbs.curb_points import GuideCells
+from processing.road.curbs.approximate_lines import ApproximateLine, outwards_of
+from processing.road.curbs.curb_points import LineCells
 from processing.road.gutters.gutter_notches import notches_of
 from processing.road.gutters.notches import NotchParameters
 from processing.runner import RunRequest, columns_of, run
@@ -42,11 +42,11 @@ from tests.processing.image.recordings import (
     drive_of,
     random_recording,
     small_drive,
-    without_turns,
+    without_revolutions,
 )
 from tests.processing.templates.curb_street import CURB, CURB_FRAME, recorded
 
-Columns = Mapping[str, np.ndarray]
+ColumnArrays = Mapping[str, np.ndarray]
 BLOCKS = (
     (NORMALS.id, NormalsParameters()),
     (NORMALS.id, NormalsParameters(radius_m=2.0)),
@@ -67,14 +67,14 @@ IN_SPACE = (
     (GROUND_TOOL.id, GroundParameters(method="lowest", tolerance_m=0.1)),
 )
 """Tools that look around in space, whenever a neighbour was measured, by parts of their own."""
-STRETCHES = (TEMPLATE.id, CURBS.id, GUTTERS.id)
+CHUNKS = (TEMPLATE.id, CURBS.id, GUTTERS.id)
 """Tools that find candidates, and read the street a stretch at a time."""
 
 
 def test_every_tool_is_shown_to_give_the_same_by_blocks() -> None:
     shown = {tool for tool, _ in (*BLOCKS, *WITH_IMAGES, *IN_SPACE)}
     assert shown == set(POINT_TOOLS), "give a new tool a line in BLOCKS, WITH_IMAGES or IN_SPACE"
-    assert shown | set(STRETCHES) == set(TOOLS), "a new tool that finds needs a test of its own"
+    assert shown | set(CHUNKS) == set(TOOLS), "a new tool that finds needs a test of its own"
 
 
 @pytest.fixture(scope="module")
@@ -83,11 +83,11 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> Mapping[str, Drive]:
     flat = small_drive(folder / "flat", 7, multi_return_share=0.2, lost_share=0.2)[0]
     return {
         "street": small_drive(folder / "street", 7, multi_return_share=0.2, lost_share=0.2)[0],
-        "top view": without_turns(flat),
+        "top view": without_revolutions(flat),
     }
 
 
-def by_blocks(drive: Drive, tool: str, parameters: object, points: int) -> Columns:
+def by_blocks(drive: Drive, tool: str, parameters: object, points: int) -> ColumnArrays:
     into = drive.folder.parent / uuid4().hex
     request = RunRequest(tool, drive, parameters)
     result = run(request, SilentMonitor(), into=into, points_per_block=points)
@@ -97,7 +97,7 @@ def by_blocks(drive: Drive, tool: str, parameters: object, points: int) -> Colum
     return columns
 
 
-def assert_same(one: Columns, other: Columns) -> None:
+def assert_same(one: ColumnArrays, other: ColumnArrays) -> None:
     assert one.keys() == other.keys()
     for name, values in one.items():
         assert values.dtype == other[name].dtype
@@ -132,7 +132,7 @@ def test_parts_of_space_are_the_whole_cloud(
 @pytest.fixture(scope="module")
 def photographed(tmp_path_factory: pytest.TempPathFactory) -> Drive:
     folder = tmp_path_factory.mktemp("photographed")
-    drive = drive_of(simulated_drive(3, pulses_per_turn=200.0, length_m=4.0), folder / "d")
+    drive = drive_of(simulated_drive(3, pulses_per_revolution=200.0, length_m=4.0), folder / "d")
     images = [
         looking(folder / f"{number}.png", (-0.5, along, 2.0), (0.3, 1.0, -0.3), size=(240, 180))
         for number, along in enumerate((0.5, 2.5))
@@ -183,8 +183,8 @@ def test_a_template_gives_the_same_lines_whatever_is_read_at_a_time(
 def test_curbs_are_measured_by_the_same_points_whatever_is_read_at_a_time(
     curb: Drive, points_at_once: int
 ) -> None:
-    guide = guide_along(curb)
-    cells = GuideCells([guide], 0.4)
+    approximate_line = guide_along(curb)
+    cells = LineCells([approximate_line], 0.4)
     whole = cells.about(curb, SilentMonitor())
     parts = cells.about(curb, SilentMonitor(), points_at_once)
     assert whole.point.size > 1_000
@@ -203,11 +203,11 @@ def test_dips_of_the_road_are_the_same_whatever_is_read_at_a_time(
     np.testing.assert_array_equal(whole.point, parts.point)
 
 
-def guide_along(drive: Drive) -> Guide:
+def guide_along(drive: Drive) -> ApproximateLine:
     """A guide by the edge of the road, of the length that the template follows."""
     xyz = followed(drive, 80.0)[0].xyz
     count = len(xyz)
-    return Guide(
+    return ApproximateLine(
         xyz,
         outwards_of(xyz),
         np.ones(count, np.bool_),
@@ -235,17 +235,21 @@ def block_of(image: PointCloudImage, xyz: np.ndarray, rows: range) -> PointBlock
 
 @given(
     seed=st.integers(0, 1000),
-    turns=st.integers(1, 30),
+    revolutions=st.integers(1, 30),
     points=st.integers(1, 200),
     spread=st.sampled_from([0.05, 0.3, 1.0]),
     stop=st.sampled_from([0, 5000]),
 )
 @settings(max_examples=150)
 def test_components_of_random_points_by_blocks_are_those_of_the_whole(
-    seed: int, turns: int, points: int, spread: float, stop: int
+    seed: int, revolutions: int, points: int, spread: float, stop: int
 ) -> None:
-    recording = random_recording(seed, pulses_per_turn=9, turns=turns, stop_pulses=stop)
-    image = PointCloudImage(ImageKind.TRAJECTORY_REVERSIBLE, recording.pulses, recording.turns)
+    recording = random_recording(
+        seed, pulses_per_revolution=9, revolutions=revolutions, stop_pulses=stop
+    )
+    image = PointCloudImage(
+        ImageKind.TRAJECTORY_REVERSIBLE, recording.pulses, recording.revolutions
+    )
     rows, columns = image.pixel_of(np.arange(image.drive_count))
     xyz = np.column_stack([columns * 0.25, rows * 0.25, columns * 0.0])
     xyz += np.random.default_rng(seed).normal(0, spread, xyz.shape)

@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from processing.errors import Unsuitable, UserError
-from processing.image.attributes import colours, telling_attribute
+from processing.image.attributes import colours, most_telling_attribute
 from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
@@ -40,17 +40,17 @@ def cache(drives: dict[str, Drive]) -> Iterator[TileCache]:
     cache.close()
 
 
-class Listener:
+class CacheListener:
     """Notes what it is told."""
 
     def __init__(self) -> None:
-        self.told: list[tuple[TileRequest, TilePixels]] = []
+        self.reported: list[tuple[TileRequest, TilePixels]] = []
         self.reasons: list[UserError] = []
         self._changed = threading.Condition()
 
     def done(self, request: TileRequest, pixels: TilePixels) -> None:
         with self._changed:
-            self.told.append((request, pixels))
+            self.reported.append((request, pixels))
             self._changed.notify_all()
 
     def refused(self, _: TileRequest, reason: UserError) -> None:
@@ -61,7 +61,7 @@ class Listener:
     def wait_for(self, count: int) -> None:
         with self._changed:
             assert self._changed.wait_for(
-                lambda: len(self.told) + len(self.reasons) >= count, timeout=WAIT_S
+                lambda: len(self.reported) + len(self.reasons) >= count, timeout=WAIT_S
             )
 
 
@@ -79,7 +79,7 @@ REQUESTS = st.builds(
 def assert_right(drive: Drive, request: TileRequest, pixels: TilePixels) -> None:
     points = image_of(drive, request.kind).pyramid.points(request.key)
     np.testing.assert_array_equal(pixels.points, points)
-    shown = telling_attribute(drive, request.attribute)
+    shown = most_telling_attribute(drive, request.attribute)
     wanted = colours(drive, points, shown, request.low_percent, request.high_percent)
     np.testing.assert_array_equal(pixels.colours, wanted)
 
@@ -89,13 +89,13 @@ def assert_right(drive: Drive, request: TileRequest, pixels: TilePixels) -> None
 def test_every_tile_told_and_got_is_the_one_asked_for(
     cache: TileCache, drives: dict[str, Drive], asked: list[TileRequest], dropped: bool
 ) -> None:
-    listener = Listener()
+    listener = CacheListener()
     for request in asked:
         cache.request(request, listener.done)
         if dropped:
             cache.drop(request.drive_id)
     listener.wait_for(len(set(asked)))
-    for request, pixels in listener.told:
+    for request, pixels in listener.reported:
         assert_right(drives[request.drive_id], request, pixels)
     for request in asked:
         held = cache.get(request)
@@ -110,18 +110,18 @@ def request_of(column: int = 0, attribute: str = "intensity", drive: str = "a") 
 
 
 def test_a_tile_that_is_there_is_told_at_once(cache: TileCache) -> None:
-    first, second = Listener(), Listener()
+    first, second = CacheListener(), CacheListener()
     cache.request(request_of(), first.done)
     first.wait_for(1)
     cache.request(request_of(), second.done)
-    assert len(second.told) == 1
-    assert second.told[0][1] is cache.get(request_of())
+    assert len(second.reported) == 1
+    assert second.reported[0][1] is cache.get(request_of())
 
 
 def test_tiles_used_last_are_kept_within_the_limit(drives: dict[str, Drive]) -> None:
     cache = TileCache(limit_bytes=1)
     cache.use(drives.__getitem__)
-    listener = Listener()
+    listener = CacheListener()
     for number, name in enumerate(("a", "b"), start=1):
         cache.request(request_of(drive=name), listener.done)
         listener.wait_for(number)
@@ -144,7 +144,7 @@ class Gate:
         return self._drives[name]
 
 
-def loading_cache(drives: dict[str, Drive], listener: Listener) -> tuple[TileCache, Gate]:
+def loading_cache(drives: dict[str, Drive], listener: CacheListener) -> tuple[TileCache, Gate]:
     """A cache whose loaders are both busy."""
     gate, cache = Gate(drives), TileCache()
     cache.use(gate.drive)
@@ -155,7 +155,7 @@ def loading_cache(drives: dict[str, Drive], listener: Listener) -> tuple[TileCac
 
 
 def test_what_is_no_longer_wanted_is_not_loaded(drives: dict[str, Drive]) -> None:
-    listener = Listener()
+    listener = CacheListener()
     cache, gate = loading_cache(drives, listener)
     unwanted, wanted = request_of(0, "height"), request_of(0, "class")
     cache.request(unwanted, listener.done)
@@ -164,11 +164,11 @@ def test_what_is_no_longer_wanted_is_not_loaded(drives: dict[str, Drive]) -> Non
     gate.opened.set()
     listener.wait_for(3)
     cache.close()
-    assert {request for request, _ in listener.told} == {request_of(0), request_of(1), wanted}
+    assert {request for request, _ in listener.reported} == {request_of(0), request_of(1), wanted}
 
 
 def test_another_listener_of_the_same_tile_is_not_forgotten(drives: dict[str, Drive]) -> None:
-    listener, other = Listener(), Listener()
+    listener, other = CacheListener(), CacheListener()
     cache, gate = loading_cache(drives, listener)
     shared = request_of(0, "height")
     cache.request(shared, listener.done)
@@ -177,26 +177,26 @@ def test_another_listener_of_the_same_tile_is_not_forgotten(drives: dict[str, Dr
     gate.opened.set()
     other.wait_for(1)
     cache.close()
-    assert [request for request, _ in other.told] == [shared]
-    assert shared not in {request for request, _ in listener.told}
+    assert [request for request, _ in other.reported] == [shared]
+    assert shared not in {request for request, _ in listener.reported}
 
 
 def test_a_tile_being_made_when_its_drive_changes_is_made_again(
     drives: dict[str, Drive],
 ) -> None:
-    listener = Listener()
+    listener = CacheListener()
     cache, gate = loading_cache(drives, listener)
     cache.drop("a")
     gate.opened.set()
     listener.wait_for(2)
     cache.close()
-    assert sorted(request.key.column for request, _ in listener.told) == [0, 1]
+    assert sorted(request.key.column for request, _ in listener.reported) == [0, 1]
 
 
 def test_what_cannot_be_shown_is_refused_until_the_drive_changes(
     cache: TileCache, drives: dict[str, Drive]
 ) -> None:
-    listener, refused = Listener(), Listener()
+    listener, refused = CacheListener(), CacheListener()
     from_above = replace(request_of(attribute="height"), kind=ImageKind.TOP_VIEW)
     cache.request(from_above, listener.done, refused.refused)
     refused.wait_for(1)
@@ -204,7 +204,7 @@ def test_what_cannot_be_shown_is_refused_until_the_drive_changes(
     cache.request(from_above, listener.done, refused.refused)
     cache.request(request_of(), listener.done)
     listener.wait_for(1)
-    assert [request for request, _ in listener.told] == [request_of()]
+    assert [request for request, _ in listener.reported] == [request_of()]
     assert len(refused.reasons) == 1
     cache.drop("a")
     assert cache.refusal("a", "height") is None
@@ -213,23 +213,23 @@ def test_what_cannot_be_shown_is_refused_until_the_drive_changes(
 def test_a_drive_is_shown_by_what_it_has_where_it_lacks_the_attribute(
     cache: TileCache, drives: dict[str, Drive]
 ) -> None:
-    listener = Listener()
+    listener = CacheListener()
     cache.request(request_of(attribute="segment"), listener.done)
     listener.wait_for(1)
-    assert_right(drives["a"], *listener.told[0])
+    assert_right(drives["a"], *listener.reported[0])
     assert cache.refusal("a", "segment") is None
 
 
 def test_a_closed_drive_is_no_error(cache: TileCache) -> None:
-    listener = Listener()
+    listener = CacheListener()
     cache.request(request_of(drive="gone"), listener.done)
     cache.request(request_of(), listener.done)
     listener.wait_for(1)
-    assert listener.told[0][0] == request_of()
+    assert listener.reported[0][0] == request_of()
 
 
 def test_a_closed_cache_has_no_threads_and_tells_nothing(drives: dict[str, Drive]) -> None:
-    listener = Listener()
+    listener = CacheListener()
     cache, gate = loading_cache(drives, listener)
     cache.request(request_of(0, "height"), listener.done)
     closing = threading.Thread(target=cache.close)
@@ -237,13 +237,13 @@ def test_a_closed_cache_has_no_threads_and_tells_nothing(drives: dict[str, Drive
     gate.opened.set()
     closing.join(WAIT_S)
     assert not closing.is_alive()
-    assert request_of(0, "height") not in {request for request, _ in listener.told}
+    assert request_of(0, "height") not in {request for request, _ in listener.reported}
     assert not [t for t in threading.enumerate() if t.name.startswith("tiles-")]
     cache.request(request_of(), listener.done)
 
 
 def test_who_leaves_is_told_nothing_more_and_held_by_nobody(drives: dict[str, Drive]) -> None:
-    listener = Listener()
+    listener = CacheListener()
     cache, gate = loading_cache(drives, listener)
     cache.request(request_of(0, "height"), listener.done)
 
@@ -256,11 +256,11 @@ def test_who_leaves_is_told_nothing_more_and_held_by_nobody(drives: dict[str, Dr
     opening.start()
     cache.tell_nobody()
     opening.join(WAIT_S)
-    assert listener.told == []
+    assert listener.reported == []
     left = weakref.ref(listener)
     del listener
     assert left() is None
-    later = Listener()
+    later = CacheListener()
     cache.request(request_of(0, "class"), later.done)
     later.wait_for(1)
     cache.close()
@@ -269,12 +269,12 @@ def test_who_leaves_is_told_nothing_more_and_held_by_nobody(drives: dict[str, Dr
 def test_a_cache_that_knows_no_drives_says_so() -> None:
     cache = TileCache()
     with pytest.raises(ValueError, match="drives"):
-        cache.request(request_of(), Listener().done)
+        cache.request(request_of(), CacheListener().done)
     cache.close()
 
 
 def test_a_machine_without_memory_gives_tiles_back_and_says_so(drives: dict[str, Drive]) -> None:
-    cache, listener = TileCache(), Listener()
+    cache, listener = TileCache(), CacheListener()
     is_short = threading.Event()
 
     def drive_of(name: str) -> Drive:
@@ -297,5 +297,5 @@ def test_a_machine_without_memory_gives_tiles_back_and_says_so(drives: dict[str,
     is_short.clear()  # the loaders live on
     cache.request(first, listener.done, listener.refused)
     listener.wait_for(3)
-    assert len(listener.told) == 2
+    assert len(listener.reported) == 2
     cache.close()

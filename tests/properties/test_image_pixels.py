@@ -25,14 +25,14 @@ ONE_TO_ONE = st.sampled_from([ImageKind.REVERSIBLE, ImageKind.TRAJECTORY_REVERSI
 def images(draw: st.DrawFn, kinds: st.SearchStrategy[ImageKind] = KINDS) -> PointCloudImage:
     recording = random_recording(
         draw(st.integers(0, 10_000)),
-        pulses_per_turn=draw(st.integers(4, 40)),
-        turns=draw(st.integers(1, 12)),
+        pulses_per_revolution=draw(st.integers(4, 40)),
+        revolutions=draw(st.integers(1, 12)),
         lost_share=draw(st.sampled_from([0.0, 0.2, 0.9])),
         double_share=draw(st.sampled_from([0.0, 0.3])),
         # At 1,000 pulses a second: none, missing returns, a stop.
         stop_pulses=draw(st.sampled_from([0, 300, 5000])),
     )
-    return PointCloudImage(draw(kinds), recording.pulses, recording.turns)
+    return PointCloudImage(draw(kinds), recording.pulses, recording.revolutions)
 
 
 @given(images())

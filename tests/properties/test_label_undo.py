@@ -37,26 +37,26 @@ def test_undo_and_redo_give_all_labels_back_also_across_a_restart(street, steps)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(shutil.copytree(street, Path(folder) / "a.zuka"))
         project = Project.open(path)
-        states, place = [all_labels(project.drives[0])], 0
-        for wish, strokes in steps:
-            if wish == "reopen":
+        states, position = [all_labels(project.drives[0])], 0
+        for request, strokes in steps:
+            if request == "reopen":
                 project.close()
                 project = Project.open(path)
-            elif wish == "undo":
-                assert (project.features.undo() is not None) == (place > 0)
-                place = max(0, place - 1)
-            elif wish == "redo":
-                assert (project.features.redo() is not None) == (place + 1 < len(states))
-                place = min(len(states) - 1, place + 1)
+            elif request == "undo":
+                assert (project.features.undo() is not None) == (position > 0)
+                position = max(0, position - 1)
+            elif request == "redo":
+                assert (project.features.redo() is not None) == (position + 1 < len(states))
+                position = min(len(states) - 1, position + 1)
             else:
                 for first, count, step, code in strokes:
                     points = np.arange(first, first + count, step)
                     if painting(project.drives[0], points, code).is_empty:
                         continue
                     paint(project, points, code)
-                    after = states[place].copy()
+                    after = states[position].copy()
                     after[points] = code
-                    states = [*states[: place + 1], after]
-                    place += 1
-            np.testing.assert_array_equal(all_labels(project.drives[0]), states[place])
+                    states = [*states[: position + 1], after]
+                    position += 1
+            np.testing.assert_array_equal(all_labels(project.drives[0]), states[position])
         project.close()

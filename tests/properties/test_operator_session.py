@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, rule, run_state_machine_as_test
 from typing_extensions import override
 
-from tests.properties.operator_actions import EDITING, LOOKING, OFTEN, SELDOM, Action
+from tests.properties.operator_actions import EDITING, LOOKING, OFTEN, SELDOM, OperatorAction
 from tests.properties.operator_session import Session, check_whole_history
 
 CHANCE = st.randoms(use_true_random=False)
@@ -44,19 +44,19 @@ def days_of_an_operator(street: Path, home: Path) -> type[RuleBasedStateMachine]
             self._session = self._open.enter_context(Session.on(street, self._home))
 
         @rule(action=st.sampled_from(OFTEN), choice=CHANCE)
-        def draw(self, action: Action, choice: random.Random) -> None:
+        def draw(self, action: OperatorAction, choice: random.Random) -> None:
             self._session.do(action, choice)
 
         @rule(action=st.sampled_from(EDITING), choice=CHANCE)
-        def edit(self, action: Action, choice: random.Random) -> None:
+        def edit(self, action: OperatorAction, choice: random.Random) -> None:
             self._session.do(action, choice)
 
         @rule(action=st.sampled_from(LOOKING), choice=CHANCE)
-        def look(self, action: Action, choice: random.Random) -> None:
+        def look(self, action: OperatorAction, choice: random.Random) -> None:
             self._session.do(action, choice)
 
         @rule(action=st.sampled_from(SELDOM), choice=CHANCE)
-        def do_something_rare(self, action: Action, choice: random.Random) -> None:
+        def do_something_rare(self, action: OperatorAction, choice: random.Random) -> None:
             self._session.do(action, choice)
 
         @override

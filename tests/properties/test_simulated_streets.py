@@ -13,14 +13,14 @@ from hypothesis import strategies as some
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
+from processing.simulate.requests import StreetRequest
 from processing.simulate.scanning.sensors import SENSORS
 from processing.simulate.street.styles import STYLES
 from processing.simulate.streets import simulate_street
-from processing.simulate.wishes import StreetWish
 
 MOBILE = [one.id for one in SENSORS.values() if one.kind == "mobile"]
-WISHES = some.builds(
-    StreetWish,
+REQUESTS = some.builds(
+    StreetRequest,
     seed=some.integers(0, 2**31 - 1),
     length_m=some.floats(10.0, 14.0),
     style=some.sampled_from(sorted(STYLES)),
@@ -36,17 +36,21 @@ WISHES = some.builds(
 
 
 @settings(max_examples=3, phases=(Phase.explicit, Phase.generate))
-@given(WISHES)
-def test_a_street_is_imported_as_it_was_recorded(wish: StreetWish) -> None:
+@given(REQUESTS)
+def test_a_street_is_imported_as_it_was_recorded(request: StreetRequest) -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        made = simulate_street(wish, folder / "street", SilentMonitor())
-        told = json.loads((made.truth / "scene.json").read_text(encoding="utf-8"))["points"]
+        made = simulate_street(request, folder / "street", SilentMonitor())
+        reported = json.loads((made.truth / "scene.json").read_text(encoding="utf-8"))["points"]
         labelled = {
             one.name.removesuffix(".labels.npy"): np.load(one).size
             for one in made.truth.glob("*.labels.npy")
         }
-        assert told == labelled
-        request = ImportRequest(made.points, made.trajectories, made.images, made.crs)
-        drives = [Drive(one) for one in import_drives(request, folder / "in", SilentMonitor())]
-        assert sum(len(one.columns["xyz"]) for one in drives) == made.count == sum(told.values())
+        assert reported == labelled
+        import_request = ImportRequest(made.points, made.trajectories, made.images, made.crs)
+        drives = [
+            Drive(one) for one in import_drives(import_request, folder / "in", SilentMonitor())
+        ]
+        assert (
+            sum(len(one.columns["xyz"]) for one in drives) == made.count == sum(reported.values())
+        )

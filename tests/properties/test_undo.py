@@ -34,13 +34,13 @@ STEPS = st.lists(
 )
 
 
-def _change(wish, vertices, attributes, number, features) -> Change:
-    if wish == "add" or not features:
+def _change(request, vertices, attributes, number, features) -> Change:
+    if request == "add" or not features:
         geometry = list(Geometry)[number % 3]
         kept = tuple(vertices[:1] if geometry is Geometry.POINT else vertices)
         return Change(added=(Feature(f"f{number}", "kind", geometry, kept, attributes),))
     chosen = features[number % len(features)]
-    if wish == "remove":
+    if request == "remove":
         return Change(removed=(chosen,))
     moved = chosen.with_vertices(tuple(vertices[: len(chosen.vertices)]))
     after = Feature(moved.id, "other", moved.geometry, moved.vertices, attributes, Status.CANDIDATE)
@@ -53,22 +53,22 @@ def test_undo_and_redo_give_every_state_back_also_across_a_restart(steps):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "街路.zuka"
         project = Project.create(path, "EPSG:6677")
-        states, place = [{}], 0
-        for number, (wish, vertices, attributes) in enumerate(steps):
-            if wish == "reopen":
+        states, position = [{}], 0
+        for number, (request, vertices, attributes) in enumerate(steps):
+            if request == "reopen":
                 project.close()
                 project = Project.open(path)
-            elif wish == "undo":
-                assert (project.features.undo() is not None) == (place > 0)
-                place = max(0, place - 1)
-            elif wish == "redo":
-                assert (project.features.redo() is not None) == (place + 1 < len(states))
-                place = min(len(states) - 1, place + 1)
+            elif request == "undo":
+                assert (project.features.undo() is not None) == (position > 0)
+                position = max(0, position - 1)
+            elif request == "redo":
+                assert (project.features.redo() is not None) == (position + 1 < len(states))
+                position = min(len(states) - 1, position + 1)
             else:
                 features = tuple(project.features.all())
-                change = _change(wish, vertices, attributes, number, features)
+                change = _change(request, vertices, attributes, number, features)
                 project.features.apply(LABEL, change)
-                states = [*states[: place + 1], {f.id: f for f in project.features.all()}]
-                place += 1
-            assert {f.id: f for f in project.features.all()} == states[place]
+                states = [*states[: position + 1], {f.id: f for f in project.features.all()}]
+                position += 1
+            assert {f.id: f for f in project.features.all()} == states[position]
         project.close()

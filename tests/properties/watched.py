@@ -26,7 +26,7 @@ class _Defects(logging.Handler):
     @override
     def emit(self, record: logging.LogRecord) -> None:
         error = record.exc_info[1] if record.exc_info else None
-        self._troubles.append(_told(error) if error else record.getMessage())
+        self._troubles.append(_reported(error) if error else record.getMessage())
 
 
 @contextmanager
@@ -37,11 +37,11 @@ def watched() -> Iterator[list[str]]:
     def take(
         _kind: type[BaseException], error: BaseException, _trace: TracebackType | None
     ) -> None:
-        troubles.append(_told(error))
+        troubles.append(_reported(error))
 
     def take_from_thread(failure: threading.ExceptHookArgs) -> None:
         if failure.exc_value is not None:
-            troubles.append(_told(failure.exc_value))
+            troubles.append(_reported(failure.exc_value))
 
     def take_from_qt(kind: QtMsgType, _context: QMessageLogContext, message: str) -> None:
         if kind is not QtMsgType.QtDebugMsg and not any(word in message for word in _QUIET):
@@ -60,5 +60,5 @@ def watched() -> Iterator[list[str]]:
         log.removeHandler(defects)
 
 
-def _told(error: BaseException) -> str:
+def _reported(error: BaseException) -> str:
     return "".join(traceback.format_exception(error))

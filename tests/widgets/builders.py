@@ -18,9 +18,9 @@ from processing.project.importing import ImportRequest, import_drives
 from processing.project.runs import Run
 from processing.text import Text
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
-from widgets.mouse_tools.draw_path import DrawPath
+from widgets.mouse_tools.draw_line import DrawLine
 from widgets.mouse_tools.mouse_tool import MouseTool
-from widgets.shared.cursor import Cursor, Place
+from widgets.shared.cursor import Cursor, PickedPosition
 from widgets.shared.map_changes import MapChanges
 from widgets.shared.selection import Selection
 from widgets.shared.shared_state import SharedState
@@ -65,7 +65,7 @@ class OpenMap:
     shared: SharedState = field(default_factory=shared_state)
     stored: dict[str, Feature] = field(default_factory=dict)
     applied: list[tuple[Text, Change]] = field(default_factory=list)
-    told: list[Text] = field(default_factory=list)
+    reported: list[Text] = field(default_factory=list)
     all_runs: tuple[Run, ...] = ()
 
     def drives(self) -> tuple[Drive, ...]:
@@ -104,7 +104,7 @@ class OpenMap:
     def listen_to(self, tool: MouseTool) -> MouseTool:
         """Do what a tool asks for and remember what it says."""
         tool.change_requested.connect(self.apply)
-        tool.told.connect(self.told.append)
+        tool.reported.connect(self.reported.append)
         return tool
 
     def kind_of(self, geometry: Geometry) -> str:
@@ -129,20 +129,20 @@ def do_now(work: Callable[[], object], take: Callable[[object | None], None]) ->
     take(work())
 
 
-def path_tool(source: OpenMap, geometry: Geometry) -> DrawPath:
+def path_tool(source: OpenMap, geometry: Geometry) -> DrawLine:
     """A tool that draws lines or areas of some kind."""
-    tool = DrawPath(source, source.shared, geometry, do_now)
+    tool = DrawLine(source, source.shared, geometry, do_now)
     tool.set_kind(KINDS[source.kind_of(geometry)])
     return tool
 
 
-def place_on(drive: Drive, point: int) -> Place:
+def position_on(drive: Drive, point: int) -> PickedPosition:
     """A measured point as a place."""
     easting, northing, height = drive.xyz(np.array([point]))[0].tolist()
-    return Place((easting, northing, height), PointReference(drive.id, point))
+    return PickedPosition((easting, northing, height), PointReference(drive.id, point))
 
 
 def vertex_on(drive: Drive, point: int) -> Vertex:
     """A measured point as a vertex."""
-    place = place_on(drive, point)
-    return Vertex(place.xyz, place.measured)
+    position = position_on(drive, point)
+    return Vertex(position.xyz, position.measured)

@@ -9,15 +9,15 @@ from PySide6.QtGui import QPainter
 from processing.errors import Unsuitable
 from processing.text import Text
 from widgets.camera_view.camera_marks import paint_line_of_sight, paint_marked
-from widgets.camera_view.lay import CameraLay
-from widgets.camera_view.showing import Showing
-from widgets.camera_view.stereo_hand import StereoHand
+from widgets.camera_view.image_selector import ImageSelector
+from widgets.camera_view.projection import CameraProjection
+from widgets.camera_view.stereo_measurement import StereoMeasurement
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.screen_marks import paint_note
 from widgets.shared.sketch import Note
 
-Spot = tuple[float, float]
+ClickedPixel = tuple[float, float]
 
 
 class ImageClicks(QObject):
@@ -35,12 +35,12 @@ class ImageClicks(QObject):
         Two images gave a place.
     pixel_pointed(image: CameraImage, pixel: tuple of float)
         A pixel was clicked for a pair; the image as delivered.
-    told(text: Text)
+    reported(text: Text)
         A line for the status bar.
 
     Attributes
     ----------
-    stereo : StereoHand or None
+    stereo : StereoMeasurement or None
         While clicks measure by two images.
     points_pixels : bool
         While clicks name pixels.
@@ -49,13 +49,13 @@ class ImageClicks(QObject):
     changed = Signal()
     measured = Signal(object)
     pixel_pointed = Signal(object, object)
-    told = Signal(object)
+    reported = Signal(object)
 
-    def __init__(self, showing: Showing, parent: QObject | None = None) -> None:
+    def __init__(self, showing: ImageSelector, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._showing = showing
         self._note: Note | None = None
-        self.stereo: StereoHand | None = None
+        self.stereo: StereoMeasurement | None = None
         self.points_pixels = False
 
     @property
@@ -65,7 +65,7 @@ class ImageClicks(QObject):
 
     def begin_stereo(self) -> None:
         """The next two clicks measure."""
-        self.stereo, self._note = StereoHand(), None
+        self.stereo, self._note = StereoMeasurement(), None
 
     def end_stereo(self) -> None:
         """Clicks are the mouse tool's again."""
@@ -78,7 +78,7 @@ class ImageClicks(QObject):
         self.stereo.drop()
         return True
 
-    def click(self, spot: Spot) -> None:
+    def click(self, spot: ClickedPixel) -> None:
         """The left button went down at a pixel."""
         taken = self._showing.taken
         if taken is None:
@@ -105,7 +105,9 @@ class ImageClicks(QObject):
             return self.tr("Stereo: go to another image that shows the thing.")
         return self.tr("Stereo: click the same thing on the line. Escape begins again.")
 
-    def paint(self, painter: QPainter, viewport: PlaneViewport, lay: CameraLay) -> None:
+    def paint(
+        self, painter: QPainter, viewport: PlaneViewport, projection: CameraProjection
+    ) -> None:
         """The first click or its line of sight, and the error of what was measured last."""
         if self.stereo is None:
             return
@@ -116,35 +118,35 @@ class ImageClicks(QObject):
         if marked is not None and marked.number == number:
             paint_marked(painter, viewport.to_screen(np.array(marked.pixel)))
         if self._note is not None:
-            x, y = viewport.to_screen(lay.to_plane(np.array([self._note.xyz])))[0].tolist()
+            x, y = viewport.to_screen(projection.to_plane(np.array([self._note.xyz])))[0].tolist()
             if np.isfinite(x) and np.isfinite(y):
                 paint_note(painter, (x, y), self._note)
 
-    def _mark(self, hand: StereoHand, spot: Spot) -> None:
-        hand.mark(self._showing.number, spot)
+    def _mark(self, stereo: StereoMeasurement, spot: ClickedPixel) -> None:
+        stereo.mark(self._showing.number, spot)
         self._note = None
         depth = self._showing.depth
         seen = None if depth is None else depth.quick_point_at(spot)
         near = None if seen is None else np.array(seen.xyz)
-        partner = hand.partner(self._showing.images.choice, near)
+        partner = stereo.partner(self._showing.images.choice, near)
         if partner is None:
-            self.told.emit(_NO_PARTNER)
+            self.reported.emit(_NO_PARTNER)
         else:
             self._showing.walk_to(partner)
 
-    def _measure(self, hand: StereoHand, spot: Spot) -> None:
+    def _measure(self, stereo: StereoMeasurement, spot: ClickedPixel) -> None:
         try:
-            found = hand.place(self._showing.images.choice, self._showing.number, spot)
+            found = stereo.position(self._showing.images.choice, self._showing.number, spot)
         except Unsuitable as error:
-            self.told.emit(error.what)
+            self.reported.emit(error.what)
             return
         if found is not None:
             easting, northing, height = found.xyz.tolist()
-            place = Place((easting, northing, height), is_occluded=True)
-            hand.drop()
-            self._note = Note(place.xyz, f"±{found.error_m:.2f} m")
-            self.told.emit(_MEASURED.filled(error=found.error_m, gap=found.gap_m))
-            self.measured.emit(place)
+            position = PickedPosition((easting, northing, height), is_occluded=True)
+            stereo.drop()
+            self._note = Note(position.xyz, f"±{found.error_m:.2f} m")
+            self.reported.emit(_MEASURED.filled(error=found.error_m, gap=found.gap_m))
+            self.measured.emit(position)
 
 
 _NO_PARTNER = Text(

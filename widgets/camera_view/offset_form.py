@@ -12,7 +12,7 @@ from processing.cameras.calibration import (
     NO_OFFSET,
     CameraOffset,
     PixelPair,
-    estimated_from,
+    estimate_offset,
     residuals_px,
 )
 from processing.cameras.image_list import CameraImage, ImageList
@@ -22,7 +22,7 @@ from processing.text import Language
 from widgets.camera_view.taken_images import TakenImage
 from widgets.camera_view.view import CameraView
 from widgets.parts.number_field import NumberField
-from widgets.shared.cursor import Cursor, Place
+from widgets.shared.cursor import Cursor, PickedPosition
 
 _TURN_DEG, _TURN_STEP_DEG = 45.0, 0.05
 _SHIFT_M, _SHIFT_STEP_M = 20.0, 0.01
@@ -203,7 +203,7 @@ class OffsetForm(QWidget):
         offset = self._offset()
         covered = outside_trajectory(taken.drive.delivered_images or ImageList(()), trajectory)
         if offset.time_s and covered is not None:
-            words.append(covered.spoken(self._language))
+            words.append(covered.in_language(self._language))
         self._facts.setText("   ".join(words))
         self._facts.setVisible(bool(words))
         self._reset.setEnabled(not offset.is_zero)
@@ -235,12 +235,12 @@ class OffsetForm(QWidget):
         self._pixel = image, pixel
         self._show()
 
-    def _on_cursor_moved(self, place: Place) -> None:
-        if self._pixel is None or not self._points.isChecked() or place.is_occluded:
+    def _on_cursor_moved(self, position: PickedPosition) -> None:
+        if self._pixel is None or not self._points.isChecked() or position.is_occluded:
             return
         image, pixel = self._pixel
         self._pixel = None
-        self._pairs.setdefault(self._camera, []).append(PixelPair(image, pixel, place.xyz))
+        self._pairs.setdefault(self._camera, []).append(PixelPair(image, pixel, position.xyz))
         self._show()
 
     def _on_drop_clicked(self) -> None:
@@ -255,7 +255,7 @@ class OffsetForm(QWidget):
         if taken is None:
             return
         try:
-            found = estimated_from(
+            found = estimate_offset(
                 self.pairs, taken.drive.trajectory, time_s=self._fields["time_s"].value()
             )
         except Unsuitable as error:

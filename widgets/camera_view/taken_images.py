@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from processing.cameras.calibration import CameraOffset, camera_of, with_offsets
-from processing.cameras.choice import ImageChoice
+from processing.cameras.calibration import CameraOffset, apply_offsets, camera_of
+from processing.cameras.choice import ImageFinder
 from processing.cameras.image_list import CameraImage, ImageList
 from processing.cameras.image_remarks import far_away
 from processing.points.drive import Drive
@@ -48,7 +48,7 @@ class TakenImages:
     Attributes
     ----------
     images : tuple of TakenImage
-    choice : ImageChoice
+    choice : ImageFinder
         By the same numbers.
     remark : Text or None
         Why they can't belong to the points, if they are far away.
@@ -60,12 +60,12 @@ class TakenImages:
         for drive in drives:
             delivered = drive.delivered_images or ImageList(())
             offsets = {**drive.camera_offsets, **trial}
-            images = with_offsets(delivered, offsets, drive.trajectory if offsets else None)
+            images = apply_offsets(delivered, offsets, drive.trajectory if offsets else None)
             for before, image in zip(delivered, images, strict=True):
                 if before not in found:
                     found[before] = TakenImage(image, before, drive)
         self.images = tuple(found.values())
-        self.choice = ImageChoice(taken.image for taken in self.images)
+        self.choice = ImageFinder(taken.image for taken in self.images)
         self.remark = _remark(drives)
 
 

@@ -15,15 +15,15 @@ from processing.cameras.depth import SeenPoint
 from processing.project.feature import PointReference
 from processing.text import Language
 from widgets.camera_view.camera_marks import paint_remarks
-from widgets.camera_view.darkroom import Darkroom
 from widgets.camera_view.image_clicks import ImageClicks
-from widgets.camera_view.lay import CameraLay
-from widgets.camera_view.showing import Showing
+from widgets.camera_view.image_loader import ImageLoader
+from widgets.camera_view.image_selector import ImageSelector
+from widgets.camera_view.projection import CameraProjection
 from widgets.camera_view.taken_images import TakenImages
 from widgets.mouse_tools.mouse_tool import Hit
 from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -48,7 +48,7 @@ class CameraView(PlaneView):
         A pixel was clicked while pixels are wanted; the image as delivered.
     stereo_changed
         Measuring by two images was begun or ended.
-    told(text: Text)
+    reported(text: Text)
         A line for the status bar.
 
     Attributes
@@ -64,7 +64,7 @@ class CameraView(PlaneView):
     fields_of_view_changed = Signal(object, int)
     pixel_pointed = Signal(object, object)
     stereo_changed = Signal()
-    told = Signal(object)
+    reported = Signal(object)
 
     FILLED = 1.0
 
@@ -78,20 +78,20 @@ class CameraView(PlaneView):
     ) -> None:
         super().__init__(source, shared, parent, language=language)
         self._trial: Mapping[str, CameraOffset] = {}
-        self._lay: CameraLay | None = None
+        self._projection: CameraProjection | None = None
         self._name = ""
         self._whole_scale = 0.0
         self._is_told_sharp = False
         self._fades_hidden = True
-        self._found: tuple[CameraLay, tuple[float, float], SeenPoint | None] | None = None
-        self._darkroom = Darkroom(self)
-        self.showing = Showing(self._darkroom)
+        self._found: tuple[CameraProjection, tuple[float, float], SeenPoint | None] | None = None
+        self._image_loader = ImageLoader(self)
+        self.showing = ImageSelector(self._image_loader)
         self.clicks = ImageClicks(self.showing, self)
         self.clicks.changed.connect(self._show)
         self.clicks.measured.connect(self._on_clicks_measured)
         self.clicks.pixel_pointed.connect(self.pixel_pointed)
-        self.clicks.told.connect(self.told)
-        self._darkroom.developed.connect(self._on_darkroom_developed)
+        self.clicks.reported.connect(self.reported)
+        self._image_loader.developed.connect(self._on_image_loader_developed)
         shared.cursor.moved.connect(self._on_cursor_clicked)
         shared.map_changes.drives_changed.connect(self.read_images)
         self.read_images()
@@ -104,37 +104,37 @@ class CameraView(PlaneView):
         taken = self.showing.taken
         if taken is None:
             return False
-        is_known = self.showing.depth is not None or self._darkroom.blindness(taken.image)
+        is_known = self.showing.depth is not None or self._image_loader.blindness(taken.image)
         return self.showing.photo is not None and bool(is_known)
 
     def read_images(self) -> None:
         """Take over the images of all drives, as they are kept now."""
-        self._darkroom.forget_troubles()
+        self._image_loader.forget_troubles()
         self.showing.use(TakenImages(tuple(self._source.drives()), self._trial))
-        self.showing.look_at(self._shared.cursor.place)
+        self.showing.look_at(self._shared.cursor.position)
         self._show()
 
     def try_offsets(self, trial: Mapping[str, CameraOffset]) -> None:
         """Show images with these offsets, by camera, without keeping them; empty: as kept."""
         self._trial = dict(trial)
         self.showing.use(TakenImages(tuple(self._source.drives()), self._trial))
-        self.showing.stay(self.showing.place)
+        self.showing.stay(self.showing.position)
         self._show()
 
-    def show_place(self, place: Place) -> None:
+    def show_position(self, position: PickedPosition) -> None:
         """Show the image that sees a place best, the place in the middle.
 
         An image that was shown whole is enlarged: what is looked at fills the window then.
         """
-        self.showing.look_at(place)
+        self.showing.look_at(position)
         self._show()
-        if self.lay() is not None and self._is_like_whole:
+        if self.projection() is not None and self._is_like_whole:
             self.zoom_by(_NEARER)
-        self.center_on(place)
+        self.center_on(position)
 
-    def prepare(self, places: Sequence[Place]) -> None:
+    def prepare(self, positions: Sequence[PickedPosition]) -> None:
         """Have the images ready that show these places best; the first ones first."""
-        self.showing.prepare(tuple(places))
+        self.showing.prepare(tuple(positions))
 
     def step(self, by: int) -> None:
         """The next or the previous of the images that see the place."""
@@ -172,31 +172,35 @@ class CameraView(PlaneView):
     # What PlaneView asks.
 
     @override
-    def lay(self) -> CameraLay | None:
+    def projection(self) -> CameraProjection | None:
         taken = self.showing.taken
         if taken is None:
             return None
         depth = self.showing.depth if self._fades_hidden else None
-        if self._lay is None or self._lay.image != taken.image or self._lay.depth is not depth:
-            self._lay = CameraLay(taken.image, depth)
-        return self._lay
+        if (
+            self._projection is None
+            or self._projection.image != taken.image
+            or self._projection.depth is not depth
+        ):
+            self._projection = CameraProjection(taken.image, depth)
+        return self._projection
 
     @override
     def words(self) -> str:
-        images, place = self.showing.images, self.showing.place
+        images, position = self.showing.images, self.showing.position
         if not images.images:
             return self.tr(
                 "There are no camera images. Add the list of a drive's images (File ▸ Add camera "
                 "images)."
             )
         if images.remark is not None:
-            return images.remark.spoken(self._language)
-        if place is None:
+            return images.remark.in_language(self._language)
+        if position is None:
             return self.tr("Click a place in another view to see it in the camera images.")
         trouble = self.showing.trouble
         if trouble is not None:
             return trouble.line(self._language).replace(" | ", "\n")
-        number, distance = images.choice.nearest_m(np.array(place.xyz))
+        number, distance = images.choice.nearest_m(np.array(position.xyz))
         return self.tr(
             "No image sees this place. The nearest one, {name}, was taken {distance} m away."
         ).format(name=images.images[number].image.path.name, distance=f"{distance:,.0f}")
@@ -216,34 +220,40 @@ class CameraView(PlaneView):
 
     @override
     def paint_frame(self, painter: QPainter, viewport: PlaneViewport) -> None:
-        lay = self.lay()
-        if lay is not None:
-            self.clicks.paint(painter, viewport, lay)
+        projection = self.projection()
+        if projection is not None:
+            self.clicks.paint(painter, viewport, projection)
             paint_remarks(painter, QRectF(self.rect()), self._remarks())
 
     @override
-    def place_at(self, place: tuple[float, float], reach: float, *, exact: bool) -> Place | None:
-        lay = self.lay()
+    def position_at(
+        self, position: tuple[float, float], reach: float, *, exact: bool
+    ) -> PickedPosition | None:
+        projection = self.projection()
         depth = self.showing.depth
-        if lay is None or depth is None:
+        if projection is None or depth is None:
             return None
         if not exact:
-            found = depth.quick_point_at(place)
-        elif self._found is not None and self._found[:2] == (lay, place):
+            found = depth.quick_point_at(position)
+        elif self._found is not None and self._found[:2] == (projection, position):
             # A click asks twice, at press and release.
             found = self._found[2]
         else:
-            found = depth.point_at(place, reach)
-            self._found = lay, place, found
-        return None if found is None else Place(found.xyz, PointReference(found.drive, found.point))
+            found = depth.point_at(position, reach)
+            self._found = projection, position, found
+        return (
+            None
+            if found is None
+            else PickedPosition(found.xyz, PointReference(found.drive, found.point))
+        )
 
     @override
-    def on_cursor_moved(self, place: Place) -> None:
+    def on_cursor_moved(self, position: PickedPosition) -> None:
         before = self.showing.number
-        self.showing.look_at(place)
+        self.showing.look_at(position)
         self._show()
         if self.showing.number == before:
-            super().on_cursor_moved(place)
+            super().on_cursor_moved(position)
 
     @override
     def view_menu(self) -> QMenu:
@@ -270,7 +280,7 @@ class CameraView(PlaneView):
     @override
     def mousePressEvent(self, event: QMouseEvent) -> None:
         is_left = event.button() == Qt.MouseButton.LeftButton
-        is_own = is_left and not self._hand.pans_with(event.button()) and self.clicks.takes_clicks
+        is_own = is_left and not self._mouse.pans_with(event.button()) and self.clicks.takes_clicks
         if is_own:
             position = event.position()
             self.clicks.click(self.viewport.to_plane(position.x(), position.y()))
@@ -280,17 +290,17 @@ class CameraView(PlaneView):
     @override
     def close(self) -> bool:
         """Stop what is read beside the window; may be called again."""
-        self._darkroom.close()
+        self._image_loader.close()
         return super().close()
 
     @override
     def closeEvent(self, event: QCloseEvent) -> None:
-        self._darkroom.close()
+        self._image_loader.close()
         super().closeEvent(event)
 
     # What others tell.
 
-    def _on_darkroom_developed(self) -> None:
+    def _on_image_loader_developed(self) -> None:
         was_sharp = self._is_told_sharp
         self.showing.refresh()
         self._show()
@@ -299,24 +309,24 @@ class CameraView(PlaneView):
         if self._is_told_sharp and not was_sharp:
             self.sharpened.emit()
 
-    def _on_cursor_clicked(self, place: Place) -> None:
+    def _on_cursor_clicked(self, position: PickedPosition) -> None:
         # Who clicks into an image goes on looking at it.
-        if self._hand.is_clicking:
-            self.showing.stay(place)
-            self._tell()
+        if self._mouse.is_clicking:
+            self.showing.stay(position)
+            self._report()
 
-    def _on_clicks_measured(self, place: Place) -> None:
-        gesture = self._hand.gesture
-        self._hand.is_clicking = True
+    def _on_clicks_measured(self, position: PickedPosition) -> None:
+        gesture = self._mouse.gesture
+        self._mouse.is_clicking = True
         try:
             if gesture.tool is None:
-                self._shared.cursor.move_to(place)
+                self._shared.cursor.move_to(position)
             else:
                 # Without reach and line of sight nothing draws it elsewhere.
-                gesture.tool.press(Hit(place))
-                gesture.tool.release(Hit(place))
+                gesture.tool.press(Hit(position))
+                gesture.tool.release(Hit(position))
         finally:
-            self._hand.is_clicking = False
+            self._mouse.is_clicking = False
 
     def _set_fades_hidden(self, wanted: bool) -> None:  # noqa: FBT001 - a slot of a checked action
         self._fades_hidden = wanted
@@ -335,20 +345,20 @@ class CameraView(PlaneView):
             self.set_ground_stale()
             if taken is not None:
                 self._whole_scale = self._scale_of_whole()
-                place = self.showing.place
-                if was_whole or place is None:
+                position = self.showing.position
+                if was_whole or position is None:
                     self.show_everything()
                 else:
-                    self.center_on(place)
+                    self.center_on(position)
             self.image_changed.emit(name)
-        self._tell()
+        self._report()
         self.update()
 
     @property
     def _is_like_whole(self) -> bool:
         return self.viewport.scale <= self._whole_scale * _LIKE_WHOLE
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         self.sightings_changed.emit()
         self.fields_of_view_changed.emit(*self.showing.fields_of_view())
 
@@ -363,7 +373,7 @@ class CameraView(PlaneView):
         if photo is None:
             lines.append(self.tr("Reading {name} …").format(name=self._name))
         elif photo.note is not None:
-            lines.append(photo.note.spoken(self._language))
+            lines.append(photo.note.in_language(self._language))
         if self.showing.is_hidden:
             lines.append(self.tr("Something hides the place in this image."))
         lines.append(self.clicks.remark())

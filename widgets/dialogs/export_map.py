@@ -20,11 +20,11 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from widgets.parts.plain_buttons import without_icons
+from widgets.parts.plain_buttons import remove_icons
 
 
 @dataclass(frozen=True)
-class ExportWish:
+class ExportOptions:
     """What the form asks for.
 
     Attributes
@@ -43,7 +43,7 @@ class ExportWish:
 class ExportForm(QDialog):
     """A form beside the window."""
 
-    export_requested = Signal(object)  # ExportWish
+    export_requested = Signal(object)  # ExportOptions
 
     def __init__(
         self, folder: Path, formats: tuple[tuple[str, str], ...], parent: QWidget | None = None
@@ -67,7 +67,7 @@ class ExportForm(QDialog):
         self._export = self._buttons.addButton(
             self.tr("Export"), QDialogButtonBox.ButtonRole.AcceptRole
         )
-        without_icons(self._buttons)
+        remove_icons(self._buttons)
         self._lay_out()
         self._buttons.accepted.connect(self._on_buttons_accepted)
         self._buttons.rejected.connect(self.close)
@@ -104,12 +104,12 @@ class ExportForm(QDialog):
 
     def _on_buttons_accepted(self) -> None:
         formats = tuple(id_ for id_, box in self._boxes.items() if box.isChecked())
-        wish = ExportWish(
+        request = ExportOptions(
             formats,
             Path(self._folder.text().strip()),
             str(self._version.currentData()),
             str(self._encoding.currentData()),
             self._candidates.isChecked(),
         )
-        self.export_requested.emit(wish)
+        self.export_requested.emit(request)
         self.close()

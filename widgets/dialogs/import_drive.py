@@ -23,11 +23,11 @@ from PySide6.QtWidgets import (
 
 from processing.project.dropped_files import DELIVERED_ENDINGS
 from widgets.dialogs.reference_systems import ReferenceSystemBox
-from widgets.parts.plain_buttons import without_icons
+from widgets.parts.plain_buttons import remove_icons
 
 
 @dataclass(frozen=True)
-class ImportWish:
+class ImportOptions:
     """What the form asks for.
 
     Attributes
@@ -51,7 +51,7 @@ class ImportWish:
 class ImportForm(QDialog):
     """A form beside the window; the window stays usable while it is open."""
 
-    import_requested = Signal(object)  # ImportWish
+    import_requested = Signal(object)  # ImportOptions
     files_changed = Signal(object)  # tuple[Path, ...]
 
     def __init__(
@@ -80,7 +80,7 @@ class ImportForm(QDialog):
         self._import = self._buttons.addButton(
             self.tr("Import"), QDialogButtonBox.ButtonRole.AcceptRole
         )
-        without_icons(self._buttons)
+        remove_icons(self._buttons)
         self._lay_out()
         self._buttons.accepted.connect(self._on_buttons_accepted)
         self._buttons.rejected.connect(self.close)
@@ -144,10 +144,10 @@ class ImportForm(QDialog):
     def _lay_out(self) -> None:
         add = QPushButton(self.tr("Add files…"), self)
         remove = QPushButton(self.tr("Remove"), self)
-        place = QPushButton(self.tr("Choose…"), self)
+        position = QPushButton(self.tr("Choose…"), self)
         add.clicked.connect(self.ask_for_files)
         remove.clicked.connect(self._on_remove_clicked)
-        place.clicked.connect(self._on_place_clicked)
+        position.clicked.connect(self._on_position_clicked)
         beside = QVBoxLayout()
         beside.addWidget(add)
         beside.addWidget(remove)
@@ -157,7 +157,7 @@ class ImportForm(QDialog):
         files.addLayout(beside)
         folder = QHBoxLayout()
         folder.addWidget(self._project, 1)
-        folder.addWidget(place)
+        folder.addWidget(position)
         hint = QLabel(
             self.tr(
                 "Point files of all scanners, the trajectory, and image lists if there are any."
@@ -183,7 +183,7 @@ class ImportForm(QDialog):
             self._files.takeItem(self._files.row(item))
         self._tell_files()
 
-    def _on_place_clicked(self) -> None:
+    def _on_position_clicked(self) -> None:
         name, _ = QFileDialog.getSaveFileName(
             self, self.tr("Project"), self._project.text(), self.tr("Zuka projects (*.zuka)")
         )
@@ -203,6 +203,6 @@ class ImportForm(QDialog):
         project = Path(self._project.text().strip())
         if project.suffix != ".zuka":
             project = project.with_name(project.name + ".zuka")
-        wish = ImportWish(files, project, code, self._as_labels.isChecked())
-        self.import_requested.emit(wish)
+        request = ImportOptions(files, project, code, self._as_labels.isChecked())
+        self.import_requested.emit(request)
         self.close()

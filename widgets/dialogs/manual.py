@@ -24,7 +24,7 @@ from widgets.parts.icon_button import IconButton
 from widgets.parts.manual_pages import Section, found_sections, page_html, sections
 
 _INDEX = "index.html"
-_PLACE = Qt.ItemDataRole.UserRole
+_POSITION = Qt.ItemDataRole.UserRole
 _MARGIN_PX = 20
 _SIZE_PX = (1040, 760)
 _SIDE_PX = 280
@@ -160,7 +160,7 @@ class ManualWindow(QWidget):
         for one in shown:
             above = pages.get(one.page)
             item = QTreeWidgetItem(self._list if above is None else above, [one.title])
-            item.setData(0, _PLACE, _place(one))
+            item.setData(0, _POSITION, _position(one))
             pages.setdefault(one.page, item)
 
     def _list_found(self, found: tuple[Section, ...]) -> None:
@@ -169,7 +169,7 @@ class ManualWindow(QWidget):
             words = one.title if is_page else f"{one.title} – {one.page_title}"
             item = QTreeWidgetItem(self._list, [words])
             item.setToolTip(0, words)
-            item.setData(0, _PLACE, _place(one))
+            item.setData(0, _POSITION, _position(one))
         if not found:
             item = QTreeWidgetItem(self._list, [self.tr("Nothing found.")])
             item.setFlags(Qt.ItemFlag.NoItemFlags)
@@ -184,12 +184,12 @@ class ManualWindow(QWidget):
             self._on_list_item_clicked(first)
 
     def _on_list_item_clicked(self, item: QTreeWidgetItem) -> None:
-        place = item.data(0, _PLACE)
-        if place:
-            self.show_page(str(place))
+        position = item.data(0, _POSITION)
+        if position:
+            self.show_page(str(position))
 
 
-def _place(section: Section) -> str:
+def _position(section: Section) -> str:
     return f"{section.page.name}#{section.anchor}" if section.anchor else section.page.name
 
 

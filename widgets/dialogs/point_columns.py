@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from widgets.parts.plain_buttons import without_icons
+from widgets.parts.plain_buttons import remove_icons
 
 _NEEDED = ("x", "y", "z")
 _PASSED_OVER = "-"
@@ -58,15 +58,15 @@ class ColumnsForm(QDialog):
             for value, title in choices:
                 box.addItem(title, value)
             box.currentIndexChanged.connect(self._check)
-        told = QLabel(why, self)
-        told.setWordWrap(True)
+        reported = QLabel(why, self)
+        reported.setWordWrap(True)
         self._trouble = QLabel(self)
         self._trouble.setWordWrap(True)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
         self._import = buttons.addButton(self.tr("Import"), QDialogButtonBox.ButtonRole.AcceptRole)
-        without_icons(buttons)
+        remove_icons(buttons)
         layout = QVBoxLayout(self)
-        layout.addWidget(told)
+        layout.addWidget(reported)
         layout.addWidget(self._table_of(rows), 1)
         layout.addWidget(self._trouble)
         layout.addWidget(buttons)

@@ -7,7 +7,7 @@ import re
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QComboBox, QDialog, QDialogButtonBox, QLabel, QVBoxLayout, QWidget
 
-from widgets.parts.plain_buttons import without_icons
+from widgets.parts.plain_buttons import remove_icons
 
 _ZONES = (
     "I",
@@ -76,7 +76,7 @@ class ReferenceSystemForm(QDialog):
         self._trouble = QLabel(self)
         kinds = QDialogButtonBox.StandardButton
         buttons = QDialogButtonBox(kinds.Ok | kinds.Cancel, self)
-        without_icons(buttons)
+        remove_icons(buttons)
         buttons.accepted.connect(self._on_buttons_accepted)
         buttons.rejected.connect(self.close)
         layout = QVBoxLayout(self)

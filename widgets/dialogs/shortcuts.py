@@ -24,7 +24,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from widgets.parts.plain_buttons import without_icons
+from widgets.parts.plain_buttons import remove_icons
 
 _NAME, _MENU, _KEYS = range(3)
 _ROW = Qt.ItemDataRole.UserRole
@@ -60,7 +60,7 @@ class ShortcutRow:
 
 
 @dataclass(frozen=True)
-class KeyTrouble:
+class KeyProblem:
     """What speaks against a key.
 
     Attributes
@@ -74,7 +74,7 @@ class KeyTrouble:
     may_be_taken: bool
 
 
-Trouble = Callable[[str, str], KeyTrouble | None]
+KeyCheck = Callable[[str, str], KeyProblem | None]
 """From an action's id and a key to what speaks against it."""
 
 
@@ -100,7 +100,7 @@ class ShortcutsForm(QDialog):
         super().__init__(parent)
         self.setWindowTitle(self.tr("Keyboard shortcuts"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._trouble: Trouble | None = None
+        self._trouble: KeyCheck | None = None
         self._search = QLineEdit(self)
         self._search.setPlaceholderText(self.tr("Search by name, menu or key"))
         self._search.setClearButtonEnabled(True)
@@ -128,7 +128,7 @@ class ShortcutsForm(QDialog):
         self._show_chosen()
         self._search.setFocus()
 
-    def ask_trouble_from(self, trouble: Trouble) -> None:
+    def ask_trouble_from(self, trouble: KeyCheck) -> None:
         """Ask this what speaks against a key."""
         self._trouble = trouble
 
@@ -170,7 +170,7 @@ class ShortcutsForm(QDialog):
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close, self)
         buttons.addButton(self._defaults, QDialogButtonBox.ButtonRole.ResetRole)
         buttons.addButton(self._save, QDialogButtonBox.ButtonRole.ActionRole)
-        without_icons(buttons)
+        remove_icons(buttons)
         buttons.rejected.connect(self.close)
         for button in buttons.buttons():
             if isinstance(button, QPushButton):

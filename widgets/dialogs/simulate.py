@@ -25,32 +25,32 @@ from PySide6.QtWidgets import (
 from typing_extensions import override
 
 from processing.simulate.forecast import Forecast
-from processing.simulate.orders import ORDERS
+from processing.simulate.simulations import SIMULATIONS
 from processing.text import Language
 from widgets.panels.parameter_form import ParameterForm
 from widgets.parts.density_view import DensityView
-from widgets.parts.plain_buttons import without_icons
+from widgets.parts.plain_buttons import remove_icons
 
 _MINUTE_S = 60.0
 _KM_H = 3.6
 
 
 @dataclass(frozen=True)
-class SimulationWish:
+class SimulationRequest:
     """What the form asks for.
 
     Attributes
     ----------
     order : str
-        Key of :data:`processing.simulate.orders.ORDERS`.
-    wish : object
+        Key of :data:`processing.simulate.orders.SIMULATIONS`.
+    request : object
         Of that order's class.
     folder : Path
         For its files; made, or empty.
     """
 
     order: str
-    wish: Any  # each order has a class of its own
+    request: Any  # each order has a class of its own
     folder: Path
 
 
@@ -65,9 +65,9 @@ class SimulateForm(QDialog):
 
     Signals
     -------
-    forecast_wanted(wish: SimulationWish)
+    forecast_wanted(wish: SimulationRequest)
         Other values are set; :meth:`show_forecast` is called when it is known what they give.
-    simulation_requested(wish: SimulationWish)
+    simulation_requested(wish: SimulationRequest)
     help_requested()
     """
 
@@ -89,9 +89,9 @@ class SimulateForm(QDialog):
         self._what.setDrawBase(False)
         self._pages = QStackedWidget(self)
         self._forms: dict[str, ParameterForm] = {}
-        for order in ORDERS.values():
-            self._what.addTab(order.name.spoken(language))
-            form = ParameterForm(order.wish, language, self)
+        for order in SIMULATIONS.values():
+            self._what.addTab(order.name.in_language(language))
+            form = ParameterForm(order.request, language, self)
             form.changed.connect(self._on_values_changed)
             self._forms[order.id] = form
             self._pages.addWidget(_on_top(form))
@@ -105,7 +105,7 @@ class SimulateForm(QDialog):
         self._make = self._buttons.addButton(
             self.tr("Create"), QDialogButtonBox.ButtonRole.AcceptRole
         )
-        without_icons(self._buttons)
+        remove_icons(self._buttons)
         self._lay_out()
         self._buttons.accepted.connect(self._on_buttons_accepted)
         self._buttons.rejected.connect(self.close)
@@ -113,10 +113,12 @@ class SimulateForm(QDialog):
         self._what.currentChanged.connect(self._on_what_changed)
 
     @property
-    def wish(self) -> SimulationWish:
+    def request(self) -> SimulationRequest:
         """What is set."""
-        order = list(ORDERS)[self._what.currentIndex()]
-        return SimulationWish(order, self._forms[order].value(), Path(self._folder.text().strip()))
+        order = list(SIMULATIONS)[self._what.currentIndex()]
+        return SimulationRequest(
+            order, self._forms[order].value(), Path(self._folder.text().strip())
+        )
 
     def form(self, order: str) -> ParameterForm:
         """The fields of an order."""
@@ -135,9 +137,9 @@ class SimulateForm(QDialog):
             Bytes that are free on the disk of the folder.
         """
         self._needs = forecast.size
-        told = self.tr("About {points} points, {size}, from {time} of recording.")
+        reported = self.tr("About {points} points, {size}, from {time} of recording.")
         self._estimate.setText(
-            told.format(
+            reported.format(
                 points=self._locale.toString(_rounded(forecast.points)),
                 size=self._locale.formattedDataSize(_rounded(forecast.size), 0),
                 time=self._spoken_time(forecast.seconds),
@@ -156,18 +158,18 @@ class SimulateForm(QDialog):
             widget.setVisible(forecast.density is not None)
         if forecast.density is not None:
             self._density.show_density(forecast.density)
-            told = self.tr(
+            reported = self.tr(
                 "Scan lines every {gap} cm at {speed} km/h. What is hidden, and pulses that don't "
                 "come back, are not counted."
             )
             survey = forecast.density.survey
-            gap, speed = 100 * survey.between_turns_m, _KM_H * survey.speed_m_s
-            self._lines.setText(told.format(gap=f"{gap:.1f}", speed=f"{speed:.0f}"))
+            gap, speed = 100 * survey.between_revolutions_m, _KM_H * survey.speed_m_s
+            self._lines.setText(reported.format(gap=f"{gap:.1f}", speed=f"{speed:.0f}"))
 
-    def show_refusal(self, told: str) -> None:
+    def show_refusal(self, reported: str) -> None:
         """Tell why nothing can be made of the values."""
         self._estimate.clear()
-        self._say(told)
+        self._say(reported)
         self._make.setEnabled(False)
 
     @override
@@ -218,8 +220,8 @@ class SimulateForm(QDialog):
 
     def _proposed(self) -> Path:
         """A folder that does not exist yet, named after what is made."""
-        wish = self.wish
-        stem = f"{wish.order}-{wish.wish.style}-{wish.wish.seed}"
+        request = self.request
+        stem = f"{request.order}-{request.request.style}-{request.request.seed}"
         folder, number = self._parent_folder / stem, 2
         while folder.exists():
             folder = self._parent_folder / f"{stem}-{number}"
@@ -233,11 +235,11 @@ class SimulateForm(QDialog):
     def _on_values_changed(self) -> None:
         if not self._is_folder_own:
             self._folder.setText(str(self._proposed()))
-        self.forecast_wanted.emit(self.wish)
+        self.forecast_wanted.emit(self.request)
 
     def _on_folder_edited(self) -> None:
         self._is_folder_own = True
-        self.forecast_wanted.emit(self.wish)
+        self.forecast_wanted.emit(self.request)
 
     def _on_choose_clicked(self) -> None:
         name = QFileDialog.getExistingDirectory(
@@ -248,13 +250,15 @@ class SimulateForm(QDialog):
             self._on_folder_edited()
 
     def _on_buttons_accepted(self) -> None:
-        wish = self.wish
+        request = self.request
         if not self._folder.text().strip():
             self._say(self.tr("Give a folder for the files."))
-        elif wish.folder.is_file() or (wish.folder.is_dir() and any(wish.folder.iterdir())):
+        elif request.folder.is_file() or (
+            request.folder.is_dir() and any(request.folder.iterdir())
+        ):
             self._say(self.tr("The folder is not empty; give the name of a new one."))
         else:
-            self.simulation_requested.emit(wish)
+            self.simulation_requested.emit(request)
             self.close()
 
 

@@ -11,7 +11,7 @@ from processing.errors import OutOfRange
 from processing.project.work_details import WorkDetails, details_of
 from processing.text import Language
 from widgets.panels.parameter_form import ParameterForm
-from widgets.parts.plain_buttons import without_icons
+from widgets.parts.plain_buttons import remove_icons
 
 _WIDTH_PX = 460
 _NAME = "work"
@@ -59,7 +59,7 @@ class WorkDetailsForm(QDialog):
         self._trouble.setWordWrap(True)
         kinds = QDialogButtonBox.StandardButton
         buttons = QDialogButtonBox(kinds.Ok | kinds.Cancel, self)
-        without_icons(buttons)
+        remove_icons(buttons)
         buttons.accepted.connect(self._on_buttons_accepted)
         buttons.rejected.connect(self.close)
         layout = QVBoxLayout(self)

@@ -8,11 +8,11 @@ from PySide6.QtGui import QPainter
 
 from processing.project.catalogue import Catalogue, Geometry
 from processing.project.feature import Position, Vertex
-from widgets.image_view.feature_places import FeaturePlaces
+from widgets.image_view.feature_positions import FeaturePositions
 from widgets.image_view.marks import MarkPainter
-from widgets.image_view.picture import Picture, Span
-from widgets.image_view.placed_feature import (
-    PlacedFeature,
+from widgets.image_view.oriented_image import OrientedImage, Span
+from widgets.image_view.picture_feature import (
+    PictureFeature,
     path_of_segments,
     segments_between,
 )
@@ -50,20 +50,20 @@ class FeatureOverlay:
 
     Parameters
     ----------
-    places : FeaturePlaces
+    positions : FeaturePositions
     settings : ViewSettings
         What is shown.
     """
 
-    def __init__(self, places: FeaturePlaces, settings: ViewSettings) -> None:
-        self._places = places
+    def __init__(self, positions: FeaturePositions, settings: ViewSettings) -> None:
+        self._positions = positions
         self._settings = settings
         self._marks = MarkPainter()
         self.selected: frozenset[str] = frozenset()
 
-    def shown_in(self, span: Span, replaced: str = "") -> list[PlacedFeature]:
+    def shown_in(self, span: Span, replaced: str = "") -> list[PictureFeature]:
         """The features that touch a part of the picture and are shown, the chosen ones last."""
-        found = self._places.within(span)
+        found = self._positions.within(span)
         shown = [
             one for one in found if one.feature.id != replaced and self._settings.shows(one.feature)
         ]
@@ -85,21 +85,21 @@ class FeatureOverlay:
             is_point = one.feature.geometry is Geometry.POINT
             hollow = hollow_of(one.feature.vertices) if is_selected else None
             self._marks.paint_marks(
-                painter, one.places, viewport, style, is_point=is_point, hollow=hollow
+                painter, one.positions, viewport, style, is_point=is_point, hollow=hollow
             )
 
     def paint_sketch(
         self,
         painter: QPainter,
         viewport: Viewport,
-        picture: Picture,
+        picture: OrientedImage,
         *,
         catalogue: Catalogue,
         drawing: Drawing,
     ) -> None:
         """Paint what is being drawn, and thinly where the next click would lead."""
         style = sketch_style(catalogue, drawing.kind)
-        vertices = self._places.places_of(drawing.vertices)
+        vertices = self._positions.places_of(drawing.vertices)
         shape = drawing.geometry if drawing.replaces else Geometry.LINE
         seen = _segments_in(viewport, segments_between(vertices, shape, picture))
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, len(seen) <= FEW)
@@ -114,20 +114,20 @@ class FeatureOverlay:
             painter, vertices, viewport, style, is_point=is_point, hollow=hollow
         )
 
-    def screen_place(self, viewport: Viewport, xyz: Position) -> tuple[float, float] | None:
+    def screen_position(self, viewport: Viewport, xyz: Position) -> tuple[float, float] | None:
         """Where a place is in the window; None where no point of the drive is near it."""
-        u, v = self._places.places_of((Vertex(xyz),))[0].tolist()
+        u, v = self._positions.places_of((Vertex(xyz),))[0].tolist()
         return viewport.position_of(u, v) if np.isfinite(u) else None
 
     def _paint_preview(
         self,
         painter: QPainter,
         viewport: Viewport,
-        picture: Picture,
+        picture: OrientedImage,
         drawing: Drawing,
         vertices: Floats,
     ) -> None:
-        line = [vertices[-1], *self._places.places_of(drawing.preview)]
+        line = [vertices[-1], *self._positions.places_of(drawing.preview)]
         if drawing.geometry is Geometry.AREA and vertices.shape[0] > 1:
             line.append(vertices[0])
         path = path_of_segments(segments_between(np.array(line), Geometry.LINE, picture))

@@ -15,12 +15,12 @@ from processing.points.counted_classes import class_columns, seen_points
 from processing.project.catalogue import Geometry
 from processing.project.feature import PointReference
 from widgets.image_view.feature_overlay import FeatureOverlay
-from widgets.image_view.picture import Picture, Span
-from widgets.image_view.placed_feature import PlacedFeature
+from widgets.image_view.oriented_image import OrientedImage, Span
+from widgets.image_view.picture_feature import PictureFeature
 from widgets.image_view.viewport import Viewport
 from widgets.mouse_tools.gesture import REACH_PX
-from widgets.mouse_tools.mouse_tool import Boxed, Hit, Ray
-from widgets.shared.cursor import Place
+from widgets.mouse_tools.mouse_tool import EnclosedHits, Hit, Ray
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.outlines import are_inside, is_rectangle
 from widgets.shared.snap_state import SnapState
 from widgets.shared.view_settings import ViewSettings
@@ -33,28 +33,33 @@ _CLICK_PX = 3
 _POINTS_AT_ONCE = 4_000_000
 
 
-def place_of(picture: Picture, point: int) -> Place:
+def position_of(picture: OrientedImage, point: int) -> PickedPosition:
     """A measured point with its exact coordinate."""
     easting, northing, height = picture.drive.xyz(np.array([point]))[0].tolist()
-    return Place((easting, northing, height), PointReference(picture.drive.id, point))
+    return PickedPosition((easting, northing, height), PointReference(picture.drive.id, point))
 
 
 def point_under(
-    picture: Picture, viewport: Viewport, position: QPointF, *, hides_noise: bool = False
+    picture: OrientedImage, viewport: Viewport, position: QPointF, *, hides_noise: bool = False
 ) -> int:
     """The point shown at a position; −1 where the pixel is empty."""
     return _point_near(picture, viewport, position, 0, hides_noise=hides_noise)
 
 
 def point_clicked(
-    picture: Picture, viewport: Viewport, position: QPointF, *, hides_noise: bool = False
+    picture: OrientedImage, viewport: Viewport, position: QPointF, *, hides_noise: bool = False
 ) -> int:
     """The point shown at a position, or the nearest of the row within 3 pixels; else −1."""
     return _point_near(picture, viewport, position, _CLICK_PX, hides_noise=hides_noise)
 
 
 def _point_near(
-    picture: Picture, viewport: Viewport, position: QPointF, within_px: int, *, hides_noise: bool
+    picture: OrientedImage,
+    viewport: Viewport,
+    position: QPointF,
+    within_px: int,
+    *,
+    hides_noise: bool,
 ) -> int:
     row, column = picture.pixel_at(*viewport.to_picture(position.x(), position.y()))
     if not (0 <= row < picture.image.rows and 0 <= column < picture.image.width):
@@ -88,58 +93,58 @@ class HitFinder:
         self._overlay = overlay
         self._snap = snap
         self._settings = settings
-        self.picture: Picture | None = None
+        self.picture: OrientedImage | None = None
         self.viewport = Viewport()
 
-    def exact_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
+    def exact_hit(self, mouse: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
         """What is under a position; vertices go before segments, chosen features before others."""
         picture, viewport = self.picture, self.viewport
         if picture is None:
             return Hit(None, modifiers=modifiers)
-        point = point_clicked(picture, viewport, position, hides_noise=self._hides_noise)
-        place = None if point < 0 else place_of(picture, point)
-        feature, vertex, segment = self._feature_at(position)
+        point = point_clicked(picture, viewport, mouse, hides_noise=self._hides_noise)
+        position = None if point < 0 else position_of(picture, point)
+        feature, vertex, segment = self._feature_at(mouse)
         return Hit(
-            place,
+            position,
             feature,
             vertex,
             segment,
             modifiers,
             reach_m=_reach_m(picture, viewport),
             # Only a working plane asks for the line of sight, which takes half a millisecond.
-            ray=None if self._snap.plane is None else self._ray(picture, position),
+            ray=None if self._snap.plane is None else self._ray(picture, mouse),
         )
 
-    def place_under(self, position: QPointF) -> Place | None:
+    def position_under(self, position: QPointF) -> PickedPosition | None:
         """The point shown at a position; None where the pixel is empty."""
         if self.picture is None:
             return None
         point = point_under(self.picture, self.viewport, position, hides_noise=self._hides_noise)
-        return None if point < 0 else place_of(self.picture, point)
+        return None if point < 0 else position_of(self.picture, point)
 
     def quick_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
         """The same: in the image every point is at hand."""
         return self.exact_hit(position, modifiers)
 
-    def enclosed(self, outline: QPolygonF, modifiers: Qt.KeyboardModifier) -> Boxed:
+    def enclosed(self, outline: QPolygonF, modifiers: Qt.KeyboardModifier) -> EnclosedHits:
         """The features wholly inside an outline in the window, and the points inside it."""
         picture, viewport = self.picture, self.viewport
         if picture is None:
-            return Boxed(frozenset(), {}, modifiers)
+            return EnclosedHits(frozenset(), {}, modifiers)
         bounds = outline.boundingRect()
         span = viewport.span_of(bounds.left(), bounds.top(), bounds.right(), bounds.bottom())
         features = frozenset(
             one.feature.id
             for one in self._overlay.shown_in(span)
-            if bool(are_inside(viewport.to_screen(one.places), outline).all())
+            if bool(are_inside(viewport.to_screen(one.positions), outline).all())
         )
         points = points_within(picture, span)
         if not is_rectangle(outline):
             rows, columns = picture.image.pixel_of(points)
-            places = picture.places(rows, columns.astype(np.int64))
-            points = points[are_inside(viewport.to_screen(places), outline)]
+            positions = picture.positions(rows, columns.astype(np.int64))
+            points = points[are_inside(viewport.to_screen(positions), outline)]
         points = seen_points(picture.drive.columns, points, hides_noise=self._hides_noise)
-        return Boxed(features, {picture.drive.id: points}, modifiers)
+        return EnclosedHits(features, {picture.drive.id: points}, modifiers)
 
     @property
     def _hides_noise(self) -> bool:
@@ -163,23 +168,23 @@ class HitFinder:
         inside = next((one.feature.id for one in areas if one.path.contains(at)), "")
         return inside, -1, -1
 
-    def _ray(self, picture: Picture, position: QPointF) -> Ray | None:
-        if not picture.image.kind.follows_way:
+    def _ray(self, picture: OrientedImage, position: QPointF) -> Ray | None:
+        if not picture.image.kind.follows_path:
             return None
         row, column = picture.pixel_at(*self.viewport.to_picture(position.x(), position.y()))
         beam = beam_at(picture.drive, picture.image, row, column)
         return None if beam is None else Ray(*beam)
 
 
-def _reach_m(picture: Picture, viewport: Viewport) -> float:
+def _reach_m(picture: OrientedImage, viewport: Viewport) -> float:
     """How far the mouse's circle reaches on the ground, near the trajectory."""
-    step_m = picture.lay.length_m / max(picture.size[0], 1)
+    step_m = picture.orientation.length_m / max(picture.size[0], 1)
     along = REACH_PX / viewport.zoom_u * step_m
     across = REACH_PX / viewport.zoom_v * step_m / picture.stretch
     return (along + across) / 2
 
 
-def points_within(picture: Picture, span: Span) -> NDArray[np.int64]:
+def points_within(picture: OrientedImage, span: Span) -> NDArray[np.int64]:
     """(n,) sorted: all points whose pixels a rectangle touches, hidden returns included."""
     rows, columns = picture.rows_columns(span)
     image = picture.image
@@ -196,11 +201,11 @@ def points_within(picture: Picture, span: Span) -> NDArray[np.int64]:
 
 
 def _nearest_vertex(
-    shown: Iterable[PlacedFeature], viewport: Viewport, mouse: Floats, selected: frozenset[str]
+    shown: Iterable[PictureFeature], viewport: Viewport, mouse: Floats, selected: frozenset[str]
 ) -> tuple[str, int] | None:
     best: tuple[bool, float, str, int] | None = None
     for one in shown:
-        distances = np.hypot(*(viewport.to_screen(one.places) - mouse).T)
+        distances = np.hypot(*(viewport.to_screen(one.positions) - mouse).T)
         if not np.isfinite(distances).any():
             continue
         index = int(np.nanargmin(distances))
@@ -211,7 +216,7 @@ def _nearest_vertex(
 
 
 def _nearest_segment(
-    shown: Iterable[PlacedFeature], viewport: Viewport, mouse: Floats, selected: frozenset[str]
+    shown: Iterable[PictureFeature], viewport: Viewport, mouse: Floats, selected: frozenset[str]
 ) -> tuple[str, int] | None:
     best: tuple[bool, float, str, int] | None = None
     for one in shown:

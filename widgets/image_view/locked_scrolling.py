@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from processing.image.kinds import ImageKind
 from processing.image.nearest import nearest_point
 from processing.points.drive import Drive
-from widgets.image_view.picture import Picture
+from widgets.image_view.oriented_image import OrientedImage
 from widgets.image_view.viewport import Viewport
 
 Floats = NDArray[np.float64]
@@ -27,7 +27,7 @@ _MOST_UNEVEN = 8.0
 
 
 def following(
-    leader: Picture, looking: Viewport, picture: Picture, viewport: Viewport
+    leader: OrientedImage, looking: Viewport, picture: OrientedImage, viewport: Viewport
 ) -> Viewport | None:
     """What a picture shows when it follows another one along the street.
 
@@ -46,7 +46,7 @@ def following(
     Viewport or None
         None where the picture shows nothing of that place.
     """
-    found = place_along(leader, looking.centre, picture, viewport.centre[0])
+    found = position_along(leader, looking.centre, picture, viewport.centre[0])
     if found is None:
         return None
     shown_m = _shown_m(leader, looking)
@@ -56,8 +56,8 @@ def following(
     return scaled.centred_on(found[0], viewport.centre[1] if found[1] is None else found[1])
 
 
-def place_along(
-    leader: Picture, centre: tuple[float, float], picture: Picture, before: float = 0.0
+def position_along(
+    leader: OrientedImage, centre: tuple[float, float], picture: OrientedImage, before: float = 0.0
 ) -> tuple[float, float | None] | None:
     """Where in a picture, in u and in v, the place of another one's middle is.
 
@@ -77,43 +77,43 @@ def place_along(
     """
     if not (picture.image.rows and leader.image.rows):
         return None
-    if not (leader.follows_way and picture.follows_way):
+    if not (leader.follows_path and picture.follows_path):
         return _by_point(leader, centre, picture)
-    plan = leader.lay.plan_at(centre[0])
+    plan = leader.orientation.plan_at(centre[0])
     moment, times = _moment(leader, centre[0]), picture.image.row_times
     if times[0] <= moment <= times[-1]:
         row = float(np.interp(moment, times, np.arange(times.size, dtype=np.float64)))
         # Clocks that start anew each week show the same time on two days.
-        if np.hypot(*(picture.lay.plan_at(row) - plan)) <= _ONE_VEHICLE_M:
+        if np.hypot(*(picture.orientation.plan_at(row) - plan)) <= _ONE_VEHICLE_M:
             return row, None
     found = _nearest_row(picture, plan, before)
     return None if found is None else (found, None)
 
 
 def is_opposite(
-    leader: Picture, centre: tuple[float, float], drive: Drive, kind: ImageKind
+    leader: OrientedImage, centre: tuple[float, float], drive: Drive, kind: ImageKind
 ) -> bool:
     """Whether a drive went the other way where it passed the middle of a picture."""
-    if not (kind.follows_way and leader.follows_way):
+    if not (kind.follows_path and leader.follows_path):
         return False
-    picture = Picture.of(drive, kind)
-    found = place_along(leader, centre, picture)
+    picture = OrientedImage.of(drive, kind)
+    found = position_along(leader, centre, picture)
     if found is None:
         return False
     ways = (_direction(leader, centre[0]), _direction(picture, found[0]))
     return bool(np.dot(*ways) < 0.0)
 
 
-def _direction(picture: Picture, row: float) -> Floats:
+def _direction(picture: OrientedImage, row: float) -> Floats:
     """(2,): where the way leads about a row, m; zeros where it stays."""
-    metres = float(picture.lay.distance_m(np.array([row]))[0])
-    ends = picture.lay.rows_at(np.array([metres - _ABOUT_M, metres + _ABOUT_M]))
-    return picture.lay.plan_at(float(ends[1])) - picture.lay.plan_at(float(ends[0]))
+    metres = float(picture.orientation.distance_m(np.array([row]))[0])
+    ends = picture.orientation.rows_at(np.array([metres - _ABOUT_M, metres + _ABOUT_M]))
+    return picture.orientation.plan_at(float(ends[1])) - picture.orientation.plan_at(float(ends[0]))
 
 
-def _nearest_row(picture: Picture, plan: Floats, before: float) -> float | None:
+def _nearest_row(picture: OrientedImage, plan: Floats, before: float) -> float | None:
     """The row, with fractions, whose place on the way is nearest; None when that is far."""
-    way, rows = picture.lay.plan, picture.lay.sampled_rows
+    way, rows = picture.orientation.plan, picture.orientation.sampled_rows
     if rows.size < 2:
         return None
     steps = np.diff(way, axis=0)
@@ -130,18 +130,19 @@ def _nearest_row(picture: Picture, plan: Floats, before: float) -> float | None:
     return min(at, key=lambda row: abs(row - before))
 
 
-def _moment(picture: Picture, u: float) -> float:
+def _moment(picture: OrientedImage, u: float) -> float:
     times = picture.image.row_times
     return float(np.interp(u, np.arange(times.size, dtype=np.float64), times))
 
 
 def _by_point(
-    leader: Picture, centre: tuple[float, float], picture: Picture
+    leader: OrientedImage, centre: tuple[float, float], picture: OrientedImage
 ) -> tuple[float, float | None] | None:
     row, column = leader.pixel_at(*centre)
     image = leader.image
     row, column = (
-        min(max(place, 0), size - 1) for place, size in ((row, image.rows), (column, image.width))
+        min(max(position, 0), size - 1)
+        for position, size in ((row, image.rows), (column, image.width))
     )
     point = image.nearest_filled(row, column, image.width)
     if point < 0:
@@ -151,26 +152,26 @@ def _by_point(
     if found < 0:
         return None
     rows, columns = picture.image.pixel_of(np.array([found]))
-    u, v = picture.places(rows, columns.astype(np.int64))[0].tolist()
-    return u, None if picture.follows_way else v
+    u, v = picture.positions(rows, columns.astype(np.int64))[0].tolist()
+    return u, None if picture.follows_path else v
 
 
-def _shown_m(picture: Picture, viewport: Viewport) -> float:
+def _shown_m(picture: OrientedImage, viewport: Viewport) -> float:
     """How long a stretch of the way is seen."""
     seen = viewport.span
     ends = np.clip([seen.left, seen.right], 0.0, max(picture.size[0] - 1, 0))
-    return float(np.diff(picture.lay.distance_m(ends))[0])
+    return float(np.diff(picture.orientation.distance_m(ends))[0])
 
 
-def _row_step_m(picture: Picture, row: float, stretch_m: float) -> float:
+def _row_step_m(picture: OrientedImage, row: float, stretch_m: float) -> float:
     """Metres from row to row in a stretch about a row; within limits: vehicles stop and hurry."""
-    lay, rows = picture.lay, picture.size[0]
-    mean = max(lay.length_m, 1e-3) / max(rows, 1)
-    if not picture.follows_way:
+    orientation, rows = picture.orientation, picture.size[0]
+    mean = max(orientation.length_m, 1e-3) / max(rows, 1)
+    if not picture.follows_path:
         return mean
-    metres = lay.distance_m(np.array([row])) + np.array([-0.5, 0.5]) * stretch_m
-    ends = lay.rows_at(np.clip(metres, 0.0, lay.length_m))
+    metres = orientation.distance_m(np.array([row])) + np.array([-0.5, 0.5]) * stretch_m
+    ends = orientation.rows_at(np.clip(metres, 0.0, orientation.length_m))
     if ends[1] <= ends[0]:
         return mean
-    step = float(np.diff(lay.distance_m(ends))[0] / (ends[1] - ends[0]))
+    step = float(np.diff(orientation.distance_m(ends))[0] / (ends[1] - ends[0]))
     return float(np.clip(step, mean / _MOST_UNEVEN, mean * _MOST_UNEVEN))

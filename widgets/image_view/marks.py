@@ -48,7 +48,7 @@ class MarkPainter:
     def paint_marks(
         self,
         painter: QPainter,
-        places: Floats,
+        positions: Floats,
         viewport: Viewport,
         style: FeatureStyle,
         *,
@@ -62,5 +62,5 @@ class MarkPainter:
         hollow : (n,) bool or None
             Vertices whose squares are open: no measured point is there.
         """
-        spots = viewport.to_screen(places)
+        spots = viewport.to_screen(positions)
         self._marks.paint(painter, spots, style, is_point=is_point, hollow=hollow)

@@ -13,12 +13,12 @@ from typing_extensions import override
 
 from processing.image.tile_cache import TileCache
 from widgets.image_view.mosaic import Mosaic
-from widgets.image_view.picture import Picture, Span
+from widgets.image_view.oriented_image import OrientedImage, Span
 from widgets.image_view.tile_images import TileImages
 from widgets.image_view.viewport import Viewport
 from widgets.shared.feature_style import ACCENT
-from widgets.shared.image_lay import ImageLay
-from widgets.shared.view_settings import PointLook
+from widgets.shared.image_orientation import ImageOrientation
+from widgets.shared.view_settings import PointStyle
 
 HEIGHT_PX = 40
 _LIMIT_BYTES = 16 * 2**20
@@ -31,23 +31,23 @@ class Minimap(QWidget):
 
     Signals
     -------
-    place_chosen(u: float)
+    position_chosen(u: float)
         A place along the picture.
     """
 
-    place_chosen = Signal(float)
+    position_chosen = Signal(float)
 
     def __init__(self, tiles: TileCache, parent: QWidget) -> None:
         super().__init__(parent)
         self._images = TileImages(tiles, limit_bytes=_LIMIT_BYTES)
         self._images.changed.connect(self.update)
         self._mosaic = Mosaic(self._images)
-        self._picture: Picture | None = None
+        self._picture: OrientedImage | None = None
         self._shown = (0.0, 0.0)
-        self._lay = ImageLay()
+        self._orientation = ImageOrientation()
         self.setToolTip(self.tr("The whole recording; click or drag to go there"))
 
-    def show_picture(self, picture: Picture | None, look: PointLook) -> None:
+    def show_picture(self, picture: OrientedImage | None, look: PointStyle) -> None:
         """Show a drive in a look."""
         self._picture = picture
         self._images.show(picture, look)
@@ -62,10 +62,10 @@ class Minimap(QWidget):
         """The labels of these points of a drive have changed."""
         self._images.show_labels(drive_id, points)
 
-    def mark(self, left: float, right: float, lay: ImageLay) -> None:
+    def mark(self, left: float, right: float, orientation: ImageOrientation) -> None:
         """Mark the part from one place to another, picture coordinates."""
-        if (left, right, lay) != (*self._shown, self._lay):
-            self._shown, self._lay = (left, right), lay
+        if (left, right, orientation) != (*self._shown, self._orientation):
+            self._shown, self._orientation = (left, right), orientation
             self.update()
 
     @override
@@ -90,11 +90,11 @@ class Minimap(QWidget):
     def _go_to(self, event: QMouseEvent) -> None:
         picture = self._picture
         if picture is not None:
-            position = event.position()
-            place, _ = self._viewport(picture).to_picture(position.x(), position.y())
-            self.place_chosen.emit(min(max(place, 0.0), float(picture.size[0])))
+            mouse = event.position()
+            position, _ = self._viewport(picture).to_picture(mouse.x(), mouse.y())
+            self.position_chosen.emit(min(max(position, 0.0), float(picture.size[0])))
 
-    def _viewport(self, picture: Picture) -> Viewport:
+    def _viewport(self, picture: OrientedImage) -> Viewport:
         """The whole picture, pressed into the strip."""
         u, v = picture.size
         strip = Viewport(
@@ -102,7 +102,7 @@ class Minimap(QWidget):
             max(self.height(), 1),
             (max(u, 1), max(v, 1)),
             centre=(u / 2, v / 2),
-            lay=self._lay,
+            orientation=self._orientation,
         )
         zoom_v = strip.across_px / max(v, 1)
         return replace(strip, zoom=zoom_v, stretch=strip.along_px / max(u, 1) / zoom_v)

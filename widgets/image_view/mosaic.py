@@ -9,10 +9,10 @@ from PySide6.QtGui import QColor, QImage, QPainter, QTransform
 
 from processing.image.tile_choice import tiles_in_window
 from processing.image.tiles import TileKey
-from widgets.image_view.picture import Picture, Span
+from widgets.image_view.oriented_image import OrientedImage, Span
 from widgets.image_view.tile_images import THINNINGS, TileImages
 from widgets.image_view.viewport import Viewport
-from widgets.shared.image_lay import ImageLay
+from widgets.shared.image_orientation import ImageOrientation
 
 _UNKNOWN = QColor("#14161a")
 _MARGIN = 2.0  # pixels beyond the window's edge, for the interpolation
@@ -30,7 +30,7 @@ class _Grid:
         So many columns of a tile are one pixel of the mosaic.
     """
 
-    picture: Picture
+    picture: OrientedImage
     level: int
     rows: range
     columns: range
@@ -75,7 +75,7 @@ class _Grid:
             first[0], first[1], last[0] + last[2] - first[0], last[1] + last[3] - first[1]
         )
 
-    def place(self, key: TileKey) -> QRect:
+    def position(self, key: TileKey) -> QRect:
         """Where a tile is in the mosaic."""
         whole, part = self.span, self.picture.span_of(*self.area_of(key))
         along, across = self.step, self.across_step
@@ -103,9 +103,9 @@ class Mosaic:
         self._made_for: tuple[_Grid, int] | None = None
         self._whole = QImage()
         self._turned = QImage()
-        self._turned_for: tuple[tuple[_Grid, int], ImageLay] | None = None
+        self._turned_for: tuple[tuple[_Grid, int], ImageOrientation] | None = None
 
-    def paint(self, painter: QPainter, picture: Picture, viewport: Viewport) -> bool:
+    def paint(self, painter: QPainter, picture: OrientedImage, viewport: Viewport) -> bool:
         """Paint what the viewport shows; says whether all of it is as sharp as it will be."""
         rows, columns = picture.rows_columns(viewport.span)
         if not rows or not columns:
@@ -127,15 +127,15 @@ class Mosaic:
             self._compose(grid, keys, found)
             # Coarser tiles that stood in may have been made just now.
             made_for = self._made_for = grid, self._images.version
-        if (made_for, viewport.lay) != self._turned_for:
-            self._turned = _turned(self._whole, viewport.lay)
-            self._turned_for = made_for, viewport.lay
+        if (made_for, viewport.orientation) != self._turned_for:
+            self._turned = _turned(self._whole, viewport.orientation)
+            self._turned_for = made_for, viewport.orientation
         self._paint_part(painter, grid.span, viewport)
         return self._images.is_complete
 
     def _compose(self, grid: _Grid, keys: list[TileKey], found: dict[TileKey, QImage]) -> None:
         corners = [
-            grid.place(TileKey(grid.level, row, column))
+            grid.position(TileKey(grid.level, row, column))
             for row in (grid.rows[0], grid.rows[-1])
             for column in (grid.columns[0], grid.columns[-1])
         ]
@@ -148,14 +148,14 @@ class Mosaic:
         with QPainter(self._whole) as painter:
             painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, on=True)
             for key in keys:
-                place = grid.place(key)
+                position = grid.position(key)
                 if key in found:
-                    painter.drawImage(place, found[key])
+                    painter.drawImage(position, found[key])
                 else:
-                    painter.fillRect(place, _UNKNOWN)
-                    self._paint_coarser(painter, grid, key, place)
+                    painter.fillRect(position, _UNKNOWN)
+                    self._paint_coarser(painter, grid, key, position)
 
-    def _paint_coarser(self, painter: QPainter, grid: _Grid, key: TileKey, place: QRect) -> None:
+    def _paint_coarser(self, painter: QPainter, grid: _Grid, key: TileKey, position: QRect) -> None:
         """Paint the part of the next coarser tile that there is a picture of."""
         pyramid = grid.picture.image.pyramid
         part = grid.picture.span_of(*grid.area_of(key))
@@ -165,7 +165,7 @@ class Mosaic:
             image = self._images.available(ancestor)
             if image is not None:
                 whole = grid.picture.span_of(*_area_at_own_step(grid.picture, ancestor))
-                painter.drawImage(QRectF(place), image, _source(part, whole, image))
+                painter.drawImage(QRectF(position), image, _source(part, whole, image))
                 return
 
     def _paint_part(self, painter: QPainter, whole: Span, viewport: Viewport) -> None:
@@ -191,12 +191,16 @@ class Mosaic:
         painter.drawImage(target, self._turned, source)
 
 
-def _turned(image: QImage, lay: ImageLay) -> QImage:
+def _turned(image: QImage, orientation: ImageOrientation) -> QImage:
     """A picture that goes to the right and down, as it lies on the screen."""
-    if lay.is_vertical:  # u goes up, v to the right
+    if orientation.is_vertical:  # u goes up, v to the right
         image = image.transformed(QTransform().rotate(-90.0))
-    flips_x = lay.is_mirrored_across if lay.is_vertical else lay.is_reversed_along
-    flips_y = lay.is_reversed_along if lay.is_vertical else lay.is_mirrored_across
+    flips_x = (
+        orientation.is_mirrored_across if orientation.is_vertical else orientation.is_reversed_along
+    )
+    flips_y = (
+        orientation.is_reversed_along if orientation.is_vertical else orientation.is_mirrored_across
+    )
     sides = [
         side
         for side, flips in (
@@ -215,7 +219,7 @@ def _thinning(across_px: float) -> int:
     return max(thinning for thinning in THINNINGS if thinning == 1 or thinning * across_px <= 1)
 
 
-def _area_at_own_step(picture: Picture, key: TileKey) -> tuple[int, int, int, int]:
+def _area_at_own_step(picture: OrientedImage, key: TileKey) -> tuple[int, int, int, int]:
     rows, columns = picture.image.pyramid.rows_columns(key)
     step = 1 << key.level
     return (

@@ -9,8 +9,8 @@ from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from processing.image.kinds import ImageKind
 from widgets.image_view.view import ImageView
-from widgets.shared.image_choice import ImageChoice
-from widgets.shared.image_lay import ImageLay
+from widgets.shared.image_orientation import ImageOrientation
+from widgets.shared.image_view_settings import ImageViewSettings
 from widgets.shared.view_settings import ViewSettings
 
 
@@ -21,10 +21,10 @@ class ShownImage:
     drive_id: str
     kind: ImageKind
     attribute: str
-    lay: ImageLay
+    orientation: ImageOrientation
 
 
-class Header(QWidget):
+class PaneHeader(QWidget):
     """The line above an image that says what it shows.
 
     Signals
@@ -35,7 +35,7 @@ class Header(QWidget):
 
     closed = Signal()
 
-    def __init__(self, choice: ImageChoice) -> None:
+    def __init__(self, choice: ImageViewSettings) -> None:
         super().__init__()
         choice.let_shrink()
         self.close_button = QToolButton(self)
@@ -52,7 +52,7 @@ class Header(QWidget):
 class Pane(QWidget):
     """An image under its header."""
 
-    def __init__(self, view: ImageView, header: Header) -> None:
+    def __init__(self, view: ImageView, header: PaneHeader) -> None:
         super().__init__()
         self.view = view
         self.header = header
@@ -64,7 +64,7 @@ class Pane(QWidget):
 
 
 @dataclass(frozen=True, eq=False)
-class Beside:
+class SecondaryImage:
     """An image beside the main one, and the settings of its own."""
 
     pane: Pane
@@ -80,11 +80,14 @@ class Beside:
         """What it shows."""
         settings = self.settings
         return ShownImage(
-            settings.drive_id, settings.image_kind, settings.look.attribute, settings.image_lay
+            settings.drive_id,
+            settings.image_kind,
+            settings.look.attribute,
+            settings.image_orientation,
         )
 
     def show_image(self, shown: ShownImage) -> None:
         """Show this from now on."""
         self.settings.change_look(attribute=shown.attribute)
-        self.settings.lay_image(shown.lay)
+        self.settings.orient_image(shown.orientation)
         self.settings.show_image(shown.drive_id, shown.kind)

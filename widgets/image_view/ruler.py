@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
 from processing.image.kinds import ImageKind
-from widgets.image_view.picture import Picture
+from widgets.image_view.oriented_image import OrientedImage
 from widgets.image_view.viewport import Viewport
 
 HEIGHT_PX = 20
@@ -26,11 +26,11 @@ class Ruler(QWidget):
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
-        self._picture: Picture | None = None
+        self._picture: OrientedImage | None = None
         self._viewport = Viewport()
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
 
-    def show_part(self, picture: Picture | None, viewport: Viewport) -> None:
+    def show_part(self, picture: OrientedImage | None, viewport: Viewport) -> None:
         """Measure this part of this picture."""
         self._picture, self._viewport = picture, viewport
         self.update()
@@ -42,23 +42,23 @@ class Ruler(QWidget):
             painter.fillRect(self.rect(), _BACKGROUND)
             # A pixel of a scan is an angle; how wide that is on the ground differs by place.
             is_measured = picture is not None and picture.image.kind is not ImageKind.SCAN
-            if picture is not None and is_measured and picture.lay.length_m > 0:
+            if picture is not None and is_measured and picture.orientation.length_m > 0:
                 self._paint_ticks(painter, picture)
 
-    def _paint_ticks(self, painter: QPainter, picture: Picture) -> None:
+    def _paint_ticks(self, painter: QPainter, picture: OrientedImage) -> None:
         span = self._viewport.span
         ends = np.clip([span.left, span.right], 0.0, picture.size[0])
-        start_m, end_m = picture.lay.distance_m(ends).tolist()
+        start_m, end_m = picture.orientation.distance_m(ends).tolist()
         shown_px = (ends[1] - ends[0]) * self._viewport.zoom_u
         if end_m <= start_m or shown_px <= 0:
             return
         step_m = round_step((end_m - start_m) / shown_px * _LABEL_EVERY_PX)
         fifths = np.arange(math.ceil(start_m / step_m * 5), math.floor(end_m / step_m * 5) + 1)
-        places = picture.lay.rows_at(fifths * step_m / 5)
+        positions = picture.orientation.rows_at(fifths * step_m / 5)
         digits = max(0, -math.floor(math.log10(step_m)))
         room_px, height = self._turn(painter)
-        for fifth, place in zip(fifths.tolist(), places.tolist(), strict=True):
-            x = self._along(place)
+        for fifth, position in zip(fifths.tolist(), positions.tolist(), strict=True):
+            x = self._along(position)
             is_labelled = fifth % 5 == 0
             painter.setPen(QPen(_INK if is_labelled else _MINOR, 1.0))
             painter.drawLine(QLineF(x, height - (8 if is_labelled else 4), x, height))
@@ -73,16 +73,16 @@ class Ruler(QWidget):
 
         The ticks' end stays beside the picture.
         """
-        if not self._viewport.lay.is_vertical:
+        if not self._viewport.orientation.is_vertical:
             return float(self.width()), float(self.height())
         painter.translate(0.0, float(self.height()))
         painter.rotate(-90.0)
         return float(self.height()), float(self.width())
 
-    def _along(self, place: float) -> float:
+    def _along(self, position: float) -> float:
         """Where a place along the drive is on the band."""
-        x, y = self._viewport.position_of(place, 0.0)
-        return float(self.height()) - y if self._viewport.lay.is_vertical else x
+        x, y = self._viewport.position_of(position, 0.0)
+        return float(self.height()) - y if self._viewport.orientation.is_vertical else x
 
 
 def round_step(least: float) -> float:

@@ -9,12 +9,12 @@ from PySide6.QtGui import QColor, QPainter, QPolygonF
 from PySide6.QtWidgets import QWidget
 
 from processing.errors import UserError
-from processing.image.attributes import ATTRIBUTES, telling_attribute
+from processing.image.attributes import ATTRIBUTES, most_telling_attribute
 from processing.project.catalogue import Catalogue
 from processing.text import Language
 from widgets.image_view.feature_overlay import FeatureOverlay
 from widgets.image_view.mosaic import Mosaic
-from widgets.image_view.picture import Picture
+from widgets.image_view.oriented_image import OrientedImage
 from widgets.image_view.shown_cursor import ShownCursor
 from widgets.image_view.tile_images import TileImages
 from widgets.image_view.viewport import Viewport
@@ -22,7 +22,7 @@ from widgets.shared.screen_marks import paint_cross, paint_note, paint_outline, 
 from widgets.shared.shared_state import SharedState
 from widgets.shared.sketch import Drawing
 from widgets.shared.snap_state import SNAP_NAMES, SnapMark
-from widgets.shared.view_settings import PointLook
+from widgets.shared.view_settings import PointStyle
 
 BACKGROUND = QColor("#14161a")
 _PLATE = QColor(16, 18, 22, 190)
@@ -45,7 +45,7 @@ class Overlays:
 
     drawing: Drawing | None
     catalogue: Catalogue
-    look: PointLook
+    look: PointStyle
     cursor: ShownCursor
     outline: QPolygonF | None
     snap: SnapMark | None
@@ -91,7 +91,7 @@ class ScenePainter:
         self._features = features
         self._language: Language = language
 
-    def paint(self, picture: Picture | None, viewport: Viewport, overlays: Overlays) -> bool:
+    def paint(self, picture: OrientedImage | None, viewport: Viewport, overlays: Overlays) -> bool:
         """Paint everything; says whether the tiles are as sharp as they will be."""
         refusal, is_sharp = overlays.refusal, False
         with QPainter(self._view) as painter:
@@ -107,7 +107,7 @@ class ScenePainter:
         return is_sharp
 
     def _paint_over(
-        self, painter: QPainter, picture: Picture, viewport: Viewport, overlays: Overlays
+        self, painter: QPainter, picture: OrientedImage, viewport: Viewport, overlays: Overlays
     ) -> None:
         drawing, catalogue = overlays.drawing, overlays.catalogue
         self._features.paint(painter, viewport, catalogue, drawing)
@@ -121,35 +121,35 @@ class ScenePainter:
             paint_cross(painter, viewport.position_of(*spot), trail)
         if drawing is not None:
             for note in drawing.notes:
-                place = self._features.screen_place(viewport, note.xyz)
-                if place is not None:
-                    paint_note(painter, place, note)
+                position = self._features.screen_position(viewport, note.xyz)
+                if position is not None:
+                    paint_note(painter, position, note)
         if overlays.snap is not None:
-            place = self._features.screen_place(viewport, overlays.snap.xyz)
-            if place is not None:
-                name = SNAP_NAMES[overlays.snap.mode].spoken(self._language)
-                paint_snap(painter, place, overlays.snap.mode, name)
+            position = self._features.screen_position(viewport, overlays.snap.xyz)
+            if position is not None:
+                name = SNAP_NAMES[overlays.snap.mode].in_language(self._language)
+                paint_snap(painter, position, overlays.snap.mode, name)
         if overlays.outline is not None:
             paint_outline(painter, overlays.outline)
 
-    def _described(self, picture: Picture, viewport: Viewport, look: PointLook) -> str:
-        shown = telling_attribute(picture.drive, look.attribute)
-        row_m = picture.lay.length_m / max(picture.size[0], 1)
+    def _described(self, picture: OrientedImage, viewport: Viewport, look: PointStyle) -> str:
+        shown = most_telling_attribute(picture.drive, look.attribute)
+        row_m = picture.orientation.length_m / max(picture.size[0], 1)
         scale = QCoreApplication.translate("ScenePainter", "1 px = {metres:.3f} m").format(
             metres=row_m / viewport.zoom_u
         )
         words = (
             picture.drive.info.name,
-            picture.image.kind.title.spoken(self._language),
-            ATTRIBUTES[shown].title.spoken(self._language),
+            picture.image.kind.title.in_language(self._language),
+            ATTRIBUTES[shown].title.in_language(self._language),
             "" if shown == look.attribute else self._lacks(look.attribute),
             scale,
         )
         return "  ·  ".join(word for word in words if word)
 
     def _lacks(self, attribute: str) -> str:
-        told = QCoreApplication.translate("ScenePainter", "no “{name}” in this drive")
-        return told.format(name=ATTRIBUTES[attribute].title.spoken(self._language))
+        reported = QCoreApplication.translate("ScenePainter", "no “{name}” in this drive")
+        return reported.format(name=ATTRIBUTES[attribute].title.in_language(self._language))
 
     def _paint_line(self, painter: QPainter, line: str) -> None:
         clip = painter.clipBoundingRect()
@@ -164,7 +164,7 @@ class ScenePainter:
         painter.drawText(QPointF(left + 8, plate.bottom() - 2 - metrics.descent()), shown)
 
     def _paint_refusal(self, painter: QPainter, refusal: UserError) -> None:
-        what, remedy = (part.spoken(self._language) for part in (refusal.what, refusal.remedy))
+        what, remedy = (part.in_language(self._language) for part in (refusal.what, refusal.remedy))
         room = QRectF(self._view.rect()).adjusted(24, 24, -24, -24)
         flags = Qt.AlignmentFlag.AlignCenter | Qt.TextFlag.TextWordWrap
         box = painter.boundingRect(room, int(flags), f"{what}\n{remedy}")

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from processing.image.nearest import nearest_point
-from widgets.image_view.picture import Picture
-from widgets.shared.cursor import Place
+from widgets.image_view.oriented_image import OrientedImage
+from widgets.shared.cursor import PickedPosition
 
-Spot = tuple[float, float]
+PicturePoint = tuple[float, float]
 
 NEAR_M = 1.0
 """How far the cursor may be from the point of the drive that stands for it."""
@@ -18,12 +18,14 @@ class ShownCursor:
     """Finds places in the picture; remembers the last two of the cursor."""
 
     def __init__(self) -> None:
-        self.spot: Spot | None = None
-        self.before: Spot | None = None
+        self.spot: PicturePoint | None = None
+        self.before: PicturePoint | None = None
 
-    def move_to(self, picture: Picture | None, place: Place | None) -> Spot | None:
+    def move_to(
+        self, picture: OrientedImage | None, position: PickedPosition | None
+    ) -> PicturePoint | None:
         """Where the cursor is now, picture coordinates; None when it isn't in the picture."""
-        spot = None if picture is None or place is None else self.find(picture, place)
+        spot = None if picture is None or position is None else self.find(picture, position)
         self.before, self.spot = self.spot, spot
         return spot
 
@@ -32,17 +34,17 @@ class ShownCursor:
         self.before = None
 
     @staticmethod
-    def find(picture: Picture, place: Place) -> Spot | None:
+    def find(picture: OrientedImage, position: PickedPosition) -> PicturePoint | None:
         """Picture coordinates of a place; None when no point of the drive is near."""
-        measured, drive = place.measured, picture.drive
+        measured, drive = position.measured, picture.drive
         if measured is not None and measured.drive == drive.id:
             point = measured.point if 0 <= measured.point < drive.count else -1
         else:
-            point = nearest_point(drive, np.array(place.xyz), NEAR_M)
+            point = nearest_point(drive, np.array(position.xyz), NEAR_M)
         if point < 0:
             return None
         rows, columns = picture.image.pixel_of(np.array([point]))
         if rows[0] < 0:
             return None
-        u, v = picture.places(rows, columns.astype(np.int64))[0].tolist()
+        u, v = picture.positions(rows, columns.astype(np.int64))[0].tolist()
         return u, v

@@ -13,13 +13,13 @@ from processing.image.tile_cache import TileCache
 from processing.points.drive import Drive
 from processing.text import Language
 from widgets.image_view.locked_scrolling import following, is_opposite
-from widgets.image_view.panes import Beside, Header, Pane, ShownImage
-from widgets.image_view.picture import Picture
+from widgets.image_view.oriented_image import OrientedImage
+from widgets.image_view.panes import Pane, PaneHeader, SecondaryImage, ShownImage
 from widgets.image_view.view import ImageView
 from widgets.image_view.viewport import Viewport
 from widgets.mouse_tools.mouse_tool import MouseTool
-from widgets.shared.cursor import Place
-from widgets.shared.image_choice import ImageChoice
+from widgets.shared.cursor import PickedPosition
+from widgets.shared.image_view_settings import ImageViewSettings
 from widgets.shared.map_source import MapSource
 from widgets.shared.own_settings import OwnSettings
 from widgets.shared.shared_state import SharedState
@@ -52,7 +52,7 @@ class ImageViews(QWidget):
     -------
     open_requested, import_requested, sharpened, features_placed
         Of the main image.
-    menu_requested(wish: MenuWish)
+    menu_requested(wish: MenuRequest)
         Of any image.
     images_changed()
         An image was added or closed, or shows something else.
@@ -83,12 +83,14 @@ class ImageViews(QWidget):
         self._is_locked = True
         self._splitter = QSplitter(self)
         self._splitter.setChildrenCollapsible(False)
-        self._beside: list[Beside] = []
+        self._beside: list[SecondaryImage] = []
         self._main = ImageView(source, shared, tiles, language=language)
         self._active = self._main
         self._adopt(self._main)
-        choice = ImageChoice(source, shared.map_changes, shared.view_settings, language=language)
-        self._main_header = Header(choice)
+        choice = ImageViewSettings(
+            source, shared.map_changes, shared.view_settings, language=language
+        )
+        self._main_header = PaneHeader(choice)
         self._splitter.addWidget(Pane(self._main, self._main_header))
         self._main.open_requested.connect(self.open_requested)
         self._main.import_requested.connect(self.import_requested)
@@ -98,7 +100,7 @@ class ImageViews(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.addWidget(self._splitter)
-        shared.view_settings.image_lay_changed.connect(self._stand)
+        shared.view_settings.image_orientation_changed.connect(self._stand)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
         shared.map_changes.drives_changed.connect(self._on_map_drives_changed)
         self._main_header.close_button.hide()
@@ -159,7 +161,11 @@ class ImageViews(QWidget):
         one.view.set_mouse_tool(self._tool)
         one.pane.header.closed.connect(lambda: self.close_image(one.view))
         settings = one.settings
-        for signal in (settings.image_changed, settings.look_changed, settings.image_lay_changed):
+        for signal in (
+            settings.image_changed,
+            settings.look_changed,
+            settings.image_orientation_changed,
+        ):
             signal.connect(self._on_beside_changed)
         self._splitter.addWidget(one.pane)
         self._share()
@@ -204,7 +210,7 @@ class ImageViews(QWidget):
         return self._active.viewport
 
     @property
-    def picture(self) -> Picture | None:
+    def picture(self) -> OrientedImage | None:
         """What the active image shows; None while it is empty."""
         return self._active.picture
 
@@ -229,17 +235,17 @@ class ImageViews(QWidget):
         """Zoom about the middle of the active image."""
         self._active.zoom_by(factor)
 
-    def center_on(self, place: Place) -> None:
+    def center_on(self, position: PickedPosition) -> None:
         """Put a place in the middle of every image that has it."""
-        self._each(lambda view: view.center_on(place))
+        self._each(lambda view: view.center_on(position))
 
     def center_on_selection(self) -> None:
         """Put the chosen features in the middle, or the cursor when none is chosen."""
         self._each(lambda view: view.center_on_selection())
 
-    def position_of(self, place: Place) -> QPointF | None:
+    def position_of(self, position: PickedPosition) -> QPointF | None:
         """Where a place is in the active image, in this widget; None when it isn't there."""
-        at = self._active.position_of(place)
+        at = self._active.position_of(position)
         return None if at is None else at + QPointF(self._active.mapTo(self, QPoint(0, 0)))
 
     # Events.
@@ -299,7 +305,7 @@ class ImageViews(QWidget):
         if drive is None:
             kind, look = settings.image_kind, settings.look
             attribute = "height" if look.attribute != "height" else "intensity"
-            return ShownImage(settings.drive_id, kind, attribute, settings.image_lay)
+            return ShownImage(settings.drive_id, kind, attribute, settings.image_orientation)
         return self._image_of(drive)
 
     def _image_of(self, drive: Drive) -> ShownImage:
@@ -307,29 +313,29 @@ class ImageViews(QWidget):
         settings, kinds = self._shared.view_settings, drive.image_kinds
         attribute = settings.look.attribute
         kind = settings.image_kind if settings.image_kind in kinds else kinds[0]
-        lay, main = settings.image_lay, self._main.picture
+        orientation, main = settings.image_orientation, self._main.picture
         if main is not None and is_opposite(main, self._main.viewport.centre, drive, kind):
-            lay = replace(
-                lay,
-                is_reversed_along=not lay.is_reversed_along,
-                is_mirrored_across=not lay.is_mirrored_across,
+            orientation = replace(
+                orientation,
+                is_reversed_along=not orientation.is_reversed_along,
+                is_mirrored_across=not orientation.is_mirrored_across,
             )
-        return ShownImage(drive.id, kind, attribute, lay)
+        return ShownImage(drive.id, kind, attribute, orientation)
 
     def _stand(self) -> None:
-        is_vertical = self._shared.view_settings.image_lay.is_vertical
+        is_vertical = self._shared.view_settings.image_orientation.is_vertical
         along = Qt.Orientation.Horizontal if is_vertical else Qt.Orientation.Vertical
         self._splitter.setOrientation(along)
 
-    def _made(self) -> Beside:
+    def _made(self) -> SecondaryImage:
         source, changes = self._source, self._shared.map_changes
         own = OwnSettings(self._shared.view_settings)
         shared = replace(self._shared, view_settings=own.settings)
         view = ImageView(source, shared, self._tiles, language=self._language)
-        choice = ImageChoice(source, changes, own.settings, language=self._language)
-        pane = Pane(view, Header(choice))
+        choice = ImageViewSettings(source, changes, own.settings, language=self._language)
+        pane = Pane(view, PaneHeader(choice))
         own.setParent(pane)
-        return Beside(pane, own.settings)
+        return SecondaryImage(pane, own.settings)
 
     def _share(self) -> None:
         """Give all images the same room, and lines that say what they show if there are several."""

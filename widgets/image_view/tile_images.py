@@ -21,9 +21,9 @@ from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.tiles import TileKey
 from processing.image.touched_tiles import TouchedTiles
-from widgets.image_view.picture import Picture
+from widgets.image_view.oriented_image import OrientedImage
 from widgets.shared.feature_style import ACCENT
-from widgets.shared.view_settings import PointLook
+from widgets.shared.view_settings import PointStyle
 
 MOST_BYTES = 96 * 2**20
 THINNINGS = (1, 2, 4, 8)
@@ -62,12 +62,12 @@ class TileImages(QObject):
         super().__init__()
         self._tiles = tiles
         self._limit_bytes = limit_bytes
-        self._picture: Picture | None = None
-        self._look = PointLook()
+        self._picture: OrientedImage | None = None
+        self._look = PointStyle()
         self._made: OrderedDict[_Slot, _Made] = OrderedDict()
         self._bytes = 0
         self._chosen = np.empty(0, np.int64)
-        self._chosen_in: Picture | None = None
+        self._chosen_in: OrientedImage | None = None
         self._age = 0
         self._is_complete = False
         self._version = 0
@@ -91,7 +91,7 @@ class TileImages(QObject):
         """Whether all tiles asked for last were there, in the look of now."""
         return self._is_complete
 
-    def show(self, picture: Picture | None, look: PointLook) -> None:
+    def show(self, picture: OrientedImage | None, look: PointStyle) -> None:
         """Make pictures of this image in this look from now on."""
         self._picture, self._look = picture, look
 
@@ -171,9 +171,9 @@ class TileImages(QObject):
             if made is not None:
                 found[key] = made.image
         self._is_complete = not missing
-        self._tiles.keep_only(self._tell, frozenset(missing))
+        self._tiles.keep_only(self._report, frozenset(missing))
         for request in reversed(missing):  # the loader serves the newest first
-            self._tiles.request(request, self._tell, self._tell_refusal)
+            self._tiles.request(request, self._report, self._report_refusal)
         if not missing:
             self._load_ahead([self._request_for(picture, key) for key in ahead])
         return found
@@ -203,10 +203,10 @@ class TileImages(QObject):
     def _have_ahead(self, request: TileRequest, pixels: TilePixels) -> None:
         """Tiles loaded ahead are found when they are looked at."""
 
-    def _tell(self, request: TileRequest, pixels: TilePixels) -> None:
+    def _report(self, request: TileRequest, pixels: TilePixels) -> None:
         self._arrived.emit(request, pixels)
 
-    def _tell_refusal(self, request: TileRequest, refusal: UserError) -> None:  # noqa: ARG002
+    def _report_refusal(self, request: TileRequest, refusal: UserError) -> None:  # noqa: ARG002
         # What was refused is asked for when it is painted.
         self._refused.emit()
 
@@ -219,7 +219,7 @@ class TileImages(QObject):
                 self._keep(slot, request, self._drawn(picture, pixels))
             self.changed.emit()
 
-    def _request_for(self, picture: Picture, key: TileKey) -> TileRequest:
+    def _request_for(self, picture: OrientedImage, key: TileKey) -> TileRequest:
         look = self._look
         ends = look.low_percent, look.high_percent
         kind = picture.image.kind
@@ -232,10 +232,10 @@ class TileImages(QObject):
         ends = request.low_percent, request.high_percent
         return follows_labels, request.attribute, *ends, request.hides_noise, self._age
 
-    def _drawn(self, picture: Picture, pixels: TilePixels) -> QImage:
+    def _drawn(self, picture: OrientedImage, pixels: TilePixels) -> QImage:
         colours = pixels.colours
         if self._chosen.size:
-            colours = tinted(pixels, self._chosen)
+            colours = tint_points(pixels, self._chosen)
         return as_image(picture.laid(colours))
 
     def _keep(self, slot: _Slot, request: TileRequest, whole: QImage) -> _Made:
@@ -257,10 +257,10 @@ def as_image(pixels: NDArray[np.uint8]) -> QImage:
     return QImage(packed.data, width, height, 4 * width, QImage.Format.Format_RGB32).copy()
 
 
-def tinted(pixels: TilePixels, chosen: NDArray[np.int64]) -> NDArray[np.uint8]:
+def tint_points(pixels: TilePixels, chosen: NDArray[np.int64]) -> NDArray[np.uint8]:
     """Colours of a tile with the chosen points, (n,) sorted, in the accent colour."""
-    places = np.searchsorted(chosen, pixels.points)
-    is_chosen = chosen[np.minimum(places, chosen.size - 1)] == pixels.points
+    positions = np.searchsorted(chosen, pixels.points)
+    is_chosen = chosen[np.minimum(positions, chosen.size - 1)] == pixels.points
     if not is_chosen.any():
         return pixels.colours
     colours = pixels.colours.copy()
@@ -273,7 +273,7 @@ def _rgb(colour: QColor) -> tuple[int, int, int]:
     return colour.red(), colour.green(), colour.blue()
 
 
-def _thinned(image: QImage, slot: _Slot, picture: Picture | None) -> QImage:
+def _thinned(image: QImage, slot: _Slot, picture: OrientedImage | None) -> QImage:
     thinning = slot[3]
     if thinning == 1 or picture is None:
         return image

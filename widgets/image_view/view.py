@@ -18,23 +18,23 @@ from typing_extensions import override
 from processing.errors import UserError
 from processing.image.tile_cache import TileCache
 from processing.text import Language
-from widgets.image_view.edges import Edges
 from widgets.image_view.feature_overlay import FeatureOverlay
-from widgets.image_view.feature_places import FeaturePlaces
+from widgets.image_view.feature_positions import FeaturePositions
 from widgets.image_view.hit_finder import HitFinder
-from widgets.image_view.navigation import beginning, viewport_on, wheeled
-from widgets.image_view.picture import Picture
-from widgets.image_view.place_search import PlaceSearch
+from widgets.image_view.margins import ImageMargins
+from widgets.image_view.navigation import beginning, viewport_on, zoom_by_wheel
+from widgets.image_view.oriented_image import OrientedImage
+from widgets.image_view.position_search import PositionSearch
 from widgets.image_view.scene_painter import Overlays, ScenePainter
 from widgets.image_view.shown_cursor import ShownCursor
 from widgets.image_view.tile_images import TileImages
 from widgets.image_view.view_menu import view_menu
 from widgets.image_view.viewport import Viewport
 from widgets.mouse_tools.gesture import Gesture
-from widgets.mouse_tools.menu_wish import MenuWish
+from widgets.mouse_tools.menu_request import MenuRequest
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.plane_view.navigation import Navigation
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -64,7 +64,7 @@ class ImageView(QWidget):
         The last tile that was missing in the window has come and is painted.
     features_placed
         Every vertex of another drive has found its point of this one, or none.
-    menu_requested(wish: MenuWish)
+    menu_requested(wish: MenuRequest)
         The right button with nothing under way.
     looked()
         Another part of the picture is shown, or another size of it.
@@ -89,21 +89,21 @@ class ImageView(QWidget):
         super().__init__(parent)
         self._source = source
         self._shared = shared
-        self._picture: Picture | None = None
+        self._picture: OrientedImage | None = None
         self._refusal: UserError | None = None
         self._is_sharp = False
         self._viewport = Viewport()
         self._images = TileImages(tiles)
         self._images.setParent(self)
-        self._places = FeaturePlaces(source)
-        self._overlay = FeatureOverlay(self._places, shared.view_settings)
+        self._positions = FeaturePositions(source)
+        self._overlay = FeatureOverlay(self._positions, shared.view_settings)
         self._hits = HitFinder(self._overlay, shared.snap, shared.view_settings)
         self._gesture = Gesture(self._hits, shared.cursor)
         self._navigation = Navigation()
         self._cursor = ShownCursor()
         self._scene = ScenePainter(self, self._images, self._overlay, language)
-        self._edges = Edges(self, tiles)
-        self._search = PlaceSearch(self._places, self._plan_middle, self)
+        self._edges = ImageMargins(self, tiles)
+        self._search = PositionSearch(self._positions, self._plan_middle, self)
         self._search.found.connect(self.update)
         self._search.ended.connect(self.features_placed)
         self.setMouseTracking(True)
@@ -112,10 +112,10 @@ class ImageView(QWidget):
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self._edges.empty.open_requested.connect(self.open_requested)
         self._edges.empty.import_requested.connect(self.import_requested)
-        self._edges.minimap.place_chosen.connect(self._on_minimap_place_chosen)
+        self._edges.minimap.position_chosen.connect(self._on_minimap_position_chosen)
         self._images.changed.connect(self.update)
         self._listen()
-        self._places.read_all()
+        self._positions.read_all()
         self._on_settings_image_changed()
 
     def _listen(self) -> None:
@@ -129,7 +129,9 @@ class ImageView(QWidget):
         shared.map_changes.follow_labels(self._on_map_labels_changed)
         shared.view_settings.look_changed.connect(self._on_settings_look_changed)
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
-        shared.view_settings.image_lay_changed.connect(self._on_settings_image_lay_changed)
+        shared.view_settings.image_orientation_changed.connect(
+            self._on_settings_image_orientation_changed
+        )
         shared.view_settings.shown_features_changed.connect(self.update)
         shared.sketch.changed.connect(self.update)
         shared.snap.mark_changed.connect(self.update)
@@ -143,7 +145,7 @@ class ImageView(QWidget):
         return self._viewport
 
     @property
-    def picture(self) -> Picture | None:
+    def picture(self) -> OrientedImage | None:
         """What is shown; None while the view is empty."""
         return self._picture
 
@@ -171,23 +173,23 @@ class ImageView(QWidget):
         viewport = self._viewport
         self._look_through(viewport.zoomed(factor, *viewport.middle))
 
-    def center_on(self, place: Place) -> None:
+    def center_on(self, position: PickedPosition) -> None:
         """Put a place in the middle; without effect when no point of the drive is near it."""
-        found = None if self._picture is None else self._cursor.find(self._picture, place)
+        found = None if self._picture is None else self._cursor.find(self._picture, position)
         if found is not None:
             self._look_through(self._viewport.centred_on(*found))
 
     def center_on_selection(self) -> None:
         """Put the chosen features in the middle, or the cursor when none is chosen."""
-        span = self._places.span_of(self._shared.selection.features)
+        span = self._positions.span_of(self._shared.selection.features)
         if span is not None:
             self._look_through(self._viewport.holding(span))
-        elif self._shared.cursor.place is not None:
-            self.center_on(self._shared.cursor.place)
+        elif self._shared.cursor.position is not None:
+            self.center_on(self._shared.cursor.position)
 
-    def position_of(self, place: Place) -> QPointF | None:
+    def position_of(self, position: PickedPosition) -> QPointF | None:
         """Where a place is in this widget; None when no point of the drive is near it."""
-        found = None if self._picture is None else self._cursor.find(self._picture, place)
+        found = None if self._picture is None else self._cursor.find(self._picture, position)
         return None if found is None else QPointF(*self._viewport.position_of(*found))
 
     # Events.
@@ -215,7 +217,7 @@ class ImageView(QWidget):
     @override
     def wheelEvent(self, event: QWheelEvent) -> None:
         if self._picture is not None:
-            self._look_through(wheeled(self._viewport, event))
+            self._look_through(zoom_by_wheel(self._viewport, event))
             self._hover(event.position())
         event.accept()
 
@@ -294,8 +296,8 @@ class ImageView(QWidget):
 
     # What others tell.
 
-    def _on_cursor_moved(self, place: Place) -> None:
-        found = self._cursor.move_to(self._picture, place)
+    def _on_cursor_moved(self, position: PickedPosition) -> None:
+        found = self._cursor.move_to(self._picture, position)
         if found is not None and not self._viewport.shows(*found, _MARGIN_PX):
             self._look_through(self._viewport.centred_on(*found))
         self.update()
@@ -306,14 +308,14 @@ class ImageView(QWidget):
 
     def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
         if len(ids) > _MANY_FEATURES:
-            self._places.read_all()
+            self._positions.read_all()
         else:
-            self._places.read(ids)
+            self._positions.read(ids)
         self._search.go_on()
         self.update()
 
     def _on_map_drives_changed(self) -> None:
-        self._places.read_all()
+        self._positions.read_all()
         self._on_settings_image_changed()
 
     def _on_map_drive_columns_changed(self, drive: str) -> None:
@@ -336,15 +338,15 @@ class ImageView(QWidget):
         before = self._picture
         self._refusal = None
         try:
-            self._picture = Picture.chosen(self._source, self._shared.view_settings)
+            self._picture = OrientedImage.chosen(self._source, self._shared.view_settings)
         except UserError as error:  # told where the picture would be
             self._picture, self._refusal = None, error
         picture, look = self._picture, self._shared.view_settings.look
         self._images.show(picture, look)
         self._edges.show_picture(picture, look, is_refused=self._refusal is not None)
-        self._places.show(picture)
+        self._positions.show(picture)
         self._tint()
-        self._cursor.move_to(picture, self._shared.cursor.place)
+        self._cursor.move_to(picture, self._shared.cursor.position)
         self._cursor.forget_trail()
         self._show_mouse()
         self._lay_out()
@@ -354,11 +356,11 @@ class ImageView(QWidget):
         self._search.go_on()
         self.update()
 
-    def _on_settings_image_lay_changed(self) -> None:
+    def _on_settings_image_orientation_changed(self) -> None:
         self._lay_out()
         self._look_through(self._viewport)
 
-    def _on_minimap_place_chosen(self, u: float) -> None:
+    def _on_minimap_position_chosen(self, u: float) -> None:
         self._look_through(self._viewport.centred_on(u, self._viewport.centre[1]))
 
     # What is done in more than one place.
@@ -366,13 +368,13 @@ class ImageView(QWidget):
     def _ask_for_menu(self, event: QMouseEvent) -> None:
         menu = view_menu(self, self, self._shared.view_settings)
         hit = self._hits.exact_hit(event.position(), event.modifiers())
-        self.menu_requested.emit(MenuWish(menu, event.globalPosition().toPoint(), hit))
+        self.menu_requested.emit(MenuRequest(menu, event.globalPosition().toPoint(), hit))
 
     def _lay_out(self) -> None:
         """Turn the picture as it is wanted, and give it what the edges leave."""
-        wanted = self._shared.view_settings.image_lay
-        lay = wanted if self._picture is None else self._picture.turned(wanted)
-        self._viewport = self._hits.viewport = self._viewport.laid(lay)
+        wanted = self._shared.view_settings.image_orientation
+        orientation = wanted if self._picture is None else self._picture.turned(wanted)
+        self._viewport = self._hits.viewport = self._viewport.laid(orientation)
         if self._viewport.width > 1:  # shown before
             self._viewport = self._hits.viewport = self._edges.lay_out(self._viewport)
 
@@ -383,7 +385,7 @@ class ImageView(QWidget):
         self.update()
 
     def _hover(self, position: QPointF) -> None:
-        self._shared.cursor.hover_over(self._hits.place_under(position))
+        self._shared.cursor.hover_over(self._hits.position_under(position))
 
     def _tint(self) -> None:
         picture, chosen = self._picture, self._shared.selection.points

@@ -7,11 +7,11 @@ from typing import Protocol
 from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QMenu, QWidget
 
-from widgets.shared.lay_menu import fill_lay_menu
+from widgets.shared.orientation_menu import fill_orientation_menu
 from widgets.shared.view_settings import ViewSettings
 
 
-class Looking(Protocol):
+class ImageViewCommands(Protocol):
     """What the menu does with the view."""
 
     def show_everything(self) -> None:
@@ -24,7 +24,7 @@ class Looking(Protocol):
         """Put what is chosen into the middle."""
 
 
-def view_menu(parent: QWidget, view: Looking, settings: ViewSettings) -> QMenu:
+def view_menu(parent: QWidget, view: ImageViewCommands, settings: ViewSettings) -> QMenu:
     """What one can look at, and which way; it goes when it was closed."""
     menu = QMenu(parent)
     menu.addAction(QCoreApplication.translate("ImageView", "Show everything"), view.show_everything)
@@ -35,7 +35,7 @@ def view_menu(parent: QWidget, view: Looking, settings: ViewSettings) -> QMenu:
         QCoreApplication.translate("ImageView", "Centre on the selection"), view.center_on_selection
     )
     menu.addSeparator()
-    lay = menu.addMenu(QCoreApplication.translate("ImageView", "Direction of the street"))
-    fill_lay_menu(lay, settings)
+    orientation = menu.addMenu(QCoreApplication.translate("ImageView", "Direction of the street"))
+    fill_orientation_menu(orientation, settings)
     menu.aboutToHide.connect(menu.deleteLater)
     return menu

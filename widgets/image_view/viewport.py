@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QTransform
 
-from widgets.image_view.picture import Span
-from widgets.shared.image_lay import ImageLay
+from widgets.image_view.oriented_image import Span
+from widgets.shared.image_orientation import ImageOrientation
 
 Floats = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ class Viewport:
         What is in the middle of the window, picture coordinates.
     top, left : float
         Where the window begins below the widget's upper edge and right of its left one.
-    lay : ImageLay
+    orientation : ImageOrientation
         Which way u and v go on the screen.
     """
 
@@ -53,7 +53,7 @@ class Viewport:
     centre: tuple[float, float] = (0.5, 0.5)
     top: float = 0.0
     left: float = 0.0
-    lay: ImageLay = field(default_factory=ImageLay)
+    orientation: ImageOrientation = field(default_factory=ImageOrientation)
 
     @property
     def zoom_u(self) -> float:
@@ -68,12 +68,12 @@ class Viewport:
     @property
     def along_px(self) -> float:
         """The window's size along the street."""
-        return self.height if self.lay.is_vertical else self.width
+        return self.height if self.orientation.is_vertical else self.width
 
     @property
     def across_px(self) -> float:
         """The window's size across the street."""
-        return self.width if self.lay.is_vertical else self.height
+        return self.width if self.orientation.is_vertical else self.height
 
     @property
     def bottom(self) -> float:
@@ -122,18 +122,18 @@ class Viewport:
         x, y = self.position_of(0.0, 0.0)
         return QTransform(right_u, down_u, right_v, down_v, x, y)
 
-    def to_screen(self, places: Floats) -> Floats:
+    def to_screen(self, positions: Floats) -> Floats:
         """(n, 2) picture coordinates to (n, 2) positions in the widget."""
-        offsets = places - np.array(self.centre)
-        if self.lay.is_vertical:
+        offsets = positions - np.array(self.centre)
+        if self.orientation.is_vertical:
             offsets = offsets[:, ::-1]
-        positions: Floats = offsets * self._scales + np.array(self.middle)
-        return positions
+        pixels: Floats = offsets * self._scales + np.array(self.middle)
+        return pixels
 
     def position_of(self, u: float, v: float) -> tuple[float, float]:
         """Where a place is in the widget."""
         right, down = u - self.centre[0], v - self.centre[1]
-        if self.lay.is_vertical:
+        if self.orientation.is_vertical:
             right, down = down, right
         (x, y), (scale_x, scale_y) = self.middle, self._scales
         return x + right * scale_x, y + down * scale_y
@@ -160,7 +160,11 @@ class Viewport:
     def rolled(self, windows: float) -> Viewport:
         """The picture pushed along the street by a share of the window: right, or down."""
         moved_px = windows * self.along_px
-        return self.panned(0.0, moved_px) if self.lay.is_vertical else self.panned(moved_px, 0.0)
+        return (
+            self.panned(0.0, moved_px)
+            if self.orientation.is_vertical
+            else self.panned(moved_px, 0.0)
+        )
 
     def centred_on(self, u: float, v: float) -> Viewport:
         """A place in the middle; the picture's edge never passes the window's middle."""
@@ -171,9 +175,9 @@ class Viewport:
         """The same middle in a window of another size."""
         return replace(self, width=max(width, 1.0), height=max(height, 1.0), top=top, left=left)
 
-    def laid(self, lay: ImageLay) -> Viewport:
+    def laid(self, orientation: ImageOrientation) -> Viewport:
         """The same middle with the street running another way."""
-        return self if lay == self.lay else replace(self, lay=lay)
+        return self if orientation == self.orientation else replace(self, orientation=orientation)
 
     def showing(self, extent: tuple[float, float], stretch: float) -> Viewport:
         """Another picture in the same window."""
@@ -219,15 +223,15 @@ class Viewport:
     @property
     def _scales(self) -> tuple[float, float]:
         """Screen pixels to the right and down for a pixel of the picture along that axis."""
-        zoom_u = -self.zoom_u if self.lay.is_reversed_along else self.zoom_u
-        zoom_v = -self.zoom_v if self.lay.is_mirrored_across else self.zoom_v
-        return (zoom_v, -zoom_u) if self.lay.is_vertical else (zoom_u, zoom_v)
+        zoom_u = -self.zoom_u if self.orientation.is_reversed_along else self.zoom_u
+        zoom_v = -self.zoom_v if self.orientation.is_mirrored_across else self.zoom_v
+        return (zoom_v, -zoom_u) if self.orientation.is_vertical else (zoom_u, zoom_v)
 
     @property
     def _axes(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """Screen pixels to the right and down for one in u, and for one in v."""
         scale_x, scale_y = self._scales
-        if self.lay.is_vertical:
+        if self.orientation.is_vertical:
             return (0.0, scale_y), (scale_x, 0.0)
         return (scale_x, 0.0), (0.0, scale_y)
 
@@ -235,7 +239,7 @@ class Viewport:
         """How far in u and v a way on the screen leads."""
         scale_x, scale_y = self._scales
         right, down = right_px / scale_x, down_px / scale_y
-        return (down, right) if self.lay.is_vertical else (right, down)
+        return (down, right) if self.orientation.is_vertical else (right, down)
 
     def _limited(self, zoom: float) -> float:
         u, v = self.extent

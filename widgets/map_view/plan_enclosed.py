@@ -35,20 +35,20 @@ def points_below(
     dict of str to (n,) int64
         Drive id to rising indices; noise is left out where it is hidden.
     """
-    wish = shown.wish
-    origin = np.array([wish.origin[0], wish.origin[1], 0.0])
+    request = shown.request
+    origin = np.array([request.origin[0], request.origin[1], 0.0])
     matrix = np.array([[px_per_m, 0, 0, 0], [0, -px_per_m, 0, 0], [0, 0, 0, 1]], np.float64)
     corners = (outline - origin[:2] * (1.0, -1.0)) * px_per_m
     found = {}
-    for drive, kind in wish.drives:
+    for drive, kind in request.drives:
         image = image_of(drive, kind)
         if not image.pyramid.is_ready:
             continue
         points = points_enclosed(drive, image, Sight(matrix, origin, 0.0), corners)
-        points = seen_points(drive.columns, points, hides_noise=wish.look.hides_noise)
-        if wish.limit_m is not None and len(shown.ground) and points.size:
+        points = seen_points(drive.columns, points, hides_noise=request.look.hides_noise)
+        if request.limit_m is not None and len(shown.ground) and points.size:
             xyz = drive.xyz(points)
-            points = points[xyz[:, 2] <= ceilings_above(shown.ground, xyz[:, :2], wish.limit_m)]
+            points = points[xyz[:, 2] <= ceilings_above(shown.ground, xyz[:, :2], request.limit_m)]
         if points.size:
             found[drive.id] = points
     return found

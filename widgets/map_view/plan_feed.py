@@ -14,13 +14,13 @@ from processing.errors import UserError
 from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.plan_ground import ceilings_above, ground_along
-from processing.image.plan_raster import PlanFrame, PlanPicture, PlanRaster, square_middles
+from processing.image.plan_raster import PlanFrame, PlanRaster, PlanSnapshot, square_middles
 from processing.image.tile_cache import TileCache, TileRequest
 from processing.image.tile_choice import Camera3D, tiles_in_view
 from processing.image.tiles import TileKey, TilePyramid
 from processing.points.drive import Drive
-from widgets.map_view.plan_tiles import OutdatedWish, PlanTiles, TilePoints, WantedTile
-from widgets.shared.view_settings import PointLook
+from widgets.map_view.plan_tiles import OutdatedRequest, PlanTiles, TilePoints, WantedTile
+from widgets.shared.view_settings import PointStyle
 
 Floats = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ _MOST_GROWN = 2.0
 
 
 @dataclass(frozen=True)
-class PlanWish:
+class PlanRequest:
     """What the view wants to see.
 
     Attributes
@@ -45,7 +45,7 @@ class PlanWish:
         The document's local origin, m, project CRS.
     age : int
         Raised with every change of drives; told back.
-    look : PointLook
+    look : PointStyle
     size_px : int
         Side of the square that a point covers, pixels of the frame.
     limit_m : float or None
@@ -57,7 +57,7 @@ class PlanWish:
     drives: tuple[tuple[Drive, ImageKind], ...]
     origin: Floats
     age: int
-    look: PointLook
+    look: PointStyle
     size_px: int
     limit_m: float | None
 
@@ -69,7 +69,7 @@ class PlanWish:
 
 @dataclass(frozen=True, eq=False)
 class ShownPlan:
-    """A picture for a wish.
+    """A picture for a request.
 
     Attributes
     ----------
@@ -81,22 +81,22 @@ class ShownPlan:
         Places of the road, m, project CRS; may be empty.
     """
 
-    wish: PlanWish
-    picture: PlanPicture
+    request: PlanRequest
+    picture: PlanSnapshot
     ground: Floats
     is_sharp: bool
     is_overview: bool = False
 
     def ceiling_at(self, easting: float, northing: float) -> float:
         """The height above which points are hidden at a place, m; infinite without a limit."""
-        if self.wish.limit_m is None or not len(self.ground):
+        if self.request.limit_m is None or not len(self.ground):
             return np.inf
-        place = np.array([easting, northing])
-        return float(ceilings_above(self.ground, place, self.wish.limit_m))
+        position = np.array([easting, northing])
+        return float(ceilings_above(self.ground, position, self.request.limit_m))
 
 
 class PlanFeed(QObject):
-    """Works out wishes one after the other; the newest is the one that counts.
+    """Works out requests one after the other; the newest is the one that counts.
 
     Signals
     -------
@@ -109,7 +109,7 @@ class PlanFeed(QObject):
     def __init__(self, tiles: TileCache) -> None:
         super().__init__()
         self._changed = threading.Condition()
-        self._next: PlanWish | None = None
+        self._next: PlanRequest | None = None
         self._is_closed = False
         self._tiles = PlanTiles(tiles, self._changed, self._is_outdated)
         self._ground: tuple[int, Floats] = -1, np.empty((0, 3))
@@ -117,10 +117,10 @@ class PlanFeed(QObject):
         self._worker = threading.Thread(target=self._work, name="plan pictures", daemon=True)
         self._worker.start()
 
-    def wish(self, wish: PlanWish) -> None:
+    def request(self, request: PlanRequest) -> None:
         """Ask for what is to be seen now; replaces what was asked for and isn't finished."""
         with self._changed:
-            self._next = wish
+            self._next = request
             self._changed.notify_all()
 
     def close(self) -> None:
@@ -139,63 +139,67 @@ class PlanFeed(QObject):
                     self._changed.wait()
                 if self._is_closed or self._next is None:
                     return
-                wish, self._next = self._next, None
+                request, self._next = self._next, None
             try:
-                self._fulfil(wish)
-            except OutdatedWish:
+                self._fulfil(request)
+            except OutdatedRequest:
                 continue
 
     def _is_outdated(self) -> bool:
         return self._is_closed or self._next is not None
 
-    def _fulfil(self, wish: PlanWish) -> None:
-        pyramids = self._prepared(wish)
-        raster = self._raster(wish, wish.frame)
+    def _fulfil(self, request: PlanRequest) -> None:
+        pyramids = self._prepared(request)
+        raster = self._raster(request, request.frame)
         added: set[tuple[int, TileKey]] = set()
         for budget in (_FIRST_BUDGET, _FULL_BUDGET):
             is_first = budget == _FIRST_BUDGET
-            chosen = _chosen(pyramids, _camera(wish.frame, wish), budget)
-            lacking = [_wanted(wish, *tile) for tile in chosen if tile not in added]
+            chosen = _chosen(pyramids, _camera(request.frame, request), budget)
+            lacking = [_wanted(request, *tile) for tile in chosen if tile not in added]
             told_at = time.monotonic()
-            for tile in self._tiles.get(lacking, wish.origin, is_patient=is_first):
-                _add(raster, wish, tile)
+            for tile in self._tiles.get(lacking, request.origin, is_patient=is_first):
+                _add(raster, request, tile)
                 if time.monotonic() - told_at > _TOLD_S:
-                    self._tell(ShownPlan(wish, raster.picture(), self._ground[1], is_sharp=False))
+                    self._report(
+                        ShownPlan(request, raster.picture(), self._ground[1], is_sharp=False)
+                    )
                     told_at = time.monotonic()
             added.update(chosen)
-            self._tell(ShownPlan(wish, raster.picture(), self._ground[1], is_sharp=not is_first))
-        self._make_overview(wish, pyramids)
-        self._make_exact(wish, [pyramid for _, pyramid in pyramids if not pyramid.is_ready])
+            self._report(
+                ShownPlan(request, raster.picture(), self._ground[1], is_sharp=not is_first)
+            )
+        self._make_overview(request, pyramids)
+        self._make_exact(request, [pyramid for _, pyramid in pyramids if not pyramid.is_ready])
 
-    def _make_exact(self, wish: PlanWish, sketched: list[TilePyramid]) -> None:
+    def _make_exact(self, request: PlanRequest, sketched: list[TilePyramid]) -> None:
         """Work out where tiles are that was only sketched, and show what is changed by that."""
-        frame = wish.frame
+        frame = request.frame
         middle = (frame.west + frame.east) / 2, (frame.south + frame.north) / 2
         for pyramid in sketched:
-            while not pyramid.extend(np.array([*middle, wish.origin[2]])):
+            while not pyramid.extend(np.array([*middle, request.origin[2]])):
                 if self._is_outdated():
                     return
         if sketched:
             self._overview = ()
-            self._fulfil(wish)
+            self._fulfil(request)
 
-    def _make_overview(self, wish: PlanWish, pyramids: list[tuple[int, TilePyramid]]) -> None:
+    def _make_overview(self, request: PlanRequest, pyramids: list[tuple[int, TilePyramid]]) -> None:
         """What is shown where a push or a zoom is ahead of the pictures."""
-        if wish.manner == self._overview:
+        if request.manner == self._overview:
             return
-        raster = self._raster(wish, wish.everything)
-        chosen = _chosen(pyramids, _camera(wish.everything, wish), _OVERVIEW_BUDGET)
-        wanted = [_wanted(wish, *tile) for tile in chosen]
-        for tile in self._tiles.get(wanted, wish.origin, is_patient=False):
-            _add(raster, wish, tile)
+        raster = self._raster(request, request.everything)
+        chosen = _chosen(pyramids, _camera(request.everything, request), _OVERVIEW_BUDGET)
+        wanted = [_wanted(request, *tile) for tile in chosen]
+        for tile in self._tiles.get(wanted, request.origin, is_patient=False):
+            _add(raster, request, tile)
         picture = raster.picture()
-        self._tell(ShownPlan(wish, picture, self._ground[1], is_sharp=True, is_overview=True))
-        self._overview = wish.manner
+        self._report(ShownPlan(request, picture, self._ground[1], is_sharp=True, is_overview=True))
+        self._overview = request.manner
 
-    def _prepared(self, wish: PlanWish) -> list[tuple[int, TilePyramid]]:
+    def _prepared(self, request: PlanRequest) -> list[tuple[int, TilePyramid]]:
         """Drives' numbers and the tiles of those that can be shown."""
         pyramids = []
-        for number, (drive, kind) in enumerate(wish.drives):
+        for number, (drive, kind) in enumerate(request.drives):
             try:
                 pyramid = image_of(drive, kind).pyramid
                 pyramid.sketch()
@@ -204,28 +208,28 @@ class PlanFeed(QObject):
             pyramids.append((number, pyramid))
         return pyramids
 
-    def _raster(self, wish: PlanWish, frame: PlanFrame) -> PlanRaster:
-        ground = self._ground_of(wish)
-        if wish.limit_m is None or not len(ground):
-            return PlanRaster(frame, wish.origin)
-        ceilings = ceilings_above(ground, square_middles(frame), wish.limit_m)
-        return PlanRaster(frame, wish.origin, ceilings)
+    def _raster(self, request: PlanRequest, frame: PlanFrame) -> PlanRaster:
+        ground = self._ground_of(request)
+        if request.limit_m is None or not len(ground):
+            return PlanRaster(frame, request.origin)
+        ceilings = ceilings_above(ground, square_middles(frame), request.limit_m)
+        return PlanRaster(frame, request.origin, ceilings)
 
-    def _ground_of(self, wish: PlanWish) -> Floats:
+    def _ground_of(self, request: PlanRequest) -> Floats:
         age, ground = self._ground
-        if age != wish.age:
+        if age != request.age:
             found = []
-            for drive, _ in wish.drives:
+            for drive, _ in request.drives:
                 try:
                     found.append(ground_along(drive))
                 except UserError:
                     continue  # the image view says why; there is no limit then
             ground = np.concatenate([np.empty((0, 3)), *found])
-            self._ground = wish.age, ground
+            self._ground = request.age, ground
             self._tiles.forget()
         return ground
 
-    def _tell(self, shown: ShownPlan) -> None:
+    def _report(self, shown: ShownPlan) -> None:
         if not self._is_closed:
             self.pictured.emit(shown)
 
@@ -238,11 +242,11 @@ def whole_frame(low: Floats, high: Floats) -> PlanFrame:
     return PlanFrame(float(low[0]), float(high[1]), px_per_m, width, height)
 
 
-def _camera(frame: PlanFrame, wish: PlanWish) -> Camera3D:
+def _camera(frame: PlanFrame, request: PlanRequest) -> Camera3D:
     """Looking straight down; points that cover several pixels need not lie so close."""
-    origin = wish.origin.tolist()
+    origin = request.origin.tolist()
     east, north = (frame.west + frame.east) / 2, (frame.south + frame.north) / 2
-    gap_px = max(1.0, wish.size_px / 2)
+    gap_px = max(1.0, request.size_px / 2)
     return Camera3D(
         origin=(origin[0], origin[1], origin[2]),
         position=(east - origin[0], north - origin[1], _EYE_M),
@@ -262,16 +266,18 @@ def _chosen(
     return [(pyramids[index][0], key) for index, key in found]
 
 
-def _wanted(wish: PlanWish, number: int, key: TileKey) -> WantedTile:
-    drive, kind = wish.drives[number]
-    look = wish.look
+def _wanted(request: PlanRequest, number: int, key: TileKey) -> WantedTile:
+    drive, kind = request.drives[number]
+    look = request.look
     ends = look.low_percent, look.high_percent
-    request = TileRequest(drive.id, kind, key, look.attribute, *ends, hides_noise=look.hides_noise)
-    return WantedTile(number, drive, request)
+    tile_request = TileRequest(
+        drive.id, kind, key, look.attribute, *ends, hides_noise=look.hides_noise
+    )
+    return WantedTile(number, drive, tile_request)
 
 
-def _add(raster: PlanRaster, wish: PlanWish, tile: TilePoints) -> None:
+def _add(raster: PlanRaster, request: PlanRequest, tile: TilePoints) -> None:
     # Where points lie wider apart than their size, larger ones close the surface.
     gap_px = round(tile.spacing_m * raster.frame.px_per_m)
-    size_px = min(max(gap_px, wish.size_px), round(_MOST_GROWN * wish.size_px))
+    size_px = min(max(gap_px, request.size_px), round(_MOST_GROWN * request.size_px))
     raster.add(tile.number, tile.points, tile.local_xyz, tile.colours, size_px=size_px)

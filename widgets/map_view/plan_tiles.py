@@ -18,7 +18,7 @@ from processing.points.drive import Drive
 _KEPT_POINTS = 5_000_000
 
 
-class OutdatedWish(Exception):
+class OutdatedRequest(Exception):
     """Another wish has come, or the view goes away."""
 
 
@@ -29,7 +29,7 @@ class WantedTile:
     Attributes
     ----------
     number : int
-        Of the drive among those of the wish.
+        Of the drive among those of the request.
     """
 
     number: int
@@ -44,7 +44,7 @@ class TilePoints:
     Attributes
     ----------
     number : int
-        Of the drive among those of the wish.
+        Of the drive among those of the request.
     points : (n,) int64
     local_xyz : (n, 3) float32
         m from the origin.
@@ -85,12 +85,12 @@ class PlanTiles:
         self._changed = changed
         self._is_outdated = is_outdated
         self._arrived: dict[TileRequest, TilePixels | None] = {}
-        self._places: OrderedDict[TileRequest, _Placed] = OrderedDict()
+        self._positions: OrderedDict[TileRequest, _Placed] = OrderedDict()
         self._kept_points = 0
 
     def forget(self) -> None:
         """The drives or the origin are others."""
-        self._places.clear()
+        self._positions.clear()
         self._kept_points = 0
 
     def close(self) -> None:
@@ -107,12 +107,12 @@ class PlanTiles:
         origin : (3,) float64
             m, project CRS.
         is_patient : bool
-            Give the tiles that are there even when the wish is outdated: while the wheel turns,
+            Give the tiles that are there even when the request is outdated: while the wheel turns,
             something is shown all the same.
 
         Raises
         ------
-        OutdatedWish
+        OutdatedRequest
         """
         lacking = []
         for tile in wanted:
@@ -160,7 +160,7 @@ class PlanTiles:
     def _give_way(self) -> None:
         with self._changed:
             if self._is_outdated():
-                raise OutdatedWish
+                raise OutdatedRequest
 
     def _points_of(
         self, tile: WantedTile, pixels: TilePixels, origin: NDArray[np.float64]
@@ -169,7 +169,7 @@ class PlanTiles:
         is_filled = points >= 0
         points = points[is_filled]
         key = replace(tile.request, attribute="", low_percent=0.0, high_percent=0.0)
-        placed = self._places.pop(key, None)
+        placed = self._positions.pop(key, None)
         # Where noise is hidden, a label changes which points there are.
         if placed is not None and not np.array_equal(placed.points, points):
             self._kept_points -= len(placed.points)
@@ -177,9 +177,9 @@ class PlanTiles:
         if placed is None:
             placed = _Placed(points, tile.drive.local_xyz(points, origin))
             self._kept_points += len(points)
-        self._places[key] = placed
-        while self._kept_points > _KEPT_POINTS and len(self._places) > 1:
-            _, dropped = self._places.popitem(last=False)
+        self._positions[key] = placed
+        while self._kept_points > _KEPT_POINTS and len(self._positions) > 1:
+            _, dropped = self._positions.popitem(last=False)
             self._kept_points -= len(dropped.points)
         spacing_m = image_of(tile.drive, tile.request.kind).pyramid.spacing_m(tile.request.key)
         colours = pixels.colours.reshape(-1, 3)[is_filled]

@@ -21,30 +21,30 @@ from PySide6.QtWidgets import QMenu, QWidget
 from typing_extensions import override
 
 from processing.image.kinds import ImageKind
-from processing.image.plan_points import PlanPoints, Sought
+from processing.image.plan_points import PlanPoints, PointQuery
 from processing.image.tile_cache import TileCache
 from processing.points.drive import Drive
 from processing.project.feature import PointReference
 from processing.text import Language
-from widgets.map_view.furniture import (
+from widgets.map_view.map_decorations import (
     paint_fields_of_view,
     paint_north,
     paint_scale_bar,
     paint_slab,
-    paint_ways,
+    paint_vehicle_paths,
 )
 from widgets.map_view.plan_enclosed import points_below
-from widgets.map_view.plan_feed import PlanFeed, PlanWish, ShownPlan, whole_frame
-from widgets.map_view.plan_lay import PlanLay, Spot, frame_of, on_plan
+from widgets.map_view.plan_feed import PlanFeed, PlanRequest, ShownPlan, whole_frame
 from widgets.map_view.plan_pictures import PlanPictures
+from widgets.map_view.plan_projection import MapPoint, PlanProjection, frame_of, on_plan
+from widgets.map_view.vehicle_path import VehiclePath, vehicle_paths_of
 from widgets.map_view.volume_layer import VolumeLayer
-from widgets.map_view.way import Way, ways_of
 from widgets.parts.opening_page import OpeningPage
-from widgets.plane_view.feature_hits import Points
-from widgets.plane_view.lay import Lay
+from widgets.plane_view.feature_hits import EnclosedPoints
+from widgets.plane_view.projection import PlaneProjection
 from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.outlines import are_inside
 from widgets.shared.shared_state import SharedState
@@ -91,9 +91,9 @@ class MapView(PlaneView):
         language: Language = "en",
     ) -> None:
         super().__init__(source, shared, parent, language=language)
-        self._lay = PlanLay()
+        self._projection = PlanProjection()
         self._drives: tuple[tuple[Drive, ImageKind], ...] = ()
-        self._ways: tuple[Way, ...] = ()
+        self._vehicle_paths: tuple[VehiclePath, ...] = ()
         self._points = PlanPoints(())
         self._limit_m: float | None = LIMIT_M
         self._fields: tuple[Floats, ...] = ()
@@ -108,7 +108,7 @@ class MapView(PlaneView):
         self._empty = OpeningPage(self.tr("A recording is shown here from above."), self)
         self._empty.open_requested.connect(self.open_requested)
         self._empty.import_requested.connect(self.import_requested)
-        self.viewport_changed.connect(self._wish)
+        self.viewport_changed.connect(self._request)
         shared.map_changes.drive_columns_changed.connect(self._on_map_drive_columns_changed)
         shared.map_changes.follow_labels(self._on_map_labels_changed)
         shared.view_settings.look_changed.connect(self._on_settings_look_changed)
@@ -128,7 +128,7 @@ class MapView(PlaneView):
         """Hide what is more than this above the road; None: nothing."""
         if limit_m != self._limit_m:
             self._limit_m = limit_m
-            self._wish()
+            self._request()
             self.limit_changed.emit(limit_m)
 
     def show_fields_of_view(self, polygons: Sequence[Floats], best: int) -> None:
@@ -165,8 +165,8 @@ class MapView(PlaneView):
     # What the common view asks.
 
     @override
-    def lay(self) -> Lay | None:
-        return self._lay if self._drives else None
+    def projection(self) -> PlaneProjection | None:
+        return self._projection if self._drives else None
 
     @override
     def extent(self) -> QRectF | None:
@@ -175,8 +175,8 @@ class MapView(PlaneView):
         low, high = self._bounds()
         everything = QRectF(low[0], -high[1], *np.maximum(high - low, 1.0).tolist())
         street = QRectF()
-        for way in self._ways:
-            street = street.united(way.beside(_STREET_HALF_M))
+        for vehicle_path in self._vehicle_paths:
+            street = street.united(vehicle_path.beside(_STREET_HALF_M))
         # A beam that went far through a gate makes nobody's street wider.
         return everything if street.isNull() else street.intersected(everything)
 
@@ -185,7 +185,7 @@ class MapView(PlaneView):
         self._pictures.paint(painter, viewport)
         self._volume.paint(painter, viewport)
         paint_fields_of_view(painter, viewport, self._fields, self._best_field)
-        paint_ways(painter, viewport, self._ways)
+        paint_vehicle_paths(painter, viewport, self._vehicle_paths)
 
     @override
     def paint_frame(self, painter: QPainter, viewport: PlaneViewport) -> None:
@@ -196,20 +196,22 @@ class MapView(PlaneView):
         self._volume.paint_frame(painter, viewport)
 
     @override
-    def place_at(self, place: Spot, reach: float, *, exact: bool) -> Place | None:
+    def position_at(
+        self, position: MapPoint, reach: float, *, exact: bool
+    ) -> PickedPosition | None:
         shown = self._pictures.newest
         if shown is None:
             return None
-        easting, northing = place[0], -place[1]
+        easting, northing = position[0], -position[1]
         px_m = 1.0 / self.viewport.scale
         reach_m = min(reach, _CLICK_PX * px_m)
         if exact:
             ceiling_m = shown.ceiling_at(easting, northing)
-            sought = Sought(easting, northing, _CLOSE_PX * px_m, reach_m, ceiling_m)
+            sought = PointQuery(easting, northing, _CLOSE_PX * px_m, reach_m, ceiling_m)
             found = self._points.point_at(sought)
-            return None if found is None else _place_of(*found)
+            return None if found is None else _position_of(*found)
         drawn = shown.picture.point_at(easting, northing, reach_m)
-        return None if drawn is None else _place_of(shown.wish.drives[drawn[0]][0], drawn[1])
+        return None if drawn is None else _position_of(shown.request.drives[drawn[0]][0], drawn[1])
 
     @override
     def points_inside(self, outline: QPolygonF) -> Mapping[str, NDArray[np.int64]]:
@@ -231,12 +233,12 @@ class MapView(PlaneView):
         rows, columns = rows[inside], columns[inside]
         drives, points = shown.picture.drives[rows, columns], shown.picture.points[rows, columns]
         return {
-            shown.wish.drives[number][0].id: np.unique(points[drives == number])
+            shown.request.drives[number][0].id: np.unique(points[drives == number])
             for number in np.unique(drives).tolist()
         }
 
     @override
-    def finder_inside(self, outline: QPolygonF) -> Callable[[], Points] | None:
+    def finder_inside(self, outline: QPolygonF) -> Callable[[], EnclosedPoints] | None:
         shown, viewport = self._pictures.newest, self.viewport
         if shown is None:
             return None
@@ -253,15 +255,17 @@ class MapView(PlaneView):
     @override
     def move_along(self, notches: float) -> None:
         viewport = self.viewport
-        if not self._ways:
+        if not self._vehicle_paths:
             super().move_along(notches)
             return
-        way = min(self._ways, key=lambda way: way.distance_to(viewport.centre))
-        here = way.station_near(viewport.centre)
+        vehicle_path = min(
+            self._vehicle_paths, key=lambda vehicle_path: vehicle_path.distance_to(viewport.centre)
+        )
+        here = vehicle_path.station_near(viewport.centre)
         there = (
             here - notches * _ALONG_SHARE * min(viewport.width, viewport.height) / viewport.scale
         )
-        before, after = way.at(np.array([here, there]))
+        before, after = vehicle_path.at(np.array([here, there]))
         x, y = (np.array(viewport.centre) + after - before).tolist()
         self.set_viewport(viewport.centred_on(x, y))
 
@@ -281,7 +285,7 @@ class MapView(PlaneView):
             action.setData(limit_m)
             group.addAction(action)
         group.triggered.connect(self._on_limit_triggered)
-        limits.setEnabled(bool(self._ways))
+        limits.setEnabled(bool(self._vehicle_paths))
         return menu
 
     # Events.
@@ -289,7 +293,7 @@ class MapView(PlaneView):
     @override
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
-        self._wish()
+        self._request()
 
     @override
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -304,7 +308,7 @@ class MapView(PlaneView):
     # What others tell.
 
     def _on_feed_pictured(self, shown: ShownPlan) -> None:
-        if self._is_closed or shown.wish.age != self._age:
+        if self._is_closed or shown.request.age != self._age:
             return
         self._pictures.take(shown)
         self.set_ground_stale()
@@ -314,7 +318,7 @@ class MapView(PlaneView):
     def _on_map_drive_columns_changed(self, drive_id: str) -> None:
         if any(drive.id == drive_id for drive, _ in self._drives):
             self._age += 1
-            self._wish()
+            self._request()
 
     def _on_map_labels_changed(self, drive_id: str, _points: object) -> None:
         if self._shared.view_settings.look.follows_labels:
@@ -323,7 +327,7 @@ class MapView(PlaneView):
 
     def _on_settings_look_changed(self) -> None:
         self._find_anew()
-        self._wish()
+        self._request()
 
     def _on_settings_image_changed(self) -> None:
         before = self._drives
@@ -333,7 +337,7 @@ class MapView(PlaneView):
             if not self._drives:  # all are hidden
                 self._pictures.clear()
                 self.update()
-            self._wish()
+            self._request()
 
     def _on_limit_triggered(self, action: QAction) -> None:
         limit_m: float | None = action.data()
@@ -351,22 +355,22 @@ class MapView(PlaneView):
         )
         drives = [drive for drive, _ in self._drives]
         if drives != before:
-            self._ways = ways_of(drives)
+            self._vehicle_paths = vehicle_paths_of(drives)
         self._find_anew()
         self._empty.setVisible(not any(drive.count for drive in self._source.drives()))
-        self._wish()
+        self._request()
 
     def _find_anew(self) -> None:
         hides_noise = self._shared.view_settings.look.hides_noise
         self._points = PlanPoints(self._drives, hides_noise=hides_noise)
 
-    def _wish(self) -> None:
+    def _request(self) -> None:
         """Ask for a picture of what is seen, unless nobody sees it."""
         if self._is_closed or not self._drives or not self.isVisible():
             return
         ratio = self.devicePixelRatioF()
         look = self._shared.view_settings.look
-        wish = PlanWish(
+        request = PlanRequest(
             frame=frame_of(self.viewport, ratio),
             everything=whole_frame(*self._bounds()),
             drives=self._drives,
@@ -376,7 +380,7 @@ class MapView(PlaneView):
             size_px=max(1, round(look.point_size_px * ratio)),
             limit_m=self._limit_m,
         )
-        self._feed.wish(wish)
+        self._feed.request(request)
 
     def _bounds(self) -> tuple[Floats, Floats]:
         """Lowest and highest easting and northing of all points, m."""
@@ -390,6 +394,6 @@ class MapView(PlaneView):
             self._feed.close()
 
 
-def _place_of(drive: Drive, point: int) -> Place:
+def _position_of(drive: Drive, point: int) -> PickedPosition:
     easting, northing, height = drive.xyz(np.array([point]))[0].tolist()
-    return Place((easting, northing, height), PointReference(drive.id, point))
+    return PickedPosition((easting, northing, height), PointReference(drive.id, point))

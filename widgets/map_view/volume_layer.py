@@ -19,7 +19,7 @@ from processing.earthwork.contours import LevelLine
 from processing.earthwork.heat_map import change_classes
 from processing.text import Language, Text
 from widgets.map_view.heat_picture import UNMEASURED, HeatPicture
-from widgets.map_view.plan_lay import on_plan
+from widgets.map_view.plan_projection import on_plan
 from widgets.parts.change_words import change_words
 from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
@@ -89,7 +89,7 @@ class VolumeLayer(QObject):
         self._paint_legend(painter, viewport)
         reading = self._volume.reading
         if reading is not None and self._mouse is not None:
-            words = change_words(reading).spoken(self._language)
+            words = change_words(reading).in_language(self._language)
             paint_note(painter, (self._mouse.x(), self._mouse.y()), Note((0.0, 0.0, 0.0), words))
 
     @override
@@ -110,11 +110,11 @@ class VolumeLayer(QObject):
         classes = change_classes(limit_m)
         digits = max(_digits_of(one.low) for one in classes[1:])
         rows = [
-            (QColor(*one.rgb), one.label(digits, "m").spoken(self._language))
+            (QColor(*one.rgb), one.label(digits, "m").in_language(self._language))
             for one in reversed(classes)
         ]
-        unmeasured = _UNMEASURED.spoken(self._language)
-        title = _TITLE.spoken(self._language)
+        unmeasured = _UNMEASURED.in_language(self._language)
+        title = _TITLE.in_language(self._language)
         metrics = QFontMetricsF(painter.font())
         widest = max(map(metrics.horizontalAdvance, (*(words for _, words in rows), unmeasured)))
         wide = max(widest + _SWATCH_PX + _GAP_PX, metrics.horizontalAdvance(title))
@@ -159,10 +159,10 @@ def _path_of(contours: tuple[LevelLine, ...], *, is_index: bool) -> QPainterPath
     path = QPainterPath()
     for contour in contours:
         if contour.is_index is is_index and len(contour.xyz) > 1:
-            places = np.asarray(on_plan(contour.xyz)).tolist()
-            path.moveTo(*places[0])
-            for place in places[1:]:
-                path.lineTo(*place)
+            positions = np.asarray(on_plan(contour.xyz)).tolist()
+            path.moveTo(*positions[0])
+            for position in positions[1:]:
+                path.lineTo(*position)
     return path
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from PySide6.QtCore import QObject
 from typing_extensions import override
 
-from processing.drafting.line_edits import split
+from processing.drafting.line_edits import split_line
 from processing.drafting.line_joins import extend_to, trim_at
 from processing.errors import UserError
 from processing.project.change import Change, Replacement
@@ -48,9 +48,9 @@ class SplitLine(EditingTool):
         segment = hit.segment if hit.segment >= 0 else max(hit.vertex - 1, 0)
         vertex = line.vertices[hit.vertex] if hit.vertex >= 0 else _on_segment(line, segment, hit)
         try:
-            first, second = split(line, segment, vertex)
+            first, second = split_line(line, segment, vertex)
         except UserError as refusal:
-            self._tell_refusal(refusal)
+            self._report_refusal(refusal)
             return
         self.change_requested.emit(
             SPLIT, Change(added=(second,), replaced=(Replacement(line, first),))
@@ -81,13 +81,13 @@ class ExtendLine(EditingTool):
         if line is None:
             self._line, self._end = picked, _nearer_end(picked, hit)
             self._selection.choose_features(frozenset({picked.id}))
-            self.told.emit(PICK_TARGET)
+            self.reported.emit(PICK_TARGET)
             return
         self.put_down()
         try:
             self._replace(EXTEND, line, extend_to(line, picked, self._end))
         except UserError as refusal:
-            self._tell_refusal(refusal)
+            self._report_refusal(refusal)
 
     @override
     def put_down(self) -> None:
@@ -117,12 +117,12 @@ class TrimLine(EditingTool):
         if cutter is None or picked.id == cutter.id:
             self._cutter = picked.id
             self._selection.choose_features(frozenset({picked.id}))
-            self.told.emit(PICK_REST)
+            self.reported.emit(PICK_REST)
             return
         try:
             self._replace(TRIM, picked, trim_at(picked, cutter, _clicked(picked, hit)))
         except UserError as refusal:
-            self._tell_refusal(refusal)
+            self._report_refusal(refusal)
 
     @override
     def put_down(self) -> None:
@@ -138,11 +138,11 @@ def _clicked(line: Feature, hit: Hit) -> Position:
 
 def _on_segment(line: Feature, segment: int, hit: Hit) -> Vertex:
     """The place of a segment nearest in plan to the point that was clicked."""
-    start, end = (np.array(line.vertices[segment + place].xyz) for place in (0, 1))
+    start, end = (np.array(line.vertices[segment + position].xyz) for position in (0, 1))
     way = end - start
     share = 0.5
-    if hit.place is not None:
-        offset = np.array(hit.place.xyz) - start
+    if hit.position is not None:
+        offset = np.array(hit.position.xyz) - start
         share = float(offset[:2] @ way[:2]) / max(float(way[:2] @ way[:2]), 1e-12)
     east, north, up = (start + min(max(share, 0.0), 1.0) * way).tolist()
     return Vertex((east, north, up))
@@ -150,5 +150,5 @@ def _on_segment(line: Feature, segment: int, hit: Hit) -> Vertex:
 
 def _nearer_end(line: Feature, hit: Hit) -> Literal["start", "end"]:
     clicked = _clicked(line, hit)
-    first, last = (math.dist(line.vertices[place].xyz, clicked) for place in (0, -1))
+    first, last = (math.dist(line.vertices[position].xyz, clicked) for position in (0, -1))
     return "start" if first < last else "end"

@@ -8,7 +8,7 @@ from dataclasses import replace
 from PySide6.QtCore import QObject, Signal
 from typing_extensions import override
 
-from processing.drafting.heights import grounded
+from processing.drafting.heights import set_on_ground
 from processing.drafting.parallels import distance_to_line, parallel
 from processing.errors import UserError
 from processing.project.catalogue import FeatureKind, Geometry
@@ -99,27 +99,27 @@ class DrawParallel(EditingTool):
         self._line, self._aside_m, self._kind = line, 0.0, None
         self.kind_taken.emit(line.kind)
         self._selection.choose_features(frozenset({line.id}))
-        self.told.emit(PICK_SIDE)
+        self.reported.emit(PICK_SIDE)
 
     @override
     def press(self, hit: Hit) -> None:
         if self._line is None:
             feature = self._feature_of(hit)
             if feature is None or feature.geometry is Geometry.POINT:
-                self.told.emit(PICK_LINE_OR_AREA)
+                self.reported.emit(PICK_LINE_OR_AREA)
             else:
                 self.take(feature)
             return
-        if hit.place is None:
-            self.told.emit(NO_POINT)
+        if hit.position is None:
+            self.reported.emit(NO_POINT)
             return
-        self._aside_m = self._aside(hit.place.xyz)
+        self._aside_m = self._aside(hit.position.xyz)
         self.complete()
 
     @override
     def move(self, hit: Hit) -> None:
-        if self._line is not None and hit.place is not None:
-            self._aside_m = self._aside(hit.place.xyz)
+        if self._line is not None and hit.position is not None:
+            self._aside_m = self._aside(hit.position.xyz)
             self._show()
 
     @override
@@ -128,13 +128,13 @@ class DrawParallel(EditingTool):
         if line is None or abs(self._aside_m) < _LEAST_M:
             return
         try:
-            places = self._places(line)
+            positions = self._positions(line)
         except UserError as refusal:
-            self._tell_refusal(refusal)
+            self._report_refusal(refusal)
             return
         # At the edge of a curb both heights are near; the rise that was set says which is meant.
         step_m = _NEAR_STEP_M if self._rise_m else _STEP_M
-        vertices = grounded(places, self._source.drives(), step_m=step_m)
+        vertices = set_on_ground(positions, self._source.drives(), step_m=step_m)
         copy = replace(
             line,
             id=new_feature_id(),
@@ -157,20 +157,20 @@ class DrawParallel(EditingTool):
     def _kind_of(self, line: Feature) -> str:
         return line.kind if self._kind is None else self._kind.id
 
-    def _aside(self, place: Position) -> float:
+    def _aside(self, position: Position) -> float:
         line = self._line
         if line is None:
             return 0.0
         is_closed = line.geometry is Geometry.AREA
-        places = [vertex.xyz for vertex in line.vertices]
-        aside = distance_to_line(places, place, is_closed=is_closed)
+        positions = [vertex.xyz for vertex in line.vertices]
+        aside = distance_to_line(positions, position, is_closed=is_closed)
         if self._fixed_m is None:
             return aside
         return self._fixed_m if aside >= 0 else -self._fixed_m
 
-    def _places(self, line: Feature) -> tuple[Position, ...]:
-        places = [vertex.xyz for vertex in line.vertices]
-        beside = parallel(places, self._aside_m, is_closed=line.geometry is Geometry.AREA)
+    def _positions(self, line: Feature) -> tuple[Position, ...]:
+        positions = [vertex.xyz for vertex in line.vertices]
+        beside = parallel(positions, self._aside_m, is_closed=line.geometry is Geometry.AREA)
         return tuple((east, north, up + self._rise_m) for east, north, up in beside)
 
     def _show(self) -> None:
@@ -179,14 +179,14 @@ class DrawParallel(EditingTool):
             self._sketch.show(None)
             return
         try:
-            places = self._places(line)
+            positions = self._positions(line)
         except UserError:  # told when it is clicked
             self._sketch.show(None)
             return
-        vertices = tuple(Vertex(place) for place in places)
+        vertices = tuple(Vertex(position) for position in positions)
         ring = (vertices[0],) if line.geometry is Geometry.AREA else ()
         rise = f"  ↑{self._rise_m:+.3f} m" if self._rise_m else ""
-        note = Note(places[len(places) // 2], f"{abs(self._aside_m):.3f} m{rise}")
+        note = Note(positions[len(positions) // 2], f"{abs(self._aside_m):.3f} m{rise}")
         self._sketch.show(
             Drawing(
                 self._kind_of(line), Geometry.LINE, vertices[:1], vertices[1:] + ring, notes=(note,)

@@ -23,16 +23,16 @@ from widgets.shared.sketch import Drawing, Note
 Construction = Callable[[Position, Position, Position], tuple[Position, ...]]
 
 
-class Shape(Enum):
+class ThreePointShape(Enum):
     """What three points make."""
 
     RECTANGLE = "rectangle"
     CIRCLE = "circle"
 
 
-_MADE_BY: dict[Shape, Construction] = {
-    Shape.RECTANGLE: rectangle_from,
-    Shape.CIRCLE: circle_through,
+_MADE_BY: dict[ThreePointShape, Construction] = {
+    ThreePointShape.RECTANGLE: rectangle_from,
+    ThreePointShape.CIRCLE: circle_through,
 }
 _POINTS = 3
 
@@ -48,7 +48,7 @@ class DrawShape(DrawingTool):
         self,
         source: MapSource,
         shared: SharedState,
-        shape: Shape,
+        shape: ThreePointShape,
         parent: QObject | None = None,
     ) -> None:
         super().__init__(source, shared, frozenset(Geometry), parent)
@@ -79,7 +79,7 @@ class DrawShape(DrawingTool):
         try:
             ring = self._ring((*self._clicked, vertex))
         except UserError as refusal:  # three points in one line make no shape
-            self.told.emit(refusal.what)
+            self.reported.emit(refusal.what)
             return
         self._asked = self._clicked
         self._complete_with(ring)
@@ -106,9 +106,9 @@ class DrawShape(DrawingTool):
 
     def _ring(self, clicked: tuple[Vertex, ...]) -> tuple[Vertex, ...]:
         first, second, third = clicked
-        places = _MADE_BY[self._shape](first.xyz, second.xyz, third.xyz)
+        positions = _MADE_BY[self._shape](first.xyz, second.xyz, third.xyz)
         known = {vertex.xyz: vertex for vertex in clicked}
-        return tuple(known.get(place, Vertex(place)) for place in places)
+        return tuple(known.get(position, Vertex(position)) for position in positions)
 
     def _complete_with(self, ring: tuple[Vertex, ...]) -> None:
         geometry = None if self._kind is None else self._kind.geometry
@@ -123,9 +123,9 @@ class DrawShape(DrawingTool):
 
     def _facts(self, ring: tuple[Vertex, ...]) -> dict[str, AttributeValue]:
         """Sizes as attributes name them; the kind keeps those it knows."""
-        first, second, third = (np.array(ring[place].xyz) for place in (0, 1, 2))
+        first, second, third = (np.array(ring[position].xyz) for position in (0, 1, 2))
         length, width = (float(np.linalg.norm(way)) for way in (second - first, third - second))
-        if self._shape is Shape.CIRCLE:
+        if self._shape is ThreePointShape.CIRCLE:
             middle = np.array([vertex.xyz for vertex in ring]).mean(axis=0)
             across = 2 * float(np.linalg.norm(first - middle))
             return {"diameter_m": round(across, 3), "size_m": round(across, 3)}
@@ -157,6 +157,6 @@ class DrawShape(DrawingTool):
 
     def _size_of(self, ring: tuple[Vertex, ...]) -> str:
         facts = self._facts(ring)
-        if self._shape is Shape.CIRCLE:
+        if self._shape is ThreePointShape.CIRCLE:
             return f"⌀ {facts['diameter_m']:.2f} m"
         return f"{facts['length_m']:.2f} × {facts['width_m']:.2f} m"

@@ -13,7 +13,7 @@ from typing_extensions import override
 from processing.project.catalogue import Geometry
 from processing.project.feature import Position, Vertex
 from processing.section.cut import Cut
-from processing.templates.profile_template import Profile
+from processing.templates.profile_template import TemplateProfile
 from processing.text import Text
 from widgets.mouse_tools.mouse_tool import Hit, MouseTool
 from widgets.shared.shared_state import SharedState
@@ -72,9 +72,9 @@ class DrawnProfile:
         """The place that was clicked first."""
         return self.lines[0][0]
 
-    def about(self, place: Position) -> tuple[Profile, ...]:
+    def about(self, position: Position) -> tuple[TemplateProfile, ...]:
         """Offsets to the right and heights about a place, to the millimetre."""
-        origin = self.cut.to_section([place])[0, :2]
+        origin = self.cut.to_section([position])[0, :2]
         return tuple(
             tuple(
                 (round(offset, _DECIMALS) + 0.0, round(height, _DECIMALS) + 0.0)
@@ -142,16 +142,16 @@ class DrawTemplate(MouseTool):
     def press(self, hit: Hit) -> None:
         cut = self._begun_in or self._cut
         if cut is None:
-            self.told.emit(NEEDS_SECTION)
+            self.reported.emit(NEEDS_SECTION)
             return
         vertex = self._vertex_of(hit, cut)
         if vertex is None:
-            self.told.emit(NOT_IN_SECTION)
+            self.reported.emit(NOT_IN_SECTION)
             return
         if not self._lines:
             self._begun_in, self._lines = cut, ((vertex,),)
             if self._part is TemplatePart.SHAPE:
-                self.told.emit(BEGIN)
+                self.reported.emit(BEGIN)
         elif self._returns(vertex, cut, hit.reach_m):
             self._lines += (self._lines[0][:1],)
         elif _apart(cut, vertex, self._lines[-1][-1]) > _SAME_M:
@@ -171,14 +171,14 @@ class DrawTemplate(MouseTool):
         if cut is None or not self._lines:
             return
         if self._part is TemplatePart.SHAPE and not lines:
-            self.told.emit(TOO_SHORT)
+            self.reported.emit(TOO_SHORT)
             return
         if self._part is TemplatePart.EMPTY_ZONE and len(self._lines[0]) < 3:
-            self.told.emit(TOO_SMALL)
+            self.reported.emit(TOO_SMALL)
             return
-        places = tuple(tuple(vertex.xyz for vertex in line) for line in lines)
+        positions = tuple(tuple(vertex.xyz for vertex in line) for line in lines)
         self.put_down()
-        self.drawn.emit(DrawnProfile(self._part, cut, places))
+        self.drawn.emit(DrawnProfile(self._part, cut, positions))
 
     @override
     def step_back(self) -> None:
@@ -200,12 +200,12 @@ class DrawTemplate(MouseTool):
         """Where a click lands on the section's plane: beside a measured point, or free of them."""
         is_free = bool(hit.modifiers & Qt.KeyboardModifier.ControlModifier)
         on_plane = None if hit.ray is None else _met(cut, hit)
-        if hit.place is not None and (on_plane is None or not (is_free or self._draws_zone)):
-            section = cut.to_section([hit.place.xyz])
+        if hit.position is not None and (on_plane is None or not (is_free or self._draws_zone)):
+            section = cut.to_section([hit.position.xyz])
             if cut.holds(section)[0]:
                 section[0, 2] = 0.0
                 easting, northing, height = cut.to_space(section)[0].tolist()
-                return Vertex((easting, northing, height), is_occluded=hit.place.is_occluded)
+                return Vertex((easting, northing, height), is_occluded=hit.position.is_occluded)
         elif on_plane is not None and cut.holds(cut.to_section([on_plane]))[0]:
             return Vertex(on_plane, is_occluded=True)
         return None

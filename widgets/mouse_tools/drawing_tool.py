@@ -100,11 +100,11 @@ class DrawingTool(MouseTool):
     def _vertex_of(self, hit: Hit) -> Vertex | None:
         """The vertex of a click, or None after saying why there is none."""
         if self._kind is None:
-            self.told.emit(NO_KIND)
+            self.reported.emit(NO_KIND)
             return None
         vertex = hit.as_vertex()
         if vertex is None:
-            self.told.emit(NO_POINT)
+            self.reported.emit(NO_POINT)
         return vertex
 
     def _finish(

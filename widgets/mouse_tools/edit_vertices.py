@@ -40,7 +40,7 @@ class EditVertices(VertexDragTool):
         if hit.vertex >= 0:
             self._take(VertexDrag.of_vertex(feature, hit.vertex))
         elif hit.segment >= 0 and vertex is None:
-            self.told.emit(NO_POINT)
+            self.reported.emit(NO_POINT)
         elif hit.segment >= 0 and vertex is not None:
             self._take(VertexDrag.of_segment(feature, hit.segment, vertex))
 
@@ -55,8 +55,8 @@ class EditVertices(VertexDragTool):
         if drag is None:
             return
         self.put_down()
-        if hit.place is None and drag.vertices != drag.before.vertices:
-            self.told.emit(NO_POINT)
+        if hit.position is None and drag.vertices != drag.before.vertices:
+            self.reported.emit(NO_POINT)
             return
         is_new = len(drag.vertices) > len(drag.before.vertices)
         self._replace(INSERT_VERTEX if is_new else MOVE_VERTEX, drag.before, drag.after)
@@ -76,7 +76,7 @@ class EditVertices(VertexDragTool):
 
     def _remove_vertex(self, feature: Feature, index: int) -> None:
         if len(feature.vertices) <= LEAST_VERTICES[feature.geometry]:
-            self.told.emit(TOO_FEW[feature.geometry])
+            self.reported.emit(TOO_FEW[feature.geometry])
             return
         vertices = (*feature.vertices[:index], *feature.vertices[index + 1 :])
         self._under_mouse = Hit(None)  # its vertex numbers no longer hold

@@ -47,7 +47,7 @@ class EditingTool(MouseTool):
         """The line under the mouse, or None after asking for one."""
         feature = self._feature_of(hit)
         if feature is None or feature.geometry is not Geometry.LINE:
-            self.told.emit(PICK_LINE)
+            self.reported.emit(PICK_LINE)
             return None
         return feature
 
@@ -60,13 +60,13 @@ class EditingTool(MouseTool):
         if after == before:
             return
         if after.geometry is Geometry.AREA:
-            places = [vertex.xyz for vertex in after.vertices]
-            crossing = crosses_itself(places, is_closed=True)
+            positions = [vertex.xyz for vertex in after.vertices]
+            crossing = crosses_itself(positions, is_closed=True)
             if crossing is not None:
-                self.told.emit(WOULD_CROSS.filled(east=crossing[0], north=crossing[1]))
+                self.reported.emit(WOULD_CROSS.filled(east=crossing[0], north=crossing[1]))
                 return
         self.change_requested.emit(label, Change(replaced=(Replacement(before, after),)))
 
-    def _tell_refusal(self, refusal: UserError) -> None:
+    def _report_refusal(self, refusal: UserError) -> None:
         joined = Text("{what} {remedy}", "{what}{remedy}")
-        self.told.emit(joined.filled(what=refusal.what, remedy=refusal.remedy))
+        self.reported.emit(joined.filled(what=refusal.what, remedy=refusal.remedy))

@@ -7,7 +7,7 @@ from typing import Protocol
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QPolygonF
 
-from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit, MouseTool
+from widgets.mouse_tools.mouse_tool import DragShape, EnclosedHits, Hit, MouseTool
 from widgets.shared.cursor import Cursor
 
 DRAG_PX = 4.0
@@ -26,7 +26,7 @@ class HitSource(Protocol):
     def quick_hit(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
         """What is under a pixel, among the points that are drawn."""
 
-    def enclosed(self, outline: QPolygonF, modifiers: Qt.KeyboardModifier) -> Boxed:
+    def enclosed(self, outline: QPolygonF, modifiers: Qt.KeyboardModifier) -> EnclosedHits:
         """What an outline in the window holds."""
 
 
@@ -66,8 +66,8 @@ class Gesture:
         if self.tool is not None:
             self.tool.press(hit)
             self._shape = self.tool.drag_shape(hit)
-        elif hit.place is not None:
-            self._cursor.move_to(hit.place)
+        elif hit.position is not None:
+            self._cursor.move_to(hit.position)
 
     def move(self, position: QPointF, modifiers: Qt.KeyboardModifier) -> Hit | None:
         """The mouse moved; gives what it is over, where that was looked up."""

@@ -11,7 +11,7 @@ from processing.drafting.constructions import arc_through, spline_through
 from processing.project.feature import Feature, Position, Vertex
 
 
-class Way(Enum):
+class LegMode(Enum):
     """How a line goes from one click to the next."""
 
     STRAIGHT = "line"
@@ -32,13 +32,13 @@ class Leg:
         What it adds behind the vertex where it starts; its last one is the last click.
     """
 
-    way: Way
+    mode: LegMode
     clicked: tuple[Vertex, ...]
     vertices: tuple[Vertex, ...]
 
 
 @dataclass(frozen=True)
-class Path:
+class DrawnPath:
     """What was drawn so far.
 
     Attributes
@@ -65,15 +65,15 @@ class Path:
             return self.legs[-1].vertices[-1]
         return self.start[-1] if self.start else None
 
-    def with_leg(self, leg: Leg) -> Path:
+    def with_leg(self, leg: Leg) -> DrawnPath:
         """The path with one more leg."""
         return replace(self, legs=(*self.legs, leg), pending=())
 
-    def with_pending(self, vertex: Vertex) -> Path:
+    def with_pending(self, vertex: Vertex) -> DrawnPath:
         """The path with one more click that makes no leg yet."""
         return replace(self, pending=(*self.pending, vertex))
 
-    def without_last(self) -> Path:
+    def without_last(self) -> DrawnPath:
         """The path without the last click; a leg of several clicks loses one of them."""
         if self.pending:
             return replace(self, pending=self.pending[:-1])
@@ -82,7 +82,7 @@ class Path:
         last = self.legs[-1]
         legs = self.legs[:-1]
         shorter = replace(self, legs=legs)
-        if last.way is Way.SPLINE and len(last.clicked) > 1:
+        if last.mode is LegMode.SPLINE and len(last.clicked) > 1:
             start = shorter.end
             if start is not None:
                 return shorter.with_leg(spline_leg(start, last.clicked[:-1]))
@@ -90,7 +90,7 @@ class Path:
 
 
 @dataclass(frozen=True)
-class Drawn:
+class InterruptedDrawing:
     """A drawing that was put down and can be taken up again.
 
     Attributes
@@ -101,36 +101,36 @@ class Drawn:
         Whether it goes on at that line's first vertex.
     """
 
-    path: Path
+    path: DrawnPath
     base: Feature | None
     is_turned: bool
 
 
 def straight_leg(vertex: Vertex) -> Leg:
     """Straight on to a click."""
-    return Leg(Way.STRAIGHT, (vertex,), (vertex,))
+    return Leg(LegMode.STRAIGHT, (vertex,), (vertex,))
 
 
 def arc_leg(start: Vertex, middle: Vertex, end: Vertex) -> Leg:
     """A circle's arc over a click to another; its heights run between those of the clicks."""
     curve = arc_through(start.xyz, middle.xyz, end.xyz)
-    return Leg(Way.ARC, (middle, end), _on_curve(curve, (start, middle, end)))
+    return Leg(LegMode.ARC, (middle, end), _on_curve(curve, (start, middle, end)))
 
 
 def spline_leg(start: Vertex, clicked: Sequence[Vertex]) -> Leg:
     """A smooth curve through all clicks."""
     through = (start, *clicked)
     if len(through) < 3:
-        return Leg(Way.SPLINE, tuple(clicked), tuple(clicked))
+        return Leg(LegMode.SPLINE, tuple(clicked), tuple(clicked))
     curve = spline_through([vertex.xyz for vertex in through])
-    return Leg(Way.SPLINE, tuple(clicked), _on_curve(curve, through))
+    return Leg(LegMode.SPLINE, tuple(clicked), _on_curve(curve, through))
 
 
 def _on_curve(curve: Sequence[Position], clicked: Sequence[Vertex]) -> tuple[Vertex, ...]:
     """The curve's vertices behind its start; where it passes a click, the click itself."""
-    vertices = [Vertex(place) for place in curve]
+    vertices = [Vertex(position) for position in curve]
     for vertex in clicked:
-        near = min(range(len(curve)), key=lambda place: _away(curve[place], vertex.xyz))
+        near = min(range(len(curve)), key=lambda position: _away(curve[position], vertex.xyz))
         if _away(curve[near], vertex.xyz) < 1e-3:
             vertices[near] = vertex
     vertices[-1] = clicked[-1]
@@ -141,7 +141,7 @@ def _away(one: Position, other: Position) -> float:
     return math.hypot(one[0] - other[0], one[1] - other[1])
 
 
-def squared_to(before: Vertex, last: Vertex, wanted: Position) -> Position:
+def square_to(before: Vertex, last: Vertex, wanted: Position) -> Position:
     """The place nearest to a wanted one that goes on straight or at right angles, in plan.
 
     Parameters
@@ -154,9 +154,9 @@ def squared_to(before: Vertex, last: Vertex, wanted: Position) -> Position:
     if length < 1e-6:
         return wanted
     along = (east / length, north / length)
-    way = (wanted[0] - last.xyz[0], wanted[1] - last.xyz[1])
-    forward = way[0] * along[0] + way[1] * along[1]
-    aside = way[1] * along[0] - way[0] * along[1]
+    mode = (wanted[0] - last.xyz[0], wanted[1] - last.xyz[1])
+    forward = mode[0] * along[0] + mode[1] * along[1]
+    aside = mode[1] * along[0] - mode[0] * along[1]
     if abs(forward) >= abs(aside):
         step = (along[0] * forward, along[1] * forward)
     else:

@@ -11,7 +11,7 @@ from processing.project.catalogue import FeatureKind, Geometry
 from processing.project.change import Change
 from processing.project.feature import AttributeValue, Feature, Vertex, new_feature_id
 from processing.text import Text
-from widgets.mouse_tools.draw_path import CROSSES
+from widgets.mouse_tools.draw_line import CROSSES
 from widgets.mouse_tools.drawing_tool import NO_POINT
 from widgets.mouse_tools.editing_tool import EditingTool
 from widgets.mouse_tools.mouse_tool import Hit
@@ -86,7 +86,7 @@ class MeasureTool(EditingTool):
     def press(self, hit: Hit) -> None:
         vertex = hit.as_vertex()
         if vertex is None:
-            self.told.emit(NO_POINT)
+            self.reported.emit(NO_POINT)
             return
         if self._is_done:
             self.put_down()
@@ -121,12 +121,12 @@ class MeasureTool(EditingTool):
         """Keep what is measured as a feature of its own."""
         least = 3 if self._is_closed else 2
         if len(self._vertices) < least:
-            self.told.emit(NOTHING_TO_KEEP)
+            self.reported.emit(NOTHING_TO_KEEP)
             return
         name = MEASURED_AREA if self._is_closed else MEASUREMENT
         catalogue = self._source.catalogue()
         if name not in catalogue:
-            self.told.emit(NO_SUCH_KIND.filled(name=name))
+            self.reported.emit(NO_SUCH_KIND.filled(name=name))
             return
         crossing = None
         if self._is_closed:
@@ -134,7 +134,7 @@ class MeasureTool(EditingTool):
         if crossing is None:
             self._ask_for(catalogue[name])
         else:
-            self.told.emit(CROSSES.filled(east=crossing[0], north=crossing[1]))
+            self.reported.emit(CROSSES.filled(east=crossing[0], north=crossing[1]))
 
     def _ask_for(self, kind: FeatureKind) -> None:
         attributes: dict[str, AttributeValue] = {

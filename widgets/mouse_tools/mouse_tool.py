@@ -16,7 +16,7 @@ from PySide6.QtCore import QObject, Qt, Signal
 
 from processing.project.feature import Position, Vertex
 from processing.section.cut import Cut
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 
 class DragShape(Enum):
@@ -48,7 +48,7 @@ class Hit:
 
     Attributes
     ----------
-    place : Place or None
+    position : Place or None
         The measured point there; None over nothing.
     feature : str
         Id of the feature under the mouse, or empty.
@@ -63,7 +63,7 @@ class Hit:
         The line of sight through the pixel, whether a point is there or not.
     """
 
-    place: Place | None
+    position: PickedPosition | None
     feature: str = ""
     vertex: int = -1
     segment: int = -1
@@ -73,12 +73,16 @@ class Hit:
 
     def as_vertex(self) -> Vertex | None:
         """The vertex that a click here makes; None over nothing."""
-        place = self.place
-        return None if place is None else Vertex(place.xyz, place.measured, place.is_occluded)
+        position = self.position
+        return (
+            None
+            if position is None
+            else Vertex(position.xyz, position.measured, position.is_occluded)
+        )
 
 
 @dataclass(frozen=True)
-class Boxed:
+class EnclosedHits:
     """What a rectangle or a lasso that was drawn in a view holds.
 
     Attributes
@@ -119,13 +123,13 @@ class MouseTool(QObject):
         The gesture is complete.
     finished()
         The tool wants the pointer back (Escape with nothing being drawn).
-    told(text: Text)
+    reported(text: Text)
         A line for the status bar.
     """
 
     change_requested = Signal(object, object)
     finished = Signal()
-    told = Signal(object)
+    reported = Signal(object)
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -169,7 +173,7 @@ class MouseTool(QObject):
         """What a drag that starts at this hit draws; asked after :meth:`press`."""
         return DragShape.NONE
 
-    def choose_box(self, boxed: Boxed) -> None:
+    def choose_box(self, boxed: EnclosedHits) -> None:
         """A rectangle or a lasso was drawn; comes in place of :meth:`release`."""
 
     def complete(self) -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from PySide6.QtCore import QObject, Qt
 from typing_extensions import override
 
-from processing.drafting.line_edits import moved
+from processing.drafting.line_edits import move_feature
 from processing.project.change import Change, Replacement
 from processing.project.feature import Feature, Position, Vertex, new_feature_id
 from processing.text import Text
@@ -58,14 +58,14 @@ class MoveFeatures(EditingTool):
     def press(self, hit: Hit) -> None:
         feature = self._feature_of(hit)
         if feature is None:
-            self.told.emit(PICK_FEATURE)
+            self.reported.emit(PICK_FEATURE)
             return
         if feature.id not in self._selection.features:
             self._selection.choose_features(frozenset({feature.id}))
         vertex = hit.as_vertex()
         grip = feature.vertices[hit.vertex] if hit.vertex >= 0 else vertex
         if grip is None:
-            self.told.emit(NO_POINT)
+            self.reported.emit(NO_POINT)
             return
         self._held, self._from, self._to = self._chosen(), grip, None
 
@@ -75,7 +75,7 @@ class MoveFeatures(EditingTool):
         way, held = self._way(), self._held
         if way is None or self._from is None or self._to is None or not held:
             return
-        first = moved(held[0], way)
+        first = move_feature(held[0], way)
         east, north, up = way
         note = Note(self._to.xyz, _SHIFT_NOTE.format(east=east, north=north, up=up))
         self._sketch.show(
@@ -89,14 +89,14 @@ class MoveFeatures(EditingTool):
         was_held = self._from is not None
         self.put_down()
         if way is None or way == (0.0, 0.0, 0.0):
-            if was_held and hit.place is None:
-                self.told.emit(NO_POINT)
+            if was_held and hit.position is None:
+                self.reported.emit(NO_POINT)
             return
         if hit.modifiers & Qt.KeyboardModifier.ControlModifier:
-            copies = tuple(replace(moved(one, way), id=new_feature_id()) for one in held)
+            copies = tuple(replace(move_feature(one, way), id=new_feature_id()) for one in held)
             self.change_requested.emit(COPY.filled(count=len(held)), Change(added=copies))
         else:
-            pairs = tuple(Replacement(one, moved(one, way)) for one in held)
+            pairs = tuple(Replacement(one, move_feature(one, way)) for one in held)
             self.change_requested.emit(MOVE.filled(count=len(held)), Change(replaced=pairs))
 
     @override

@@ -8,12 +8,12 @@ from PySide6.QtCore import QObject
 from typing_extensions import override
 
 from processing.image.images_of_drives import image_of
-from processing.labels.strokes import points_in_slab, points_under_brush, way_is_short
+from processing.labels.strokes import points_in_slab, points_under_brush, stroke_is_short
 from processing.project.feature import PointReference
 from processing.section.cut import Cut
 from widgets.mouse_tools.mouse_tool import Hit
 from widgets.mouse_tools.paint_tool import PaintTool
-from widgets.mouse_tools.tracing import AtHand
+from widgets.mouse_tools.tracing import BackgroundRunner
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -32,10 +32,10 @@ class PaintBrush(PaintTool):
         self,
         source: MapSource,
         shared: SharedState,
-        at_hand: AtHand,
+        in_background: BackgroundRunner,
         parent: QObject | None = None,
     ) -> None:
-        super().__init__(source, shared, at_hand, parent)
+        super().__init__(source, shared, in_background, parent)
         self._drives: tuple[str, ...] = ()
         self._slab: Cut | None = None
         self._last = np.zeros(3)
@@ -51,18 +51,18 @@ class PaintBrush(PaintTool):
             self._drives = (measured.drive,)
         else:
             return
-        place = self._place_of(hit)
-        if place is None:
+        position = self._position_of(hit)
+        if position is None:
             return
         self._begin()
-        self._last, self._points = place, {}
-        self._go_to(place)
+        self._last, self._points = position, {}
+        self._go_to(position)
 
     @override
     def move(self, hit: Hit) -> None:
-        place = self._place_of(hit) if self.is_pressed else None
-        if place is not None:
-            self._go_to(place)
+        position = self._position_of(hit) if self.is_pressed else None
+        if position is not None:
+            self._go_to(position)
 
     @override
     def release(self, hit: Hit) -> None:
@@ -71,31 +71,31 @@ class PaintBrush(PaintTool):
         self.move(hit)
         self._paint(dict(self._points))
 
-    def _place_of(self, hit: Hit) -> Floats | None:
+    def _position_of(self, hit: Hit) -> Floats | None:
         """Where the brush is: in space, or offset and height; None where it paints nothing."""
         if self._slab is not None:
             if hit.ray is None or hit.ray.slab != self._slab:
                 return None
-            place: Floats = self._slab.to_section([hit.ray.origin])[0, :2]
-            return place
+            position: Floats = self._slab.to_section([hit.ray.origin])[0, :2]
+            return position
         measured = _measured(hit)
-        if measured is None or measured.drive not in self._drives or hit.place is None:
+        if measured is None or measured.drive not in self._drives or hit.position is None:
             return None
-        return np.array(hit.place.xyz)
+        return np.array(hit.position.xyz)
 
-    def _go_to(self, place: Floats) -> None:
+    def _go_to(self, position: Floats) -> None:
         radius_m = self._shared.labels.radius_m
         # Off the edge of a surface the mouse jumps to another; over a section it doesn't.
-        is_way = self._slab is not None or way_is_short(self._last, place, radius_m)
-        start = self._last if is_way else place
-        self._last = place
+        is_way = self._slab is not None or stroke_is_short(self._last, position, radius_m)
+        start = self._last if is_way else position
+        self._last = position
         is_more = False
         for id_ in self._drives:
             drive, before = self._source.drive(id_), self._points.get(id_, np.empty(0, np.int64))
             if self._slab is None:
-                found = points_under_brush(drive, start, place, radius_m)
+                found = points_under_brush(drive, start, position, radius_m)
             else:
-                found = points_in_slab(drive, self._slab, np.stack([start, place]), radius_m)
+                found = points_in_slab(drive, self._slab, np.stack([start, position]), radius_m)
             joined = np.union1d(before, found)
             if joined.size > before.size:
                 self._points[id_] = joined
@@ -116,4 +116,4 @@ class PaintBrush(PaintTool):
 
 
 def _measured(hit: Hit) -> PointReference | None:
-    return None if hit.place is None else hit.place.measured
+    return None if hit.position is None else hit.position.measured

@@ -5,9 +5,9 @@ from __future__ import annotations
 from PySide6.QtCore import QObject
 from typing_extensions import override
 
-from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit
+from widgets.mouse_tools.mouse_tool import DragShape, EnclosedHits, Hit
 from widgets.mouse_tools.paint_tool import PaintTool
-from widgets.mouse_tools.tracing import AtHand
+from widgets.mouse_tools.tracing import BackgroundRunner
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -25,11 +25,11 @@ class PaintOutline(PaintTool):
         self,
         source: MapSource,
         shared: SharedState,
-        at_hand: AtHand,
+        in_background: BackgroundRunner,
         shape: DragShape,
         parent: QObject | None = None,
     ) -> None:
-        super().__init__(source, shared, at_hand, parent)
+        super().__init__(source, shared, in_background, parent)
         self._shape = shape
 
     @override
@@ -37,7 +37,7 @@ class PaintOutline(PaintTool):
         return self._shape
 
     @override
-    def choose_box(self, boxed: Boxed) -> None:
+    def choose_box(self, boxed: EnclosedHits) -> None:
         self._begin()
         if boxed.find_every is None:
             self._paint(boxed.points)

@@ -12,13 +12,13 @@ from processing.labels.strokes import (
     points_of_segment,
     points_under_brush,
     segments_of,
-    way_is_short,
+    stroke_is_short,
 )
 from processing.points.drive import Drive
 from processing.text import Text
 from widgets.mouse_tools.mouse_tool import Hit
-from widgets.mouse_tools.paint_tool import PaintTool, Points
-from widgets.mouse_tools.tracing import AtHand
+from widgets.mouse_tools.paint_tool import PaintedPoints, PaintTool
+from widgets.mouse_tools.tracing import BackgroundRunner
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -37,44 +37,49 @@ class PaintSegments(PaintTool):
         self,
         source: MapSource,
         shared: SharedState,
-        at_hand: AtHand,
+        in_background: BackgroundRunner,
         parent: QObject | None = None,
     ) -> None:
-        super().__init__(source, shared, at_hand, parent)
+        super().__init__(source, shared, in_background, parent)
         self._drive: Drive | None = None
         self._last = np.zeros(3)
         self._found: dict[int, NDArray[np.int64]] = {}
 
     @override
     def press(self, hit: Hit) -> None:
-        if hit.place is None or hit.place.measured is None:
+        if hit.position is None or hit.position.measured is None:
             return
-        drive = self._source.drive(hit.place.measured.drive)
+        drive = self._source.drive(hit.position.measured.drive)
         try:
-            (segment,) = segments_of(drive, np.array([hit.place.measured.point])).tolist()
+            (segment,) = segments_of(drive, np.array([hit.position.measured.point])).tolist()
         except Unsuitable:
-            self.told.emit(NO_SEGMENTS)
+            self.reported.emit(NO_SEGMENTS)
             return
         self._begin()
         self._drive, self._found = drive, {}
-        self._last = np.array(hit.place.xyz)
+        self._last = np.array(hit.position.xyz)
         if segment < 0:
-            self.told.emit(IN_NO_SEGMENT)
+            self.reported.emit(IN_NO_SEGMENT)
         else:
             self._flood(drive, (segment,))
 
     @override
     def move(self, hit: Hit) -> None:
         drive = self._drive
-        if not self.is_pressed or drive is None or hit.place is None or hit.place.measured is None:
+        if (
+            not self.is_pressed
+            or drive is None
+            or hit.position is None
+            or hit.position.measured is None
+        ):
             return
-        if hit.place.measured.drive != drive.id:
+        if hit.position.measured.drive != drive.id:
             return
-        start, place = self._last, np.array(hit.place.xyz)
-        self._last = place
-        points = np.array([hit.place.measured.point])
-        if start.tolist() != place.tolist() and way_is_short(start, place, _WAY_RADIUS_M):
-            points = np.append(points, points_under_brush(drive, start, place, _WAY_RADIUS_M))
+        start, position = self._last, np.array(hit.position.xyz)
+        self._last = position
+        points = np.array([hit.position.measured.point])
+        if start.tolist() != position.tolist() and stroke_is_short(start, position, _WAY_RADIUS_M):
+            points = np.append(points, points_under_brush(drive, start, position, _WAY_RADIUS_M))
         touched = np.unique(segments_of(drive, points))
         self._flood(drive, tuple(touched[touched >= 0].tolist()))
 
@@ -86,7 +91,7 @@ class PaintSegments(PaintTool):
         self.move(hit)
         segments = tuple(found)
 
-        def points_of() -> Points:
+        def points_of() -> PaintedPoints:
             # What the drag has shown was found before this: one thread does it all in order.
             parts = [_points_in(drive, segment, found) for segment in segments]
             return {drive.id: np.sort(np.concatenate(parts))} if parts else {}
@@ -111,7 +116,7 @@ class PaintSegments(PaintTool):
                 parts = np.sort(np.concatenate(list(found.values())))
                 self._show_stroke({drive.id: parts})
 
-        self._at_hand(work, take)
+        self._in_background(work, take)
 
 
 def _points_in(

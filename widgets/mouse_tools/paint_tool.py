@@ -19,11 +19,11 @@ from processing.project.change import Change
 from processing.project.label_change import LabelChange, label_changes
 from processing.text import Text
 from widgets.mouse_tools.mouse_tool import MouseTool
-from widgets.mouse_tools.tracing import AtHand
+from widgets.mouse_tools.tracing import BackgroundRunner
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
-Points = Mapping[str, NDArray[np.int64]]
+PaintedPoints = Mapping[str, NDArray[np.int64]]
 
 NOTHING_THERE = Text("No point there gets another label.", "ラベルが変わる点はありません。")
 _LABELLED = Text("{count:,} points: {name}", "{count:,}点: {name}")
@@ -48,7 +48,7 @@ class Painted:
         Whether noise was hidden then: what isn't seen isn't painted.
     """
 
-    points: Points
+    points: PaintedPoints
     rule: PaintRule
     hides_noise: bool = False
 
@@ -107,7 +107,7 @@ class PaintTool(MouseTool):
 
     Parameters
     ----------
-    at_hand : AtHand
+    in_background : BackgroundRunner
         Where long strokes are worked out.
     """
 
@@ -115,13 +115,13 @@ class PaintTool(MouseTool):
         self,
         source: MapSource,
         shared: SharedState,
-        at_hand: AtHand,
+        in_background: BackgroundRunner,
         parent: QObject | None = None,
     ) -> None:
         super().__init__(parent)
         self._source = source
         self._shared = shared
-        self._at_hand = at_hand
+        self._in_background = in_background
         self._stroke: Stroke | None = None
         self._edits = 0
         shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
@@ -171,10 +171,10 @@ class PaintTool(MouseTool):
         if settings.look.attribute == "intensity":
             settings.change_look(attribute="label")
 
-    def _show_stroke(self, points: Points) -> None:
+    def _show_stroke(self, points: PaintedPoints) -> None:
         self._shared.selection.choose_points(dict(points))
 
-    def _paint(self, points: Points) -> None:
+    def _paint(self, points: PaintedPoints) -> None:
         """Give the points of a stroke the label that is on the brush."""
         if sum(one.size for one in points.values()) > _MANY_POINTS:
             self._paint_later(lambda: points)
@@ -183,10 +183,10 @@ class PaintTool(MouseTool):
         try:
             self._ask_for(painted, painted.changes(self._source))
         except UserError as error:
-            self.told.emit(error.what)
+            self.reported.emit(error.what)
         self._show_chosen()
 
-    def _paint_later(self, points_of: Callable[[], Points]) -> None:
+    def _paint_later(self, points_of: Callable[[], PaintedPoints]) -> None:
         """The same with points that are found beside the window."""
         stroke, rule, hides_noise = self._stroke, self._shared.labels.rule, self._hides_noise
         if stroke is None:
@@ -211,7 +211,7 @@ class PaintTool(MouseTool):
             if self._stroke is stroke:
                 self._show_chosen()
 
-        self._at_hand(work, take)
+        self._in_background(work, take)
 
     @property
     def _hides_noise(self) -> bool:
@@ -227,6 +227,6 @@ class PaintTool(MouseTool):
             self.change_requested.emit(name, Change(labels=changes))
             count = sum(one.count for one in changes)
             words = _LABELLED if code else _ERASED
-            self.told.emit(words.filled(count=count, name=class_name(code)))
+            self.reported.emit(words.filled(count=count, name=class_name(code)))
         else:
-            self.told.emit(NOTHING_THERE)
+            self.reported.emit(NOTHING_THERE)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from processing.project.feature import Vertex
-from widgets.mouse_tools.legs import Leg, Path, Way
+from widgets.mouse_tools.legs import DrawnPath, Leg, LegMode
 
 
 @dataclass(frozen=True)
@@ -41,7 +41,7 @@ class PathBend:
         after = tuple(one for one in leg.clicked if one not in before)
         return (*before, self.via, *after)
 
-    def shown_in(self, path: Path) -> Path:
+    def shown_in(self, path: DrawnPath) -> DrawnPath:
         """The path as it is shown while the mouse drags."""
         leg = path.legs[self.leg]
         via = () if self.via is None else (self.via,)
@@ -50,12 +50,12 @@ class PathBend:
         return replace(path, legs=(*path.legs[: self.leg], bent, *path.legs[self.leg + 1 :]))
 
 
-def bend_at(path: Path, vertex: Vertex, reach_m: float) -> PathBend | None:
+def bend_at(path: DrawnPath, vertex: Vertex, reach_m: float) -> PathBend | None:
     """Take hold of the last traced leg within reach of a place, but not at its ends."""
-    if not path.legs or path.legs[-1].way is not Way.TRACE or reach_m <= 0:
+    if not path.legs or path.legs[-1].mode is not LegMode.TRACE or reach_m <= 0:
         return None
     number = len(path.legs) - 1
-    start = Path(path.start, path.legs[:number]).end
+    start = DrawnPath(path.start, path.legs[:number]).end
     if start is None:
         return None
     line = np.array([start.xyz, *(one.xyz for one in path.legs[number].vertices)])

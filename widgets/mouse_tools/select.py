@@ -9,7 +9,7 @@ from typing_extensions import override
 
 from widgets.mouse_tools.drawing_tool import NO_POINT
 from widgets.mouse_tools.edit_vertices import MOVE_VERTEX
-from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit
+from widgets.mouse_tools.mouse_tool import DragShape, EnclosedHits, Hit
 from widgets.mouse_tools.removal import removal_of
 from widgets.mouse_tools.vertex_drag import VertexDrag
 from widgets.mouse_tools.vertex_drag_tool import VertexDragTool
@@ -57,13 +57,13 @@ class Select(VertexDragTool):
         self.put_down()
         if drag is None or drag.after == drag.before:
             self._choose(hit)
-        elif hit.place is None:
-            self.told.emit(NO_POINT)
+        elif hit.position is None:
+            self.reported.emit(NO_POINT)
         else:
             self._replace(MOVE_VERTEX, drag.before, drag.after)
 
     @override
-    def choose_box(self, boxed: Boxed) -> None:
+    def choose_box(self, boxed: EnclosedHits) -> None:
         self.put_down()
         selection = self._selection
         if boxed.modifiers & _SHIFT:
@@ -99,8 +99,8 @@ class Select(VertexDragTool):
         else:
             selection.choose_features(clicked)
             selection.choose_points({})
-        if hit.place is not None:
-            self._cursor.move_to(hit.place)
+        if hit.position is not None:
+            self._cursor.move_to(hit.position)
 
 
 def _joined(one: NDArray[np.int64] | None, other: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -1,4 +1,4 @@
-"""SnappingHand: draws hits to vertices, lines and points of note before a tool gets them."""
+"""SnappingTool: draws hits to vertices, lines and points of note before a tool gets them."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 from PySide6.QtCore import QObject, Qt
 from typing_extensions import override
 
-from processing.drafting.crossings import LinePlace, line_places
-from processing.drafting.heights import grounded
+from processing.drafting.crossings import LinePosition, line_positions
+from processing.drafting.heights import set_on_ground
 from processing.image.edges import edge_beside, highest_point, lowest_point
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature, PointReference, Vertex
-from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit, MouseTool
+from widgets.mouse_tools.mouse_tool import DragShape, EnclosedHits, Hit, MouseTool
 from widgets.mouse_tools.near_features import NearFeatures
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 from widgets.shared.snap_state import SnapMark, SnapMode
@@ -31,7 +31,7 @@ _ALIKE_M = 0.03
 _DRAWN_BEFORE = 1.5
 """What is drawn goes before an edge up to so many times its distance, and 3 cm more."""
 
-_MODE_OF_PLACE = {
+_MODE_OF_POSITION = {
     "vertex": SnapMode.VERTEX,
     "intersection": SnapMode.CROSSING,
     "line": SnapMode.LINE,
@@ -41,7 +41,7 @@ _MODE_OF_PLACE = {
 _ORDER = ("vertex", "intersection", "perpendicular", "line", "extension")
 
 
-class SnappingHand(MouseTool):
+class SnappingTool(MouseTool):
     """Stands between the views and the tool in the hand; every view tells it its hits.
 
     Vertices go before crossings, those before lines and extensions, drawn things before the edges
@@ -90,7 +90,7 @@ class SnappingHand(MouseTool):
         return self.tool.drag_shape(hit)
 
     @override
-    def choose_box(self, boxed: Boxed) -> None:
+    def choose_box(self, boxed: EnclosedHits) -> None:
         self.tool.choose_box(boxed)
 
     @override
@@ -121,15 +121,15 @@ class SnappingHand(MouseTool):
             return hit
         hit = self._on_plane(hit)
         is_free = self.tool.ctrl_frees and bool(hit.modifiers & Qt.KeyboardModifier.ControlModifier)
-        found = None if is_free or hit.place is None else self._found(hit, hit.place)
+        found = None if is_free or hit.position is None else self._found(hit, hit.position)
         if found is None:
             self._shared.snap.show_mark(None)
             return hit
-        place, mode = found
-        self._shared.snap.show_mark(SnapMark(place.xyz, mode))
-        return replace(hit, place=place)
+        position, mode = found
+        self._shared.snap.show_mark(SnapMark(position.xyz, mode))
+        return replace(hit, position=position)
 
-    def _found(self, hit: Hit, place: Place) -> tuple[Place, SnapMode] | None:
+    def _found(self, hit: Hit, position: PickedPosition) -> tuple[PickedPosition, SnapMode] | None:
         """What is drawn, unless an edge of the cloud is much nearer to the mouse.
 
         Seen from far the circle about the mouse holds both edges of a curb: who points at the upper
@@ -138,8 +138,8 @@ class SnappingHand(MouseTool):
         drawn, measured = self._drawn(hit), self._measured(hit)
         if drawn is None or measured is None:
             return drawn or measured
-        to_drawn = math.dist(drawn[0].xyz, place.xyz)
-        to_measured = math.dist(measured[0].xyz, place.xyz)
+        to_drawn = math.dist(drawn[0].xyz, position.xyz)
+        to_measured = math.dist(measured[0].xyz, position.xyz)
         return drawn if to_drawn <= _DRAWN_BEFORE * to_measured + _ALIKE_M else measured
 
     def _on_plane(self, hit: Hit) -> Hit:
@@ -147,39 +147,39 @@ class SnappingHand(MouseTool):
         if plane is None:
             return hit
         met = None if hit.ray is None else plane.meets(hit.ray.origin, hit.ray.direction)
-        if met is None and hit.place is not None:
-            easting, northing, _ = hit.place.xyz
+        if met is None and hit.position is not None:
+            easting, northing, _ = hit.position.xyz
             met = (easting, northing, plane.height_at(easting, northing))
-        return replace(hit, place=None if met is None else Place(met, is_occluded=True))
+        return replace(hit, position=None if met is None else PickedPosition(met, is_occluded=True))
 
-    def _drawn(self, hit: Hit) -> tuple[Place, SnapMode] | None:
+    def _drawn(self, hit: Hit) -> tuple[PickedPosition, SnapMode] | None:
         """The best place on what is drawn already, among the modes that are on."""
         modes = self._shared.snap.modes
-        if hit.place is None or hit.reach_m <= 0 or not modes:
+        if hit.position is None or hit.reach_m <= 0 or not modes:
             return None
         own = self._shared.sketch.drawing
         pointed = self._pointed_at(hit, "" if own is None else own.replaces)
         if pointed is not None:
             return pointed, SnapMode.VERTEX
-        features = self._near.within(hit.place.xyz, hit.reach_m)
+        features = self._near.within(hit.position.xyz, hit.reach_m)
         replaced = "" if own is None else own.replaces
         lines = [_outline(one) for one in features if one.id != replaced]
         if own is not None and not own.replaces:
             lines.append(own.vertices[:-1])
         last = self.tool.last_vertex
-        found = line_places(
-            hit.place.xyz,
+        found = line_positions(
+            hit.position.xyz,
             [tuple(vertex.xyz for vertex in line) for line in lines if line],
             hit.reach_m,
             from_=None if last is None else last.xyz,
         )
-        wanted = [one for one in found if _MODE_OF_PLACE[one.what] in modes]
+        wanted = [one for one in found if _MODE_OF_POSITION[one.what] in modes]
         if not wanted:
             return None
         best = min(wanted, key=lambda one: (_ORDER.index(one.what), one.distance_m))
-        return self._place_of(best, lines), _MODE_OF_PLACE[best.what]
+        return self._position_of(best, lines), _MODE_OF_POSITION[best.what]
 
-    def _pointed_at(self, hit: Hit, replaced: str) -> Place | None:
+    def _pointed_at(self, hit: Hit, replaced: str) -> PickedPosition | None:
         """The drawn vertex under the mouse in the picture, however far behind it the points are."""
         if SnapMode.VERTEX not in self._shared.snap.modes or hit.vertex < 0:
             return None
@@ -187,39 +187,39 @@ class SnappingHand(MouseTool):
         if feature is None or hit.vertex >= len(feature.vertices):
             return None
         vertex = feature.vertices[hit.vertex]
-        return Place(vertex.xyz, vertex.measured, vertex.is_occluded)
+        return PickedPosition(vertex.xyz, vertex.measured, vertex.is_occluded)
 
-    def _place_of(self, found: LinePlace, lines: list[tuple[Vertex, ...]]) -> Place:
+    def _position_of(self, found: LinePosition, lines: list[tuple[Vertex, ...]]) -> PickedPosition:
         if found.what == "vertex":
             for line in lines:
                 for vertex in line:
                     if vertex.xyz == found.xyz:
-                        return Place(vertex.xyz, vertex.measured, vertex.is_occluded)
+                        return PickedPosition(vertex.xyz, vertex.measured, vertex.is_occluded)
         if found.what == "extension":
-            vertex = grounded((found.xyz,), self._source.drives())[0]
-            return Place(vertex.xyz, vertex.measured, vertex.is_occluded)
-        return Place(found.xyz)
+            vertex = set_on_ground((found.xyz,), self._source.drives())[0]
+            return PickedPosition(vertex.xyz, vertex.measured, vertex.is_occluded)
+        return PickedPosition(found.xyz)
 
-    def _measured(self, hit: Hit) -> tuple[Place, SnapMode] | None:
+    def _measured(self, hit: Hit) -> tuple[PickedPosition, SnapMode] | None:
         """The lowest, the highest or the edge point near the point under the mouse."""
-        modes, place = self._shared.snap.modes, hit.place
-        if place is None or place.measured is None:
+        modes, position = self._shared.snap.modes, hit.position
+        if position is None or position.measured is None:
             return None
-        drive = self._source.drive(place.measured.drive)
-        point = place.measured.point
+        drive = self._source.drive(position.measured.drive)
+        point = position.measured.point
         if SnapMode.LOWEST in modes:
             found, mode = lowest_point(drive, point, hit.reach_m), SnapMode.LOWEST
         elif SnapMode.HIGHEST in modes:
             found, mode = highest_point(drive, point, hit.reach_m), SnapMode.HIGHEST
         elif SnapMode.EDGE in modes and self.tool.snaps_to_edges:
             edge = edge_beside(drive, point, EDGE_PX)
-            if edge is None or math.dist(edge.xyz, place.xyz) > _MOST_REACHES * hit.reach_m:
+            if edge is None or math.dist(edge.xyz, position.xyz) > _MOST_REACHES * hit.reach_m:
                 return None
-            return Place(edge.xyz, PointReference(drive.id, edge.point)), SnapMode.EDGE
+            return PickedPosition(edge.xyz, PointReference(drive.id, edge.point)), SnapMode.EDGE
         else:
             return None
         easting, northing, height = drive.xyz(np.array([found]))[0].tolist()
-        return Place((easting, northing, height), PointReference(drive.id, found)), mode
+        return PickedPosition((easting, northing, height), PointReference(drive.id, found)), mode
 
 
 def _outline(feature: Feature) -> tuple[Vertex, ...]:

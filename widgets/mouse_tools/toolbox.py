@@ -11,18 +11,18 @@ from PySide6.QtCore import QObject, Signal
 from processing.project.catalogue import FeatureKind, Geometry
 from processing.project.feature import Feature
 from processing.text import Text
+from widgets.mouse_tools.draw_line import DrawLine
 from widgets.mouse_tools.draw_parallel import DrawParallel
-from widgets.mouse_tools.draw_path import DrawPath
 from widgets.mouse_tools.drawing_tool import DrawingTool
-from widgets.mouse_tools.legs import Way
+from widgets.mouse_tools.legs import LegMode
 from widgets.mouse_tools.mouse_tool import MouseTool
-from widgets.mouse_tools.snapping import SnappingHand
+from widgets.mouse_tools.snapping import SnappingTool
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
 POINTER = "select"
 _TOOL_OF_GEOMETRY = {Geometry.POINT: "point", Geometry.LINE: "line", Geometry.AREA: "area"}
-_WAYS = {way.value: way for way in Way if way is not Way.STRAIGHT}
+_MODES = {mode.value: mode for mode in LegMode if mode is not LegMode.STRAIGHT}
 _MOST_RECENT = 6
 
 CHOOSE_A_LINE = Text("Choose one line first.", "先に線を1つ選択してください。")
@@ -61,7 +61,7 @@ class MouseToolbox(QObject):
     tool_chosen = Signal(str)
     kind_chosen = Signal(object)
     change_requested = Signal(object, object)
-    told = Signal(object)
+    reported = Signal(object)
 
     def __init__(
         self,
@@ -80,10 +80,10 @@ class MouseToolbox(QObject):
         self._kind: FeatureKind | None = None
         self._kinds: dict[Geometry, FeatureKind] = {}
         self._recent: list[str] = []
-        self.hand = SnappingHand(source, shared, self._tools[POINTER], self)
+        self.current_tool = SnappingTool(source, shared, self._tools[POINTER], self)
         for tool in self._tools.values():
             tool.change_requested.connect(self.change_requested)
-            tool.told.connect(self.told)
+            tool.reported.connect(self.reported)
             tool.finished.connect(self._on_tool_finished)
             if isinstance(tool, DrawParallel):
                 tool.kind_taken.connect(self._on_parallel_kind_taken)
@@ -97,7 +97,7 @@ class MouseToolbox(QObject):
     @property
     def tool(self) -> MouseTool:
         """The tool in the hand."""
-        return self.hand.tool
+        return self.current_tool.tool
 
     def tools_of(self, kind_of_tool: type[AnyTool]) -> tuple[AnyTool, ...]:
         """The tools of a class, to listen to what only they tell."""
@@ -124,12 +124,12 @@ class MouseToolbox(QObject):
         if name == self._name:
             return
         tool = self._tool_of(name)
-        if tool is not self.hand.tool:
-            self.hand.tool.settle()
-            self.hand.tool = tool
+        if tool is not self.current_tool.tool:
+            self.current_tool.tool.settle()
+            self.current_tool.tool = tool
         self._name = name
-        if isinstance(tool, DrawPath):
-            tool.set_way(_WAYS.get(name, Way.STRAIGHT))
+        if isinstance(tool, DrawLine):
+            tool.set_mode(_MODES.get(name, LegMode.STRAIGHT))
         if isinstance(tool, DrawingTool):
             self._give_kind(tool)
         self._hand_out()
@@ -137,7 +137,7 @@ class MouseToolbox(QObject):
 
     def choose_kind(self, kind: FeatureKind) -> None:
         """Draw features of this kind from now on, with a tool that can."""
-        tool = self.hand.tool
+        tool = self.current_tool.tool
         if isinstance(tool, DrawParallel) and tool.makes(kind):
             self._take_kind(kind)
             tool.set_kind(kind)
@@ -159,60 +159,62 @@ class MouseToolbox(QObject):
 
     def forget_kinds(self) -> None:
         """Another catalogue counts from now on."""
-        self.hand.tool.put_down()
+        self.current_tool.tool.put_down()
         self._kind = None
         self._kinds.clear()
         self.choose(POINTER)
 
     def complete(self) -> None:
         """End the gesture of the tool in the hand and keep what it made."""
-        self.hand.complete()
+        self.current_tool.complete()
 
     def put_away(self) -> None:
         """The project is closed: what is whole is kept, the rest is forgotten."""
-        self.hand.tool.settle()
+        self.current_tool.tool.settle()
         for tool in self._tools.values():
             tool.forget()
 
     def take_back(self) -> None:
         """The change that was asked for was refused: what was drawn is at hand again."""
-        self.hand.tool.take_back()
+        self.current_tool.tool.take_back()
 
     def step_back(self) -> bool:
         """Take the last click back; says whether a gesture was under way."""
-        if not self.hand.is_busy:
+        if not self.current_tool.is_busy:
             return False
-        self.hand.step_back()
+        self.current_tool.step_back()
         return True
 
     def continue_line(self, chosen: Sequence[Feature]) -> None:
         """Go on drawing the chosen line at its end nearest to the cursor, or at its last one."""
         lines = [one for one in chosen if one.geometry is Geometry.LINE]
         tool = self._tools["line"]
-        if len(lines) != 1 or not isinstance(tool, DrawPath):
-            self.told.emit(CHOOSE_A_LINE)
+        if len(lines) != 1 or not isinstance(tool, DrawLine):
+            self.reported.emit(CHOOSE_A_LINE)
             return
         (line,) = lines
         if line.kind in self._source.catalogue():
             self.choose_kind(self._source.catalogue()[line.kind])
-        if not isinstance(self.hand.tool, DrawPath):
+        if not isinstance(self.current_tool.tool, DrawLine):
             self.choose("line")
-        place = self._shared.cursor.place
+        position = self._shared.cursor.position
         start, end = line.vertices[0].xyz, line.vertices[-1].xyz
-        at_start = place is not None and math.dist(place.xyz, start) < math.dist(place.xyz, end)
+        at_start = position is not None and math.dist(position.xyz, start) < math.dist(
+            position.xyz, end
+        )
         tool.continue_line(line, at_start=at_start)
 
     def close_drawing(self) -> None:
         """Lead the drawing at hand back to its start and complete it."""
-        tool = self.hand.tool
-        if isinstance(tool, DrawPath):
+        tool = self.current_tool.tool
+        if isinstance(tool, DrawLine):
             tool.close()
 
     def _tool_of(self, name: str) -> MouseTool:
-        if name not in _WAYS:
+        if name not in _MODES:
             return self._tools[name]
-        if isinstance(self.hand.tool, DrawPath):
-            return self.hand.tool
+        if isinstance(self.current_tool.tool, DrawLine):
+            return self.current_tool.tool
         is_area = self._kind is not None and self._kind.geometry is Geometry.AREA
         return self._tools["area" if is_area else "line"]
 
@@ -236,7 +238,7 @@ class MouseToolbox(QObject):
 
     def _hand_out(self) -> None:
         for view in self._views:
-            view.set_mouse_tool(self.hand)
+            view.set_mouse_tool(self.current_tool)
 
     def _on_parallel_kind_taken(self, kind: str) -> None:
         if kind in self._source.catalogue():

@@ -10,7 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from processing.image.nearest import nearest_point
-from processing.image.trace import Traced, trace
+from processing.image.trace import TraceResult, trace
 from processing.points.drive import Drive
 from processing.project.feature import PointReference, Vertex
 from processing.text import Text
@@ -23,7 +23,7 @@ STRAIGHT_ON = Text(
 _SAME_EDGE_M = 0.15
 
 
-class AtHand(Protocol):
+class BackgroundRunner(Protocol):
     """Does short work in the background for what is in the hand, and gives its result back."""
 
     def __call__(self, work: Callable[[], object], take: Callable[[object | None], None]) -> None:
@@ -101,7 +101,7 @@ def _point_of(drive: Drive, vertex: Vertex) -> int:
     return nearest_point(drive, np.array(vertex.xyz), _SAME_EDGE_M)
 
 
-def _vertices(drive: Drive, traced: Traced) -> list[Vertex]:
+def _vertices(drive: Drive, traced: TraceResult) -> list[Vertex]:
     return [
         Vertex((east, north, up), PointReference(drive.id, point))
         for (east, north, up), point in zip(

@@ -25,12 +25,12 @@ _LEAST_LETTERS = 6
 _ARROW_PX = 28
 
 
-class Several:
+class MixedValue:
     """What is shown of an attribute that differs among the chosen features."""
 
 
-SEVERAL: Final = Several()
-ShownValue = AttributeValue | Several
+SEVERAL: Final = MixedValue()
+ShownValue = AttributeValue | MixedValue
 
 
 class QuietBox(QComboBox):
@@ -127,10 +127,12 @@ class AttributeEditor(QObject):
         self._clearing.triggered.connect(self._on_clearing_triggered)
 
     def _write(self) -> None:
-        is_several = isinstance(self._value, Several)
+        is_several = isinstance(self._value, MixedValue)
         self._clearing.setVisible(is_several)
         self._line.setPlaceholderText(self._several if is_several else self._hint())
-        self._line.setText("" if isinstance(self._value, Several) else written(self._value))
+        self._line.setText(
+            "" if isinstance(self._value, MixedValue) else format_attribute(self._value)
+        )
 
     def _hint(self) -> str:
         return self.tr("YYYY-MM-DD") if self._field.type == "date" else ""
@@ -138,12 +140,12 @@ class AttributeEditor(QObject):
     def _fill(self, language: Language) -> None:
         self._box.addItem("", None)
         for choice in self._field.choices:
-            self._box.addItem(self._field.name_of_choice(choice).spoken(language), choice)
+            self._box.addItem(self._field.name_of_choice(choice).in_language(language), choice)
         self._choose()
 
     def _choose(self) -> None:
         value = self._value
-        if isinstance(value, Several):
+        if isinstance(value, MixedValue):
             self._box.setCurrentIndex(-1)
             return
         index = 0 if value is None else self._box.findData(value)
@@ -154,11 +156,11 @@ class AttributeEditor(QObject):
         self._box.setCurrentIndex(index)
 
     def _on_box_activated(self) -> None:
-        self._tell(self._box.currentData())
+        self._report(self._box.currentData())
 
     def _on_clearing_triggered(self) -> None:
         self._line.setModified(False)
-        self._tell(None)
+        self._report(None)
         self._write()
 
     def _on_line_editing_finished(self) -> None:
@@ -170,10 +172,10 @@ class AttributeEditor(QObject):
         # What can't be read is not taken; an empty line of several values says nothing.
         is_taken = value is not None or (not text and self._value is not SEVERAL)
         if is_taken:
-            self._tell(value)
+            self._report(value)
         self._write()
 
-    def _tell(self, value: AttributeValue) -> None:
+    def _report(self, value: AttributeValue) -> None:
         if value != self._value:
             self._value = value
             self.edited.emit(self._field.id, value)
@@ -197,7 +199,7 @@ def read_value(field: AttributeField, text: str) -> AttributeValue:
     return date.toString("yyyy-MM-dd") if date.isValid() else None
 
 
-def written(value: AttributeValue) -> str:
+def format_attribute(value: AttributeValue) -> str:
     """A value as it is typed: the shortest text that reads back as the same number."""
     if value is None:
         return ""

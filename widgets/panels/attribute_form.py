@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QComboBox, QFormLayout, QLabel, QSizePolicy, QWidg
 from processing.project.catalogue import Catalogue
 from processing.project.feature import AttributeValue, Feature, Status
 from processing.text import Language
-from widgets.panels.attribute_field import AttributeEditor, QuietBox, Several, ShownValue
+from widgets.panels.attribute_field import AttributeEditor, MixedValue, QuietBox, ShownValue
 from widgets.panels.feature_changes import kinds_for
 from widgets.panels.feature_words import STATUS_NAMES, name_of_kind, words_of_value
 from widgets.panels.geometry_facts import facts_of
@@ -163,13 +163,13 @@ class AttributeForm(QWidget):
     def _fill_boxes(self) -> None:
         self._kind.setPlaceholderText(self.tr("(several kinds)"))
         for kind in kinds_for(self._features, self._catalogue):
-            name = kind.name.spoken(self._language)
+            name = kind.name.in_language(self._language)
             self._kind.addItem(swatch_of(kind.colour), name, kind.id)
         self._kind.setEnabled(self._kind.count() > 0)
         self._kind.activated.connect(self._on_kind_activated)
         self._status.setPlaceholderText(self.tr("(several values)"))
         for status, words in STATUS_NAMES.items():
-            self._status.addItem(words.spoken(self._language), status.value)
+            self._status.addItem(words.in_language(self._language), status.value)
         self._status.activated.connect(self._on_status_activated)
 
     def _add_confidence(self, feature: Feature) -> None:
@@ -182,7 +182,7 @@ class AttributeForm(QWidget):
             value = self._value_of(field.id)
             editor = AttributeEditor(field, value, self._language)
             editor.edited.connect(self.attribute_edited)
-            name = field.name.spoken(self._language)
+            name = field.name.in_language(self._language)
             self._add_row(f"{name} ({field.unit})" if field.unit else name, editor.widget)
             self._editors[field.id] = editor
         if len(self._features) == 1:
@@ -194,7 +194,7 @@ class AttributeForm(QWidget):
         for title, words in facts_of(feature, self._language):
             label = QLabel(words)
             self._fact_labels.append(label)
-            self._add_row(title.spoken(self._language), label)
+            self._add_row(title.in_language(self._language), label)
 
     def show_values(self) -> None:
         """Show what is stored, in place of what was typed or chosen."""
@@ -218,7 +218,7 @@ class AttributeForm(QWidget):
 
     def _choose_kind(self) -> None:
         kind = common_value(self._features, lambda one: one.kind)
-        if kind is None or isinstance(kind, Several):
+        if kind is None or isinstance(kind, MixedValue):
             self._kind.setCurrentIndex(-1)
             return
         if self._kind.findData(kind) < 0:

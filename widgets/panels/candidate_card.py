@@ -81,7 +81,7 @@ class CandidateCard(QFrame):
         font = self._kind.font()
         font.setBold(True)
         self._kind.setFont(font)
-        self._place = QLabel(self)
+        self._position = QLabel(self)
         self._status = QLabel(self)
         self._status.hide()
         self.confidence = ConfidenceBar(self)
@@ -89,7 +89,7 @@ class CandidateCard(QFrame):
         top.setSpacing(8)
         top.addWidget(self._swatch)
         top.addWidget(self._kind, 1)
-        top.addWidget(self._place)
+        top.addWidget(self._position)
         self._rows = QFormLayout()
         self._rows.setContentsMargins(0, 0, 0, 0)
         self._rows.setHorizontalSpacing(8)
@@ -110,14 +110,16 @@ class CandidateCard(QFrame):
             for row in range(self._rows.rowCount())
         )
         status = () if self._status.isHidden() else (self._status.text(),)
-        return (self._kind.text(), self._place.text(), *status, *rows)
+        return (self._kind.text(), self._position.text(), *status, *rows)
 
-    def show_feature(self, feature: Feature, catalogue: Catalogue, place: int, total: int) -> None:
+    def show_feature(
+        self, feature: Feature, catalogue: Catalogue, position: int, total: int
+    ) -> None:
         """Show a feature, which has this place among all."""
         colour = colour_of_kind(catalogue, feature.kind)
         self._swatch.setPixmap(swatch_of(colour).pixmap(SWATCH_PX, SWATCH_PX))
         self._kind.setText(name_of_kind(catalogue, feature.kind, self._language))
-        self._place.setText(f"{place:,} / {total:,}")
+        self._position.setText(f"{position:,} / {total:,}")
         self._show_status(feature)
         self.confidence.show_value(feature.provenance.confidence)
         while self._rows.rowCount():
@@ -129,7 +131,7 @@ class CandidateCard(QFrame):
         is_decided = feature.status.value != "candidate"
         self._status.setVisible(is_decided)
         if is_decided:
-            status = STATUS_NAMES[feature.status].spoken(self._language)
+            status = STATUS_NAMES[feature.status].in_language(self._language)
             self._status.setText(self.tr("Decided: {status}").format(status=status))
 
     def _facts(self, feature: Feature, catalogue: Catalogue) -> list[tuple[str, str]]:
@@ -139,11 +141,11 @@ class CandidateCard(QFrame):
             field = catalogue[feature.kind].attribute(id_) if is_known else None
             words = words_of_value(value, field, self._language)
             if words:
-                name = id_ if field is None else field.name.spoken(self._language)
+                name = id_ if field is None else field.name.in_language(self._language)
                 unit = "" if field is None else field.unit
                 facts.append((name, f"{words} {unit}".rstrip()))
         for title, words in facts_of(feature, self._language):
-            facts.append((title.spoken(self._language), words))
+            facts.append((title.in_language(self._language), words))
         facts.append((self.tr("Found by"), name_of_origin(feature, self._language)))
         return facts
 

@@ -27,7 +27,7 @@ from typing_extensions import override
 from processing.project.run_evaluation import RunEvaluation
 from processing.project.runs import Run
 from processing.score.file_scores import FileScore
-from processing.score.reliability import Share
+from processing.score.reliability import ShareInterval
 from processing.text import Language
 from widgets.panels.feature_tally import RunOfTool
 from widgets.panels.reliability_plot import PlotWords, ReliabilityPlot, ReliabilityView
@@ -141,8 +141,8 @@ class EvaluationPanel(QWidget):
                 words = self.tr("{what}: precision {p}, recall {r}, F {f}")
                 counts = one.counts
                 shares = counts.precision, counts.recall, counts.f_measure
-                p, r, f = (_percent(Share(share, 1.0)) or "–" for share in shares)
-                name = one.name.spoken(self._language)
+                p, r, f = (_percent(ShareInterval(share, 1.0)) or "–" for share in shares)
+                name = one.name.in_language(self._language)
                 lines.append(words.format(what=name, p=p, r=r, f=f))
         self._against_map.setText("\n".join(lines))
 
@@ -316,7 +316,7 @@ class EvaluationPanel(QWidget):
             self._plot.update()
 
 
-def _percent(share: Share) -> str:
+def _percent(share: ShareInterval) -> str:
     """``83 % (77–88)``; empty where there is no share."""
     if math.isnan(share.value):
         return ""

@@ -112,7 +112,7 @@ class FeatureFilter(QWidget):
             kind: catalogue[kind].attributes if kind in catalogue else () for kind in listed
         }
         self._offer_attributes()
-        self._tell()
+        self._report()
 
     def show_count(self, shown: int, total: int) -> None:
         """Say how many rows there are, and of how many features."""
@@ -158,19 +158,19 @@ class FeatureFilter(QWidget):
         self._kind.addItem(self.tr("All kinds"), "")
         self._status.addItem(self.tr("Any status"), None)
         for status, name in STATUS_NAMES.items():
-            self._status.addItem(name.spoken(self._language), status.value)
+            self._status.addItem(name.in_language(self._language), status.value)
         for comparison, name in _COMPARISONS.items():
-            self._comparison.addItem(name.spoken(self._language), comparison.value)
+            self._comparison.addItem(name.in_language(self._language), comparison.value)
         self._offer_attributes()
 
     def _connect(self) -> None:
-        self._words.textChanged.connect(self._tell)
+        self._words.textChanged.connect(self._report)
         self._kind.currentIndexChanged.connect(self._on_kind_changed)
-        self._status.currentIndexChanged.connect(self._tell)
-        self._occluded.toggled.connect(self._tell)
+        self._status.currentIndexChanged.connect(self._report)
+        self._occluded.toggled.connect(self._report)
         self._attribute.currentIndexChanged.connect(self._on_condition_changed)
         self._comparison.currentIndexChanged.connect(self._on_condition_changed)
-        self._value.textChanged.connect(self._tell)
+        self._value.textChanged.connect(self._report)
         self._select.clicked.connect(self._on_select_clicked)
 
     def _offer_attributes(self) -> None:
@@ -182,7 +182,7 @@ class FeatureFilter(QWidget):
         names: dict[str, list[str]] = {}
         for field in fields:
             written = names.setdefault(field.id, [])
-            name = field.name.spoken(self._language)
+            name = field.name.in_language(self._language)
             if name not in written:
                 written.append(name)
         with QSignalBlocker(self._attribute):
@@ -202,7 +202,7 @@ class FeatureFilter(QWidget):
         self._comparison.setEnabled(bool(id_))
         self._value.setEnabled(bool(id_) and needs_value)
         names = dict.fromkeys(
-            field.name_of_choice(choice).spoken(self._language)
+            field.name_of_choice(choice).in_language(self._language)
             for fields in self._fields.values()
             for field in fields
             if field.id == id_
@@ -222,7 +222,7 @@ class FeatureFilter(QWidget):
             AttributeCondition(id_, comparison, "" if comparison is Comparison.EMPTY else value),
         )
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         kind, status = self._kind.currentData(), self._status.currentData()
         query = FeatureQuery(
             text=self._words.text().strip(),
@@ -237,11 +237,11 @@ class FeatureFilter(QWidget):
 
     def _on_kind_changed(self) -> None:
         self._offer_attributes()
-        self._tell()
+        self._report()
 
     def _on_condition_changed(self) -> None:
         self._suit_value()
-        self._tell()
+        self._report()
 
     def _on_select_clicked(self) -> None:
         shift = Qt.KeyboardModifier.ShiftModifier

@@ -18,7 +18,7 @@ from widgets.panels.feature_filter import FeatureFilter
 from widgets.panels.feature_table_model import FeatureTableModel, ids_of
 from widgets.panels.table.feature_menu import FeatureMenu
 from widgets.panels.table.rows_view import FeatureRowsView
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -134,7 +134,7 @@ class FeatureTable(QWidget):
 
     def _read(self, ids: tuple[str, ...]) -> None:
         columns = self._model.columnCount()
-        with self._table.told():
+        with self._table.reported():
             self._model.read(ids)
         if self._model.columnCount() != columns:
             self._table.fit_widths()
@@ -171,7 +171,7 @@ class FeatureTable(QWidget):
         )
         self._pages.setCurrentIndex(0 if len(rows) else 1)
 
-    def _place_to_go(self, feature: Feature) -> Vertex | None:
+    def _position_to_go(self, feature: Feature) -> Vertex | None:
         vertices = feature.vertices
         if self.query.has_occluded:
             return next((one for one in vertices if one.is_occluded), None)
@@ -192,9 +192,9 @@ class FeatureTable(QWidget):
     def _on_table_centre_requested(self) -> None:
         row = self._model.rows.row_of(self._current_id)
         feature = self._model.rows.at(row) if row >= 0 else None
-        vertex = None if feature is None else self._place_to_go(feature)
+        vertex = None if feature is None else self._position_to_go(feature)
         if vertex is not None:
-            self._cursor.move_to(Place(vertex.xyz, vertex.measured))
+            self._cursor.move_to(PickedPosition(vertex.xyz, vertex.measured))
 
     def _on_table_delete_requested(self) -> None:
         features = self.selected_features()

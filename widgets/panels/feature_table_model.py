@@ -18,7 +18,7 @@ from typing_extensions import override
 from processing.project.feature import Feature, Status
 from processing.project.feature_query import FeatureQuery
 from processing.text import Language
-from widgets.panels.table.feature_columns import KIND, Column, FeatureColumns
+from widgets.panels.table.feature_columns import KIND, FeatureColumn, FeatureColumns
 from widgets.panels.table.feature_rows import FeatureRows
 from widgets.shared.feature_style import colour_of_kind
 from widgets.shared.map_source import MapSource
@@ -59,7 +59,7 @@ class FeatureTableModel(QAbstractTableModel):
         self.rows = FeatureRows(self._catalogue)
 
     @property
-    def columns(self) -> tuple[Column, ...]:
+    def columns(self) -> tuple[FeatureColumn, ...]:
         """The columns, from left to right as they are numbered."""
         return self._columns
 
@@ -117,7 +117,7 @@ class FeatureTableModel(QAbstractTableModel):
     def _change(self, id_: str, feature: Feature | None) -> None:
         rows = self.rows
         row = rows.row_of(id_)
-        if feature is not None and row >= 0 and rows.keeps_place(feature):
+        if feature is not None and row >= 0 and rows.keeps_position(feature):
             rows.replace(feature)
             self.dataChanged.emit(self.index(row, 0), self.index(row, len(self._columns) - 1))
             return

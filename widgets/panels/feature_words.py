@@ -26,15 +26,15 @@ _YES_NO = {True: Text("yes", "はい"), False: Text("no", "いいえ")}
 
 def name_of_kind(catalogue: Catalogue, kind: str, language: Language) -> str:
     """A kind's name; its id where the catalogue doesn't know it."""
-    return catalogue[kind].name.spoken(language) if kind in catalogue else kind
+    return catalogue[kind].name.in_language(language) if kind in catalogue else kind
 
 
 def name_of_origin(feature: Feature, language: Language) -> str:
     """Who made a feature: a person, or the tool by its name (its id where it is no more)."""
     tool = feature.provenance.tool
     if tool == HAND:
-        return _BY_HAND.spoken(language)
-    return TOOLS[tool].name.spoken(language) if tool in TOOLS else tool
+        return _BY_HAND.in_language(language)
+    return TOOLS[tool].name.in_language(language) if tool in TOOLS else tool
 
 
 def words_of_value(value: AttributeValue, field: AttributeField | None, language: Language) -> str:
@@ -42,11 +42,11 @@ def words_of_value(value: AttributeValue, field: AttributeField | None, language
     if value is None:
         return ""
     if isinstance(value, bool):
-        return _YES_NO[value].spoken(language)
+        return _YES_NO[value].in_language(language)
     if isinstance(value, int | float):
         return number_words(value, language)
     if field is not None and field.type == "choice":
-        return field.name_of_choice(value).spoken(language)
+        return field.name_of_choice(value).in_language(language)
     return value
 
 

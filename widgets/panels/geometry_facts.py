@@ -45,10 +45,10 @@ def length_m(feature: Feature) -> float:
 
     In plain numbers, not arrays: a table asks for a hundred thousand short lines at a time.
     """
-    places = [vertex.xyz for vertex in feature.vertices]
-    length = sum(map(math.dist, places, places[1:]))
-    if feature.geometry is Geometry.AREA and places:
-        length += math.dist(places[-1], places[0])
+    positions = [vertex.xyz for vertex in feature.vertices]
+    length = sum(map(math.dist, positions, positions[1:]))
+    if feature.geometry is Geometry.AREA and positions:
+        length += math.dist(positions[-1], positions[0])
     return length
 
 

@@ -111,7 +111,7 @@ class LabelPanel(QWidget):
         self._over.insertSeparator(2)
         for one in point_classes():
             if one.code:
-                words = self.tr("Only {name}").format(name=one.name.spoken(self._language))
+                words = self.tr("Only {name}").format(name=one.name.in_language(self._language))
                 rule = (PaintOver.ONE_CLASS, one.code)
                 self._over.addItem(swatch_of(one.colour), words, rule)
         self._over.setMinimumContentsLength(8)
@@ -128,7 +128,7 @@ class LabelPanel(QWidget):
             self._list.clear()
             self._add(0, "", self.tr("No label (erase)"), (0, 0))
             for code in codes:
-                name = class_name(code).spoken(self._language)
+                name = class_name(code).in_language(self._language)
                 both = int(counts[code]), int(labelled[code])
                 self._add(code, known.get(code, _UNKNOWN_COLOUR), name, both)
         self._mark()
@@ -144,7 +144,7 @@ class LabelPanel(QWidget):
         item.setTextAlignment(_KEY, Qt.AlignmentFlag.AlignCenter)
         item.setForeground(_KEY, self.palette().placeholderText())
         if code:
-            other = class_name(code).spoken("en" if self._language == "ja" else "ja")
+            other = class_name(code).in_language("en" if self._language == "ja" else "ja")
             item.setToolTip(_NAME, f"{name}\n{other}\n{code}")
         if count:
             words = self.tr("Points of this class: {labelled} by labels, {delivered} as delivered")

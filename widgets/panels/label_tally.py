@@ -38,9 +38,9 @@ class LabelTally(QObject):
         super().__init__(parent)
         self._source = source
         self._counts: dict[str, _Counts] = {}
-        self._told = _nothing()
+        self._reported = _nothing()
         self._waiting: list[str] = []
-        self._place = 0
+        self._position = 0
         self._sum = _nothing()
         self._is_resting = True
         self._next = QTimer(self, singleShot=True, interval=0)
@@ -52,12 +52,12 @@ class LabelTally(QObject):
     @property
     def by_code(self) -> _Counts:
         """(256,) points with each label, as counted last; a copy."""
-        return np.array(self._told[_LABELS])
+        return np.array(self._reported[_LABELS])
 
     @property
     def by_class(self) -> _Counts:
         """(256,) points of each class, a label before what was delivered; a copy."""
-        return np.array(self._told[_CLASSES])
+        return np.array(self._reported[_CLASSES])
 
     @property
     def is_counting(self) -> bool:
@@ -85,15 +85,15 @@ class LabelTally(QObject):
         self._begin()
 
     def _begin(self) -> None:
-        self._place, self._sum = 0, _nothing()
+        self._position, self._sum = 0, _nothing()
         if not self._is_resting:
             self._next.start()
 
     def _on_next_timeout(self) -> None:
         drive = next((d for d in self._source.drives() if d.id in self._waiting[:1]), None)
-        if drive is not None and self._place < drive.count:
+        if drive is not None and self._position < drive.count:
             self._count(drive)
-            self._place += _POINTS_AT_ONCE
+            self._position += _POINTS_AT_ONCE
             self._next.start()
             return
         if drive is not None:
@@ -102,28 +102,28 @@ class LabelTally(QObject):
         if self._waiting:
             self._begin()
         else:
-            self._tell()
+            self._report()
 
     def _count(self, drive: Drive) -> None:
         """Count a piece, or all at once where there is nothing to count."""
-        part = slice(self._place, self._place + _POINTS_AT_ONCE)
+        part = slice(self._position, self._position + _POINTS_AT_ONCE)
         try:
             columns = class_columns(drive.columns)
         except UserError:  # who paints on it is told
-            self._place = drive.count
+            self._position = drive.count
             return
         labels, delivered = columns.labels[part], columns.delivered[part]
         if not (labels.size or delivered.size):
-            self._place = drive.count
+            self._position = drive.count
             return
         codes = np.where(labels > 0, labels, delivered) if labels.size == delivered.size else labels
         self._sum[_LABELS] += np.bincount(labels, minlength=CODES)
         self._sum[_CLASSES] += np.bincount(codes if labels.size else delivered, minlength=CODES)
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         counted = sum(self._counts.values(), _nothing())
-        if not np.array_equal(counted, self._told):
-            self._told = counted
+        if not np.array_equal(counted, self._reported):
+            self._reported = counted
             self.changed.emit()
 
 

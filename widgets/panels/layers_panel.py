@@ -116,7 +116,7 @@ class LayersPanel(QWidget):
         self._filter(self._search.text())
 
     def _add(self, group: QTreeWidgetItem, kind: FeatureKind, count: int) -> None:
-        name = kind.name.spoken(self._language)
+        name = kind.name.in_language(self._language)
         item = QTreeWidgetItem(group, [name, f"{count:,}" if count else "", kind.key])
         item.setData(_NAME, _KIND, kind.id)
         item.setIcon(_NAME, swatch_of(kind.colour))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPushButton, QSizePolicy, QWidget
 
 from processing.project.feature import Feature, Vertex
-from widgets.shared.cursor import Cursor, Place
+from widgets.shared.cursor import Cursor, PickedPosition
 
 
 class OccludedRow(QWidget):
@@ -62,4 +62,4 @@ class OccludedRow(QWidget):
         start = keys.index(self._last) + 1 if self._last in keys else 0
         id_, number, vertex = self._occluded[start % len(keys)]
         self._last = (id_, number)
-        self._cursor.move_to(Place(vertex.xyz, vertex.measured))
+        self._cursor.move_to(PickedPosition(vertex.xyz, vertex.measured))

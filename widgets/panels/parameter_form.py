@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QFormLayout, QLabel, QWidget
 from typing_extensions import override
 
 from processing.text import Language
-from processing.tools.parameters import Parameter, Value, filled_in, parameters_of
+from processing.tools.parameters import Parameter, ParameterValue, fill_parameters, parameters_of
 from widgets.panels.parameter_row import ParameterRow
 
 
@@ -62,7 +62,7 @@ class ParameterForm(QWidget):
                 continue
             row = ParameterRow(parameter, language, self)
             row.changed.connect(self.changed)
-            name = QLabel(parameter.name.spoken(language), self)
+            name = QLabel(parameter.name.in_language(language), self)
             name.setToolTip(self._explanation(parameter, language))
             name.setBuddy(row.field)
             row.field.setToolTip(name.toolTip())
@@ -80,9 +80,11 @@ class ParameterForm(QWidget):
         OutOfRange
             A value isn't allowed; the fields don't let that happen by typing.
         """
-        return filled_in(self._parameters, {id_: row.value for id_, row in self._rows.items()})
+        return fill_parameters(
+            self._parameters, {id_: row.value for id_, row in self._rows.items()}
+        )
 
-    def set_values(self, values: Mapping[str, Value]) -> None:
+    def set_values(self, values: Mapping[str, ParameterValue]) -> None:
         """Set some of the fields that are shown; what is outside its limits is refused as a whole.
 
         Raises
@@ -90,7 +92,7 @@ class ParameterForm(QWidget):
         OutOfRange
             For a name that there isn't, or a value that isn't allowed; nothing is set.
         """
-        checked = filled_in(self._parameters, values)
+        checked = fill_parameters(self._parameters, values)
         for id_ in values:
             if id_ in self._rows:
                 self._rows[id_].set_value(getattr(checked, id_))
@@ -139,7 +141,7 @@ class ParameterForm(QWidget):
             part.installEventFilter(self)
 
     def _explanation(self, parameter: Parameter, language: Language) -> str:
-        parts = [parameter.explanation.spoken(language)]
+        parts = [parameter.explanation.in_language(language)]
         if parameter.kind in ("number", "count"):
             limits = self.tr("{low} to {high} {unit}").format(
                 low=f"{parameter.low:g}", high=f"{parameter.high:g}", unit=parameter.unit

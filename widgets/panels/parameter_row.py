@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from processing.text import Language
-from processing.tools.parameters import MOST_LETTERS, Parameter, Value
+from processing.tools.parameters import MOST_LETTERS, Parameter, ParameterValue
 from widgets.parts.number_field import NumberField, decimals_for
 
 _LEAST_LETTERS, _LIST_MARGIN_PX = 8, 24
@@ -50,8 +50,8 @@ class ParameterRow(QWidget):
         self._layout = QHBoxLayout(self)
         self._layout.setContentsMargins(0, 0, 0, 0)
         self._layout.setSpacing(4)
-        self._get: Callable[[], Value]
-        self._set: Callable[[Value], None]
+        self._get: Callable[[], ParameterValue]
+        self._set: Callable[[ParameterValue], None]
         self.field: QWidget
         make = {
             "number": self._make_number,
@@ -72,11 +72,11 @@ class ParameterRow(QWidget):
         self.restore()
 
     @property
-    def value(self) -> Value:
+    def value(self) -> ParameterValue:
         """What is set."""
         return self._get()
 
-    def set_value(self, value: Value) -> None:
+    def set_value(self, value: ParameterValue) -> None:
         """Set it; tells nobody."""
         with QSignalBlocker(self.field):
             self._set(value)
@@ -96,10 +96,10 @@ class ParameterRow(QWidget):
         )
         field.valueChanged.connect(self._on_field_changed)
 
-        def get() -> Value:
+        def get() -> ParameterValue:
             return round(field.value()) if is_count else field.value()
 
-        def put(value: Value) -> None:
+        def put(value: ParameterValue) -> None:
             field.setValue(float(value))
 
         self._take(field, get, put)
@@ -107,7 +107,7 @@ class ParameterRow(QWidget):
     def _make_choice(self, language: Language) -> None:
         field = QComboBox(self)
         for option in self._parameter.choices:
-            field.addItem(option.name.spoken(language), option.value)
+            field.addItem(option.name.in_language(language), option.value)
         # A long word must not make a form wider than its panel; the list shows it whole.
         field.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         field.setMinimumContentsLength(_LEAST_LETTERS)
@@ -115,10 +115,10 @@ class ParameterRow(QWidget):
         field.view().setMinimumWidth(widest + _LIST_MARGIN_PX)
         field.currentIndexChanged.connect(self._on_field_changed)
 
-        def get() -> Value:
+        def get() -> ParameterValue:
             return str(field.currentData())
 
-        def put(value: Value) -> None:
+        def put(value: ParameterValue) -> None:
             field.setCurrentIndex(field.findData(value))
 
         self._take(field, get, put)
@@ -127,7 +127,7 @@ class ParameterRow(QWidget):
         field = QCheckBox(self)
         field.toggled.connect(self._on_field_changed)
 
-        def put(value: Value) -> None:
+        def put(value: ParameterValue) -> None:
             field.setChecked(bool(value))
 
         self._take(field, field.isChecked, put)
@@ -143,7 +143,7 @@ class ParameterRow(QWidget):
         field.setPlaceholderText(self.tr("None"))
 
         def choose() -> None:
-            path, _ = QFileDialog.getOpenFileName(self, self._parameter.name.spoken(language))
+            path, _ = QFileDialog.getOpenFileName(self, self._parameter.name.in_language(language))
             if path:
                 field.setText(path)
 
@@ -157,12 +157,17 @@ class ParameterRow(QWidget):
     def _take_line(self, field: QLineEdit) -> None:
         field.textChanged.connect(self._on_field_changed)
 
-        def put(value: Value) -> None:
+        def put(value: ParameterValue) -> None:
             field.setText(str(value))
 
         self._take(field, field.text, put)
 
-    def _take(self, field: QWidget, get: Callable[[], Value], put: Callable[[Value], None]) -> None:
+    def _take(
+        self,
+        field: QWidget,
+        get: Callable[[], ParameterValue],
+        put: Callable[[ParameterValue], None],
+    ) -> None:
         self.field, self._get, self._set = field, get, put
         field.setObjectName(self._parameter.id)
         self._layout.addWidget(field, 1)

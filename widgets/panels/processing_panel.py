@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 )
 
 from processing.text import Language, Text
-from processing.tools.parameters import Value
+from processing.tools.parameters import ParameterValue
 from processing.tools.registry import TOOLS
 from processing.tools.tool import Tool
 from widgets.panels.parameter_form import ParameterForm
@@ -107,7 +107,7 @@ class ProcessingPanel(QWidget):
         form = self._forms.get(tool)
         return self._tools[tool].parameters() if form is None else form.value()
 
-    def use_values(self, tool: str, values: Mapping[str, Value]) -> None:
+    def use_values(self, tool: str, values: Mapping[str, ParameterValue]) -> None:
         """Choose a tool and set some of its parameters.
 
         Raises
@@ -147,7 +147,7 @@ class ProcessingPanel(QWidget):
             remark = self._remark(self.tool)
         self._run.setEnabled(bool(self.tool) and why_not is None)
         said = why_not or remark
-        self._why_not.setText("" if said is None else said.spoken(self._language))
+        self._why_not.setText("" if said is None else said.in_language(self._language))
         self._why_not.setVisible(said is not None)
 
     def show_tool(self, tool: str) -> None:
@@ -185,12 +185,12 @@ class ProcessingPanel(QWidget):
         groups: dict[Text, QTreeWidgetItem] = {}
         for tool in self._tools.values():
             if tool.group not in groups:
-                group = QTreeWidgetItem(self._list, [tool.group.spoken(self._language)])
+                group = QTreeWidgetItem(self._list, [tool.group.in_language(self._language)])
                 group.setFlags(Qt.ItemFlag.ItemIsEnabled)
                 groups[tool.group] = group
-            item = QTreeWidgetItem(groups[tool.group], [tool.name.spoken(self._language)])
+            item = QTreeWidgetItem(groups[tool.group], [tool.name.in_language(self._language)])
             item.setData(0, _ID, tool.id)
-            item.setToolTip(0, tool.explanation.spoken(self._language))
+            item.setToolTip(0, tool.explanation.in_language(self._language))
         self._list.expandAll()
 
     def _items(self) -> list[QTreeWidgetItem]:
@@ -208,7 +208,7 @@ class ProcessingPanel(QWidget):
             self._explanation.clear()
             self.refresh()
             return
-        self._explanation.setText(tool.explanation.spoken(self._language))
+        self._explanation.setText(tool.explanation.in_language(self._language))
         if tool.id not in self._forms:
             self._forms[tool.id] = ParameterForm(tool.parameters, self._language)
             self._forms[tool.id].changed.connect(self.values_changed)

@@ -219,9 +219,10 @@ class ProjectDrives(QObject):
         )
 
     def _rows_words(self, drive: Drive) -> str:
-        if drive.turns is None:
-            reason = drive.info.rows_reason.spoken(self._language)
+        if drive.revolutions is None:
+            reason = drive.info.rows_reason.in_language(self._language)
             return self.tr("No turns of a scanner: {reason}").format(reason=reason)
         return self.tr("{rate} turns per second, {pulses} pulses per turn").format(
-            rate=f"{drive.turns.turn_rate_hz:.1f}", pulses=f"{drive.turns.pulses_per_turn:.0f}"
+            rate=f"{drive.revolutions.revolution_rate_hz:.1f}",
+            pulses=f"{drive.revolutions.pulses_per_revolution:.0f}",
         )

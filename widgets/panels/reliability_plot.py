@@ -151,18 +151,22 @@ class ReliabilityPlot:
 
     def _paint_curve(self, painter: QPainter, field: QRectF, colours: PlotColours) -> None:
         filled = [one for one in self.reliability.bins if one.accepted.of]
-        places = [QPointF(*_at(field, one.mean_confidence, one.accepted.value)) for one in filled]
+        positions = [
+            QPointF(*_at(field, one.mean_confidence, one.accepted.value)) for one in filled
+        ]
         painter.setPen(QPen(colours.curve, 2))
-        painter.drawPolyline(places)
+        painter.drawPolyline(positions)
         side = painter.fontMetrics().height() / 4
-        for one, place in zip(filled, places, strict=True):
+        for one, position in zip(filled, positions, strict=True):
             painter.setPen(QPen(colours.curve, 1.5))
             _, low = _at(field, 0, one.accepted.low)
             _, high = _at(field, 0, one.accepted.high)
-            painter.drawLine(QPointF(place.x(), low), QPointF(place.x(), high))
+            painter.drawLine(QPointF(position.x(), low), QPointF(position.x(), high))
             for end in (low, high):
-                painter.drawLine(QPointF(place.x() - side, end), QPointF(place.x() + side, end))
-            square = QRectF(place.x() - side, place.y() - side, 2 * side, 2 * side)
+                painter.drawLine(
+                    QPointF(position.x() - side, end), QPointF(position.x() + side, end)
+                )
+            square = QRectF(position.x() - side, position.y() - side, 2 * side, 2 * side)
             painter.fillRect(square, colours.curve)
 
     def _facts(self) -> str:

@@ -27,7 +27,7 @@ _COUNTS = Text(
 
 def name_of_tool(tool: str, language: Language) -> str:
     """A tool's name; its id where the program no longer has it."""
-    return TOOLS[tool].name.spoken(language) if tool in TOOLS else tool
+    return TOOLS[tool].name.in_language(language) if tool in TOOLS else tool
 
 
 def name_of_run(origin: RunOfTool, runs: Mapping[str, Run], language: Language) -> str:
@@ -37,8 +37,8 @@ def name_of_run(origin: RunOfTool, runs: Mapping[str, Run], language: Language) 
     if run is None:
         return tool
     started = QDateTime.fromSecsSinceEpoch(int(run.started.timestamp()))
-    moment = QLocale(language).toString(started, _MOMENT.spoken(language))
-    return _NAMED.filled(tool=tool, moment=moment).spoken(language)
+    moment = QLocale(language).toString(started, _MOMENT.in_language(language))
+    return _NAMED.filled(tool=tool, moment=moment).in_language(language)
 
 
 def counts_of_run(tally: RunTally, language: Language, *, is_short: bool = False) -> str:
@@ -48,7 +48,7 @@ def counts_of_run(tally: RunTally, language: Language, *, is_short: bool = False
         candidates=f"{tally.candidates:,}",
         accepted=f"{tally.accepted:,}",
         rejected=f"{tally.rejected:,}",
-    ).spoken(language)
+    ).in_language(language)
 
 
 def facts_of_run(run: Run, drive_names: Sequence[str], language: Language) -> list[str]:
@@ -59,7 +59,7 @@ def facts_of_run(run: Run, drive_names: Sequence[str], language: Language) -> li
         declared = {one.id: one for one in parameters_of(TOOLS[run.tool].parameters)}
     for id_, value in run.parameters.items():
         parameter = declared.get(id_)
-        name = id_ if parameter is None else parameter.name.spoken(language)
+        name = id_ if parameter is None else parameter.name.in_language(language)
         unit = "" if parameter is None else parameter.unit
         words = words_of_value(value, None, language)
         if len(words) > _LONGEST:

@@ -7,9 +7,9 @@ from typing import TypeVar
 
 from processing.project.catalogue import AttributeField, Catalogue
 from processing.project.feature import Feature
-from widgets.panels.attribute_field import SEVERAL, Several
+from widgets.panels.attribute_field import SEVERAL, MixedValue
 
-Value = TypeVar("Value")
+SharedT = TypeVar("SharedT")
 
 
 def common_fields(features: Iterable[Feature], catalogue: Catalogue) -> tuple[AttributeField, ...]:
@@ -29,8 +29,8 @@ def common_fields(features: Iterable[Feature], catalogue: Catalogue) -> tuple[At
 
 
 def common_value(
-    features: Iterable[Feature], value_of: Callable[[Feature], Value]
-) -> Value | Several | None:
+    features: Iterable[Feature], value_of: Callable[[Feature], SharedT]
+) -> SharedT | MixedValue | None:
     """The value that all features have; ``SEVERAL`` where they differ, None for no features."""
     values = map(value_of, features)
     first = next(values, None)

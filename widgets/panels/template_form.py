@@ -13,7 +13,7 @@ from processing.project.catalogue import Geometry
 from processing.templates.profile_template import (
     LEAST_TOLERANCE_M,
     MOST_TOLERANCE_M,
-    ProfilePlace,
+    ProfilePoint,
     ProfileTemplate,
 )
 from processing.text import Language
@@ -22,7 +22,7 @@ from widgets.parts.number_field import NumberField
 from widgets.shared.map_source import MapSource
 from widgets.shared.swatch import swatch_of
 
-_ANCHOR: ProfilePlace = (0.0, 0.0)
+_ANCHOR: ProfilePoint = (0.0, 0.0)
 _TOLERANCE_STEP_M = 0.005
 
 
@@ -77,7 +77,7 @@ class TemplateForm(QWidget):
         return self._template
 
     @property
-    def marked(self) -> ProfilePlace:
+    def marked(self) -> ProfilePoint:
         """The vertex whose line is shown in the list."""
         return self._marked
 
@@ -90,7 +90,7 @@ class TemplateForm(QWidget):
             self._kinds.addItem(self.tr("No line"), "")
             for kind in catalogue:
                 if kind.geometry is Geometry.LINE:
-                    name = kind.name.spoken(self._language)
+                    name = kind.name.in_language(self._language)
                     self._kinds.addItem(swatch_of(kind.colour), name, kind.id)
         self._show()
 
@@ -108,7 +108,7 @@ class TemplateForm(QWidget):
         """Show (n, 2) points of a section behind the template, in its axes."""
         self.picture.show_points(points)
 
-    def mark(self, vertex: ProfilePlace) -> None:
+    def mark(self, vertex: ProfilePoint) -> None:
         """Mark a vertex."""
         self._marked = vertex
         self._show()
@@ -121,11 +121,11 @@ class TemplateForm(QWidget):
             return
         with QSignalBlocker(self._kinds), QSignalBlocker(self._tolerance):
             kind = template.kind_at(self._marked)
-            place = self._kinds.findData(kind)
-            if place < 0:  # a kind that this project's catalogue doesn't have
+            position = self._kinds.findData(kind)
+            if position < 0:  # a kind that this project's catalogue doesn't have
                 self._kinds.addItem(kind, kind)
-                place = self._kinds.count() - 1
-            self._kinds.setCurrentIndex(place)
+                position = self._kinds.count() - 1
+            self._kinds.setCurrentIndex(position)
             self._tolerance.setValue(template.tolerance_m)
 
     def _on_kinds_activated(self) -> None:

@@ -23,7 +23,7 @@ from processing.errors import UserError
 from processing.project.template_store import ENDING, TemplateStore, export_template
 from processing.templates.profile_template import ProfileTemplate
 
-Shelf = Callable[[], TemplateStore | None]
+TemplateStoreSource = Callable[[], TemplateStore | None]
 """The templates of the open project; None when none is open."""
 
 _ROWS_SHOWN = 4
@@ -51,7 +51,7 @@ class TemplateList(QWidget):
     draw_requested = Signal()
     refused = Signal(object)
 
-    def __init__(self, shelf: Shelf, parent: QWidget | None = None) -> None:
+    def __init__(self, shelf: TemplateStoreSource, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._shelf = shelf
         self._list = QListWidget(self)

@@ -16,14 +16,14 @@ from processing.project.feature import Position
 from processing.section.cut import Cut
 from processing.templates.fit import FitSettings
 from processing.templates.preview import Preview, preview_at
-from processing.templates.profile_template import MadeLine, Profile, ProfileTemplate
+from processing.templates.profile_template import MadeLine, ProfileTemplate, TemplateProfile
 from processing.text import Language, Text
 from widgets.mouse_tools.draw_template import DrawnProfile, TemplatePart
-from widgets.mouse_tools.tracing import AtHand
+from widgets.mouse_tools.tracing import BackgroundRunner
 from widgets.panels.template_form import TemplateForm
-from widgets.panels.template_list import Shelf, TemplateList
+from widgets.panels.template_list import TemplateList, TemplateStoreSource
 from widgets.panels.template_start import TemplateStart, start_at
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -52,7 +52,7 @@ class TemplatePanel(QWidget):
     shared : SharedState
     shelf : callable
         Gives the `TemplateStore` of the open project, or None.
-    at_hand : AtHand
+    in_background : BackgroundRunner
         Does the preview's work beside the window.
     language : Language
 
@@ -63,20 +63,20 @@ class TemplatePanel(QWidget):
     fit_requested(drive: str, parameters: TemplateParameters)
         Run the tool ``template`` on this drive.
     refused(error: UserError)
-    told(text: Text)
+    reported(text: Text)
     """
 
     draw_requested = Signal(object)
     fit_requested = Signal(str, object)
     refused = Signal(object)
-    told = Signal(object)
+    reported = Signal(object)
 
     def __init__(
         self,
         source: MapSource,
         shared: SharedState,
-        shelf: Shelf,
-        at_hand: AtHand,
+        shelf: TemplateStoreSource,
+        in_background: BackgroundRunner,
         *,
         language: Language = "en",
         parent: QWidget | None = None,
@@ -84,7 +84,7 @@ class TemplatePanel(QWidget):
         super().__init__(parent)
         self._source = source
         self._shared = shared
-        self._at_hand = at_hand
+        self._in_background = in_background
         self._cut: Cut | None = None
         self._kind = ""
         self._drawn: TemplateStart | None = None
@@ -165,9 +165,9 @@ class TemplatePanel(QWidget):
             self.refused.emit(error)
             return
         self.list.add(template)
-        place = Place(drawn.anchor)
+        position = PickedPosition(drawn.anchor)
         shown = self._shared.view_settings.drive_id
-        self._drawn = start_at(self._source, place, drawn.cut, shown)
+        self._drawn = start_at(self._source, position, drawn.cut, shown)
         self._look()
 
     @override
@@ -180,7 +180,7 @@ class TemplatePanel(QWidget):
     def _take_zone(self, drawn: DrawnProfile) -> None:
         template, lying = self.list.current, self._lying
         if template is None or lying is None:
-            self.told.emit(NOWHERE)
+            self.reported.emit(NOWHERE)
             return
         zones = drawn.about(lying.anchor)
         if lying.is_mirrored:
@@ -224,12 +224,12 @@ class TemplatePanel(QWidget):
         """Where a fit would begin: where the template was drawn, else at the cursor."""
         if self._drawn is not None:
             return self._drawn
-        place = self._shared.cursor.place
-        if place is None:
+        position = self._shared.cursor.position
+        if position is None:
             return None
-        return start_at(self._source, place, self._cut, self._shared.view_settings.drive_id)
+        return start_at(self._source, position, self._cut, self._shared.view_settings.drive_id)
 
-    def _usual_kind(self, shape: tuple[Profile, ...]) -> str:
+    def _usual_kind(self, shape: tuple[TemplateProfile, ...]) -> str:
         """The kind that is drawn elsewhere, else the edge of a curb at which the shape begins."""
         catalogue = self._source.catalogue()
         is_upper = min(height for profile in shape for _, height in profile) < 0
@@ -244,7 +244,7 @@ class TemplatePanel(QWidget):
         """Lay the template on the section's points, beside the window; the newest wish counts."""
         template = self.list.current
         self._lying = None
-        begins = self._drawn is not None or self._shared.cursor.place is not None
+        begins = self._drawn is not None or self._shared.cursor.position is not None
         self._fit.setEnabled(template is not None and begins)
         if not self.isVisible() or template is None:
             return
@@ -259,7 +259,9 @@ class TemplatePanel(QWidget):
             return
         self._is_looking = True
         drive = start.drive
-        self._at_hand(lambda: preview_at(drive, template, frame, FitSettings()), self._take_preview)
+        self._in_background(
+            lambda: preview_at(drive, template, frame, FitSettings()), self._take_preview
+        )
 
     def _take_preview(self, preview: object | None) -> None:
         self._is_looking = False
@@ -274,9 +276,9 @@ class TemplatePanel(QWidget):
         self.form.show_points(preview.points)
         self._score.setText(self.tr("Score here: {score}").format(score=f"{score:.2f}"))
         if score >= _LIES:
-            easting, northing, height = preview.start.frame.place.tolist()
+            easting, northing, height = preview.start.frame.position.tolist()
             self._lying = _Lying((easting, northing, height), preview.is_mirrored)
 
 
-def _mirrored(profile: Profile) -> Profile:
+def _mirrored(profile: TemplateProfile) -> TemplateProfile:
     return tuple((0.0 - offset, height) for offset, height in profile)

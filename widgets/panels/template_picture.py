@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from typing_extensions import override
 
 from processing.project.catalogue import Catalogue
-from processing.templates.profile_template import Profile, ProfilePlace, ProfileTemplate
+from processing.templates.profile_template import ProfilePoint, ProfileTemplate, TemplateProfile
 
 _MARGIN_PX = 24
 _HEIGHT_PX = 160
@@ -36,7 +36,7 @@ class TemplatePicture(QWidget):
 
     Signals
     -------
-    vertex_chosen(vertex: ProfilePlace)
+    vertex_chosen(vertex: ProfilePoint)
     """
 
     vertex_chosen = Signal(object)
@@ -45,7 +45,7 @@ class TemplatePicture(QWidget):
         super().__init__(parent)
         self._catalogue: Catalogue | None = None
         self._template: ProfileTemplate | None = None
-        self._marked: ProfilePlace = (0.0, 0.0)
+        self._marked: ProfilePoint = (0.0, 0.0)
         self._points: NDArray[np.float64] = np.empty((0, 2))
         self.setMinimumSize(160, _HEIGHT_PX)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.MinimumExpanding)
@@ -60,7 +60,7 @@ class TemplatePicture(QWidget):
         self._catalogue = catalogue
         self.update()
 
-    def show_template(self, template: ProfileTemplate | None, marked: ProfilePlace) -> None:
+    def show_template(self, template: ProfileTemplate | None, marked: ProfilePoint) -> None:
         """Show a template with one of its vertices marked; None: nothing."""
         self._template, self._marked = template, marked
         self.update()
@@ -70,12 +70,12 @@ class TemplatePicture(QWidget):
         self._points = points
         self.update()
 
-    def position_of(self, place: ProfilePlace) -> QPointF:
+    def position_of(self, position: ProfilePoint) -> QPointF:
         """Where a place of the template is in the widget."""
         scale, middle = self._fit()
         return QPointF(
-            self.width() / 2 + (place[0] - middle[0]) * scale,
-            self.height() / 2 - (place[1] - middle[1]) * scale,
+            self.width() / 2 + (position[0] - middle[0]) * scale,
+            self.height() / 2 - (position[1] - middle[1]) * scale,
         )
 
     @override
@@ -112,8 +112,8 @@ class TemplatePicture(QWidget):
         scale = min((self.width() - 2 * _MARGIN_PX) / wide, (self.height() - 2 * _MARGIN_PX) / tall)
         return max(scale, 1.0), ((left + right) / 2, (low + high) / 2)
 
-    def _polygon(self, profile: Profile) -> QPolygonF:
-        return QPolygonF([self.position_of(place) for place in profile])
+    def _polygon(self, profile: TemplateProfile) -> QPolygonF:
+        return QPolygonF([self.position_of(position) for position in profile])
 
     def _paint_points(self, painter: QPainter) -> None:
         if not len(self._points):

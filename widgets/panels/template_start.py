@@ -12,10 +12,10 @@ from processing.points.drive import Drive
 from processing.project.feature import Position
 from processing.section.cut import Cut
 from processing.templates.profile_template import ProfileTemplate
-from processing.templates.slab import Frame
+from processing.templates.slab import SectionFrame
 from processing.templates.template_text import template_line
 from processing.tools.template import TemplateParameters
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 
 _NEAREST_M = 0.5
@@ -29,27 +29,27 @@ class TemplateStart:
     ----------
     drive : Drive
         Whose points are followed.
-    place : Position
+    position : Position
         m, project CRS.
     cut : Cut or None
         The section; None: the trajectory says which way the line goes.
     """
 
     drive: Drive
-    place: Position
+    position: Position
     cut: Cut | None
 
     @property
-    def frame(self) -> Frame | None:
+    def frame(self) -> SectionFrame | None:
         """Where the section is taken; None without one."""
         if self.cut is None:
             return None
         east, north = self.cut.normal
-        return Frame(np.array(self.place), math.atan2(north, east))
+        return SectionFrame(np.array(self.position), math.atan2(north, east))
 
     def parameters(self, template: ProfileTemplate) -> TemplateParameters:
         """What the tool is to be run with."""
-        easting, northing, height = self.place
+        easting, northing, height = self.position
         heading = {}
         if self.cut is not None:
             east, north = self.cut.normal
@@ -63,7 +63,9 @@ class TemplateStart:
         )
 
 
-def start_at(source: MapSource, place: Place, cut: Cut | None, shown: str) -> TemplateStart | None:
+def start_at(
+    source: MapSource, position: PickedPosition, cut: Cut | None, shown: str
+) -> TemplateStart | None:
     """Begin at a place of the map.
 
     Parameters
@@ -76,11 +78,13 @@ def start_at(source: MapSource, place: Place, cut: Cut | None, shown: str) -> Te
     drives = {drive.id: drive for drive in source.drives() if drive.count}
     if not drives:
         return None
-    id_ = shown if place.measured is None else place.measured.drive
+    id_ = shown if position.measured is None else position.measured.drive
     drive = drives.get(id_) or next(iter(drives.values()))
-    if nearest_point(drive, np.array(place.xyz), _NEAREST_M) < 0:
+    if nearest_point(drive, np.array(position.xyz), _NEAREST_M) < 0:
         # Another scanner may have seen what this one didn't.
-        near = (one for one in drives.values() if nearest_point(one, np.array(place.xyz), 0.5) >= 0)
+        near = (
+            one for one in drives.values() if nearest_point(one, np.array(position.xyz), 0.5) >= 0
+        )
         drive = next(near, drive)
-    holds = cut is not None and bool(cut.holds(cut.to_section([place.xyz]))[0])
-    return TemplateStart(drive, place.xyz, cut if holds else None)
+    holds = cut is not None and bool(cut.holds(cut.to_section([position.xyz]))[0])
+    return TemplateStart(drive, position.xyz, cut if holds else None)

@@ -15,7 +15,7 @@ _FILLED = Text(
 )
 
 
-def signed(value: float, digits: int = 3) -> str:
+def format_difference(value: float, digits: int = 3) -> str:
     """A difference with its sign, as surveyors read it: ``+0.234``, ``−1.050``, ``0.000``."""
     words = f"{abs(value):,.{digits}f}"
     if not words.strip("0.,"):
@@ -26,7 +26,7 @@ def signed(value: float, digits: int = 3) -> str:
 def change_words(reading: ChangeReading) -> Text:
     """By how much the later ground is higher, and both heights."""
     return (_WORDS if reading.is_measured else _FILLED).filled(
-        change=signed(reading.change_m),
+        change=format_difference(reading.change_m),
         before=coordinate(reading.before_m),
         after=coordinate(reading.after_m),
     )

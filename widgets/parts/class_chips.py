@@ -11,7 +11,7 @@ from processing.text import Language
 from widgets.shared.label_palette import LabelPalette
 from widgets.shared.swatch import SWATCH_PX, swatch_of
 
-AT_HAND = (2, 1, 7, 18)
+INTERACTIVE = (2, 1, 7, 18)
 """Ground, what stands on it, and noise below and above: what corrections are made with."""
 
 
@@ -36,8 +36,10 @@ class ClassChips(QWidget):
         layout.setSpacing(4)
         for one in point_classes():
             if one.code:
-                self._chips[one.code] = self._chip(one.code, one.colour, one.name.spoken(language))
-        for code in (*AT_HAND, *(code for code in self._chips if code not in AT_HAND)):
+                self._chips[one.code] = self._chip(
+                    one.code, one.colour, one.name.in_language(language)
+                )
+        for code in (*INTERACTIVE, *(code for code in self._chips if code not in INTERACTIVE)):
             layout.addWidget(self._chips[code])
         palette.rule_changed.connect(self._on_palette_rule_changed)
         self._on_palette_rule_changed(palette.rule)
@@ -69,4 +71,4 @@ class ClassChips(QWidget):
     def _on_palette_rule_changed(self, rule: PaintRule) -> None:
         for code, chip in self._chips.items():
             chip.setChecked(code == rule.code)
-            chip.setVisible(code in AT_HAND or code == rule.code)
+            chip.setVisible(code in INTERACTIVE or code == rule.code)

@@ -77,7 +77,7 @@ class CommandPalette(QDialog):
         super().__init__(parent)
         self.setWindowTitle(self.tr("Commands"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        order = {id_: place for place, id_ in enumerate(used)}
+        order = {id_: position for position, id_ in enumerate(used)}
         # Sorting keeps the order of those that are alike: the order of the menus.
         self._actions = sorted(actions, key=lambda named: order.get(named.id, len(order)))
         self._language = language
@@ -112,14 +112,16 @@ class CommandPalette(QDialog):
             step = _STEPS.get(Qt.Key(event.key()))
             count = self._list.topLevelItemCount()
             if step is not None and count:
-                place = self._list.currentIndex().row() + step
+                position = self._list.currentIndex().row() + step
                 # One step goes round, a page stops at the end.
-                self._choose(place % count if abs(step) == 1 else min(max(place, 0), count - 1))
+                self._choose(
+                    position % count if abs(step) == 1 else min(max(position, 0), count - 1)
+                )
                 return True
         return super().eventFilter(watched, event)
 
-    def _choose(self, place: int) -> None:
-        item = self._list.topLevelItem(place)
+    def _choose(self, position: int) -> None:
+        item = self._list.topLevelItem(position)
         if item is not None:
             self._list.setCurrentItem(item)
 
@@ -139,9 +141,9 @@ class CommandPalette(QDialog):
         return min((rank for rank in ranks if rank is not None), default=None)
 
     def _item(self, named: NamedAction) -> QTreeWidgetItem:
-        name, other = named.name.spoken(self._language), _other(named.name, self._language)
+        name, other = named.name.in_language(self._language), _other(named.name, self._language)
         is_enabled = named.action.isEnabled()
-        reason = named.why_disabled.spoken(self._language)
+        reason = named.why_disabled.in_language(self._language)
         beside = other if other != name else ""
         item = QTreeWidgetItem(
             [

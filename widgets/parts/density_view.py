@@ -66,7 +66,7 @@ class DensityView(QWidget):
         side = abs(float(density.across_m[column]))
         is_left = float(density.across_m[column]) > 0
         if field is road:
-            told = (
+            reported = (
                 self.tr("Road, {side} m to the left: {density} points/m², {gap} cm between points")
                 if is_left
                 else self.tr(
@@ -75,7 +75,7 @@ class DensityView(QWidget):
             )
             value, gap = float(density.road[column]), 100 * float(density.spacing_m[column])
         else:
-            told = (
+            reported = (
                 self.tr("Wall {side} m to the left, {up} m up: {density} points/m²")
                 if is_left
                 else self.tr("Wall {side} m to the right, {up} m up: {density} points/m²")
@@ -86,7 +86,7 @@ class DensityView(QWidget):
             if math.isnan(value):
                 return self.tr("Here the vehicle drives.")
         up = (field.bottom() - position.y()) / field.height() * float(density.up_m[-1])
-        return told.format(
+        return reported.format(
             side=f"{side:.1f}", up=f"{up:.1f}", density=self._number(value), gap=f"{gap:.1f}"
         )
 
@@ -96,8 +96,8 @@ class DensityView(QWidget):
 
     @override
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        told = self.told_at(event.position())
-        QToolTip.showText(event.globalPosition().toPoint(), told, self)
+        reported = self.told_at(event.position())
+        QToolTip.showText(event.globalPosition().toPoint(), reported, self)
 
     @override
     def paintEvent(self, event: QPaintEvent) -> None:
@@ -134,9 +134,9 @@ class DensityView(QWidget):
         for metres in range(-half_m, half_m + 1, _STEP_M):
             x = field.left() + (half_m - metres) / (2 * half_m) * field.width()
             painter.drawLine(QPointF(x, field.bottom()), QPointF(x, field.bottom() + 3))
-            place = QRectF(x - 2 * line, field.bottom() + 3, 4 * line, line)
+            position = QRectF(x - 2 * line, field.bottom() + 3, 4 * line, line)
             words = f"{abs(metres)} m" if metres in (-half_m, half_m) else f"{abs(metres)}"
-            painter.drawText(place, int(Qt.AlignmentFlag.AlignHCenter), words)
+            painter.drawText(position, int(Qt.AlignmentFlag.AlignHCenter), words)
 
     def _mark_up(self, painter: QPainter, field: QRectF) -> None:
         line = painter.fontMetrics().height()
@@ -145,8 +145,8 @@ class DensityView(QWidget):
         for metres in range(0, most_m + 1, _STEP_M):
             y = field.bottom() - metres / most_m * field.height()
             painter.drawLine(QPointF(field.left() - 3, y), QPointF(field.left(), y))
-            place = QRectF(0, y - line / 2, field.left() - 5, line)
-            painter.drawText(place, int(middle), f"{metres} m" if metres else "0")
+            position = QRectF(0, y - line / 2, field.left() - 5, line)
+            painter.drawText(position, int(middle), f"{metres} m" if metres else "0")
 
     def _paint_scale(self, painter: QPainter, wall: QRectF, road: QRectF) -> None:
         line = painter.fontMetrics().height()
@@ -158,8 +158,8 @@ class DensityView(QWidget):
         for decade in DECADES:
             y = bar.top() + math.log(MOST / decade) / math.log(MOST / LEAST) * bar.height()
             painter.drawLine(QPointF(bar.right(), y), QPointF(bar.right() + 3, y))
-            place = QRectF(bar.right() + 6, y - line / 2, self.width() - bar.right() - 6, line)
-            painter.drawText(place, int(Qt.AlignmentFlag.AlignVCenter), self._number(decade))
+            position = QRectF(bar.right() + 6, y - line / 2, self.width() - bar.right() - 6, line)
+            painter.drawText(position, int(Qt.AlignmentFlag.AlignVCenter), self._number(decade))
 
     def _across(self) -> NDArray[np.float64]:
         return np.zeros(1) if self._density is None else self._density.across_m

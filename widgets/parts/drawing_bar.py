@@ -87,13 +87,13 @@ class DrawingBar(QWidget):
         self._snaps.setToolTip(self.tr("What clicks snap to (Alt+1 to Alt+7)"))
         self._snaps.clicked.connect(self.snaps_wanted)
         self._words = ElidedLabel(self)
-        self._distance_name = QLabel(_DISTANCE.spoken(language), self)
+        self._distance_name = QLabel(_DISTANCE.in_language(language), self)
         self._distance = self._metres_field(
             0.0, self.tr("Distance of the parallel copy; 0: where the mouse is")
         )
-        self._distance.setSpecialValueText(_AT_MOUSE.spoken(language))
+        self._distance.setSpecialValueText(_AT_MOUSE.in_language(language))
         self._distance.valueChanged.connect(self.distance_set)
-        self._rise_name = QLabel(_RISE.spoken(language), self)
+        self._rise_name = QLabel(_RISE.in_language(language), self)
         self._rise = self._metres_field(
             -_HIGHEST_M, self.tr("How much higher the copy runs: the upper edge of a curb")
         )
@@ -125,7 +125,7 @@ class DrawingBar(QWidget):
     @property
     def kind_name(self) -> str:
         """What the button says is drawn."""
-        return self._kind_name.spoken(self._language)
+        return self._kind_name.in_language(self._language)
 
     def choose_kind(self) -> None:
         """Ask for the list of kinds."""
@@ -151,7 +151,7 @@ class DrawingBar(QWidget):
         for part in (self._distance_name, self._distance, self._rise_name, self._rise):
             part.setVisible(is_parallel)
         hint = self._hints.get(name, Text("", ""))
-        self._words.setText(hint.spoken(self._language))
+        self._words.setText(hint.in_language(self._language))
 
     def show_measures(self, measures: tuple[Measure, ...]) -> None:
         """Say what is measured; nothing: what the tool expects."""
@@ -163,7 +163,7 @@ class DrawingBar(QWidget):
     def _said(self, measure: Measure) -> str:
         locale = QLocale()
         value = locale.toString(measure.value, "f", measure.decimals)
-        return f"{measure.name.spoken(self._language)} {value} {measure.unit}".rstrip()
+        return f"{measure.name.in_language(self._language)} {value} {measure.unit}".rstrip()
 
     def _metres_field(self, low_m: float, tip: str) -> QDoubleSpinBox:
         field = QDoubleSpinBox(self)
@@ -181,8 +181,10 @@ class DrawingBar(QWidget):
 
     def _show_snaps(self) -> None:
         snap = self._shared.snap
-        names = [SNAP_NAMES[mode].spoken(self._language) for mode in SnapMode if mode in snap.modes]
+        names = [
+            SNAP_NAMES[mode].in_language(self._language) for mode in SnapMode if mode in snap.modes
+        ]
         if snap.plane is not None:
-            names = [_ON_PLANE.spoken(self._language), *names]
-        joined = ", ".join(names) if names else _NO_SNAP.spoken(self._language)
-        self._snaps.setText(_SNAP.filled(names=joined).spoken(self._language))
+            names = [_ON_PLANE.in_language(self._language), *names]
+        joined = ", ".join(names) if names else _NO_SNAP.in_language(self._language)
+        self._snaps.setText(_SNAP.filled(names=joined).in_language(self._language))

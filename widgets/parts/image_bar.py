@@ -6,7 +6,7 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSpinBox, QToolButton, QWidget
 
 from processing.text import Language
-from widgets.shared.image_choice import ImageChoice
+from widgets.shared.image_view_settings import ImageViewSettings
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -35,7 +35,7 @@ class ImageBar(QWidget):
     ) -> None:
         super().__init__(parent)
         self._settings = shared.view_settings
-        self._choice = ImageChoice(
+        self._choice = ImageViewSettings(
             source, shared.map_changes, self._settings, self, language=language
         )
         self._low = self._percent(self.tr("Darker end of the contrast, percentile"))

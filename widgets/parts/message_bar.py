@@ -74,7 +74,7 @@ class MessageBar(QFrame):
             if action is not None:
                 button.setDefaultAction(action)
         self._error = error
-        self._what.setText(error.what.spoken(self._language))
-        where, advice = (part.spoken(self._language) for part in (error.where, error.remedy))
+        self._what.setText(error.what.in_language(self._language))
+        where, advice = (part.in_language(self._language) for part in (error.where, error.remedy))
         self._rest.setText(f"{where}\n{advice}")
         self.show()

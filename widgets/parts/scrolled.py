@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QScrollArea, QWidget
 
 
-def scrolled(panel: QWidget) -> QScrollArea:
+def make_scrollable(panel: QWidget) -> QScrollArea:
     """A frameless area that holds a widget as wide as itself."""
     area = QScrollArea()
     area.setWidgetResizable(True)

@@ -96,7 +96,7 @@ class StartPage(QWidget):
             self.tr("No project was opened yet.") if is_empty else self.tr("Recent projects")
         )
         self._list.setVisible(not is_empty)
-        there = [place for place, one in enumerate(self._shown) if not one.is_missing]
+        there = [position for position, one in enumerate(self._shown) if not one.is_missing]
         first = self._list.topLevelItem(there[0] if there else 0)
         if first is not None:
             self._list.setCurrentItem(first)
@@ -185,10 +185,10 @@ class StartPage(QWidget):
             (self.tr("Simulate a recording…"), self.simulation_requested),
         )
         buttons = []
-        for words, wish in wishes:
+        for words, request in wishes:
             button = QPushButton(words, self)
             button.setAutoDefault(True)  # Enter presses it, as Space does
-            button.clicked.connect(_without_argument(wish.emit))
+            button.clicked.connect(_without_argument(request.emit))
             row.addWidget(button)
             buttons.append(button)
         self._first_button = buttons[0]

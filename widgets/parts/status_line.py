@@ -12,7 +12,7 @@ from widgets.parts.change_words import change_words
 from widgets.parts.job_view import JobView, time_left
 from widgets.parts.number_field import coordinate
 from widgets.parts.progress_bar import ProgressBar
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -62,15 +62,15 @@ class StatusLine(QStatusBar):
         self._cancel.clicked.connect(self._on_cancel_clicked)
         self._change = QLabel(self)
         self._change.setFont(_digits_of(self))
-        self._place = QLabel(self)
-        self._place.setFont(_digits_of(self))
-        self._place.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
+        self._position = QLabel(self)
+        self._position.setFont(_digits_of(self))
+        self._position.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self._crs = QLabel(self)
         self.addPermanentWidget(self._progress)
         self.addPermanentWidget(self._job_words)
         self.addPermanentWidget(self._cancel)
         self.addPermanentWidget(self._change)
-        self.addPermanentWidget(self._place)
+        self.addPermanentWidget(self._position)
         self.addPermanentWidget(self._crs)
         shared.cursor.moved.connect(self._on_cursor_changed)
         shared.cursor.hovered.connect(self._on_cursor_changed)
@@ -80,9 +80,9 @@ class StatusLine(QStatusBar):
         self._on_drives_changed()
 
     @property
-    def place_text(self) -> str:
+    def position_text(self) -> str:
         """The coordinates that are shown; empty where there are none."""
-        return self._place.text()
+        return self._position.text()
 
     @property
     def change_text(self) -> str:
@@ -96,7 +96,7 @@ class StatusLine(QStatusBar):
 
     def show_message(self, text: Text) -> None:
         """Say something for a while."""
-        self.showMessage(text.spoken(self._language), _MESSAGE_MS)
+        self.showMessage(text.in_language(self._language), _MESSAGE_MS)
 
     def show_job(self, job: JobView | None) -> None:
         """Show how far the job is; None when none runs."""
@@ -122,15 +122,15 @@ class StatusLine(QStatusBar):
             self.cancel_requested.emit(self._job.id)
 
     def _on_cursor_changed(self) -> None:
-        place: Place | None = self._cursor.hover or self._cursor.place
-        if place is None:
-            self._place.clear()
+        position: PickedPosition | None = self._cursor.hover or self._cursor.position
+        if position is None:
+            self._position.clear()
             return
-        easting, northing, height = (coordinate(value) for value in place.xyz)
-        self._place.setText(f"E {easting}  N {northing}  H {height}")
+        easting, northing, height = (coordinate(value) for value in position.xyz)
+        self._position.setText(f"E {easting}  N {northing}  H {height}")
 
     def _on_volume_hovered(self, reading: ChangeReading | None) -> None:
-        words = "" if reading is None else change_words(reading).spoken(self._language)
+        words = "" if reading is None else change_words(reading).in_language(self._language)
         self._change.setText(f"Δ {words}" if words else "")
 
     def _on_drives_changed(self) -> None:

@@ -13,11 +13,11 @@ from PySide6.QtGui import QPolygonF
 
 from processing.project.catalogue import Geometry
 from widgets.mouse_tools.gesture import REACH_PX
-from widgets.mouse_tools.mouse_tool import Boxed, Hit
-from widgets.plane_view.lay import Lay, Spot
+from widgets.mouse_tools.mouse_tool import EnclosedHits, Hit
 from widgets.plane_view.projected_map import PlaneFeatures
+from widgets.plane_view.projection import PlanePoint, PlaneProjection
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.feature_hits import (
     SEGMENT_PX,
     FeatureHit,
@@ -28,19 +28,21 @@ from widgets.shared.feature_hits import (
 
 Floats = NDArray[np.float64]
 
-Points = Mapping[str, NDArray[np.int64]]
+EnclosedPoints = Mapping[str, NDArray[np.int64]]
 
 
-class Measured(Protocol):
+class PointLocator(Protocol):
     """The view that knows which measured points are where."""
 
-    def place_at(self, place: Spot, reach: float, *, exact: bool) -> Place | None:
+    def position_at(
+        self, position: PlanePoint, reach: float, *, exact: bool
+    ) -> PickedPosition | None:
         """The measured point at a place of the plane."""
 
-    def points_inside(self, outline: QPolygonF) -> Points:
+    def points_inside(self, outline: QPolygonF) -> EnclosedPoints:
         """The measured points in an outline in the widget."""
 
-    def finder_inside(self, outline: QPolygonF) -> Callable[[], Points] | None:
+    def finder_inside(self, outline: QPolygonF) -> Callable[[], EnclosedPoints] | None:
         """What looks up all of them; None where those are all."""
 
 
@@ -53,7 +55,7 @@ class PlaneHits:
 
     Attributes
     ----------
-    lay : Lay or None
+    projection : Lay or None
     features : PlaneFeatures or None
         What is drawn.
     viewport : PlaneViewport
@@ -61,9 +63,9 @@ class PlaneHits:
         Chosen features, which are hit before others.
     """
 
-    def __init__(self, measured: Measured) -> None:
+    def __init__(self, measured: PointLocator) -> None:
         self._measured = measured
-        self.lay: Lay | None = None
+        self.projection: PlaneProjection | None = None
         self.features: PlaneFeatures | None = None
         self.viewport = PlaneViewport()
         self.selected: frozenset[str] = frozenset()
@@ -76,35 +78,35 @@ class PlaneHits:
         """What is under a pixel, among the points that are drawn."""
         return self._hit(position, modifiers, is_exact=False)
 
-    def enclosed(self, outline: QPolygonF, modifiers: Qt.KeyboardModifier) -> Boxed:
+    def enclosed(self, outline: QPolygonF, modifiers: Qt.KeyboardModifier) -> EnclosedHits:
         """The features wholly inside an outline in the widget, and the points inside it."""
         features = self.features
-        if self.lay is None or features is None:
-            return Boxed(frozenset(), {}, modifiers)
-        pixels = self.viewport.to_screen(features.places)
+        if self.projection is None or features is None:
+            return EnclosedHits(frozenset(), {}, modifiers)
+        pixels = self.viewport.to_screen(features.positions)
         pixels[~features.is_near] = np.nan
         inside = features_inside(features.flat, pixels, outline)
         measured = self._measured
-        return Boxed(
+        return EnclosedHits(
             inside, measured.points_inside(outline), modifiers, measured.finder_inside(outline)
         )
 
-    def _hit(self, position: QPointF, modifiers: Qt.KeyboardModifier, *, is_exact: bool) -> Hit:
-        lay, viewport = self.lay, self.viewport
-        if lay is None:
+    def _hit(self, mouse: QPointF, modifiers: Qt.KeyboardModifier, *, is_exact: bool) -> Hit:
+        projection, viewport = self.projection, self.viewport
+        if projection is None:
             return Hit(None, modifiers=modifiers)
-        spot = viewport.to_plane(position.x(), position.y())
+        spot = viewport.to_plane(mouse.x(), mouse.y())
         reach = REACH_PX / viewport.scale
-        place = self._measured.place_at(spot, reach, exact=is_exact)
-        feature = self._feature_at((position.x(), position.y()))
+        position = self._measured.position_at(spot, reach, exact=is_exact)
+        feature = self._feature_at((mouse.x(), mouse.y()))
         return Hit(
-            place,
+            position,
             feature.feature,
             feature.vertex,
             feature.segment,
             modifiers,
-            reach_m=lay.reach_m(spot, reach, None if place is None else place.xyz),
-            ray=lay.ray(spot),
+            reach_m=projection.reach_m(spot, reach, None if position is None else position.xyz),
+            ray=projection.ray(spot),
         )
 
     def _feature_at(self, mouse: tuple[float, float]) -> FeatureHit:
@@ -112,7 +114,7 @@ class PlaneHits:
         features, viewport = self.features, self.viewport
         if features is None or not features.shapes:
             return FeatureHit()
-        pixels = viewport.to_screen(features.places)
+        pixels = viewport.to_screen(features.positions)
         pixels[~features.is_near] = np.nan
         found = vertex_at(features.flat, pixels, mouse, self.selected)
         if found is not None:

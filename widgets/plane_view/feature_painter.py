@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 
 from processing.project.catalogue import Catalogue, Geometry
 from processing.project.feature import Status
-from widgets.plane_view.line_pieces import as_lines, cut_to, dashed, thinned
+from widgets.plane_view.line_pieces import as_lines, clip_pieces, dash_pieces, thin_pieces
 from widgets.plane_view.projected_map import PlaneFeatures, ProjectedShape
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.shared.feature_marks import FeatureMarks
@@ -72,12 +72,12 @@ class FeaturePainter:
         _paint_areas(painter, looks, viewport)
         _paint_lines(painter, features, looks, viewport)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
-        spots = viewport.to_screen(features.places)
+        spots = viewport.to_screen(features.positions)
         spots[~features.is_near] = np.nan
         for number, vertices in looks.points:
             self._marks.paint(painter, spots[vertices], looks.styles[number], is_point=True)
         for number, one in looks.with_vertices:
-            own = np.where(one.is_near[:, None], viewport.to_screen(one.places), np.nan)
+            own = np.where(one.is_near[:, None], viewport.to_screen(one.positions), np.nan)
             hollow = np.array([vertex.is_occluded for vertex in one.shape.feature.vertices])
             self._marks.paint(painter, own, looks.styles[number], is_point=False, hollow=hollow)
 
@@ -164,7 +164,7 @@ def _paint_lines(
     low = np.array([-MARGIN_PX, -MARGIN_PX])
     high = np.array([viewport.width + MARGIN_PX, viewport.height + MARGIN_PX])
     pixels = viewport.to_screen(features.pieces)
-    pieces, numbers, starts = cut_to(pixels, low, high)
+    pieces, numbers, starts = clip_pieces(pixels, low, high)
     styles = looks.style_of[features.piece_owners[numbers]]
     is_smooth = len(pieces) <= _MOST_SMOOTH
     step_px = max(step for count, step in _THINNED_PX.items() if len(pieces) >= count)
@@ -175,7 +175,7 @@ def _paint_lines(
     for number, style in enumerate(looks.styles):
         own = np.flatnonzero(styles == number)
         if own.size:
-            dashes = dashed(pieces[own], begins[own]) if style.is_dashed else None
+            dashes = dash_pieces(pieces[own], begins[own]) if style.is_dashed else None
             paint_pieces(painter, pieces[own], style, dashes, step_px=step_px)
 
 
@@ -197,7 +197,7 @@ def paint_pieces(
     step_px : float
         Thin what is shorter; 0: nothing.
     """
-    lines = as_lines(thinned(pieces, step_px) if step_px else pieces)
+    lines = as_lines(thin_pieces(pieces, step_px) if step_px else pieces)
     halo = style.halo_pen()
     halo.setCapStyle(Qt.PenCapStyle.SquareCap)
     painter.setPen(halo)
@@ -205,7 +205,7 @@ def paint_pieces(
     pen = QPen(QColor(style.colour), style.width_px)
     if dashes is not None:
         pen.setCapStyle(Qt.PenCapStyle.FlatCap)
-        lines = as_lines(thinned(dashes, step_px) if step_px else dashes)
+        lines = as_lines(thin_pieces(dashes, step_px) if step_px else dashes)
     painter.setPen(pen)
     painter.drawLines(lines)
 

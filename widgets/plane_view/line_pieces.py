@@ -16,7 +16,7 @@ Integers = NDArray[np.int64]
 _ON_PX, _OFF_PX = 8.0, 5.0
 
 
-def cut_to(pieces: Floats, low: Floats, high: Floats) -> tuple[Floats, Integers, Floats]:
+def clip_pieces(pieces: Floats, low: Floats, high: Floats) -> tuple[Floats, Integers, Floats]:
     """Pieces within a rectangle (Liang and Barsky 1984).
 
     Parameters
@@ -52,7 +52,7 @@ def cut_to(pieces: Floats, low: Floats, high: Floats) -> tuple[Floats, Integers,
     return cut, numbers[inside], enter * np.hypot(*way.T)
 
 
-def thinned(pieces: Floats, step_px: float) -> Floats:
+def thin_pieces(pieces: Floats, step_px: float) -> Floats:
     """Pieces between whole steps, without those that shrink to nothing: for very many."""
     whole = np.rint(pieces / step_px) * step_px
     moves = whole[:, 0] != whole[:, 1]
@@ -60,7 +60,7 @@ def thinned(pieces: Floats, step_px: float) -> Floats:
     return kept
 
 
-def dashed(pieces: Floats, begins: Floats) -> Floats:
+def dash_pieces(pieces: Floats, begins: Floats) -> Floats:
     """The dashes along pieces.
 
     Parameters

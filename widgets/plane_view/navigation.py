@@ -51,7 +51,7 @@ class Movable(Protocol):
         """Larger or smaller; what is at the position stays there."""
 
 
-Shown = TypeVar("Shown", bound=Movable)
+ViewportT = TypeVar("ViewportT", bound=Movable)
 
 
 def notches_of(event: QWheelEvent) -> float:
@@ -90,7 +90,7 @@ class Navigation:
         """Take hold of the picture."""
         self._from = position
 
-    def dragged(self, viewport: Shown, position: QPointF) -> Shown:
+    def dragged(self, viewport: ViewportT, position: QPointF) -> ViewportT:
         """The picture pushed to where the mouse is."""
         if self._from is None:
             return viewport
@@ -103,7 +103,7 @@ class Navigation:
         self._from = None
 
     @staticmethod
-    def keyed(viewport: Shown, key: int) -> Shown | None:
+    def keyed(viewport: ViewportT, key: int) -> ViewportT | None:
         """Moved or zoomed by a key; None for keys that do neither."""
         for arrow, (right, down) in _ARROWS.items():
             if key == arrow:

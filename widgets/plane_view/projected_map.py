@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QPolygonF
 
-from widgets.plane_view.lay import Lay
-from widgets.shared.feature_shapes import FeatureShape, FeatureShapes, FlatShapes, flattened
+from widgets.plane_view.projection import PlaneProjection
+from widgets.shared.feature_shapes import FeatureShape, FeatureShapes, FlatShapes, flatten_shapes
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -26,7 +26,7 @@ class ProjectedShape:
 
     Attributes
     ----------
-    places : (n, 2) float64
+    positions : (n, 2) float64
         Of its vertices; NaN where they aren't shown.
     is_near : (n,) bool
         Which vertices are drawn at full strength and can be taken hold of.
@@ -37,7 +37,7 @@ class ProjectedShape:
     """
 
     shape: FeatureShape
-    places: Floats
+    positions: Floats
     is_near: NDArray[np.bool_]
     pieces: Floats
     segments: Integers
@@ -55,7 +55,7 @@ class ProjectedShape:
     @cached_property
     def bounds(self) -> Floats | None:
         """(4,) left, top, right, bottom on the plane; None when nothing of it is there."""
-        all_ = np.concatenate([self.places, self.pieces.reshape(-1, 2)])
+        all_ = np.concatenate([self.positions, self.pieces.reshape(-1, 2)])
         all_ = all_[np.isfinite(all_).all(axis=1)]
         return np.concatenate([all_.min(axis=0), all_.max(axis=0)]) if len(all_) else None
 
@@ -69,7 +69,7 @@ class PlaneFeatures:
     shapes : tuple of ProjectedShape
     flat : FlatShapes
         The same features in space.
-    places : (n, 2) float64
+    positions : (n, 2) float64
         On the plane, in the order of ``flat``.
     is_near : (n,) bool
     pieces : (k, 2, 2) float64
@@ -81,7 +81,7 @@ class PlaneFeatures:
 
     shapes: tuple[ProjectedShape, ...]
     flat: FlatShapes
-    places: Floats
+    positions: Floats
     is_near: NDArray[np.bool_]
     pieces: Floats
     piece_numbers: Integers
@@ -101,7 +101,7 @@ class ProjectedMap:
         self._source = source
         self._shared = shared
         self._shapes = FeatureShapes(np.zeros(3), ())
-        self._lay: Lay | None = None
+        self._projection: PlaneProjection | None = None
         self._projected: dict[str, ProjectedShape] = {}
         self._joined: PlaneFeatures | None = None
         self._replaced = ""
@@ -123,7 +123,7 @@ class ProjectedMap:
         """Choose anew what is drawn: the settings are others."""
         self._joined = None
 
-    def drawn(self, lay: Lay, box: Floats | None = None) -> PlaneFeatures:
+    def drawn(self, projection: PlaneProjection, box: Floats | None = None) -> PlaneFeatures:
         """What is drawn now, on this lay, but for the feature that is being edited.
 
         Parameters
@@ -133,8 +133,8 @@ class ProjectedMap:
         """
         drawing = self._shared.sketch.drawing
         replaced = "" if drawing is None else drawing.replaces
-        if lay is not self._lay:
-            self._lay = lay
+        if projection is not self._projection:
+            self._projection = projection
             self._projected.clear()
             self._joined = None
         if self._joined is None or replaced != self._replaced:
@@ -142,23 +142,23 @@ class ProjectedMap:
             shapes = self._shapes.seen(self._shared.view_settings.shows, replaced)
             if box is not None:
                 shapes = tuple(shape for shape in shapes if _touches(shape, box))
-            self._joined = self._join(lay, shapes)
+            self._joined = self._join(projection, shapes)
         return self._joined
 
-    def get(self, lay: Lay, id_: str) -> ProjectedShape | None:
+    def get(self, projection: PlaneProjection, id_: str) -> ProjectedShape | None:
         """One feature, whether it is drawn or not; None when there is none of that id."""
         shape = self._shapes.get(id_)
-        return None if shape is None else self._of(lay, (shape,))[0]
+        return None if shape is None else self._of(projection, (shape,))[0]
 
-    def _join(self, lay: Lay, shapes: tuple[FeatureShape, ...]) -> PlaneFeatures:
-        projected = self._of(lay, shapes)
-        flat = flattened(shapes)
+    def _join(self, projection: PlaneProjection, shapes: tuple[FeatureShape, ...]) -> PlaneFeatures:
+        projected = self._of(projection, shapes)
+        flat = flatten_shapes(shapes)
         counts = np.array([len(one.pieces) for one in projected], dtype=np.int64)
         firsts = np.cumsum([0, *(len(shape.segments) for shape in shapes)])[:-1]
         return PlaneFeatures(
             shapes=tuple(projected),
             flat=flat,
-            places=np.concatenate([np.empty((0, 2)), *(one.places for one in projected)]),
+            positions=np.concatenate([np.empty((0, 2)), *(one.positions for one in projected)]),
             is_near=np.concatenate([np.empty(0, bool), *(one.is_near for one in projected)]),
             pieces=np.concatenate([np.empty((0, 2, 2)), *(one.pieces for one in projected)]),
             piece_numbers=np.concatenate(
@@ -170,19 +170,21 @@ class ProjectedMap:
             piece_owners=np.repeat(np.arange(len(projected)), counts),
         )
 
-    def _of(self, lay: Lay, shapes: Sequence[FeatureShape]) -> list[ProjectedShape]:
+    def _of(
+        self, projection: PlaneProjection, shapes: Sequence[FeatureShape]
+    ) -> list[ProjectedShape]:
         lacking = tuple(
             shape
             for shape in shapes
-            if shape.feature.id not in self._projected or lay is not self._lay
+            if shape.feature.id not in self._projected or projection is not self._projection
         )
-        made = {one.shape.feature.id: one for one in _projected(lay, lacking)}
-        if lay is self._lay:
+        made = {one.shape.feature.id: one for one in _projected(projection, lacking)}
+        if projection is self._projection:
             self._projected.update(made)
         return [made.get(one.feature.id) or self._projected[one.feature.id] for one in shapes]
 
 
-def pieces_of(lay: Lay, xyz: Floats, ends: Integers) -> tuple[Floats, Integers]:
+def pieces_of(projection: PlaneProjection, xyz: Floats, ends: Integers) -> tuple[Floats, Integers]:
     """Segments as straight pieces of the plane.
 
     Returns
@@ -191,22 +193,24 @@ def pieces_of(lay: Lay, xyz: Floats, ends: Integers) -> tuple[Floats, Integers]:
     numbers : (k,) int64
         The segment that each is a part of, rising.
     """
-    lines = lay.lines_on_plane(xyz, ends) if len(ends) else []
+    lines = projection.lines_on_plane(xyz, ends) if len(ends) else []
     counts = np.array([len(line) for line in lines], dtype=np.int64)
-    places = np.concatenate([np.empty((0, 2)), *lines])
+    positions = np.concatenate([np.empty((0, 2)), *lines])
     line_of = np.repeat(np.arange(len(lines)), counts)
     goes_on = np.flatnonzero(line_of[1:] == line_of[:-1])
-    pieces = np.stack([places[goes_on], places[goes_on + 1]], axis=1)
+    pieces = np.stack([positions[goes_on], positions[goes_on + 1]], axis=1)
     return pieces, line_of[goes_on]
 
 
-def _projected(lay: Lay, shapes: tuple[FeatureShape, ...]) -> list[ProjectedShape]:
+def _projected(
+    projection: PlaneProjection, shapes: tuple[FeatureShape, ...]
+) -> list[ProjectedShape]:
     """All of them in one call of the lay."""
     if not shapes:
         return []
-    flat = flattened(shapes)
-    places, is_near = lay.to_plane(flat.local_xyz), lay.is_near(flat.local_xyz)
-    pieces, numbers = pieces_of(lay, flat.local_xyz, flat.segments)
+    flat = flatten_shapes(shapes)
+    positions, is_near = projection.to_plane(flat.local_xyz), projection.is_near(flat.local_xyz)
+    pieces, numbers = pieces_of(projection, flat.local_xyz, flat.segments)
     numbers_of = np.arange(len(shapes) + 1)
     vertex_cuts = np.searchsorted(flat.owners, numbers_of)
     piece_cuts = np.searchsorted(flat.segment_owners[numbers], numbers_of)
@@ -217,7 +221,7 @@ def _projected(lay: Lay, shapes: tuple[FeatureShape, ...]) -> list[ProjectedShap
         own = slice(piece_cuts[index], piece_cuts[index + 1])
         segments = numbers[own] - segment_cuts[index]
         made.append(
-            ProjectedShape(shape, places[vertices], is_near[vertices], pieces[own], segments)
+            ProjectedShape(shape, positions[vertices], is_near[vertices], pieces[own], segments)
         )
     return made
 

@@ -15,7 +15,7 @@ from widgets.plane_view.viewport import PlaneViewport
 BACKGROUND = QColor("#14161a")
 
 
-class Ground(Protocol):
+class BackgroundPainter(Protocol):
     """Who paints what lies below the map."""
 
     def paint_ground(self, painter: QPainter, viewport: PlaneViewport) -> None:
@@ -43,7 +43,7 @@ class StillPicture:
     def paint(
         self,
         painter: QPainter,
-        ground: Ground,
+        ground: BackgroundPainter,
         features: PlaneFeatures,
         viewport: PlaneViewport,
         *,

@@ -20,16 +20,16 @@ from PySide6.QtWidgets import QMenu, QWidget
 from typing_extensions import override
 
 from processing.text import Language
-from widgets.mouse_tools.menu_wish import MenuWish
+from widgets.mouse_tools.menu_request import MenuRequest
 from widgets.mouse_tools.mouse_tool import MouseTool
-from widgets.plane_view.feature_hits import PlaneHits, Points
-from widgets.plane_view.hand import PlaneHand
-from widgets.plane_view.lay import Lay, Spot
+from widgets.plane_view.feature_hits import EnclosedPoints, PlaneHits
 from widgets.plane_view.live_painter import LiveContent, LivePainter, paint_words, spot_of
+from widgets.plane_view.mouse import PlaneMouse
 from widgets.plane_view.projected_map import ProjectedMap
+from widgets.plane_view.projection import PlanePoint, PlaneProjection
 from widgets.plane_view.still_picture import BACKGROUND, StillPicture
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.screen_marks import paint_outline
 from widgets.shared.shared_state import SharedState
@@ -41,7 +41,7 @@ _ALONG_PER_NOTCH = 0.12  # of the window's width
 class PlaneView(QWidget):
     """Shows the map on a plane and gives the mouse to the tool in the hand.
 
-    A subclass says how space lies on the plane (:meth:`lay`), paints the ground below the map
+    A subclass says how space lies on the plane (:meth:`projection`), paints the ground below the map
     and what frames it, and finds the measured point at a place of the plane.
 
     Parameters
@@ -55,7 +55,7 @@ class PlaneView(QWidget):
     -------
     sharpened
         The ground is as sharp as it will be; emitted by the subclass.
-    menu_requested(wish: MenuWish)
+    menu_requested(wish: MenuRequest)
         The right button with nothing under way.
     viewport_changed
         Another part of the plane is shown, or as large as before no more.
@@ -82,13 +82,13 @@ class PlaneView(QWidget):
         self._language: Language = language
         self._viewport = PlaneViewport()
         self._is_placed = self._is_whole = False
-        self._cursor: Place | None = shared.cursor.place
-        self._cursor_before: Place | None = None
+        self._cursor: PickedPosition | None = shared.cursor.position
+        self._cursor_before: PickedPosition | None = None
         self._map = ProjectedMap(source, shared)
         self._map.read_all()
         self._hits = PlaneHits(self)
         self._hits.selected = shared.selection.features
-        self._hand = PlaneHand(self, self._hits, shared)
+        self._mouse = PlaneMouse(self, self._hits, shared)
         self._still = StillPicture()
         self._live = LivePainter()
         self.setMouseTracking(True)
@@ -110,7 +110,7 @@ class PlaneView(QWidget):
 
     # What a subclass fills.
 
-    def lay(self) -> Lay | None:
+    def projection(self) -> PlaneProjection | None:
         """How space lies on the plane; the same object until it changes. None: nothing to show."""
         return None
 
@@ -135,7 +135,9 @@ class PlaneView(QWidget):
     def paint_frame(self, painter: QPainter, viewport: PlaneViewport) -> None:
         """Paint scale, rulers and titles, above the map; called for every picture."""
 
-    def place_at(self, place: Spot, reach: float, *, exact: bool) -> Place | None:  # noqa: ARG002
+    def position_at(
+        self, position: PlanePoint, reach: float, *, exact: bool
+    ) -> PickedPosition | None:  # noqa: ARG002
         """The measured point at a place of the plane.
 
         Parameters
@@ -151,13 +153,13 @@ class PlaneView(QWidget):
         """The measured points in an outline in the widget: drive id to points, sorted."""
         return {}
 
-    def finder_inside(self, outline: QPolygonF) -> Callable[[], Points] | None:  # noqa: ARG002
+    def finder_inside(self, outline: QPolygonF) -> Callable[[], EnclosedPoints] | None:  # noqa: ARG002
         """What looks up all of them, in any thread; None where they are all drawn."""
         return None
 
-    def on_cursor_moved(self, place: Place) -> None:
+    def on_cursor_moved(self, position: PickedPosition) -> None:
         """The shared cursor was moved elsewhere than in this view."""
-        spot = self._on_plane(place)
+        spot = self._on_plane(position)
         if spot is not None and not self._viewport.shows(*spot, _MIDDLE_PART):
             self.set_viewport(self._viewport.centred_on(*spot))
 
@@ -197,8 +199,8 @@ class PlaneView(QWidget):
 
     def set_mouse_tool(self, tool: MouseTool | None) -> None:
         """Tell this tool from now on what the mouse does; None: a click puts the cursor."""
-        self._hand.gesture.drop()
-        self._hand.gesture.tool = tool
+        self._mouse.gesture.drop()
+        self._mouse.gesture.tool = tool
         self.update()
 
     def set_ground_stale(self) -> None:
@@ -215,44 +217,44 @@ class PlaneView(QWidget):
             self.set_viewport(self._viewport.filled_by(extent, self.FILLED))
             self._is_whole = True
 
-    def center_on(self, place: Place) -> None:
+    def center_on(self, position: PickedPosition) -> None:
         """Put a place in the middle; without effect where it isn't shown."""
-        spot = self._on_plane(place)
+        spot = self._on_plane(position)
         if spot is not None:
             self.set_viewport(self._viewport.centred_on(*spot))
 
     def center_on_selection(self) -> None:
         """Put the chosen features in the middle, or the cursor when none is chosen."""
-        lay = self.lay()
-        if lay is None:
+        projection = self.projection()
+        if projection is None:
             return
-        chosen = [self._map.get(lay, id_) for id_ in sorted(self._shared.selection.features)]
+        chosen = [self._map.get(projection, id_) for id_ in sorted(self._shared.selection.features)]
         bounds = [one.bounds for one in chosen if one is not None and one.bounds is not None]
         if bounds:
             left, top = np.min([one[:2] for one in bounds], axis=0).tolist()
             right, bottom = np.max([one[2:] for one in bounds], axis=0).tolist()
             self.set_viewport(self._viewport.holding(left, top, right, bottom))
-        elif self._shared.cursor.place is not None:
-            self.center_on(self._shared.cursor.place)
+        elif self._shared.cursor.position is not None:
+            self.center_on(self._shared.cursor.position)
 
     def zoom_by(self, factor: float) -> None:
         """Zoom about the middle."""
         viewport = self._viewport
         self.set_viewport(viewport.zoomed(factor, *viewport.middle))
 
-    def position_of(self, place: Place) -> QPointF | None:
+    def position_of(self, position: PickedPosition) -> QPointF | None:
         """Where a place is in this widget; None where it isn't shown."""
-        lay = self.lay()
-        spot = None if lay is None else spot_of(lay, self._viewport, place.xyz)
+        projection = self.projection()
+        spot = None if projection is None else spot_of(projection, self._viewport, position.xyz)
         return None if spot is None else QPointF(*spot)
 
     # Events.
 
     @override
     def paintEvent(self, event: QPaintEvent) -> None:
-        lay = self.lay()
+        projection = self.projection()
         with QPainter(self) as painter:
-            if lay is None:
+            if projection is None:
                 painter.fillRect(self.rect(), BACKGROUND)
                 paint_words(painter, QRectF(self.rect()), self.words())
                 return
@@ -276,8 +278,8 @@ class PlaneView(QWidget):
                 snap=self._shared.snap.mark,
                 language=self._language,
             )
-            self._live.paint(painter, lay, self._viewport, content)
-            outline = self._hand.gesture.outline
+            self._live.paint(painter, projection, self._viewport, content)
+            outline = self._mouse.gesture.outline
             if outline is not None:
                 paint_outline(painter, outline)
 
@@ -291,30 +293,30 @@ class PlaneView(QWidget):
     @override
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.accept()
-        if self.lay() is not None:
-            self._hand.turn_wheel(event)
+        if self.projection() is not None:
+            self._mouse.turn_wheel(event)
 
     @override
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        if self._is_ready and self._hand.press(event):
+        if self._is_ready and self._mouse.press(event):
             hit = self._hits.exact_hit(event.position(), event.modifiers())
             where = event.globalPosition().toPoint()
-            self.menu_requested.emit(MenuWish(self.view_menu(), where, hit))
+            self.menu_requested.emit(MenuRequest(self.view_menu(), where, hit))
 
     @override
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
         if self._is_ready:
-            self._hand.move(event)
+            self._mouse.move(event)
 
     @override
     def mouseReleaseEvent(self, event: QMouseEvent) -> None:
         if self._is_ready:
-            self._hand.release(event)
+            self._mouse.release(event)
 
     @override
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         if event.button() == Qt.MouseButton.LeftButton:
-            self._hand.gesture.complete()
+            self._mouse.gesture.complete()
         else:
             self.mousePressEvent(event)
 
@@ -324,21 +326,21 @@ class PlaneView(QWidget):
 
     @override
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        if self.lay() is None or not self._hand.press_key(event):
+        if self.projection() is None or not self._mouse.press_key(event):
             super().keyPressEvent(event)
 
     @override
     def keyReleaseEvent(self, event: QKeyEvent) -> None:
-        if not self._hand.release_key(event):
+        if not self._mouse.release_key(event):
             super().keyReleaseEvent(event)
 
     # What others tell.
 
-    def _on_cursor_moved(self, place: Place) -> None:
-        self._cursor_before, self._cursor = self._cursor, place
+    def _on_cursor_moved(self, position: PickedPosition) -> None:
+        self._cursor_before, self._cursor = self._cursor, position
         # Who clicks in this view has the place under the mouse already.
-        if not self._hand.is_clicking:
-            self.on_cursor_moved(place)
+        if not self._mouse.is_clicking:
+            self.on_cursor_moved(position)
         self.update()
 
     def _on_selection_features_changed(self, ids: frozenset[str]) -> None:
@@ -350,7 +352,7 @@ class PlaneView(QWidget):
         self.update()
 
     def _on_map_drives_changed(self) -> None:
-        self._cursor = self._shared.cursor.place
+        self._cursor = self._shared.cursor.position
         self._cursor_before = None
         self._map.read_all()
         self._is_placed = False
@@ -367,13 +369,15 @@ class PlaneView(QWidget):
     def _is_ready(self) -> bool:
         """Whether the mouse meets anything; what it meets is what will be painted."""
         self._refresh()
-        return self._hits.lay is not None
+        return self._hits.projection is not None
 
     def _refresh(self) -> None:
         """Take over lay and features as they are now."""
-        lay = self.lay()
-        self._hits.lay = lay
-        self._hits.features = None if lay is None else self._map.drawn(lay, self.reach_box())
+        projection = self.projection()
+        self._hits.projection = projection
+        self._hits.features = (
+            None if projection is None else self._map.drawn(projection, self.reach_box())
+        )
 
     def _look_through(self, viewport: PlaneViewport) -> None:
         if viewport != self._viewport:
@@ -382,18 +386,18 @@ class PlaneView(QWidget):
             self.viewport_changed.emit()
 
     def _place_first(self) -> None:
-        if not self._is_placed and self._viewport.width > 1 and self.lay() is not None:
+        if not self._is_placed and self._viewport.width > 1 and self.projection() is not None:
             self.show_everything()
 
-    def _on_plane(self, place: Place) -> Spot | None:
-        lay = self.lay()
-        if lay is None:
+    def _on_plane(self, position: PickedPosition) -> PlanePoint | None:
+        projection = self.projection()
+        if projection is None:
             return None
-        x, y = lay.to_plane(np.array([place.xyz]))[0].tolist()
+        x, y = projection.to_plane(np.array([position.xyz]))[0].tolist()
         return (x, y) if np.isfinite([x, y]).all() else None
 
     def _show_mouse(self) -> None:
-        if self.lay() is None:
+        if self.projection() is None:
             self.setCursor(Qt.CursorShape.ArrowCursor)
         else:
-            self._hand.show_mouse()
+            self._mouse.show_mouse()

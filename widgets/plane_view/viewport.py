@@ -65,11 +65,11 @@ class PlaneViewport:
         """The middle of the widget, pixels."""
         return self.width / 2, self.height / 2
 
-    def to_screen(self, places: Floats) -> Floats:
+    def to_screen(self, positions: Floats) -> Floats:
         """(..., 2) plane coordinates to (..., 2) pixels; NaN stays NaN."""
         scales = np.array([self.scale, self.scale_y])
         middle = np.array([self.width / 2, self.height / 2])
-        pixels: Floats = (places - np.array(self.centre)) * scales + middle
+        pixels: Floats = (positions - np.array(self.centre)) * scales + middle
         return pixels
 
     def to_plane(self, x: float, y: float) -> tuple[float, float]:

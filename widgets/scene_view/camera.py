@@ -18,7 +18,7 @@ _NEAREST_M, _FARTHEST_M = 0.3, 20_000.0
 
 
 @dataclass(frozen=True)
-class Camera:
+class SceneCamera:
     """A camera that never rolls.
 
     Attributes
@@ -64,7 +64,7 @@ class Camera:
         focal_point: Floats = np.array(self.position) + self.axes[2] * self.distance_m
         return focal_point
 
-    def orbited(self, pivot: Floats, right_deg: float, up_deg: float) -> Camera:
+    def orbited(self, pivot: Floats, right_deg: float, up_deg: float) -> SceneCamera:
         """Turned about a place, which stays where it is in the picture."""
         in_view = self.axes @ (pivot - np.array(self.position))
         turned = replace(
@@ -74,18 +74,18 @@ class Camera:
         )
         return replace(turned, position=_triple(pivot - in_view @ turned.axes))
 
-    def panned(self, right_m: float, up_m: float) -> Camera:
+    def panned(self, right_m: float, up_m: float) -> SceneCamera:
         """Moved in the plane of the picture."""
         right, up, _ = self.axes
         return replace(
             self, position=_triple(np.array(self.position) + right * right_m + up * up_m)
         )
 
-    def advanced(self, forward_m: float) -> Camera:
+    def advanced(self, forward_m: float) -> SceneCamera:
         """Moved in the direction it looks."""
         return replace(self, position=_triple(np.array(self.position) + self.axes[2] * forward_m))
 
-    def zoomed(self, pivot: Floats, factor: float) -> Camera:
+    def zoomed(self, pivot: Floats, factor: float) -> SceneCamera:
         """Nearer to a place (factor above 1), which stays where it is in the picture."""
         distance_m = min(max(self.distance_m / factor, _NEAREST_M), _FARTHEST_M)
         offset = np.array(self.position) - pivot
@@ -98,13 +98,13 @@ class Camera:
             return self
         return replace(self, position=_triple(pivot + offset / factor), distance_m=distance_m)
 
-    def centred_on(self, place: Floats, distance_m: float | None = None) -> Camera:
+    def centred_on(self, position: Floats, distance_m: float | None = None) -> SceneCamera:
         """With the place in the middle, seen from the same side."""
         away = self.distance_m if distance_m is None else distance_m
         away = min(max(away, _NEAREST_M), _FARTHEST_M)
-        return replace(self, position=_triple(place - self.axes[2] * away), distance_m=away)
+        return replace(self, position=_triple(position - self.axes[2] * away), distance_m=away)
 
-    def from_above(self, height_m: float) -> Camera:
+    def from_above(self, height_m: float) -> SceneCamera:
         """Straight down on what it looks at, north up, without perspective as on a map."""
         turned = replace(self, heading_deg=0.0, pitch_deg=-90.0, is_parallel=True)
         return turned.centred_on(self.focal_point, height_m)

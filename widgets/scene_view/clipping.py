@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from processing.image.clip import Clip
-from processing.image.corridor import Corridor, Slab
+from processing.image.corridor import Corridor, CorridorExtent
 from processing.points.drive import Drive
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
@@ -54,7 +54,7 @@ class Clipping(QObject):
         self._source = source
         self._shared = shared
         self._choice = ClipChoice.EVERYTHING
-        self._slab = Slab()
+        self._slab = CorridorExtent()
         self._section: Floats | None = None
         self._clip: Clip | None = None
         shared.view_settings.image_changed.connect(self._on_settings_image_changed)
@@ -71,7 +71,7 @@ class Clipping(QObject):
         return self._choice
 
     @property
-    def slab(self) -> Slab:
+    def slab(self) -> CorridorExtent:
         """How far the shown part reaches around the drive."""
         return self._slab
 
@@ -80,19 +80,19 @@ class Clipping(QObject):
         if choice is ClipChoice.DRIVE:
             return self._drive() is not None
         if choice is ClipChoice.SELECTION:
-            return self._chosen_places() is not None
+            return self._chosen_positions() is not None
         return choice is ClipChoice.EVERYTHING or self._section is not None
 
     def choose(self, choice: ClipChoice) -> None:
         """Clip to this; without effect where there is nothing to clip to."""
         if not self.can_choose(choice):
             return
-        drive, places, section = self._drive(), self._chosen_places(), self._section
+        drive, positions, section = self._drive(), self._chosen_positions(), self._section
         clip = None
         if choice is ClipChoice.DRIVE and drive is not None:
             clip = Clip(corridor=Corridor(drive, self._slab))
-        elif choice is ClipChoice.SELECTION and places is not None:
-            clip = Clip.around(places, MARGIN_M)
+        elif choice is ClipChoice.SELECTION and positions is not None:
+            clip = Clip.around(positions, MARGIN_M)
         elif choice is ClipChoice.SECTION and section is not None:
             clip = Clip.upright(section)
         self._take(choice, clip)
@@ -101,7 +101,7 @@ class Clipping(QObject):
         """Clip nothing off."""
         self._take(ClipChoice.EVERYTHING, None)
 
-    def set_slab(self, slab: Slab) -> None:
+    def set_slab(self, slab: CorridorExtent) -> None:
         """Reach so far around the drive, from now on."""
         if slab != self._slab:
             self._slab = slab
@@ -136,13 +136,13 @@ class Clipping(QObject):
         wanted = self._shared.view_settings.drive_id
         return next((drive for drive in drives if drive.id == wanted), next(iter(drives), None))
 
-    def _chosen_places(self) -> Floats | None:
+    def _chosen_positions(self) -> Floats | None:
         """(n, 3): vertices of the chosen features, or chosen points, or the cursor."""
-        selection, cursor = self._shared.selection, self._shared.cursor.place
+        selection, cursor = self._shared.selection, self._shared.cursor.position
         features = [self._source.feature(id_) for id_ in selection.features]
-        places = [vertex.xyz for one in features if one is not None for vertex in one.vertices]
-        if places:
-            return np.array(places)
+        positions = [vertex.xyz for one in features if one is not None for vertex in one.vertices]
+        if positions:
+            return np.array(positions)
         drives = {drive.id: drive for drive in self._source.drives()}
         measured = [
             drives[id_].xyz(points)

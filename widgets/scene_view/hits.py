@@ -10,12 +10,12 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QPolygonF
 
 from widgets.mouse_tools.gesture import REACH_PX
-from widgets.mouse_tools.mouse_tool import Boxed, Hit, Ray
+from widgets.mouse_tools.mouse_tool import EnclosedHits, Hit, Ray
 from widgets.scene_view.map.feature_hits import feature_at, features_within
 from widgets.scene_view.points.point_finder import FoundPoint, PointFinder
 from widgets.scene_view.points.scene_tile import DrawnTile
-from widgets.scene_view.projection import Projection
-from widgets.shared.feature_shapes import FlatShapes, flattened
+from widgets.scene_view.projection import SceneProjection
+from widgets.shared.feature_shapes import FlatShapes, flatten_shapes
 from widgets.shared.outlines import are_inside
 
 Floats = NDArray[np.float64]
@@ -36,11 +36,11 @@ class SceneHits:
         The view's local origin, m, project CRS.
     """
 
-    def __init__(self, finder: PointFinder, projection: Projection) -> None:
+    def __init__(self, finder: PointFinder, projection: SceneProjection) -> None:
         self._finder = finder
         self.projection = projection
         self.drawn: tuple[DrawnTile, ...] = ()
-        self.flat: FlatShapes = flattened(())
+        self.flat: FlatShapes = flatten_shapes(())
         self.selected: frozenset[str] = frozenset()
         self.origin: Floats = np.zeros(3)
 
@@ -53,7 +53,7 @@ class SceneHits:
         """What is under a pixel, among the points that are drawn."""
         return self._hit(self._drawn_point(position), position, modifiers)
 
-    def enclosed(self, outline: QPolygonF, modifiers: Qt.KeyboardModifier) -> Boxed:
+    def enclosed(self, outline: QPolygonF, modifiers: Qt.KeyboardModifier) -> EnclosedHits:
         """The features wholly inside an outline, the drawn points inside it, and all of them."""
         points: dict[str, list[NDArray[np.int64]]] = {}
         for one in self.drawn:
@@ -63,14 +63,14 @@ class SceneHits:
                 points.setdefault(one.tile.id.drive_id, []).append(inside)
         joined = {drive: np.unique(np.concatenate(parts)) for drive, parts in points.items()}
         corners = np.array([(corner.x(), corner.y()) for corner in outline.toList()])
-        return Boxed(
+        return EnclosedHits(
             features_within(self.flat, self.projection, outline),
             joined,
             modifiers,
             find_every=partial(self._finder.enclosed, self.projection, corners),
         )
 
-    def place_under(self, position: QPointF) -> Floats:
+    def position_under(self, position: QPointF) -> Floats:
         """(3,): the drawn point under a pixel, or what is at the distance looked at.
 
         Metres from the view's origin; what drags turn about and the wheel zooms to.
@@ -78,31 +78,31 @@ class SceneHits:
         found = self._drawn_point(position)
         camera = self.projection.camera
         depth_m = camera.distance_m if found is None else found.depth_m
-        return self.projection.place_at(position.x(), position.y(), depth_m)
+        return self.projection.position_at(position.x(), position.y(), depth_m)
 
     def _drawn_point(self, position: QPointF) -> FoundPoint | None:
         return self._finder.drawn(self.drawn, self.projection, position.x(), position.y())
 
-    def _hit(
-        self, found: FoundPoint | None, position: QPointF, modifiers: Qt.KeyboardModifier
-    ) -> Hit:
-        place = None if found is None else found.place
-        mouse = position.x(), position.y()
+    def _hit(self, found: FoundPoint | None, pixel: QPointF, modifiers: Qt.KeyboardModifier) -> Hit:
+        position = None if found is None else found.position
+        mouse = pixel.x(), pixel.y()
         feature = feature_at(self.flat, self.projection, mouse, self.selected)
         camera = self.projection.camera
         depth_m = camera.distance_m if found is None else found.depth_m
         direction = self.projection.ray(*mouse)
         return Hit(
-            place,
+            position,
             feature.feature,
             feature.vertex,
             feature.segment,
             modifiers,
             reach_m=REACH_PX * self.projection.metres_per_px(depth_m),
-            ray=Ray(_as_place(self.origin + self.projection.eye(*mouse)), _as_place(direction)),
+            ray=Ray(
+                _as_position(self.origin + self.projection.eye(*mouse)), _as_position(direction)
+            ),
         )
 
 
-def _as_place(values: Floats) -> tuple[float, float, float]:
+def _as_position(values: Floats) -> tuple[float, float, float]:
     east, north, up = values.tolist()
     return east, north, up

@@ -13,9 +13,9 @@ from typing_extensions import override
 
 from processing.project.catalogue import Catalogue, Geometry
 from processing.text import Language
-from widgets.scene_view.projection import Projection
+from widgets.scene_view.projection import SceneProjection
 from widgets.shared.crowded_marks import FEW, marks_to_paint
-from widgets.shared.feature_shapes import local_places, segments_of
+from widgets.shared.feature_shapes import local_positions, segments_of
 from widgets.shared.feature_style import FeatureStyle, sketch_style
 from widgets.shared.screen_marks import (
     paint_cross,
@@ -69,11 +69,11 @@ class SceneOverlay(QWidget):
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
-        self._projection: Projection | None = None
+        self._projection: SceneProjection | None = None
         self._content: OverlayContent | None = None
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
 
-    def show_content(self, projection: Projection, content: OverlayContent) -> None:
+    def show_content(self, projection: SceneProjection, content: OverlayContent) -> None:
         """Paint this from now on."""
         self._projection, self._content = projection, content
         self.update()
@@ -98,7 +98,7 @@ class SceneOverlay(QWidget):
         painter.end()
 
 
-def _paint_marks(painter: QPainter, projection: Projection, content: OverlayContent) -> None:
+def _paint_marks(painter: QPainter, projection: SceneProjection, content: OverlayContent) -> None:
     """The cursor, notes beside the drawing, and where the next click would land."""
     cursor = None if content.cursor is None else _pixel(projection, content.cursor)
     if cursor is not None:
@@ -112,43 +112,45 @@ def _paint_marks(painter: QPainter, projection: Projection, content: OverlayCont
     snap = content.snap
     at = None if snap is None else _pixel(projection, np.array(snap.xyz) - content.origin)
     if snap is not None and at is not None:
-        paint_snap(painter, at, snap.mode, SNAP_NAMES[snap.mode].spoken(content.language))
+        paint_snap(painter, at, snap.mode, SNAP_NAMES[snap.mode].in_language(content.language))
 
 
 def _paint_drawing(
-    painter: QPainter, projection: Projection, content: OverlayContent, drawing: Drawing
+    painter: QPainter, projection: SceneProjection, content: OverlayContent, drawing: Drawing
 ) -> None:
     style = sketch_style(content.catalogue, drawing.kind)
-    places = local_places(drawing.vertices, content.origin)
+    positions = local_positions(drawing.vertices, content.origin)
     is_edited = bool(drawing.replaces)
     shape = drawing.geometry if is_edited else Geometry.LINE
-    painter.setRenderHint(QPainter.RenderHint.Antialiasing, len(places) <= FEW)
-    lines = _lines(projection, places, segments_of(shape, len(places)))
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing, len(positions) <= FEW)
+    lines = _lines(projection, positions, segments_of(shape, len(positions)))
     for pen in (style.halo_pen(), style.pen()):
         painter.setPen(pen)
         painter.drawLines(lines)
-    if drawing.preview and len(places):
-        way = [places[-1], *local_places(drawing.preview, content.origin)]
-        if drawing.geometry is Geometry.AREA and len(places) > 1:
-            way.append(places[0])
-        to_preview = _lines(projection, np.array(way), segments_of(Geometry.LINE, len(way)))
+    if drawing.preview and len(positions):
+        vehicle_path = [positions[-1], *local_positions(drawing.preview, content.origin)]
+        if drawing.geometry is Geometry.AREA and len(positions) > 1:
+            vehicle_path.append(positions[0])
+        to_preview = _lines(
+            projection, np.array(vehicle_path), segments_of(Geometry.LINE, len(vehicle_path))
+        )
         for pen in preview_pens():
             painter.setPen(pen)
             painter.drawLines(to_preview)
     hollow = [vertex.is_occluded for vertex in drawing.vertices]
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
-    _paint_vertices(painter, projection, places, style, hollow)
+    _paint_vertices(painter, projection, positions, style, hollow)
 
 
 def _paint_vertices(
     painter: QPainter,
-    projection: Projection,
-    places: Floats,
+    projection: SceneProjection,
+    positions: Floats,
     style: FeatureStyle,
     hollow: list[bool],
 ) -> None:
     """Squares; open ones where no measured point is."""
-    pixels, _ = projection.to_screen(places)
+    pixels, _ = projection.to_screen(positions)
     half = _VERTEX_PX / 2
     for index in marks_to_paint(pixels, painter.device().width(), painter.device().height()):
         (x, y), is_hollow = pixels[index].tolist(), hollow[index]
@@ -158,12 +160,12 @@ def _paint_vertices(
         painter.drawRect(QRectF(x - half, y - half, _VERTEX_PX, _VERTEX_PX))
 
 
-def _lines(projection: Projection, places: Floats, ends: NDArray[np.int64]) -> list[QLineF]:
-    pixels = projection.segments_on_screen(places, ends).reshape(-1, 4)
+def _lines(projection: SceneProjection, positions: Floats, ends: NDArray[np.int64]) -> list[QLineF]:
+    pixels = projection.segments_on_screen(positions, ends).reshape(-1, 4)
     return [QLineF(*line) for line in pixels[np.isfinite(pixels).all(axis=1)].tolist()]
 
 
-def _pixel(projection: Projection, local: Floats) -> tuple[float, float] | None:
+def _pixel(projection: SceneProjection, local: Floats) -> tuple[float, float] | None:
     """Where a place is in the picture; None behind the camera."""
     pixels, _ = projection.to_screen(local[None])
     x, y = pixels[0].tolist()

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from widgets.scene_view.camera import Camera
+from widgets.scene_view.camera import SceneCamera
 
 Floats = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ _LEAST_DISTANCE_M = 10.0
 
 
 @dataclass(frozen=True)
-class Projection:
+class SceneProjection:
     """A camera and the size of its picture.
 
     Attributes
@@ -30,7 +30,7 @@ class Projection:
         Of the widget, in Qt's pixels.
     """
 
-    camera: Camera
+    camera: SceneCamera
     width_px: int
     height_px: int
 
@@ -128,10 +128,10 @@ class Projection:
         eye: Floats = position + (right * across + up * upwards) / self.point_px
         return eye
 
-    def place_at(self, x: float, y: float, depth_m: float) -> Floats:
+    def position_at(self, x: float, y: float, depth_m: float) -> Floats:
         """(3,): the place under a pixel so far in front of the camera, from the origin."""
-        place: Floats = self.eye(x, y) + self.ray(x, y) * depth_m
-        return place
+        position: Floats = self.eye(x, y) + self.ray(x, y) * depth_m
+        return position
 
     @cached_property
     def matrix(self) -> Floats:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from processing.image.kinds import ImageKind
 from processing.points.drive import Drive
 from widgets.scene_view import overviews
-from widgets.scene_view.camera import Camera
+from widgets.scene_view.camera import SceneCamera
 from widgets.shared.map_source import MapSource
 from widgets.shared.view_settings import ViewSettings
 
@@ -53,22 +53,22 @@ class ShownDrives:
             self._ways.clear()
         return is_other
 
-    def overview(self) -> Camera | None:
+    def overview(self) -> SceneCamera | None:
         """Along the drive from its beginning; where no trajectory is, obliquely at everything."""
-        way = self._way()
-        if way is not None:
-            return overviews.along_way(way)
+        vehicle_path = self._way()
+        if vehicle_path is not None:
+            return overviews.along_path(vehicle_path)
         return overviews.oblique((drive for drive, _ in self.with_kinds), self.origin)
 
-    def along(self, near: Floats) -> Camera | None:
+    def along(self, near: Floats) -> SceneCamera | None:
         """Along the drive to a place, metres from the origin; None without trajectory."""
-        way = self._way()
-        return None if way is None else overviews.along_way(way, near)
+        vehicle_path = self._way()
+        return None if vehicle_path is None else overviews.along_path(vehicle_path, near)
 
     def course_deg(self, near: Floats) -> float:
         """Direction of the drive at a place, clockwise from grid north; north if unknown."""
-        way = self._way()
-        return 0.0 if way is None else overviews.course_deg(way, near)
+        vehicle_path = self._way()
+        return 0.0 if vehicle_path is None else overviews.course_deg(vehicle_path, near)
 
     def _way(self) -> Floats | None:
         """Where the vehicle of the main drive was."""
@@ -76,7 +76,7 @@ class ShownDrives:
         if drive is None:
             return None
         if drive.id not in self._ways:
-            self._ways[drive.id] = overviews.way_of(drive, self.origin)
+            self._ways[drive.id] = overviews.path_of_drive(drive, self.origin)
         return self._ways[drive.id]
 
     def _main(self) -> Drive | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QDoubleSpinBox, QFormLayout, QWidget
 
-from processing.image.corridor import Slab
+from processing.image.corridor import CorridorExtent
 from widgets.scene_view.clipping import Clipping
 
 _WIDEST_M = 100.0
@@ -47,7 +47,7 @@ class SlabForm(QWidget):
         self._highest.setMinimum(self._lowest.value() + _LEAST_M)
         self._lowest.setMaximum(self._highest.value() - _LEAST_M)
         self._clipping.set_slab(
-            Slab(
+            CorridorExtent(
                 self._left.value(),
                 self._right.value(),
                 self._lowest.value(),

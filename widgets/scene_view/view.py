@@ -14,28 +14,28 @@ from typing_extensions import override
 
 from processing.image.tile_cache import TileCache
 from processing.text import Language
-from widgets.mouse_tools.menu_wish import MenuWish
+from widgets.mouse_tools.menu_request import MenuRequest
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.scene_view import overviews
 from widgets.scene_view.backdrop import BACKGROUND
-from widgets.scene_view.camera import Camera
+from widgets.scene_view.camera import SceneCamera
 from widgets.scene_view.clipping import Clipping
-from widgets.scene_view.hand import Hand
 from widgets.scene_view.hits import SceneHits
 from widgets.scene_view.map.map_layer import MapLayer
+from widgets.scene_view.mouse import SceneMouse
 from widgets.scene_view.overlay import OverlayContent, SceneOverlay
 from widgets.scene_view.points.point_finder import PointFinder
-from widgets.scene_view.projection import Projection
+from widgets.scene_view.projection import SceneProjection
+from widgets.scene_view.renderer_loader import RendererLoader, reserve_graphics
 from widgets.scene_view.shown_drives import ShownDrives
-from widgets.scene_view.stage_loader import StageLoader, reserve_graphics
 from widgets.scene_view.view_menu import view_menu
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
 if TYPE_CHECKING:  # importing these imports VTK, which is done after the view was shown
-    from widgets.scene_view.points.cloud import Cloud
-    from widgets.scene_view.stage import Stage
+    from widgets.scene_view.points.cloud import PointCloudLayer
+    from widgets.scene_view.scene_renderer import SceneRenderer
 
 Floats = NDArray[np.float64]
 
@@ -62,7 +62,7 @@ class SceneView(QWidget):
     -------
     sharpened()
         The camera rests, and all points that it sees are in the picture.
-    menu_requested(wish: MenuWish)
+    menu_requested(wish: MenuRequest)
         The right button with nothing under way.
     """
 
@@ -83,29 +83,29 @@ class SceneView(QWidget):
         self._source = source
         self._shared = shared
         self._tiles = tiles
-        self._stage: Stage | None = None
-        self._cloud: Cloud | None = None
+        self._scene_renderer: SceneRenderer | None = None
+        self._cloud: PointCloudLayer | None = None
         self._is_closed = False
         self._drives = ShownDrives(source, shared.view_settings)
-        self._cursor_before: Place | None = None
-        self._cursor: Place | None = shared.cursor.place
+        self._cursor_before: PickedPosition | None = None
+        self._cursor: PickedPosition | None = shared.cursor.position
         self._finder = PointFinder(shared.view_settings)
-        self._hits = SceneHits(self._finder, Projection(Camera((0.0, 0.0, 10.0)), 1, 1))
+        self._hits = SceneHits(self._finder, SceneProjection(SceneCamera((0.0, 0.0, 10.0)), 1, 1))
         self._map = MapLayer(source, shared, self)
         self._map.outdated.connect(self._show_map)
-        self._hand = Hand(self._hits, shared, self._drives.course_deg, self)
+        self._mouse = SceneMouse(self._hits, shared, self._drives.course_deg, self)
         self.clipping = Clipping(source, shared, self)
         self.clipping.changed.connect(self._clip)
         self._reserved = reserve_graphics(self)
         self._overlay = SceneOverlay(self)
-        self._loader = StageLoader()
+        self._loader = RendererLoader()
         self._loader.ready.connect(self._on_loader_ready)
         self.setMinimumSize(160, 120)
         self._listen()
         self._on_map_drives_changed()
 
     def _listen(self) -> None:
-        shared, hand = self._shared, self._hand
+        shared, hand = self._shared, self._mouse
         shared.cursor.moved.connect(self._on_cursor_moved)
         shared.selection.features_changed.connect(self._on_selection_features_changed)
         shared.selection.points_changed.connect(self._on_selection_points_changed)
@@ -118,24 +118,24 @@ class SceneView(QWidget):
         for changed in (shared.sketch.changed, shared.snap.mark_changed, hand.acted):
             changed.connect(self._paint_overlay)
         hand.camera_moved.connect(self.look_from)
-        hand.menu_requested.connect(self._on_hand_menu_requested)
+        hand.menu_requested.connect(self._on_mouse_menu_requested)
         hand.everything_requested.connect(self.show_everything)
         hand.selection_requested.connect(self.center_on_selection)
 
     # What others ask.
 
     @property
-    def camera(self) -> Camera:
+    def camera(self) -> SceneCamera:
         """From where it looks, metres from the document's origin."""
         return self._hits.projection.camera
 
     @property
     def picture(self) -> QWidget | None:
         """The widget that gets the mouse; None until the picture was made."""
-        return None if self._stage is None else self._stage.widget
+        return None if self._scene_renderer is None else self._scene_renderer.widget
 
     @property
-    def cloud(self) -> Cloud | None:
+    def cloud(self) -> PointCloudLayer | None:
         """Which points are drawn; None until the picture was made."""
         return self._cloud
 
@@ -146,8 +146,8 @@ class SceneView(QWidget):
 
     def set_mouse_tool(self, tool: MouseTool | None) -> None:
         """Tell this tool from now on what the mouse does; None: a click puts the cursor."""
-        self._hand.gesture.drop()
-        self._hand.gesture.tool = tool
+        self._mouse.gesture.drop()
+        self._mouse.gesture.tool = tool
         self._paint_overlay()
 
     def show_everything(self) -> None:
@@ -167,39 +167,42 @@ class SceneView(QWidget):
         camera = self.camera.centred_on(self._looked_at())
         self.look_from(camera.from_above(max(camera.distance_m, 30.0)))
 
-    def center_on(self, place: Place) -> None:
+    def center_on(self, position: PickedPosition) -> None:
         """Put a place in the middle, seen from the same side."""
         distance_m = min(self.camera.distance_m, _FARTHEST_M)
-        self.look_from(self.camera.centred_on(self._local(place), distance_m))
+        self.look_from(self.camera.centred_on(self._local(position), distance_m))
 
     def center_on_selection(self) -> None:
         """Put the chosen features in the middle, or the cursor when none is chosen."""
-        places = self._map.places_of(self._shared.selection.features)
-        if places is not None:
-            self.look_from(overviews.holding(places, self.camera))
-        elif self._shared.cursor.place is not None:
-            self.center_on(self._shared.cursor.place)
+        positions = self._map.places_of(self._shared.selection.features)
+        if positions is not None:
+            self.look_from(overviews.holding(positions, self.camera))
+        elif self._shared.cursor.position is not None:
+            self.center_on(self._shared.cursor.position)
 
     def zoom_by(self, factor: float) -> None:
         """Zoom about what is in the middle."""
         self.look_from(self.camera.zoomed(self._looked_at(), factor))
 
-    def position_of(self, place: Place) -> QPointF | None:
+    def position_of(self, position: PickedPosition) -> QPointF | None:
         """Where a place is in this widget; None when it is behind the camera."""
-        pixels, _ = self._hits.projection.to_screen(self._local(place)[None])
+        pixels, _ = self._hits.projection.to_screen(self._local(position)[None])
         x, y = pixels[0].tolist()
         return QPointF(x, y) if np.isfinite(x) else None
 
-    def look_from(self, camera: Camera) -> None:
+    def look_from(self, camera: SceneCamera) -> None:
         """Look from here."""
         width, height = max(self.width(), 1), max(self.height(), 1)
-        self._hits.projection = Projection(camera, width, height)
-        if self._stage is not None and self._cloud is not None:
-            size_px = round(width * self._stage.scale), round(height * self._stage.scale)
+        self._hits.projection = SceneProjection(camera, width, height)
+        if self._scene_renderer is not None and self._cloud is not None:
+            size_px = (
+                round(width * self._scene_renderer.scale),
+                round(height * self._scene_renderer.scale),
+            )
             self._cloud.look_from(camera.for_tiles(self._drives.origin, *size_px))
-            self._stage.look(camera)
+            self._scene_renderer.look(camera)
             self._map.catch_up()
-            self._stage.redraw()
+            self._scene_renderer.redraw()
             self._size_points()
         self._paint_overlay()
 
@@ -223,7 +226,7 @@ class SceneView(QWidget):
     @override
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
-        if self._stage is None and not self._is_closed:
+        if self._scene_renderer is None and not self._is_closed:
             self._loader.start()
 
     @override
@@ -234,8 +237,8 @@ class SceneView(QWidget):
     @override
     def resizeEvent(self, event: QResizeEvent) -> None:
         self._overlay.setGeometry(self.rect())
-        if self._stage is not None:
-            self._stage.widget.setGeometry(self.rect())
+        if self._scene_renderer is not None:
+            self._scene_renderer.widget.setGeometry(self.rect())
         self.look_from(self.camera)
 
     @override
@@ -248,16 +251,16 @@ class SceneView(QWidget):
     def _on_loader_ready(self) -> None:
         if self._is_closed:
             return
-        from widgets.scene_view.points.cloud import Cloud
-        from widgets.scene_view.stage import Stage
+        from widgets.scene_view.points.cloud import PointCloudLayer
+        from widgets.scene_view.scene_renderer import SceneRenderer
 
-        self._stage = Stage(self, self._on_stage_frame)
-        self._cloud = Cloud(self._stage, self._tiles, self)
-        picture = self._stage.widget
+        self._scene_renderer = SceneRenderer(self, self._on_scene_renderer_frame)
+        self._cloud = PointCloudLayer(self._scene_renderer, self._tiles, self)
+        picture = self._scene_renderer.widget
         picture.setGeometry(self.rect())
-        picture.installEventFilter(self._hand)
+        picture.installEventFilter(self._mouse)
         self.setFocusProxy(picture)
-        self._hand.is_enabled = True
+        self._mouse.is_enabled = True
         self._cloud.changed.connect(self._on_cloud_changed)
         self._cloud.settled.connect(self.sharpened)
         self._cloud.use(self._drives.with_kinds, self._drives.origin)
@@ -269,25 +272,25 @@ class SceneView(QWidget):
         self._show_map()
         self.look_from(self.camera)
 
-    def _on_stage_frame(self, seconds: float) -> None:
+    def _on_scene_renderer_frame(self, seconds: float) -> None:
         if self._cloud is not None:
             self._cloud.record_frame(seconds)
 
     def _on_cloud_changed(self) -> None:
-        if self._stage is None or self._cloud is None:
+        if self._scene_renderer is None or self._cloud is None:
             return
         self._hits.drawn = self._cloud.drawn
-        self._stage.look(self.camera)
-        self._stage.redraw()
+        self._scene_renderer.look(self.camera)
+        self._scene_renderer.redraw()
         self._paint_overlay()
 
-    def _on_cursor_moved(self, place: Place) -> None:
-        self._cursor_before, self._cursor = self._cursor, place
+    def _on_cursor_moved(self, position: PickedPosition) -> None:
+        self._cursor_before, self._cursor = self._cursor, position
         # Who clicks in this view has the place under the mouse already.
-        if not self._hand.is_clicking and not self._hits.projection.is_in_middle(
-            self._local(place)
+        if not self._mouse.is_clicking and not self._hits.projection.is_in_middle(
+            self._local(position)
         ):
-            self.center_on(place)
+            self.center_on(position)
         self._paint_overlay()
 
     def _on_selection_features_changed(self, ids: frozenset[str]) -> None:
@@ -322,19 +325,19 @@ class SceneView(QWidget):
         if self._drives.read():
             self._use_drives()
 
-    def _on_hand_menu_requested(self, where: QPointF) -> None:
+    def _on_mouse_menu_requested(self, where: QPointF) -> None:
         is_shaded = self._cloud is not None and self._cloud.is_shading_wanted
         menu = view_menu(self, self, is_shading_wanted=is_shaded)
         hit = self._hits.exact_hit(where, Qt.KeyboardModifier.NoModifier)
-        self.menu_requested.emit(MenuWish(menu, self.mapToGlobal(where.toPoint()), hit))
+        self.menu_requested.emit(MenuRequest(menu, self.mapToGlobal(where.toPoint()), hit))
 
     # What is done in more than one place.
 
     def _show_map(self) -> None:
-        self._map.show(self._stage)
+        self._map.show(self._scene_renderer)
         self._hits.flat = self._map.flat
-        if self._stage is not None:
-            self._stage.redraw()
+        if self._scene_renderer is not None:
+            self._scene_renderer.redraw()
 
     def _clip(self) -> None:
         self._finder.clip_to(self.clipping.clip)
@@ -343,9 +346,9 @@ class SceneView(QWidget):
             self._cloud.clip_to(self.clipping.clip)
 
     def _size_points(self) -> None:
-        if self._stage is not None:
+        if self._scene_renderer is not None:
             size_px = self._shared.view_settings.look.point_size_px
-            self._stage.size_points(size_px, self._hits.projection.point_px)
+            self._scene_renderer.size_points(size_px, self._hits.projection.point_px)
 
     def _use_drives(self) -> None:
         drives = self._drives
@@ -357,18 +360,18 @@ class SceneView(QWidget):
 
     def _looked_at(self) -> Floats:
         """What is in the middle of the picture; the cursor, where that is in it."""
-        place = self._shared.cursor.place
-        if place is not None and self._hits.projection.is_in_middle(self._local(place)):
-            return self._local(place)
-        return self._hits.place_under(QPointF(self.width() / 2, self.height() / 2))
+        position = self._shared.cursor.position
+        if position is not None and self._hits.projection.is_in_middle(self._local(position)):
+            return self._local(position)
+        return self._hits.position_under(QPointF(self.width() / 2, self.height() / 2))
 
-    def _local(self, place: Place) -> Floats:
-        return np.asarray(np.array(place.xyz) - self._drives.origin, np.float64)
+    def _local(self, position: PickedPosition) -> Floats:
+        return np.asarray(np.array(position.xyz) - self._drives.origin, np.float64)
 
     def _words(self) -> str:
         if not self._drives.with_kinds:
             return self.tr("Drives appear here in three dimensions once they are shown.")
-        if self._stage is None:
+        if self._scene_renderer is None:
             return self.tr("The 3D view is starting.")
         return "" if self._hits.drawn else self.tr("Points are being loaded.")
 
@@ -380,7 +383,7 @@ class SceneView(QWidget):
             drawing=self._shared.sketch.drawing,
             cursor=None if cursor is None else self._local(cursor),
             cursor_before=None if before is None else self._local(before),
-            outline=self._hand.gesture.outline,
+            outline=self._mouse.gesture.outline,
             snap=self._shared.snap.mark,
             language=self._language,
             words=self._words(),
@@ -391,10 +394,10 @@ class SceneView(QWidget):
         if self._is_closed:
             return
         self._is_closed = True
-        self._hand.is_enabled = False
+        self._mouse.is_enabled = False
         self._loader.close()
         if self._cloud is not None:
             self._cloud.close()
-        if self._stage is not None:
-            self._stage.widget.removeEventFilter(self._hand)
-            self._stage.close()
+        if self._scene_renderer is not None:
+            self._scene_renderer.widget.removeEventFilter(self._mouse)
+            self._scene_renderer.close()

@@ -8,16 +8,16 @@ from PySide6.QtCore import QCoreApplication
 from PySide6.QtGui import QAction, QActionGroup
 from PySide6.QtWidgets import QMenu, QWidget, QWidgetAction
 
-from widgets.scene_view.camera import Camera
+from widgets.scene_view.camera import SceneCamera
 from widgets.scene_view.clipping import ClipChoice, Clipping
 from widgets.scene_view.slab_form import SlabForm
 
 
-class Looking(Protocol):
+class SceneViewCommands(Protocol):
     """What the menu does with the view."""
 
     @property
-    def camera(self) -> Camera:
+    def camera(self) -> SceneCamera:
         """From where it looks."""
 
     @property
@@ -43,7 +43,7 @@ class Looking(Protocol):
         """Draw far things smaller, or not."""
 
 
-def view_menu(parent: QWidget, view: Looking, *, is_shading_wanted: bool) -> QMenu:
+def view_menu(parent: QWidget, view: SceneViewCommands, *, is_shading_wanted: bool) -> QMenu:
     """From where one can look, and at what; it goes when it was closed."""
 
     def shade(is_on: bool) -> None:  # noqa: FBT001 - Qt's signal

@@ -18,17 +18,17 @@ def as_vtk(values: NDArray[Any]) -> vtkDataArray:  # of any dtype that VTK knows
     return array
 
 
-def places_of(local_xyz: NDArray[np.floating]) -> vtkPoints:
+def positions_of(local_xyz: NDArray[np.floating]) -> vtkPoints:
     """(n, 3) places as float32 points of VTK."""
-    places = vtkPoints()
-    places.SetData(as_vtk(local_xyz.astype(np.float32, copy=False)))
-    return places
+    positions = vtkPoints()
+    positions.SetData(as_vtk(local_xyz.astype(np.float32, copy=False)))
+    return positions
 
 
 def cloud_of(local_xyz: NDArray[np.floating]) -> vtkPolyData:
     """Places, each of them drawn."""
     data = vtkPolyData()
-    data.SetPoints(places_of(local_xyz))
+    data.SetPoints(positions_of(local_xyz))
     data.SetVerts(_cells(len(local_xyz), 1))
     return data
 
@@ -36,7 +36,7 @@ def cloud_of(local_xyz: NDArray[np.floating]) -> vtkPolyData:
 def lines_of(local_xyz: NDArray[np.floating]) -> vtkPolyData:
     """(m, 2, 3) places at both ends of lines."""
     data = vtkPolyData()
-    data.SetPoints(places_of(local_xyz.reshape(-1, 3)))
+    data.SetPoints(positions_of(local_xyz.reshape(-1, 3)))
     data.SetLines(_cells(len(local_xyz), 2))
     return data
 

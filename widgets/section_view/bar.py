@@ -19,8 +19,8 @@ from typing_extensions import override
 
 from widgets.parts.icon_button import IconButton
 from widgets.parts.number_field import NumberField
+from widgets.section_view.section_position import LEAST_WIDTH_M, MOST_WIDTH_M
 from widgets.section_view.settings import EXAGGERATIONS, SectionSettings
-from widgets.section_view.standing import LEAST_WIDTH_M, MOST_WIDTH_M
 
 _LEAST_STEP_M, _MOST_STEP_M = 0.05, 100.0
 _TYPED = 2
@@ -93,7 +93,7 @@ class SectionBar(QWidget):
             self.tr("Ground"),
             self.tr("Draw the ground that was found: dashed where it is filled in"),
         )
-        self._trials = self._switch(
+        self._diagnostics = self._switch(
             "mdi6.clipboard-check-outline",
             self.tr("Tests"),
             self.tr("Show the normalised scanline, and why tools take a place on it or not"),
@@ -109,7 +109,7 @@ class SectionBar(QWidget):
             field.valueChanged.connect(self._on_settings_edited)
         self._line.activated.connect(self._on_line_activated)
         self._ground.toggled.connect(self._on_settings_edited)
-        self._trials.toggled.connect(self._on_settings_edited)
+        self._diagnostics.toggled.connect(self._on_settings_edited)
         self._live.toggled.connect(self._on_settings_edited)
         self._pin.toggled.connect(self.pin_toggled)
         self._template.clicked.connect(self.template_requested)
@@ -122,7 +122,7 @@ class SectionBar(QWidget):
             *self._named(self.tr("Step"), self._step),
             *self._named(self.tr("Heights"), self._heights),
             self._ground,
-            self._trials,
+            self._diagnostics,
         )
         self._buttons = self._group(self._live, self._pin, self._template, self._export)
         self._grid = QGridLayout(self)
@@ -192,7 +192,7 @@ class SectionBar(QWidget):
                 self._heights,
                 self._live,
                 self._ground,
-                self._trials,
+                self._diagnostics,
             )
         ]
         self._lying.setCurrentIndex(int(settings.is_along))
@@ -202,7 +202,7 @@ class SectionBar(QWidget):
             self._heights.setCurrentIndex(EXAGGERATIONS.index(settings.exaggeration))
         self._live.setChecked(settings.is_live)
         self._ground.setChecked(settings.shows_ground)
-        self._trials.setChecked(settings.shows_trials)
+        self._diagnostics.setChecked(settings.shows_diagnostics)
         for one in blocked:
             one.unblock()
 
@@ -231,7 +231,7 @@ class SectionBar(QWidget):
             is_along=bool(self._lying.currentIndex()),
             is_live=self._live.isChecked(),
             shows_ground=self._ground.isChecked(),
-            shows_trials=self._trials.isChecked(),
+            shows_diagnostics=self._diagnostics.isChecked(),
         )
         self.settings_chosen.emit(self._settings)
 

@@ -12,7 +12,7 @@ from processing.earthwork.change_reading import ChangeLine, change_along
 from processing.section.cut import Cut
 from processing.text import Language, Text
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.section_view.lay import SectionLay
+from widgets.section_view.projection import SectionProjection
 from widgets.shared.shown_volume import ShownVolume
 
 Floats = NDArray[np.float64]
@@ -26,7 +26,7 @@ _EDGE, _PLATE, _WORDS = QColor(16, 18, 22, 150), QColor(16, 18, 22, 205), QColor
 _LINE_PX, _EDGE_PX = 1.75, 3.5
 _DASHES = [4.0, 3.0]
 _SAMPLE_PX, _MARGIN_PX, _TOP_PX = 26.0, 6.0, 34.0
-_STEPS_PER_CELL, _MOST_PLACES = 2, 4000
+_STEPS_PER_CELL, _MOST_POSITIONS = 2, 4000
 
 
 class ChangePainter:
@@ -69,20 +69,20 @@ class ChangePainter:
                 painter.drawPolygon(_polygon(outline))
         painter.setBrush(Qt.BrushStyle.NoBrush)
         for is_edge in (True, False):
-            for places, colour in ((before, _BEFORE_COLOUR), (after, _AFTER_COLOUR)):
-                for piece in _pieces(np.isfinite(places[:, 1]), line.is_measured, joins=False):
+            for positions, colour in ((before, _BEFORE_COLOUR), (after, _AFTER_COLOUR)):
+                for piece in _pieces(np.isfinite(positions[:, 1]), line.is_measured, joins=False):
                     is_measured = bool(line.is_measured[piece][1:].all())
                     painter.setPen(_pen(colour, is_edge=is_edge, is_measured=is_measured))
-                    painter.drawPolyline(_polygon(places[piece]))
+                    painter.drawPolyline(_polygon(positions[piece]))
 
     def paint_legend(self, painter: QPainter, viewport: PlaneViewport, language: Language) -> None:
         """Say at the top right what is what."""
         metrics = QFontMetricsF(painter.font())
         rows = [
-            (_BEFORE.spoken(language), _BEFORE_COLOUR, _LINE_PX),
-            (_AFTER.spoken(language), _AFTER_COLOUR, _LINE_PX),
-            (_CUT.spoken(language), _CUT_COLOUR, metrics.height() - 6.0),
-            (_FILL.spoken(language), _FILL_COLOUR, metrics.height() - 6.0),
+            (_BEFORE.in_language(language), _BEFORE_COLOUR, _LINE_PX),
+            (_AFTER.in_language(language), _AFTER_COLOUR, _LINE_PX),
+            (_CUT.in_language(language), _CUT_COLOUR, metrics.height() - 6.0),
+            (_FILL.in_language(language), _FILL_COLOUR, metrics.height() - 6.0),
         ]
         widest = max(metrics.horizontalAdvance(name) for name, _, _ in rows)
         wide, high = widest + _SAMPLE_PX + 3 * _MARGIN_PX, metrics.height() + 2.0
@@ -99,7 +99,7 @@ class ChangePainter:
 def _line_in(change: ChangeGrid, cut: Cut) -> ChangeLine:
     half_m = cut.half_length_m
     count = int(np.ceil(2 * half_m / change.grid.size_m)) * _STEPS_PER_CELL
-    offsets = np.linspace(-half_m, half_m, min(max(count, 2), _MOST_PLACES))
+    offsets = np.linspace(-half_m, half_m, min(max(count, 2), _MOST_POSITIONS))
     nothing = np.zeros_like(offsets)
     xy = cut.to_space(np.column_stack([offsets, nothing, nothing]))[:, :2]
     return change_along(change, offsets, xy)
@@ -107,10 +107,10 @@ def _line_in(change: ChangeGrid, cut: Cut) -> ChangeLine:
 
 def _on_screen(viewport: PlaneViewport, cut: Cut, offsets: Floats, heights: Floats) -> Floats:
     section = np.column_stack([offsets, heights, np.zeros_like(offsets)])
-    places: Floats = viewport.to_screen(SectionLay(cut).on_plane(section))
+    positions: Floats = viewport.to_screen(SectionProjection(cut).on_plane(section))
     # Far outside the window Qt's lines go wrong.
-    places[(places[:, 0] < -viewport.width) | (places[:, 0] > 2 * viewport.width)] = np.nan
-    return places
+    positions[(positions[:, 0] < -viewport.width) | (positions[:, 0] > 2 * viewport.width)] = np.nan
+    return positions
 
 
 def _pieces(
@@ -131,8 +131,8 @@ def _pieces(
     ]
 
 
-def _polygon(places: Floats) -> QPolygonF:
-    return QPolygonF([QPointF(x, y) for x, y in places.tolist()])
+def _polygon(positions: Floats) -> QPolygonF:
+    return QPolygonF([QPointF(x, y) for x, y in positions.tolist()])
 
 
 def _pen(colour: QColor, *, is_edge: bool, is_measured: bool) -> QPen:

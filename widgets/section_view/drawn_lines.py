@@ -28,5 +28,5 @@ def _line_of(feature: Feature, catalogue: Catalogue) -> DrawnLine:
     if feature.kind in catalogue:
         kind = catalogue[feature.kind]
         name, layer, aci = kind.name, kind.layer, kind.aci
-    places = np.array([vertex.xyz for vertex in feature.vertices])
-    return DrawnLine(name, layer, aci, places, is_closed=feature.geometry is Geometry.AREA)
+    positions = np.array([vertex.xyz for vertex in feature.vertices])
+    return DrawnLine(name, layer, aci, positions, is_closed=feature.geometry is Geometry.AREA)

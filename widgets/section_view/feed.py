@@ -11,16 +11,16 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from processing.errors import UserError
-from processing.image.attributes import colours, telling_attribute
+from processing.image.attributes import colours, most_telling_attribute
 from processing.points.drive import Drive
 from processing.section.cut import Cut
 from processing.section.points_in_cut import MOST_POINTS, SectionPoints, section_points
 from processing.section.surface_line import SurfaceLine
 from widgets.section_view.found_ground import FoundGround
-from widgets.section_view.found_trials import SectionTrials, trials_at
+from widgets.section_view.section_diagnostics import SectionDiagnostics, diagnostics_at
+from widgets.section_view.section_position import SectionPosition
 from widgets.section_view.settings import SectionSettings
-from widgets.section_view.standing import Standing
-from widgets.shared.view_settings import PointLook
+from widgets.shared.view_settings import PointStyle
 
 Floats = NDArray[np.float64]
 
@@ -33,7 +33,7 @@ _BEHIND, _IN_PLANE, _BEFORE = (0, 114, 178), (240, 240, 240), (230, 159, 0)
 
 
 @dataclass(frozen=True, eq=False)
-class SectionWish:
+class SectionRequest:
     """What a pane wants to see.
 
     Attributes
@@ -43,7 +43,7 @@ class SectionWish:
     cut : Cut
         Its slab.
     drives : tuple of Drive
-    look : PointLook
+    look : PointStyle
     settings : SectionSettings
         Say whether colours tell the distance from the plane instead of the look's attribute, and
         whether the ground and what tools look at are shown.
@@ -51,10 +51,10 @@ class SectionWish:
         Of the tools that tell what they look at, by their ids.
     """
 
-    standing: Standing
+    standing: SectionPosition
     cut: Cut
     drives: tuple[Drive, ...]
-    look: PointLook
+    look: PointStyle
     settings: SectionSettings
     parameters: Mapping[str, object] = field(default_factory=dict)
 
@@ -65,9 +65,9 @@ class SectionPicture:
 
     Attributes
     ----------
-    wish : SectionWish
+    request : SectionRequest
     drive_numbers : (n,) int64
-        Into ``wish.drives``.
+        Into ``request.drives``.
     points : (n,) int64
         Indices in the drives, by rising offset.
     section : (n, 3) float64
@@ -79,11 +79,11 @@ class SectionPicture:
         Whether the colours are those wished for.
     ground : tuple of SurfaceLine
         In the plane of the cut, as the tool “ground” found it.
-    trials : tuple of SectionTrials or None
+    diagnostics : tuple of SectionDiagnostics or None
         None where they aren't shown, or aren't known as yet.
     """
 
-    wish: SectionWish
+    request: SectionRequest
     drive_numbers: NDArray[np.int64]
     points: NDArray[np.int64]
     section: Floats
@@ -91,11 +91,11 @@ class SectionPicture:
     is_thinned: bool
     is_final: bool = True
     ground: tuple[SurfaceLine, ...] = ()
-    trials: tuple[SectionTrials, ...] | None = None
+    diagnostics: tuple[SectionDiagnostics, ...] | None = None
 
 
 class SectionFeed(QObject):
-    """Works out wishes one after the other; the newest is the one that counts.
+    """Works out requests one after the other; the newest is the one that counts.
 
     Signals
     -------
@@ -109,16 +109,16 @@ class SectionFeed(QObject):
     def __init__(self) -> None:
         super().__init__()
         self._changed = threading.Condition()
-        self._next: SectionWish | None = None
+        self._next: SectionRequest | None = None
         self._is_closed = False
         self._ground = FoundGround()
         self._worker = threading.Thread(target=self._work, name="section", daemon=True)
         self._worker.start()
 
-    def wish(self, wish: SectionWish) -> None:
+    def request(self, request: SectionRequest) -> None:
         """Ask for what is to be seen now; replaces what was asked for and isn't begun."""
         with self._changed:
-            self._next = wish
+            self._next = request
             self._changed.notify()
 
     def close(self) -> None:
@@ -136,39 +136,41 @@ class SectionFeed(QObject):
                     self._changed.wait()
                 if self._is_closed:
                     return
-                wish, self._next = self._next, None
-            if wish is not None:
-                self._fulfil(wish)
+                request, self._next = self._next, None
+            if request is not None:
+                self._fulfil(request)
 
-    def _fulfil(self, wish: SectionWish) -> None:
+    def _fulfil(self, request: SectionRequest) -> None:
         parts: list[SectionPoints] = []
-        most, hides_noise = MOST_POINTS // max(len(wish.drives), 1), wish.look.hides_noise
-        for drive in wish.drives:
+        most, hides_noise = MOST_POINTS // max(len(request.drives), 1), request.look.hides_noise
+        for drive in request.drives:
             if self._is_outdated():
                 return
             try:
-                parts.append(section_points(drive, wish.cut, most, hides_noise=hides_noise))
+                parts.append(section_points(drive, request.cut, most, hides_noise=hides_noise))
             except UserError:  # the image view says why; here its points are just not there
                 parts.append(SectionPoints(drive.id, np.empty(0, np.int64), np.empty((0, 3))))
         ground: tuple[SurfaceLine, ...] = ()
-        if wish.settings.shows_ground:
-            ground = self._ground.lines_now(wish.drives, wish.cut, parts)
-        is_slow = not wish.settings.is_by_distance and wish.look.attribute not in _AT_ONCE
+        if request.settings.shows_ground:
+            ground = self._ground.lines_now(request.drives, request.cut, parts)
+        is_slow = not request.settings.is_by_distance and request.look.attribute not in _AT_ONCE
         if is_slow:
-            plain = picture_of(wish, parts, _PLAIN)
-            self._tell(replace(plain, is_final=False, ground=ground))
+            plain = picture_of(request, parts, _PLAIN)
+            self._report(replace(plain, is_final=False, ground=ground))
         if is_slow and self._is_outdated():
             return
-        picture = replace(picture_of(wish, parts, wish.look.attribute), ground=ground)
-        if not wish.settings.shows_trials or wish.standing.is_along:
-            self._tell(picture)
+        picture = replace(picture_of(request, parts, request.look.attribute), ground=ground)
+        if not request.settings.shows_diagnostics or request.standing.is_along:
+            self._report(picture)
             return
-        self._tell(replace(picture, is_final=False))
+        self._report(replace(picture, is_final=False))
         if not self._is_outdated():
-            trials = trials_at(wish.drives, wish.standing, wish.cut, wish.parameters)
-            self._tell(replace(picture, trials=trials))
+            diagnostics = diagnostics_at(
+                request.drives, request.standing, request.cut, request.parameters
+            )
+            self._report(replace(picture, diagnostics=diagnostics))
 
-    def _tell(self, picture: SectionPicture) -> None:
+    def _report(self, picture: SectionPicture) -> None:
         if not self._is_closed:
             self.arrived.emit(picture)
 
@@ -177,23 +179,25 @@ class SectionFeed(QObject):
             return self._is_closed or self._next is not None
 
 
-def picture_of(wish: SectionWish, parts: Sequence[SectionPoints], attribute: str) -> SectionPicture:
+def picture_of(
+    request: SectionRequest, parts: Sequence[SectionPoints], attribute: str
+) -> SectionPicture:
     """The points of all drives in one picture, coloured by an attribute or as wished."""
     section = np.concatenate([np.empty((0, 3)), *(part.section for part in parts)])
     points = np.concatenate([np.empty(0, np.int64), *(part.points for part in parts)])
     numbers = np.repeat(np.arange(len(parts)), [part.points.size for part in parts])
-    if wish.settings.is_by_distance:
-        painted = distance_colours(section[:, 2], wish.cut.width_m / 2)
+    if request.settings.is_by_distance:
+        painted = distance_colours(section[:, 2], request.cut.width_m / 2)
     else:
         shown = [
-            _colours_of(drive, part.points, attribute, wish.look)
-            for drive, part in zip(wish.drives, parts, strict=True)
+            _colours_of(drive, part.points, attribute, request.look)
+            for drive, part in zip(request.drives, parts, strict=True)
         ]
         painted = _lifted(np.concatenate([np.empty((0, 3), np.uint8), *shown]))
     order = np.argsort(section[:, 0], kind="stable")
-    most = MOST_POINTS // max(len(wish.drives), 1)
+    most = MOST_POINTS // max(len(request.drives), 1)
     return SectionPicture(
-        wish,
+        request,
         numbers[order],
         points[order],
         section[order],
@@ -216,10 +220,10 @@ def _lifted(shown: NDArray[np.uint8]) -> NDArray[np.uint8]:
 
 
 def _colours_of(
-    drive: Drive, points: NDArray[np.int64], attribute: str, look: PointLook
+    drive: Drive, points: NDArray[np.int64], attribute: str, look: PointStyle
 ) -> NDArray[np.uint8]:
     try:
-        shown = telling_attribute(drive, attribute)
+        shown = most_telling_attribute(drive, attribute)
         return colours(drive, points, shown, look.low_percent, look.high_percent)
     except UserError:  # camera images can't be read; the image view says so
         return colours(drive, points, _PLAIN, look.low_percent, look.high_percent)

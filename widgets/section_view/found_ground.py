@@ -14,11 +14,11 @@ from processing.points.counted_classes import class_columns
 from processing.points.drive import Drive
 from processing.project.run_findings import finding_of, newest_run
 from processing.score.asked_classes import ASKED
-from processing.score.point_classes import is_one_of
+from processing.score.confusion_matrix import is_one_of
 from processing.section.cut import Cut
-from processing.section.edited_ground import edited_lines
+from processing.section.edited_ground import update_ground_lines
 from processing.section.points_in_cut import SectionPoints
-from processing.section.surface_line import SurfaceLine, surface_lines, without_doubles
+from processing.section.surface_line import SurfaceLine, remove_doubles, surface_lines
 
 _Stamp = tuple[int, int]
 _GROUND = "ground"
@@ -40,7 +40,7 @@ class FoundGround:
                 found.append(() if surface is None else surface_lines(surface, cut))
             except UserError:  # who makes volumes of it is told; here it is just not there
                 self._opened.pop(drive.id, None)
-        return without_doubles(one for one in found if one)
+        return remove_doubles(one for one in found if one)
 
     def lines_now(
         self, drives: Sequence[Drive], cut: Cut, parts: Sequence[SectionPoints]
@@ -65,7 +65,7 @@ class FoundGround:
                     sections.append(part.section)
                     is_ground.append(is_one_of(codes, ASKED[_GROUND].codes))
                     was_ground.append(said)
-        return edited_lines(
+        return update_ground_lines(
             lines, np.concatenate(sections), np.concatenate(is_ground), np.concatenate(was_ground)
         )
 

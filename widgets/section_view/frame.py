@@ -10,7 +10,7 @@ from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen
 
 from processing.section.cut import Cut
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.section_view.lay import SectionLay
+from widgets.section_view.projection import SectionProjection
 
 LEFT_PX, BOTTOM_PX = 60.0, 22.0
 """Room that the rulers take."""
@@ -64,8 +64,8 @@ def round_step(least: float) -> float:
 
 def _paint_heights(painter: QPainter, viewport: PlaneViewport, cut: Cut) -> None:
     bottom = viewport.height - BOTTOM_PX
-    lay = SectionLay(cut)
-    low, high = (lay.height_of(viewport.to_plane(0.0, y)[1]) for y in (bottom, 0.0))
+    projection = SectionProjection(cut)
+    low, high = (projection.height_of(viewport.to_plane(0.0, y)[1]) for y in (bottom, 0.0))
     per_m = bottom / max(high - low, 1e-9)
     step = round_step(_EVERY_Y_PX / per_m)
     digits = max(1, -math.floor(math.log10(step) + 1e-9))

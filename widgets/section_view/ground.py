@@ -11,7 +11,7 @@ from PySide6.QtGui import QImage, QPainter
 from processing.section.raster import paint_points
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.section_view.feed import SectionPicture
-from widgets.section_view.lay import SectionLay
+from widgets.section_view.projection import SectionProjection
 
 BACKGROUND = (16, 19, 24)
 
@@ -66,8 +66,8 @@ def _image_of(wanted: _Made) -> QImage:
     out = np.empty((height, width, 3), np.uint8)
     out[:] = BACKGROUND
     section = wanted.picture.section
-    places = SectionLay(wanted.picture.wish.cut).on_plane(section)
-    pixels = np.ascontiguousarray(viewport.to_screen(places) * ratio)
+    positions = SectionProjection(wanted.picture.request.cut).on_plane(section)
+    pixels = np.ascontiguousarray(viewport.to_screen(positions) * ratio)
     distances = np.ascontiguousarray(section[:, 2])
     paint_points(pixels, distances, wanted.picture.colours, wanted.side_px, out)
     image = QImage(out.data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
@@ -75,10 +75,10 @@ def _image_of(wanted: _Made) -> QImage:
     return image
 
 
-def ground_y(lay: SectionLay, picture: SectionPicture) -> float:
+def ground_y(projection: SectionProjection, picture: SectionPicture) -> float:
     """Where the ground about the middle is on the plane; the middle where no points are."""
     section = picture.section
     near = section[np.abs(section[:, 0]) <= _GROUND_WITHIN_M, 1]
     if not near.size:
         return 0.0
-    return lay.cut.middle[2] - float(np.percentile(near, _GROUND_PERCENT))
+    return projection.cut.middle[2] - float(np.percentile(near, _GROUND_PERCENT))

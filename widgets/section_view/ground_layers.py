@@ -32,7 +32,7 @@ class GroundLayers:
 
     def paint(self, painter: QPainter, viewport: PlaneViewport, picture: SectionPicture) -> None:
         """Lines over the points."""
-        cut = picture.wish.cut
+        cut = picture.request.cut
         line = self._change.line_in(cut)
         if line is None:
             paint_ground_lines(painter, viewport, cut, picture.ground)
@@ -43,7 +43,7 @@ class GroundLayers:
         self, painter: QPainter, viewport: PlaneViewport, picture: SectionPicture
     ) -> None:
         """What the lines are."""
-        if self._change.line_in(picture.wish.cut) is None:
+        if self._change.line_in(picture.request.cut) is None:
             paint_ground_legend(painter, viewport, picture.ground, self._language)
         else:
             self._change.paint_legend(painter, viewport, self._language)

@@ -13,7 +13,7 @@ from processing.section.cut import Cut
 from processing.section.surface_line import SurfaceLine
 from processing.text import Language, Text
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.section_view.lay import SectionLay
+from widgets.section_view.projection import SectionProjection
 
 _MEASURED = Text("Ground, measured", "地面（計測）")
 _FILLED = Text("Ground, filled in", "地面（補間）")
@@ -37,12 +37,12 @@ def paint_ground_lines(
     lines : sequence of SurfaceLine
         In the plane of the cut.
     """
-    lay = SectionLay(cut)
+    projection = SectionProjection(cut)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
     for is_edge in (True, False):
         for line in lines:
-            section = np.column_stack([line.places, np.zeros(len(line.places))])
-            pixels = viewport.to_screen(lay.on_plane(section))
+            section = np.column_stack([line.positions, np.zeros(len(line.positions))])
+            pixels = viewport.to_screen(projection.on_plane(section))
             inside = _near_window(pixels[:, 0], viewport.width)
             outline = QPolygonF([QPointF(x, y) for x, y in pixels[inside].tolist()])
             painter.setPen(_pen(is_edge=is_edge, is_filled=line.is_filled))
@@ -57,7 +57,7 @@ def paint_ground_legend(
     if not kinds:
         return
     metrics = QFontMetricsF(painter.font())
-    names = [(_FILLED if is_filled else _MEASURED).spoken(language) for is_filled in kinds]
+    names = [(_FILLED if is_filled else _MEASURED).in_language(language) for is_filled in kinds]
     wide = max(map(metrics.horizontalAdvance, names)) + _SAMPLE_PX + 3 * _MARGIN_PX
     high = metrics.height() + 2.0
     plate = QRectF(viewport.width - wide - _MARGIN_PX, 34.0, wide, len(names) * high + 4.0)

@@ -14,8 +14,8 @@ from processing.project.feature import Feature, Position
 from processing.section.site_axis import site_axis
 from processing.section.stations import Stations
 from widgets.mouse_tools.near_features import NearFeatures
-from widgets.section_view.standing import CutLine, Standing
-from widgets.shared.cursor import Place
+from widgets.section_view.section_position import CutLine, SectionPosition
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -82,31 +82,33 @@ class SectionLines(QObject):
             self._driven[drive.id] = _driven_line(drive)
         return self._driven[drive.id]
 
-    def standing_at(self, line: CutLine, place: Place) -> Standing:
+    def standing_at(self, line: CutLine, position: PickedPosition) -> SectionPosition:
         """Where the section across a line goes through a place."""
         between = None
-        if line.drive and place.measured is not None and place.measured.drive == line.drive:
-            between = self._pass_of(line, place.measured.point)
-        return Standing(line, line.stations.through(place.xyz, between), through=place.xyz)
+        if line.drive and position.measured is not None and position.measured.drive == line.drive:
+            between = self._pass_of(line, position.measured.point)
+        return SectionPosition(
+            line, line.stations.through(position.xyz, between), through=position.xyz
+        )
 
-    def across_trajectory(self, place: Place) -> Standing | None:
+    def across_trajectory(self, position: PickedPosition) -> SectionPosition | None:
         """Where a section across the nearest trajectory goes through a place.
 
         That of the place's own drive goes before others; where nobody drove, the site's axis.
         """
         drives = self._source.drives()
-        if place.measured is not None:
-            drives = tuple(one for one in drives if one.id == place.measured.drive) or drives
+        if position.measured is not None:
+            drives = tuple(one for one in drives if one.id == position.measured.drive) or drives
         lines = [line for drive in drives if (line := self.trajectory(drive)) is not None]
         if not lines:
             others = [self.trajectory(drive) for drive in self._source.drives()]
             lines = [line for line in others if line is not None]
         if not lines and self.axis is not None:
             lines = [self.axis]
-        found = [self.standing_at(line, place) for line in lines]
-        return min(found, key=lambda one: _distance(one, place), default=None)
+        found = [self.standing_at(line, position) for line in lines]
+        return min(found, key=lambda one: _distance(one, position), default=None)
 
-    def start(self) -> Standing | None:
+    def start(self) -> SectionPosition | None:
         """Near the beginning of the drive that the image view shows, or of the first one.
 
         Where nobody drove, in the middle of the site.
@@ -116,53 +118,55 @@ class SectionLines(QObject):
         for drive in drives:
             line = self.trajectory(drive)
             if line is not None:
-                return Standing(line, min(_START_M, line.stations.length_m / 2))
+                return SectionPosition(line, min(_START_M, line.stations.length_m / 2))
         axis = self.axis
-        return None if axis is None else Standing(axis, axis.stations.length_m / 2)
+        return None if axis is None else SectionPosition(axis, axis.stations.length_m / 2)
 
-    def under(self, place: Place) -> Standing | None:
+    def under(self, position: PickedPosition) -> SectionPosition | None:
         """The line under a place, drawn ones before trajectories; None where none is near."""
         best: tuple[float, CutLine] | None = None
-        easting, northing, height = place.xyz
+        easting, northing, height = position.xyz
         reach = _LINE_REACH_M
-        for line in self._near_lines(place):
+        for line in self._near_lines(position):
             stations = line.stations
             left, low, right, high = stations.bounds
             is_beside = not (left - reach <= easting <= right + reach)
             if is_beside or not (low - reach <= northing <= high + reach):
                 continue
-            station_m = stations.nearest(place.xyz)
-            away = stations.distance(place.xyz, station_m)
-            above = height - stations.place_at(station_m)[2]
+            station_m = stations.nearest(position.xyz)
+            away = stations.distance(position.xyz, station_m)
+            above = height - stations.position_at(station_m)[2]
             is_near = away <= reach and abs(above) <= _HEIGHT_REACH_M
             if is_near and (best is None or away < best[0]):
                 best = away, line
         if best is not None:
-            return self.standing_at(best[1], place)
-        driven = self.across_trajectory(place)
+            return self.standing_at(best[1], position)
+        driven = self.across_trajectory(position)
         if driven is None or driven.line.is_axis:
             return None  # nothing on the ground shows an axis
-        is_near = _distance(driven, place) <= _TRAJECTORY_REACH_M
+        is_near = _distance(driven, position) <= _TRAJECTORY_REACH_M
         return driven if is_near else None
 
-    def at_hand(self) -> str:
+    def in_background(self) -> str:
         """Id of the chosen line, or else of the one at the cursor; empty when there is none."""
         for id_ in sorted(self._shared.selection.features):
             if self.drawn(id_) is not None:
                 return id_
-        place = self._shared.cursor.place
-        found = None if place is None else self.under(place)
+        position = self._shared.cursor.position
+        found = None if position is None else self.under(position)
         return "" if found is None else found.line.feature
 
-    def near(self, place: Position, reach_m: float) -> list[Feature]:
+    def near(self, position: Position, reach_m: float) -> list[Feature]:
         """The features that are shown and whose bounds come within reach of a place."""
         settings = self._shared.view_settings
-        return [feature for feature in self._near.within(place, reach_m) if settings.shows(feature)]
+        return [
+            feature for feature in self._near.within(position, reach_m) if settings.shows(feature)
+        ]
 
-    def _near_lines(self, place: Place) -> list[CutLine]:
+    def _near_lines(self, position: PickedPosition) -> list[CutLine]:
         """The lines about a place; of those that are not, no stations are made."""
-        near = self.near(place.xyz, _LINE_REACH_M)
-        about = [one for one in near if one.id in self._drawn or _is_about(one, place.xyz)]
+        near = self.near(position.xyz, _LINE_REACH_M)
+        about = [one for one in near if one.id in self._drawn or _is_about(one, position.xyz)]
         found = [self.drawn(feature.id) for feature in about]
         return [line for line in found if line is not None]
 
@@ -182,18 +186,18 @@ class SectionLines(QObject):
             self._drawn.pop(id_, None)
 
 
-def _is_about(feature: Feature, place: Position) -> bool:
+def _is_about(feature: Feature, position: Position) -> bool:
     eastings, northings, _ = zip(*(vertex.xyz for vertex in feature.vertices), strict=True)
-    easting, northing, _ = place
+    easting, northing, _ = position
     reach = _LINE_REACH_M
     is_beside = not (min(eastings) - reach <= easting <= max(eastings) + reach)
     return not is_beside and bool(min(northings) - reach <= northing <= max(northings) + reach)
 
 
 def _line_of(feature: Feature) -> CutLine | None:
-    places = np.array([vertex.xyz for vertex in feature.vertices])
+    positions = np.array([vertex.xyz for vertex in feature.vertices])
     try:
-        stations = Stations(places, is_closed=feature.geometry is Geometry.AREA)
+        stations = Stations(positions, is_closed=feature.geometry is Geometry.AREA)
     except UserError:  # a line without length is no line to cut across
         return None
     return CutLine(feature.id, "", stations)
@@ -217,5 +221,5 @@ def _driven_line(drive: Drive) -> CutLine | None:
         return None
 
 
-def _distance(standing: Standing, place: Place) -> float:
-    return standing.line.stations.distance(place.xyz, standing.station_m)
+def _distance(standing: SectionPosition, position: PickedPosition) -> float:
+    return standing.line.stations.distance(position.xyz, standing.station_m)

@@ -6,7 +6,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from PySide6.QtWidgets import QWidget
 
 from widgets.section_view.lines import SectionLines
-from widgets.shared.cursor import Cursor, Place
+from widgets.shared.cursor import Cursor, PickedPosition
 
 _EVERY_MS = 25
 
@@ -38,7 +38,7 @@ class LiveLine(QObject):
         super().__init__(owner)
         self._lines = lines
         self._owner = owner
-        self._place: Place | None = None
+        self._position: PickedPosition | None = None
         self.is_on = True
         self._wait = QTimer(self, singleShot=True, interval=_EVERY_MS)
         self._wait.timeout.connect(self._on_wait_timeout)
@@ -46,18 +46,18 @@ class LiveLine(QObject):
 
     def stop(self) -> None:
         """Forget where the mouse was."""
-        self._place = None
+        self._position = None
         self._wait.stop()
 
-    def _on_cursor_hovered(self, place: Place | None) -> None:
-        if place is None or not self.is_on or not self._owner.isVisible():
+    def _on_cursor_hovered(self, position: PickedPosition | None) -> None:
+        if position is None or not self.is_on or not self._owner.isVisible():
             return
-        self._place = place
+        self._position = position
         if not self._wait.isActive():
             self._wait.start()
 
     def _on_wait_timeout(self) -> None:
-        place, self._place = self._place, None
-        standing = None if place is None else self._lines.under(place)
+        position, self._position = self._position, None
+        standing = None if position is None else self._lines.under(position)
         if standing is not None:
             self.found.emit(standing)

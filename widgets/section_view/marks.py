@@ -15,7 +15,7 @@ from processing.section.cut import Cut
 from processing.section.profile import segment_crossings
 from widgets.plane_view.projected_map import PlaneFeatures
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.section_view.lay import SectionLay
+from widgets.section_view.projection import SectionProjection
 from widgets.shared.crowded_marks import marks_to_paint
 from widgets.shared.feature_style import style_of
 
@@ -65,18 +65,18 @@ class NamedMark:
 
     Attributes
     ----------
-    place : tuple of float
+    position : tuple of float
         In the plane of the section.
     """
 
     feature: str
     kind: str
-    place: tuple[float, float]
+    position: tuple[float, float]
 
 
 def marks_of(features: PlaneFeatures, cut: Cut) -> SectionMarks:
     """The marks of what is drawn in a cut."""
-    flat, lay = features.flat, SectionLay(cut)
+    flat, projection = features.flat, SectionProjection(cut)
     section = cut.to_section(flat.local_xyz)
     numbers, passed = segment_crossings(section[flat.segments[:, 0]], section[flat.segments[:, 1]])
     inside = np.abs(passed[:, 0]) <= cut.half_length_m
@@ -88,12 +88,12 @@ def marks_of(features: PlaneFeatures, cut: Cut) -> SectionMarks:
         flat.shapes[owner].feature.vertices[number].is_occluded
         for owner, number in zip(owners.tolist(), own, strict=True)
     ]
-    on_plane = lay.on_plane(np.column_stack([passed, np.zeros(len(passed))]))
+    on_plane = projection.on_plane(np.column_stack([passed, np.zeros(len(passed))]))
     return SectionMarks(
         features,
         on_plane[inside],
         flat.segment_owners[numbers[inside]],
-        lay.on_plane(section[vertices]),
+        projection.on_plane(section[vertices]),
         owners,
         np.array(hollow, dtype=bool),
     )
@@ -127,16 +127,16 @@ def paint_marks(
 
 def mark_under(marks: SectionMarks, viewport: PlaneViewport, mouse: QPointF) -> NamedMark | None:
     """The mark nearest to the mouse within a few pixels."""
-    places = np.concatenate([marks.crossings, marks.vertices])
-    if not len(places):
+    positions = np.concatenate([marks.crossings, marks.vertices])
+    if not len(positions):
         return None
-    away = np.hypot(*(viewport.to_screen(places) - np.array([mouse.x(), mouse.y()])).T)
+    away = np.hypot(*(viewport.to_screen(positions) - np.array([mouse.x(), mouse.y()])).T)
     nearest = int(away.argmin())
     if away[nearest] > _NAMED_PX:
         return None
     owners = np.concatenate([marks.crossing_owners, marks.vertex_owners])
     feature = marks.feature(int(owners[nearest]))
-    x, y = places[nearest].tolist()
+    x, y = positions[nearest].tolist()
     return NamedMark(feature.id, feature.kind, (x, y))
 
 

@@ -16,23 +16,23 @@ from processing.points.drive import Drive
 from processing.project.feature import Vertex
 from processing.section.cut import Cut
 from processing.text import Language, Text
-from widgets.plane_view.lay import Spot
+from widgets.plane_view.projection import PlanePoint
 from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.section_view.feed import SectionFeed, SectionPicture, SectionWish
+from widgets.section_view.diagnostic_marks import DiagnosticMarks
+from widgets.section_view.feed import SectionFeed, SectionPicture, SectionRequest
 from widgets.section_view.frame import BOTTOM_PX, LEFT_PX, paint_frame
 from widgets.section_view.ground import GroundPainter, ground_y
 from widgets.section_view.ground_layers import GroundLayers
-from widgets.section_view.lay import SectionLay
 from widgets.section_view.lines import SectionLines
 from widgets.section_view.marks import NamedMark, SectionMarks, mark_under, marks_of, paint_marks
 from widgets.section_view.point_search import measured_point, points_within, shown_point
+from widgets.section_view.projection import SectionProjection
+from widgets.section_view.section_position import SectionPosition
 from widgets.section_view.settings import SectionSettings
-from widgets.section_view.standing import Standing
 from widgets.section_view.titles import frame_words
-from widgets.section_view.trial_marks import TrialMarks
 from widgets.section_view.view_menu import add_settings
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.screen_marks import paint_note
 from widgets.shared.shared_state import SharedState
@@ -76,10 +76,10 @@ class SectionPane(PlaneView):
     ) -> None:
         super().__init__(source, shared, parent, language=language)
         self._lines = lines
-        self._standing: Standing | None = None
-        self._asked: SectionWish | None = None
+        self._standing: SectionPosition | None = None
+        self._asked: SectionRequest | None = None
         self._picture: SectionPicture | None = None
-        self._lay: SectionLay | None = None
+        self._projection: SectionProjection | None = None
         self._framed, self._ground_y = "", 0.0
         self._marks: SectionMarks | None = None
         self._named: NamedMark | None = None
@@ -88,7 +88,7 @@ class SectionPane(PlaneView):
         self._is_closed = False
         self._points = GroundPainter()
         self._ground = GroundLayers(shared.volume, self, language)
-        self._trials = TrialMarks(language)
+        self._diagnostics = DiagnosticMarks(language)
         self._parameters: Mapping[str, object] = {}
         self.is_pinned = self.is_mouse_here = self.is_clicking = False
         self._feed = SectionFeed()
@@ -101,14 +101,14 @@ class SectionPane(PlaneView):
     # What others ask.
 
     @property
-    def standing(self) -> Standing | None:
+    def standing(self) -> SectionPosition | None:
         """Where the section stands; its picture may still be on its way."""
         return self._standing
 
     @property
     def cut(self) -> Cut | None:
         """The cut that is painted."""
-        return None if self._lay is None else self._lay.cut
+        return None if self._projection is None else self._projection.cut
 
     @property
     def picture(self) -> SectionPicture | None:
@@ -126,11 +126,11 @@ class SectionPane(PlaneView):
             self._marks = marks_of(features, cut)
         return self._marks
 
-    def show_standing(self, standing: Standing | None) -> None:
+    def show_standing(self, standing: SectionPosition | None) -> None:
         """Cut here from now on; None: nowhere."""
         self._standing = standing
         if standing is None:
-            self._picture = self._lay = None
+            self._picture = self._projection = None
             self._framed, self._marks = "", None
             self.set_ground_stale()
         else:
@@ -152,7 +152,7 @@ class SectionPane(PlaneView):
     def use_tool_parameters(self, parameters: Mapping[str, object]) -> None:
         """As in the view."""
         self._parameters = dict(parameters)
-        if self._settings.shows_trials:
+        if self._settings.shows_diagnostics:
             self._ask()
 
     @override
@@ -169,8 +169,8 @@ class SectionPane(PlaneView):
     # What a plane view asks.
 
     @override
-    def lay(self) -> SectionLay | None:
-        return self._lay
+    def projection(self) -> SectionProjection | None:
+        return self._projection
 
     @override
     def words(self) -> str:
@@ -184,11 +184,11 @@ class SectionPane(PlaneView):
 
     @override
     def extent(self) -> QRectF | None:
-        picture, lay = self.picture, self.lay()
-        if picture is None or lay is None or not len(picture.section):
+        picture, projection = self.picture, self.projection()
+        if picture is None or projection is None or not len(picture.section):
             return None
-        places = lay.on_plane(picture.section)
-        low, high = np.percentile(places, [0.2, 99.8], axis=0)
+        positions = projection.on_plane(picture.section)
+        low, high = np.percentile(positions, [0.2, 99.8], axis=0)
         (left, top), (right, bottom) = low.tolist(), high.tolist()
         # The rulers stand on the picture: what they would hide is left free.
         left -= (right - left) * LEFT_PX / max(self.width() - LEFT_PX, 1.0)
@@ -208,43 +208,45 @@ class SectionPane(PlaneView):
             return
         selected = self._shared.selection.features
         self._ground.paint(painter, viewport, picture)
-        self._trials.paint(painter, picture, viewport)
+        self._diagnostics.paint(painter, picture, viewport)
         paint_marks(painter, marks, viewport, catalogue, selected)
         words = frame_words(
             self._source,
-            picture.wish.standing,
+            picture.request.standing,
             self._language,
             exaggeration=viewport.exaggeration,
             is_pinned=self.is_pinned,
             is_empty=not picture.points.size,
         )
-        paint_frame(painter, viewport, picture.wish.cut, words)
+        paint_frame(painter, viewport, picture.request.cut, words)
         self._ground.paint_legend(painter, viewport, picture)
-        self._trials.paint_words(painter, picture, viewport)
+        self._diagnostics.paint_words(painter, picture, viewport)
         named = self._named
         if named is not None:
-            x, y = viewport.to_screen(np.array([named.place]))[0].tolist()
+            x, y = viewport.to_screen(np.array([named.position]))[0].tolist()
             name = Text.same(named.kind)
             if named.kind in catalogue:
                 name = catalogue[named.kind].name
-            note = Note((0.0, 0.0, 0.0), name.spoken(self._language))
+            note = Note((0.0, 0.0, 0.0), name.in_language(self._language))
             paint_note(painter, (x, y), note)
 
     @override
-    def place_at(self, place: Spot, reach: float, *, exact: bool) -> Place | None:
-        picture, lay = self._picture, self._lay
-        if picture is None or lay is None:
+    def position_at(
+        self, position: PlanePoint, reach: float, *, exact: bool
+    ) -> PickedPosition | None:
+        picture, projection = self._picture, self._projection
+        if picture is None or projection is None:
             return None
-        at = np.array([place[0], lay.height_of(place[1])])
+        at = np.array([position[0], projection.height_of(position[1])])
         ellipse = np.array([reach, reach / self.viewport.exaggeration])
         found = (measured_point if exact else shown_point)(picture, at, ellipse)
         drawing, held = self._shared.sketch.drawing, self._held
         if found is not None or drawing is None or held is None or drawing.replaces != held[0]:
             return found
         # Where nothing was measured a vertex that is dragged keeps what the section doesn't show.
-        _, _, away = lay.cut.to_section([held[1].xyz])[0].tolist()
-        easting, northing, height = lay.cut.to_space([[*at, away]])[0].tolist()
-        return Place((easting, northing, height), is_occluded=True)
+        _, _, away = projection.cut.to_section([held[1].xyz])[0].tolist()
+        easting, northing, height = projection.cut.to_space([[*at, away]])[0].tolist()
+        return PickedPosition((easting, northing, height), is_occluded=True)
 
     @override
     def points_inside(self, outline: QPolygonF) -> Mapping[str, NDArray[np.int64]]:
@@ -262,7 +264,7 @@ class SectionPane(PlaneView):
         return np.array([[*low, -np.inf], [*high, np.inf]])
 
     @override
-    def on_cursor_moved(self, place: Place) -> None:
+    def on_cursor_moved(self, position: PickedPosition) -> None:
         """Stay: the section itself moves to the cursor."""
         self.update()
 
@@ -283,7 +285,7 @@ class SectionPane(PlaneView):
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         if self._picture is not None and not self._framed:
-            self._look_at_place(self._picture)
+            self._look_at_position(self._picture)
 
     @override
     def mouseMoveEvent(self, event: QMouseEvent) -> None:
@@ -321,15 +323,15 @@ class SectionPane(PlaneView):
 
     def _on_feed_arrived(self, picture: SectionPicture) -> None:
         # What was asked for and passed meanwhile is shown all the same: the newest comes last.
-        if self._is_closed or self._standing is None or picture.wish.drives != self._drives():
+        if self._is_closed or self._standing is None or picture.request.drives != self._drives():
             return
         self._picture = picture
-        if self._lay is None or self._lay.cut != picture.wish.cut:
-            self._lay = SectionLay(picture.wish.cut)
-        self._look_at_place(picture)
+        if self._projection is None or self._projection.cut != picture.request.cut:
+            self._projection = SectionProjection(picture.request.cut)
+        self._look_at_position(picture)
         self.set_ground_stale()
         self.update()
-        if picture.is_final and picture.wish is self._asked:
+        if picture.is_final and picture.request is self._asked:
             self.sharpened.emit()
 
     def _on_map_drive_columns_changed(self, drive_id: str) -> None:
@@ -347,14 +349,14 @@ class SectionPane(PlaneView):
         if self._standing is None or self._is_closed or not self.isVisible():
             return  # what is hidden is looked for when it is shown
         standing, look = self._standing, self._shared.view_settings.look
-        wish = SectionWish(
+        request = SectionRequest(
             standing, standing.cut, self._drives(), look, self._settings, self._parameters
         )
-        self._asked = wish
-        self._feed.wish(wish)
+        self._asked = request
+        self._feed.request(request)
 
     def _hover(self, mouse: QPointF | None) -> None:
-        if self._trials.hover(self._picture, self.viewport, mouse):
+        if self._diagnostics.hover(self._picture, self.viewport, mouse):
             self.update()
 
     def _drives(self) -> tuple[Drive, ...]:
@@ -362,15 +364,15 @@ class SectionPane(PlaneView):
         drives = self._source.drives()
         return tuple(drive for drive in drives if drive.count and drive.id not in hidden)
 
-    def _look_at_place(self, picture: SectionPicture) -> None:
+    def _look_at_position(self, picture: SectionPicture) -> None:
         """Begin on the ground at each new line; afterwards move only as far as needed."""
         if self.viewport.width <= 1:  # never shown yet: it is looked at when it is
             return
-        standing, line = picture.wish.standing, picture.wish.standing.line
+        standing, line = picture.request.standing, picture.request.standing.line
         framed = f"{line.feature}/{line.drive}/{standing.is_along}"
-        viewport, lay = self.viewport, SectionLay(picture.wish.cut)
+        viewport, projection = self.viewport, SectionProjection(picture.request.cut)
         if framed != self._framed:
-            y = self._ground_y = ground_y(lay, picture)
+            y = self._ground_y = ground_y(projection, picture)
             sides = y - _START_ABOVE_M, _START_HALF_M, y + _START_BELOW_M
             scaled = viewport if self._framed else viewport.fitted(-_START_HALF_M, *sides)
             scaled = max(viewport, scaled, key=lambda one: one.scale)  # a review may be near
@@ -378,15 +380,15 @@ class SectionPane(PlaneView):
             self.set_viewport(scaled.centred_on(0.0, y - below))
             self._framed = framed
         if standing.through is not None:
-            place = lay.to_plane(np.array([standing.through]))
-            x, y = self.viewport.to_screen(place)[0].tolist()
+            position = projection.to_plane(np.array([standing.through]))
+            x, y = self.viewport.to_screen(position)[0].tolist()
             inside = LEFT_PX <= x <= self.width() and 0 <= y <= self.height() - BOTTOM_PX
             if np.isfinite(x) and not inside:
-                self.set_viewport(self.viewport.centred_on(*place[0].tolist()))
+                self.set_viewport(self.viewport.centred_on(*position[0].tolist()))
 
     def _held_by(self, event: QMouseEvent) -> tuple[str, Vertex] | None:
         """The vertex that a press takes hold of, with its feature's id."""
-        if event.button() != Qt.MouseButton.LeftButton or self._lay is None:
+        if event.button() != Qt.MouseButton.LeftButton or self._projection is None:
             return None
         self._refresh()
         hit = self._hits.quick_hit(event.position(), event.modifiers())

@@ -14,9 +14,9 @@ from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.section_view.lines import SectionLines
 from widgets.section_view.pane import SectionPane
 from widgets.section_view.pinned import PinnedSections
+from widgets.section_view.section_position import SectionPosition
 from widgets.section_view.settings import SectionSettings
-from widgets.section_view.standing import Standing
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -58,7 +58,7 @@ class SectionPanes(QSplitter):
         """One, or two while a place is held."""
         return self.all if self.all[0].is_pinned else self.all[:1]
 
-    def show_one(self, standing: Standing | None) -> None:
+    def show_one(self, standing: SectionPosition | None) -> None:
         """Show one section; None: nothing."""
         self._be_pinned(is_pinned=False)
         self.all[0].show_standing(standing)
@@ -85,11 +85,11 @@ class SectionPanes(QSplitter):
         for pane in self.all:
             pane.set_mouse_tool(tool)
 
-    def are_clicked_at(self, place: Place) -> bool:
+    def are_clicked_at(self, position: PickedPosition) -> bool:
         """Whether a place is being clicked here just now, within the slab that is shown."""
         for pane in self.shown:
             if pane.is_clicking and pane.cut is not None:
-                return bool(pane.cut.holds(pane.cut.to_section([place.xyz]))[0])
+                return bool(pane.cut.holds(pane.cut.to_section([position.xyz]))[0])
         return False
 
     @override

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Self
 
-from widgets.section_view.standing import Standing
+from widgets.section_view.section_position import SectionPosition
 
 
 @dataclass(frozen=True)
@@ -17,10 +17,10 @@ class PinnedSections:
     across, along : Standing
     """
 
-    across: Standing
-    along: Standing
+    across: SectionPosition
+    along: SectionPosition
 
     @classmethod
-    def at(cls, standing: Standing) -> Self:
+    def at(cls, standing: SectionPosition) -> Self:
         """The two sections where one stands."""
         return cls(standing.turned(is_along=False), standing.turned(is_along=True))

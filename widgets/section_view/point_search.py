@@ -15,8 +15,8 @@ from processing.project.feature import PointReference
 from processing.section.points_in_cut import points_in_cut, section_points
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.section_view.feed import SectionPicture
-from widgets.section_view.lay import SectionLay
-from widgets.shared.cursor import Place
+from widgets.section_view.projection import SectionProjection
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.outlines import are_inside
 
 Floats = NDArray[np.float64]
@@ -28,7 +28,7 @@ _ALIKE = 1 / 24
 near: half a pixel."""
 
 
-def shown_point(picture: SectionPicture, at: Floats, reach: Floats) -> Place | None:
+def shown_point(picture: SectionPicture, at: Floats, reach: Floats) -> PickedPosition | None:
     """The nearest of the points that are painted.
 
     Parameters
@@ -49,27 +49,29 @@ def shown_point(picture: SectionPicture, at: Floats, reach: Floats) -> Place | N
     if found < 0:
         return None
     number = int(start) + found
-    drive = picture.wish.drives[int(picture.drive_numbers[number])]
-    return place_of(drive, int(picture.points[number]))
+    drive = picture.request.drives[int(picture.drive_numbers[number])]
+    return position_of(drive, int(picture.points[number]))
 
 
-def measured_point(picture: SectionPicture, at: Floats, reach: Floats) -> Place | None:
+def measured_point(picture: SectionPicture, at: Floats, reach: Floats) -> PickedPosition | None:
     """The nearest of all measured points in the slab; as :func:`shown_point` else."""
     if not picture.is_thinned:
         return shown_point(picture, at, reach)
-    cut = picture.wish.cut
+    cut = picture.request.cut
     east, north, _ = cut.to_space([[at[0], 0.0, 0.0]])[0].tolist()
     around = replace(cut, middle=(east, north, cut.middle[2]), half_length_m=float(reach[0]))
     best: tuple[Floats, Drive, int] | None = None
-    for drive in picture.wish.drives:
-        near = section_points(drive, around, drive.count, hides_noise=picture.wish.look.hides_noise)
+    for drive in picture.request.drives:
+        near = section_points(
+            drive, around, drive.count, hides_noise=picture.request.look.hides_noise
+        )
         section = near.section + np.array([at[0], 0.0, 0.0])
         found = _nearest(section, at, reach)
         if found < 0:
             continue
         if best is None or _nearest(np.stack([best[0], section[found]]), at, reach) == 1:
             best = section[found], drive, int(near.points[found])
-    return None if best is None else place_of(best[1], best[2])
+    return None if best is None else position_of(best[1], best[2])
 
 
 def points_within(
@@ -79,18 +81,18 @@ def points_within(
 
     But for noise while it is hidden.
     """
-    hides_noise = picture.wish.look.hides_noise
-    cut, bounds = picture.wish.cut, outline.boundingRect()
-    lay = SectionLay(cut)
+    hides_noise = picture.request.look.hides_noise
+    cut, bounds = picture.request.cut, outline.boundingRect()
+    projection = SectionProjection(cut)
     ends = [viewport.to_plane(x, 0.0)[0] for x in (bounds.left(), bounds.right())]
     middle_m, half_m = sum(ends) / 2, max(abs(ends[1] - ends[0]) / 2, _LEAST_M)
     east, north, _ = cut.to_space([[middle_m, 0.0, 0.0]])[0].tolist()
     around = replace(cut, middle=(east, north, cut.middle[2]), half_length_m=half_m)
     found = {}
-    for drive in picture.wish.drives:
+    for drive in picture.request.drives:
         points = points_in_cut(drive, around, drive.count, hides_noise=hides_noise)
         section = cut.to_section(drive.xyz(points))
-        inside = are_inside(viewport.to_screen(lay.on_plane(section)), outline)
+        inside = are_inside(viewport.to_screen(projection.on_plane(section)), outline)
         inside &= np.abs(section[:, 0]) <= cut.half_length_m
         if inside.any():
             found[drive.id] = points[inside]
@@ -103,10 +105,10 @@ def can_search(drive: Drive) -> bool:
     return drive.count == 0 or image_of(drive, kind).pyramid.is_ready
 
 
-def place_of(drive: Drive, point: int) -> Place:
+def position_of(drive: Drive, point: int) -> PickedPosition:
     """A measured point with its exact coordinate."""
     easting, northing, height = drive.xyz(np.array([point]))[0].tolist()
-    return Place((easting, northing, height), PointReference(drive.id, point))
+    return PickedPosition((easting, northing, height), PointReference(drive.id, point))
 
 
 def _nearest(section: Floats, at: Floats, reach: Floats) -> int:

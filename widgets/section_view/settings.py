@@ -27,7 +27,7 @@ class SectionSettings:
         Whether points are coloured by their distance from the plane.
     shows_ground : bool
         Whether the ground that the tool “ground” found is drawn.
-    shows_trials : bool
+    shows_diagnostics : bool
         Whether the normalised scanline is drawn, with the places that tools look at on it.
     """
 
@@ -38,9 +38,9 @@ class SectionSettings:
     is_live: bool = True
     is_by_distance: bool = False
     shows_ground: bool = True
-    shows_trials: bool = False
+    shows_diagnostics: bool = False
 
     @property
     def wanted(self) -> tuple[bool, bool, bool]:
         """What has to be looked up: colours by distance, the found ground, what tools look at."""
-        return self.is_by_distance, self.shows_ground, self.shows_trials
+        return self.is_by_distance, self.shows_ground, self.shows_diagnostics

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from processing.text import Language, Text
 from widgets.section_view.frame import FrameWords
-from widgets.section_view.standing import Standing
+from widgets.section_view.section_position import SectionPosition
 from widgets.shared.map_source import MapSource
 
 _ACROSS = Text("Across {line}", "{line}の横断")
@@ -23,7 +23,7 @@ _LEFT, _RIGHT = Text("◂ left", "◂ 左"), Text("right ▸", "右 ▸")
 _BACK, _AHEAD = Text("◂ back", "◂ 手前"), Text("ahead ▸", "前方 ▸")
 
 
-def line_title(source: MapSource, standing: Standing) -> Text:
+def line_title(source: MapSource, standing: SectionPosition) -> Text:
     """Across or along which line."""
     named = _ALONG if standing.is_along else _ACROSS
     if standing.line.is_axis:
@@ -38,7 +38,7 @@ def line_title(source: MapSource, standing: Standing) -> Text:
     return named.filled(line=_DRAWN.filled(kind=kind))
 
 
-def station_text(standing: Standing) -> Text:
+def station_text(standing: SectionPosition) -> Text:
     """Where on the line."""
     beyond_m = standing.beyond_m
     if beyond_m < 0:
@@ -50,7 +50,7 @@ def station_text(standing: Standing) -> Text:
 
 def frame_words(
     source: MapSource,
-    standing: Standing,
+    standing: SectionPosition,
     language: Language,
     *,
     exaggeration: float,
@@ -68,7 +68,7 @@ def frame_words(
     ]
     left, right = (_BACK, _AHEAD) if standing.is_along else (_LEFT, _RIGHT)
     return FrameWords(
-        tuple(part.spoken(language) for part in parts),
-        left.spoken(language),
-        right.spoken(language),
+        tuple(part.in_language(language) for part in parts),
+        left.in_language(language),
+        right.in_language(language),
     )

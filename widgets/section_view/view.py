@@ -11,21 +11,21 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from typing_extensions import override
 
 from processing.section.cut import Cut
-from processing.section.profile import Profile, profile_of
+from processing.section.profile import SectionProfile, profile_of
 from processing.text import Language, Text
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.section_view.bar import SectionBar
 from widgets.section_view.drawn_lines import drawn_lines
-from widgets.section_view.ground_place import place_of_step
+from widgets.section_view.ground_position import position_of_step
 from widgets.section_view.lines import SectionLines
 from widgets.section_view.live import LiveLine
 from widgets.section_view.pane import SectionPane
 from widgets.section_view.panes import SectionPanes
 from widgets.section_view.pinned import PinnedSections
+from widgets.section_view.section_position import SectionPosition
 from widgets.section_view.settings import SectionSettings
-from widgets.section_view.standing import Standing
 from widgets.section_view.titles import line_title
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -50,17 +50,17 @@ class SectionView(QWidget):
     -------
     sharpened()
         The points of the section that is asked for are painted.
-    menu_requested(wish: MenuWish)
+    menu_requested(wish: MenuRequest)
         The right button with nothing under way.
     cut_changed(cut: Cut | None)
         Where the slab is now; pinned: the one across.
     settings_changed(settings: SectionSettings)
         Set by hand, worth remembering.
     pinned_changed(is_pinned: bool)
-    told(text: Text)
+    reported(text: Text)
         A line for the status bar.
     profile_export_requested(), template_requested()
-        The buttons of the bar; :meth:`profile_wish` gives what is to be exported.
+        The buttons of the bar; :meth:`profile_request` gives what is to be exported.
     """
 
     sharpened = Signal()
@@ -68,7 +68,7 @@ class SectionView(QWidget):
     cut_changed = Signal(object)
     settings_changed = Signal(object)
     pinned_changed = Signal(bool)
-    told = Signal(object)
+    reported = Signal(object)
     profile_export_requested = Signal()
     template_requested = Signal()
 
@@ -85,7 +85,7 @@ class SectionView(QWidget):
         self._shared = shared
         self._settings = SectionSettings()
         self._followed = ""
-        self._standing: Standing | None = None
+        self._standing: SectionPosition | None = None
         self._pinned: PinnedSections | None = None
         self._told_cut: Cut | None = None
         self._is_stepping = False
@@ -130,7 +130,7 @@ class SectionView(QWidget):
         return self._settings
 
     @property
-    def standing(self) -> Standing | None:
+    def standing(self) -> SectionPosition | None:
         """Where the section stands; pinned: the one across."""
         return self._standing if self._pinned is None else self._pinned.across
 
@@ -179,10 +179,10 @@ class SectionView(QWidget):
             Id of a line or an area; one without length is refused with a sentence.
         """
         if line and self._lines.drawn(line) is None:
-            self.told.emit(NO_LINE)
+            self.reported.emit(NO_LINE)
             line = self._followed
         self._followed = line
-        standing = self._through(self._shared.cursor.place)
+        standing = self._through(self._shared.cursor.position)
         if standing is not None:
             self._stand(standing)
 
@@ -197,7 +197,7 @@ class SectionView(QWidget):
         self._stand(after)
         self._is_stepping = True
         try:
-            self._shared.cursor.move_to(place_of_step(after, self._source.drives()))
+            self._shared.cursor.move_to(position_of_step(after, self._source.drives()))
         finally:
             self._is_stepping = False
 
@@ -212,16 +212,16 @@ class SectionView(QWidget):
             self._stand(self._standing)
         self.pinned_changed.emit(is_pinned)
 
-    def show_place(self, place: Place) -> None:
+    def show_position(self, position: PickedPosition) -> None:
         """Cut through a place, across the line under it or else across what is followed."""
         self._live.stop()
-        standing = self._lines.under(place) or self._through(place)
+        standing = self._lines.under(position) or self._through(position)
         if standing is not None:
             self._stand(standing)
 
-    def center_on(self, place: Place) -> None:
-        """The same as :meth:`show_place`: a section goes to where it is asked for."""
-        self.show_place(place)
+    def center_on(self, position: PickedPosition) -> None:
+        """The same as :meth:`show_position`: a section goes to where it is asked for."""
+        self.show_position(position)
 
     def center_on_selection(self) -> None:
         """Cut through the middle of the chosen features, or through the cursor."""
@@ -229,10 +229,10 @@ class SectionView(QWidget):
             feature = self._source.feature(id_)
             if feature is not None:
                 vertex = feature.vertices[len(feature.vertices) // 2]
-                self.show_place(Place(vertex.xyz, vertex.measured, vertex.is_occluded))
+                self.show_position(PickedPosition(vertex.xyz, vertex.measured, vertex.is_occluded))
                 return
-        if self._shared.cursor.place is not None:
-            self.show_place(self._shared.cursor.place)
+        if self._shared.cursor.position is not None:
+            self.show_position(self._shared.cursor.position)
 
     def show_everything(self) -> None:
         """Show all points of the slab."""
@@ -244,17 +244,17 @@ class SectionView(QWidget):
         for pane in self.panes:
             pane.zoom_by(factor)
 
-    def position_of(self, place: Place) -> QPointF | None:
+    def position_of(self, position: PickedPosition) -> QPointF | None:
         """Where a place is in this widget; None outside the slab."""
         pane = self._panes.all[0]
-        spot = pane.position_of(place)
+        spot = pane.position_of(position)
         return None if spot is None else QPointF(pane.mapTo(self, spot))
 
     def set_mouse_tool(self, tool: MouseTool | None) -> None:
         """Tell this tool from now on what the mouse does; None: a click puts the cursor."""
         self._panes.set_mouse_tool(tool)
 
-    def profile_wish(self) -> Callable[[], Profile] | None:
+    def profile_request(self) -> Callable[[], SectionProfile] | None:
         """What makes the profile of the section that is shown, in any thread; None without one."""
         standing = self.standing
         if standing is None:
@@ -289,16 +289,16 @@ class SectionView(QWidget):
 
     # What others tell.
 
-    def _on_cursor_moved(self, place: Place) -> None:
-        if self._is_stepping or self._pinned is not None or self._panes.are_clicked_at(place):
+    def _on_cursor_moved(self, position: PickedPosition) -> None:
+        if self._is_stepping or self._pinned is not None or self._panes.are_clicked_at(position):
             return
         self._live.stop()
-        standing = self._lines.under(place) if self._settings.is_live else None
-        standing = standing or self._through(place)
+        standing = self._lines.under(position) if self._settings.is_live else None
+        standing = standing or self._through(position)
         if standing is not None:
             self._stand(standing)
 
-    def _on_live_found(self, standing: Standing) -> None:
+    def _on_live_found(self, standing: SectionPosition) -> None:
         is_own = any(pane.is_mouse_here for pane in self.panes)
         if not is_own and self._pinned is None:
             self._stand(standing)
@@ -323,16 +323,16 @@ class SectionView(QWidget):
             self._stand(replace(standing, line=line))
         else:
             self._release()
-            self._stand(self._through(self._shared.cursor.place) or self._lines.start())
+            self._stand(self._through(self._shared.cursor.position) or self._lines.start())
 
     def _on_settings_chosen(self, settings: SectionSettings) -> None:
         self.use_settings(settings)
         self.settings_changed.emit(settings)
 
     def _on_bar_line_wanted(self, is_drawn: bool) -> None:  # noqa: FBT001 - a slot
-        line = self._lines.at_hand() if is_drawn else ""
+        line = self._lines.in_background() if is_drawn else ""
         if is_drawn and not line:
-            self.told.emit(NO_LINE)
+            self.reported.emit(NO_LINE)
             self._show_line(self._standing)
         else:
             self.follow(line)
@@ -345,18 +345,18 @@ class SectionView(QWidget):
         self._release()
         self._followed = ""
         self._panes.show_one(None)
-        self._stand(self._through(self._shared.cursor.place) or self._lines.start())
+        self._stand(self._through(self._shared.cursor.position) or self._lines.start())
 
-    def _through(self, place: Place | None) -> Standing | None:
+    def _through(self, position: PickedPosition | None) -> SectionPosition | None:
         """Where the section across what is followed goes through a place."""
         line = self._lines.drawn(self._followed) if self._followed else None
         if line is None:
-            return None if place is None else self._lines.across_trajectory(place)
-        if place is None:
-            return Standing(line, line.stations.length_m / 2)
-        return self._lines.standing_at(line, place)
+            return None if position is None else self._lines.across_trajectory(position)
+        if position is None:
+            return SectionPosition(line, line.stations.length_m / 2)
+        return self._lines.standing_at(line, position)
 
-    def _stand(self, standing: Standing | None) -> None:
+    def _stand(self, standing: SectionPosition | None) -> None:
         """Show the section that stands here, as the settings want it."""
         settings = self._settings
         if standing is not None:
@@ -374,7 +374,7 @@ class SectionView(QWidget):
             self._told_cut = self.cut
             self.cut_changed.emit(self._told_cut)
 
-    def _show_line(self, standing: Standing | None) -> None:
+    def _show_line(self, standing: SectionPosition | None) -> None:
         is_drawn = standing is not None and bool(standing.line.feature)
         self._bar.show_line(is_drawn=is_drawn, has_axis=self._lines.axis is not None)
 

@@ -10,7 +10,7 @@ from processing.project.feature import PointReference, Position
 
 
 @dataclass(frozen=True)
-class Place:
+class PickedPosition:
     """A place in the project's space, and the measured point that is there, if one is.
 
     Attributes
@@ -38,32 +38,32 @@ class Cursor(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._place: Place | None = None
-        self._hover: Place | None = None
+        self._position: PickedPosition | None = None
+        self._hover: PickedPosition | None = None
 
     @property
-    def place(self) -> Place | None:
+    def position(self) -> PickedPosition | None:
         """Where the cursor is; None before anything was clicked."""
-        return self._place
+        return self._position
 
     @property
-    def hover(self) -> Place | None:
+    def hover(self) -> PickedPosition | None:
         """What the mouse is over; None outside the views and over empty pixels."""
         return self._hover
 
-    def move_to(self, place: Place) -> None:
+    def move_to(self, position: PickedPosition) -> None:
         """Put the cursor somewhere; every view follows."""
-        if place != self._place:
-            self._place = place
-            self.moved.emit(place)
+        if position != self._position:
+            self._position = position
+            self.moved.emit(position)
 
-    def hover_over(self, place: Place | None) -> None:
+    def hover_over(self, position: PickedPosition | None) -> None:
         """Tell what the mouse is over."""
-        if place != self._hover:
-            self._hover = place
-            self.hovered.emit(place)
+        if position != self._hover:
+            self._hover = position
+            self.hovered.emit(position)
 
     def clear(self) -> None:
         """Forget both places, when a project is closed."""
-        self._place = None
+        self._position = None
         self.hover_over(None)

@@ -98,10 +98,10 @@ class FeatureShapes:
         )
 
     def _shape(self, feature: Feature) -> FeatureShape:
-        return FeatureShape(feature, local_places(feature.vertices, self._origin))
+        return FeatureShape(feature, local_positions(feature.vertices, self._origin))
 
 
-def local_places(vertices: Iterable[Vertex], origin: Floats) -> Floats:
+def local_positions(vertices: Iterable[Vertex], origin: Floats) -> Floats:
     """(n, 3) float64: vertices in metres from the view's origin."""
     xyz = np.array([vertex.xyz for vertex in vertices], dtype=np.float64).reshape(-1, 3)
     local_xyz: Floats = xyz - origin
@@ -119,7 +119,7 @@ def segments_of(geometry: Geometry, count: int) -> Integers:
     return segments
 
 
-def flattened(shapes: tuple[FeatureShape, ...]) -> FlatShapes:
+def flatten_shapes(shapes: tuple[FeatureShape, ...]) -> FlatShapes:
     """Some features as a few long arrays."""
     counts = np.array([len(shape.local_xyz) for shape in shapes], dtype=np.int64)
     starts = np.cumsum(counts) - counts

@@ -19,11 +19,11 @@ class MapChanges(QObject):
     labels_changed = Signal(
         str, object
     )  # drive id; (n,) int64: points with other labels, none: many
-    judgements_changed = Signal(
+    error_maps_changed = Signal(
         str, object
     )  # drive id; (n,) int64: points that are judged anew, where the picture shows it
 
     def follow_labels(self, show: Callable[[str, NDArray[np.int64]], None]) -> None:
         """Have a view show points whose labels changed, or what is thought of these."""
         self.labels_changed.connect(show)
-        self.judgements_changed.connect(show)
+        self.error_maps_changed.connect(show)

@@ -32,9 +32,9 @@ class OwnSettings(QObject):
         self.settings = ViewSettings(self)
         self.settings.show_image(shared.drive_id, shared.image_kind)
         self.settings.change_look(attribute=shared.look.attribute)
-        self.settings.lay_image(shared.image_lay)
+        self.settings.orient_image(shared.image_orientation)
         shared.look_changed.connect(self._follow)
-        shared.image_lay_changed.connect(self._on_shared_image_lay_changed)
+        shared.image_orientation_changed.connect(self._on_shared_image_orientation_changed)
         shared.hidden_kinds_changed.connect(self._follow)
         shared.hidden_runs_changed.connect(self._follow)
         shared.shows_rejected_changed.connect(self._follow)
@@ -52,6 +52,8 @@ class OwnSettings(QObject):
         self.settings.hide_runs(shared.hidden_runs)
         self.settings.set_shows_rejected(shared.shows_rejected)
 
-    def _on_shared_image_lay_changed(self) -> None:
-        is_vertical = self._shared.image_lay.is_vertical
-        self.settings.lay_image(replace(self.settings.image_lay, is_vertical=is_vertical))
+    def _on_shared_image_orientation_changed(self) -> None:
+        is_vertical = self._shared.image_orientation.is_vertical
+        self.settings.orient_image(
+            replace(self.settings.image_orientation, is_vertical=is_vertical)
+        )

@@ -11,7 +11,7 @@ from widgets.shared.feature_style import ACCENT, CURSOR_COLOUR
 from widgets.shared.sketch import Note
 from widgets.shared.snap_state import SnapMode
 
-Place = tuple[float, float]
+ScreenPoint = tuple[float, float]
 
 SNAP_COLOUR = QColor("#ffd23f")
 _SHADOW = QColor(0, 0, 0, 200)
@@ -25,7 +25,7 @@ _TRAIL_PX = 72.0
 _SNAP_PX = 6.0
 
 
-def paint_cross(painter: QPainter, at: Place, before: Place | None) -> None:
+def paint_cross(painter: QPainter, at: ScreenPoint, before: ScreenPoint | None) -> None:
     """The shared cursor: a cross with a gap in its middle, and a trail to where it was."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
     x, y = at
@@ -51,7 +51,7 @@ def paint_outline(painter: QPainter, outline: QPolygonF) -> None:
     painter.setBrush(Qt.BrushStyle.NoBrush)
 
 
-def paint_snap(painter: QPainter, at: Place, mode: SnapMode, name: str) -> None:
+def paint_snap(painter: QPainter, at: ScreenPoint, mode: SnapMode, name: str) -> None:
     """Where the next click would land: a sign for what it is drawn to, and its name."""
     x, y = at
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
@@ -70,7 +70,7 @@ def preview_pens() -> tuple[QPen, QPen]:
     return QPen(_SHADOW, 3.5), dashes
 
 
-def paint_note(painter: QPainter, at: Place, note: Note) -> None:
+def paint_note(painter: QPainter, at: ScreenPoint, note: Note) -> None:
     """A short text beside a place."""
     _paint_plate(painter, at[0] + 14.0, at[1] + 22.0, note.text)
 

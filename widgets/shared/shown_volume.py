@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, Signal
 from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.change_reading import ChangeReading, reading_at
 from processing.earthwork.contours import LevelLine
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 LEAST_LIMIT_M, MOST_LIMIT_M = 0.01, 100.0
 
@@ -26,7 +26,7 @@ class ContourOf(Enum):
 
 
 @dataclass(frozen=True)
-class VolumeLook:
+class VolumeStyle:
     """How the map of change is shown.
 
     Attributes
@@ -55,7 +55,7 @@ class ShownVolume(QObject):
     -------
     changed()
         Another map is shown, or none.
-    look_changed(look: VolumeLook)
+    look_changed(look: VolumeStyle)
     contours_changed()
         Other contours are there to be drawn.
     hovered(reading: ChangeReading | None)
@@ -70,7 +70,7 @@ class ShownVolume(QObject):
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._change: ChangeGrid | None = None
-        self._look = VolumeLook()
+        self._look = VolumeStyle()
         self._contours: tuple[LevelLine, ...] = ()
         self._reading: ChangeReading | None = None
         self._is_exact = False
@@ -86,7 +86,7 @@ class ShownVolume(QObject):
         return self._change if self._look.is_shown else None
 
     @property
-    def look(self) -> VolumeLook:
+    def look(self) -> VolumeStyle:
         """How it is shown."""
         return self._look
 
@@ -118,7 +118,7 @@ class ShownVolume(QObject):
         self.contours_changed.emit()
         self._read(None)
 
-    def use_look(self, look: VolumeLook) -> None:
+    def use_look(self, look: VolumeStyle) -> None:
         """Show it like this from now on."""
         limit_m = min(max(look.limit_m, LEAST_LIMIT_M), MOST_LIMIT_M)
         look = replace(look, limit_m=limit_m, opacity=min(max(look.opacity, 0.0), 1.0))
@@ -143,10 +143,10 @@ class ShownVolume(QObject):
         self._is_exact = spot is not None
         self._read(spot)
 
-    def hover_over_point(self, place: Place | None) -> None:
+    def hover_over_point(self, position: PickedPosition | None) -> None:
         """Read it where the mouse of any other view is over a measured point."""
         if not self._is_exact:
-            self._read(None if place is None else place.xyz[:2])
+            self._read(None if position is None else position.xyz[:2])
 
     def _read(self, spot: tuple[float, float] | None) -> None:
         change = self.drawn

@@ -9,11 +9,11 @@ from PySide6.QtCore import QObject, Signal
 from processing.image.attributes import SHOWS_LABELS
 from processing.image.kinds import ImageKind
 from processing.project.feature import Feature, Status
-from widgets.shared.image_lay import ImageLay
+from widgets.shared.image_orientation import ImageOrientation
 
 
 @dataclass(frozen=True)
-class PointLook:
+class PointStyle:
     """How points are coloured.
 
     Attributes
@@ -43,9 +43,9 @@ class PointLook:
 class ViewSettings(QObject):
     """What is shown and how; setting what is already set emits nothing."""
 
-    look_changed = Signal(object)  # PointLook
+    look_changed = Signal(object)  # PointStyle
     image_changed = Signal()  # another drive or another kind of image
-    image_lay_changed = Signal()
+    image_orientation_changed = Signal()
     hidden_kinds_changed = Signal()
     hidden_runs_changed = Signal()
     hidden_drives_changed = Signal()
@@ -54,17 +54,17 @@ class ViewSettings(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._look = PointLook()
+        self._look = PointStyle()
         self._drive_id = ""
         self._image_kind = ImageKind.TRAJECTORY_CENTER
         self._hidden_kinds: frozenset[str] = frozenset()
         self._hidden_runs: frozenset[str] = frozenset()
         self._hidden_drives: frozenset[str] = frozenset()
         self._shows_rejected = False
-        self._image_lay = ImageLay()
+        self._image_orientation = ImageOrientation()
 
     @property
-    def look(self) -> PointLook:
+    def look(self) -> PointStyle:
         """How points are coloured."""
         return self._look
 
@@ -79,9 +79,9 @@ class ViewSettings(QObject):
         return self._image_kind
 
     @property
-    def image_lay(self) -> ImageLay:
+    def image_orientation(self) -> ImageOrientation:
         """Which way the street runs in the image."""
-        return self._image_lay
+        return self._image_orientation
 
     @property
     def hidden_kinds(self) -> frozenset[str]:
@@ -120,7 +120,7 @@ class ViewSettings(QObject):
     ) -> None:
         """Set some fields of the look; None leaves one as it is."""
         old = self._look
-        look = PointLook(
+        look = PointStyle(
             old.attribute if attribute is None else attribute,
             old.low_percent if low_percent is None else low_percent,
             old.high_percent if high_percent is None else high_percent,
@@ -137,11 +137,11 @@ class ViewSettings(QObject):
             self._drive_id, self._image_kind = drive_id, kind
             self.image_changed.emit()
 
-    def lay_image(self, lay: ImageLay) -> None:
+    def orient_image(self, orientation: ImageOrientation) -> None:
         """Let the street run this way in the image."""
-        if lay != self._image_lay:
-            self._image_lay = lay
-            self.image_lay_changed.emit()
+        if orientation != self._image_orientation:
+            self._image_orientation = orientation
+            self.image_orientation_changed.emit()
 
     def hide_kinds(self, kinds: frozenset[str]) -> None:
         """Hide exactly these feature kinds."""

@@ -14,18 +14,18 @@ from processing.monitor import SilentMonitor
 from processing.noise.beam_origins import beam_origins
 from processing.noise.beams_of_drives import beams_of
 from processing.noise.features import BeamSearch, Candidates, candidates_in_space, search_with_beams
-from processing.noise.second_look import OPEN_ODDS
-from processing.noise.training.scenes import Scene
+from processing.noise.second_pass import OPEN_ODDS
+from processing.noise.training.scenes import TrainingScene
 from processing.noise.training.streets import FAR, GRASS, POST, RAIL, TREE, WIRE
 from processing.noise.trees import Trees, log_odds
 from processing.points.drive import Drive
 
-Rows = NDArray[np.float32]
+FeatureVectors = NDArray[np.float32]
 _Bools = NDArray[np.bool_]
 
 _POINTS_PER_SCENE = 8_000
 _MOST_POINTS = 200_000
-_STRETCHES = 4
+_CHUNKS = 4
 _FEWEST_ROWS = 50
 _KEPT_SHARES = (0.3, 0.1)
 _KEPT_PIECES = 4
@@ -48,7 +48,7 @@ class Examples:
         How much each counts: doubt is in favour of thin things.
     """
 
-    rows: Rows
+    rows: FeatureVectors
     is_noise: _Bools
     weights: NDArray[np.float64]
 
@@ -68,7 +68,7 @@ class Examples:
 
 
 @dataclass(frozen=True)
-class Case:
+class LabelledCloud:
     """A cloud whose truth is known.
 
     Attributes
@@ -121,7 +121,7 @@ class Case:
         cheap = self._search().cheap_features(SilentMonitor())
         return self._with_beams(cheap, log_odds(first, cheap, SilentMonitor()) > 0)
 
-    def _with_beams(self, cheap: Rows, is_doubtful: _Bools) -> Candidates:
+    def _with_beams(self, cheap: FeatureVectors, is_doubtful: _Bools) -> Candidates:
         if self.intensity is None:
             raise ValueError("beams come with intensities")
         search, monitor = self._search(), SilentMonitor()
@@ -144,7 +144,7 @@ class Case:
         elif way < _UNKNOWN_LIGHT_SHARE + shifted_share:
             light += np.where(kinds < 0, 0.0, random.normal(-0.7, 1.3, 12)[kinds])
 
-    def _some(self, rows: Rows, points: NDArray[np.int64]) -> Examples:
+    def _some(self, rows: FeatureVectors, points: NDArray[np.int64]) -> Examples:
         """Some of the rows, thin things twice as often as others."""
         random = np.random.default_rng(self.seed + 1)
         is_thin = np.isin(self.kinds[points], _THIN)
@@ -157,26 +157,26 @@ class Case:
         return Examples(rows[chosen], is_noise[chosen], weights[chosen])
 
 
-def case_with_beams(scene: Scene, turn: float, seed: int) -> Case:
+def case_with_beams(scene: TrainingScene, turn: float, seed: int) -> LabelledCloud:
     """A scene whose beams are known."""
     search = search_with_beams(scene.beams(turn), SilentMonitor())
-    return Case(scene.noise, scene.kinds, seed, search, scene.intensity)
+    return LabelledCloud(scene.noise, scene.kinds, seed, search, scene.intensity)
 
 
-def case_in_space(scene: Scene, seed: int) -> Case:
+def case_in_space(scene: TrainingScene, seed: int) -> LabelledCloud:
     """A scene of which only places are known."""
     xyz = scene.xyz - scene.xyz.mean(axis=0)
     candidates = candidates_in_space(xyz, SilentMonitor())
-    return Case(scene.noise, scene.kinds, seed, candidates=candidates)
+    return LabelledCloud(scene.noise, scene.kinds, seed, candidates=candidates)
 
 
-def kept_with_beams(drive: Drive, seed: int) -> Iterator[Case]:
+def sample_with_beams(drive: Drive, seed: int) -> Iterator[LabelledCloud]:
     """A recording all of whose points are taken for true; none without beams."""
     origins = beam_origins(drive)
     if origins is None:
         return
     image = image_of(drive, drive.pixel_kind)
-    parts = max(1, min(_STRETCHES, image.rows // _FEWEST_ROWS))
+    parts = max(1, min(_CHUNKS, image.rows // _FEWEST_ROWS))
     cuts = np.linspace(0, image.rows, parts + 1).astype(np.int64)
     for number in range(parts):
         most = np.searchsorted(image.row_starts, image.row_starts[cuts[number]] + _MOST_POINTS)
@@ -185,17 +185,17 @@ def kept_with_beams(drive: Drive, seed: int) -> Iterator[Case]:
         intensity = np.asarray(drive.columns["intensity"][points])
         noise = np.zeros(beams.ranges.size, np.int64)
         search = search_with_beams(beams, SilentMonitor())
-        yield Case(noise, noise + TREE, seed + number, search, intensity)
+        yield LabelledCloud(noise, noise + TREE, seed + number, search, intensity)
 
 
-def kept_in_space(drive: Drive, seed: int) -> Iterator[Case]:
+def sample_in_space(drive: Drive, seed: int) -> Iterator[LabelledCloud]:
     """A recording all of whose points are taken for true, as it is, thinned, and in pieces."""
     xyz = drive.xyz(slice(0, min(drive.count, 4 * _MOST_POINTS)))
     random = np.random.default_rng(seed)
     for number, cloud in enumerate(_as_delivered_elsewhere(xyz - xyz.mean(axis=0), random)):
         noise = np.zeros(cloud.shape[0], np.int64)
         candidates = candidates_in_space(np.ascontiguousarray(cloud), SilentMonitor())
-        yield Case(noise, noise + TREE, seed + number, candidates=candidates)
+        yield LabelledCloud(noise, noise + TREE, seed + number, candidates=candidates)
 
 
 def _as_delivered_elsewhere(

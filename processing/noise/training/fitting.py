@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.monitor import SilentMonitor
-from processing.noise.training.examples import Examples, Rows
+from processing.noise.training.examples import Examples, FeatureVectors
 from processing.noise.trees import Trees, log_odds
 
 _BINS = 64
@@ -18,7 +18,7 @@ _RIDGE = 5.0
 
 
 @dataclass(frozen=True)
-class Shape:
+class TreesSize:
     """How many trees of how many leaves, and how much each may say."""
 
     trees: int
@@ -26,7 +26,7 @@ class Shape:
     rate: float
 
 
-def fitted(examples: Examples, shape: Shape) -> Trees:
+def fit_trees(examples: Examples, shape: TreesSize) -> Trees:
     """Trees that give the log-odds of being noise.
 
     References
@@ -50,8 +50,8 @@ def fitted(examples: Examples, shape: Shape) -> Trees:
     return _trees_of(model)
 
 
-def shifted_to_keep(
-    trees: Trees, rows: Rows, is_noise: NDArray[np.bool_], lost_share: float
+def shift_to_keep(
+    trees: Trees, rows: FeatureVectors, is_noise: NDArray[np.bool_], lost_share: float
 ) -> Trees:
     """Trees whose sum is above zero for all noise but a small share."""
     odds = log_odds(trees, rows, SilentMonitor())[is_noise]

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from processing.noise.training.scenes import Scene
+from processing.noise.training.scenes import TrainingScene
 from processing.noise.training.streets import GRASS, ROAD
 
 _STREAM, _QUIET_STREAM = 8, 6
@@ -20,7 +20,7 @@ _LOWEST_BEAM, _MOST_NEARER_M = 0.08, 2.5
 _KEPT_NOISE = (-7.0, -1.0)  # log2 of its share
 
 
-def grown_over(scene: Scene, seed: int) -> Scene:
+def grow_grass(scene: TrainingScene, seed: int) -> TrainingScene:
     """The scene with grass in patches of its ground; beams end at the blades that they meet."""
     random = np.random.default_rng(seed * 7 + _STREAM)
     ground = np.flatnonzero(scene.kinds == ROAD)
@@ -32,19 +32,19 @@ def grown_over(scene: Scene, seed: int) -> Scene:
         away = np.hypot(*(scene.xyz[:, :2] - middle).T)
         is_grass |= (away < random.uniform(*_RADII_M)) & (chances[0] < random.uniform(*_SHARES))
     is_grass &= scene.kinds == ROAD
-    ways = (scene.xyz - scene.origins) / scene.ranges[:, None]
+    directions = (scene.xyz - scene.origins) / scene.ranges[:, None]
     high = random.uniform(*_HEIGHTS_M) * chances[1] ** 0.7
-    nearer = np.minimum(high / np.maximum(np.abs(ways[:, 2]), _LOWEST_BEAM), _MOST_NEARER_M)
+    nearer = np.minimum(high / np.maximum(np.abs(directions[:, 2]), _LOWEST_BEAM), _MOST_NEARER_M)
     nearer = np.where(is_grass, np.minimum(nearer, scene.ranges / 2), 0.0)
     return replace(
         scene,
-        xyz=scene.xyz - nearer[:, None] * ways,
+        xyz=scene.xyz - nearer[:, None] * directions,
         ranges=scene.ranges - nearer,
         kinds=np.where(is_grass, GRASS, scene.kinds),
     )
 
 
-def with_little_noise(scene: Scene, seed: int) -> Scene:
+def remove_most_noise(scene: TrainingScene, seed: int) -> TrainingScene:
     """The scene without most of its noise."""
     random = np.random.default_rng(seed * 7 + _QUIET_STREAM)
     share = 2 ** random.uniform(*_KEPT_NOISE)

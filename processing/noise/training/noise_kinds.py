@@ -8,9 +8,9 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from processing.noise.training.rays import CROWN, Met, met_by, thing
+from processing.noise.training.rays import CROWN, RangeHits, thing, trace_rays
 from processing.noise.training.scanners import Shots
-from processing.noise.training.streets import BRIGHT, GROUND_STRIPS, ROAD, Street
+from processing.noise.training.streets import BRIGHT, GROUND_STRIPS, ROAD, TrainingStreet
 
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]
@@ -55,9 +55,9 @@ class NoiseMaker:
 
     random: Generator
     shots: Shots
-    met: Met
+    met: RangeHits
     kinds: NDArray[np.int64]
-    street: Street
+    street: TrainingStreet
     most_m: float
     noise: NDArray[np.int64]
     ranges: _Floats
@@ -86,12 +86,12 @@ class NoiseMaker:
         self._put(self._some(0.002 * amount), met - high, ISOLATED)
         low = random.exponential(3, self._count) + 0.3
         self._put(self._some(0.001 * amount), met + low, UNDER)
-        places = self.shots.origins + met[:, None] * self.shots.ways
+        positions = self.shots.origins + met[:, None] * self.shots.directions
         for _ in range(random.integers(0, 4)):
             for kind, size, share, shift in ((RAIN, 1.0, 0.3, -1), (UNDER, 0.5, 0.5, 1)):
                 x, y = random.uniform(0, length_m), random.uniform(-length_m / 2, length_m / 2)
                 radius = size * random.uniform(0.5, 3)
-                is_near = np.hypot(places[:, 0] - x, places[:, 1] - y) < radius
+                is_near = np.hypot(positions[:, 0] - x, positions[:, 1] - y) < radius
                 depth = -random.uniform(8, 25) if shift < 0 else random.uniform(0.5, 6)
                 spread = random.normal(0, 0.8 if shift < 0 else 0.2, self._count)
                 self._put(is_near & self._some(share), met + depth + spread, kind)
@@ -160,7 +160,7 @@ class NoiseMaker:
             thickness = random.uniform(0.4, 3) * radius
             cloud = thing(CROWN, 0, 0.0, x, y, z, radius, radius, radius * 0.8, thickness)
             chances = random.random((self._count, 2))
-            dust = met_by(shots.origins, shots.ways, np.array([cloud]), 0.0, chances)
+            dust = trace_rays(shots.origins, shots.directions, np.array([cloud]), 0.0, chances)
             self._put(dust.ranges < self.met.ranges, dust.ranges, RAIN)
 
     def _streaks(self) -> None:
@@ -182,14 +182,18 @@ class NoiseMaker:
         """Glass: some beams come back from what it mirrors, most are lost."""
         random, shots = self.random, self.shots
         chances = random.random((self._count, 2))
-        glass = met_by(shots.origins, shots.ways, np.array(self.street.panes), 0.0, chances)
+        glass = trace_rays(
+            shots.origins, shots.directions, np.array(self.street.panes), 0.0, chances
+        )
         is_on_it = (glass.things >= 0) & (glass.ranges <= self.met.ranges + 0.1)
         chosen = np.flatnonzero(is_on_it & self._some(0.4))
         if chosen.size:
-            ways = shots.ways[chosen] * np.array([1.0, -1.0, 1.0])
-            places = shots.origins[chosen] + shots.ways[chosen] * glass.ranges[chosen, None]
+            directions = shots.directions[chosen] * np.array([1.0, -1.0, 1.0])
+            positions = (
+                shots.origins[chosen] + shots.directions[chosen] * glass.ranges[chosen, None]
+            )
             things = np.array(self.street.things)
-            seen = met_by(places, ways, things, footprint, chances[chosen])
+            seen = trace_rays(positions, directions, things, footprint, chances[chosen])
             ranges = np.full(self._count, _UNBOUND_M)
             ranges[chosen] = glass.ranges[chosen] + seen.ranges
             self._put(ranges < self.most_m, ranges, MIRRORED)
@@ -199,14 +203,16 @@ class NoiseMaker:
     def _under_the_road(self) -> None:
         """Patches some centimetres to decimetres below the road."""
         random, shots = self.random, self.shots
-        places = shots.origins + self.met.ranges[:, None] * shots.ways
-        x = places[self.kinds == ROAD, 0]
+        positions = shots.origins + self.met.ranges[:, None] * shots.directions
+        x = positions[self.kinds == ROAD, 0]
         low, high = (np.percentile(x, [2, 98])) if x.size else (0.0, 1.0)
         for _ in range(random.integers(0, 6)):
             at, beside = random.uniform(low, high), random.uniform(-5, 5)
-            is_in = np.hypot(places[:, 0] - at, places[:, 1] - beside) < random.uniform(0.2, 1.2)
+            is_in = np.hypot(positions[:, 0] - at, positions[:, 1] - beside) < random.uniform(
+                0.2, 1.2
+            )
             depth = random.uniform(0.08, 0.8) + random.normal(0, 0.02, self._count)
-            ranges = self.met.ranges + depth / np.maximum(-shots.ways[:, 2], 0.15)
+            ranges = self.met.ranges + depth / np.maximum(-shots.directions[:, 2], 0.15)
             share = random.uniform(0.2, 0.9)
             self._put(is_in & (self.kinds == ROAD) & self._some(share), ranges, UNDER)
 

@@ -19,7 +19,7 @@ NOWHERE = 1e9
 _NEAREST_M = 0.05
 
 
-class Met(NamedTuple):
+class RangeHits(NamedTuple):
     """``ranges`` (n,) m, `NOWHERE` where nothing was met; ``things`` (n,) their rows, or −1."""
 
     ranges: _Floats
@@ -39,18 +39,18 @@ def thing(shape: int, kind: int, albedo: float, *numbers: float) -> list[float]:
     return [float(shape), float(kind), albedo, *numbers, *[0.0] * (10 - len(numbers))]
 
 
-def met_by(
+def trace_rays(
     origins: _Floats,
-    ways: _Floats,
+    directions: _Floats,
     things: _Floats,
     footprint: float,
     chances: _Floats,
-) -> Met:
+) -> RangeHits:
     """What rays meet first.
 
     Parameters
     ----------
-    origins, ways : (n, 3) float64
+    origins, directions : (n, 3) float64
         m; unit vectors.
     things : (k, NUMBERS) float64
     footprint : float
@@ -58,37 +58,37 @@ def met_by(
     chances : (n, 2) float64
         0 to 1: whether the rim of a beam returns, and how deep it enters a crown.
     """
-    met = Met(np.full(len(origins), NOWHERE), np.full(len(origins), -1, np.int64))
-    rays_kernel(origins, ways, things, footprint, chances, met.ranges, met.things)
+    met = RangeHits(np.full(len(origins), NOWHERE), np.full(len(origins), -1, np.int64))
+    rays_kernel(origins, directions, things, footprint, chances, met.ranges, met.things)
     return met
 
 
 @kernel
 def rays_kernel(
     origins: _Floats,
-    ways: _Floats,
+    directions: _Floats,
     things: _Floats,
     footprint: float,
     chances: _Floats,
     ranges: _Floats,
     found: _Integers,
 ) -> None:
-    """See :func:`met_by`."""
+    """See :func:`trace_rays`."""
     for ray in range(origins.shape[0]):
         for number in range(things.shape[0]):
             row = things[number]
             shape = int(row[0])
             if shape == STRIP:
-                reach = _strip(origins[ray], ways[ray], row)
+                reach = _strip(origins[ray], directions[ray], row)
             elif shape == BOX:
-                reach = _box(origins[ray], ways[ray], row)
+                reach = _box(origins[ray], directions[ray], row)
             elif shape == CAPSULE:
-                reach = _capsule(origins[ray], ways[ray], row, footprint, chances[ray, 0])
+                reach = _capsule(origins[ray], directions[ray], row, footprint, chances[ray, 0])
             elif shape == CROWN:
                 chance = chances[ray, 1] * 7919.0 * (number + 1)
-                reach = _crown(origins[ray], ways[ray], row, chance - math.floor(chance))
+                reach = _crown(origins[ray], directions[ray], row, chance - math.floor(chance))
             else:
-                reach = _pane(origins[ray], ways[ray], row)
+                reach = _pane(origins[ray], directions[ray], row)
             if _NEAREST_M < reach < ranges[ray]:
                 ranges[ray] = reach
                 found[ray] = number
@@ -142,12 +142,12 @@ def _capsule(origin: _Floats, way: _Floats, row: _Floats, footprint: float, chan
     if square < 1e-6:
         return NOWHERE
     reach: float = (along * beside - ahead) / square
-    place = (beside - along * ahead) / square
-    if reach <= 0 or place < 0 or place > length:
+    position = (beside - along * ahead) / square
+    if reach <= 0 or position < 0 or position > length:
         return NOWHERE
-    x += reach * way[0] - place * ax
-    y += reach * way[1] - place * ay
-    z += reach * way[2] - place * az
+    x += reach * way[0] - position * ax
+    y += reach * way[1] - position * ay
+    z += reach * way[2] - position * az
     gap = math.sqrt(x * x + y * y + z * z)
     radius = row[9]
     wide = radius + footprint * reach
@@ -190,4 +190,4 @@ def _pane(origin: _Floats, way: _Floats, row: _Floats) -> float:
 def warm_up() -> None:
     """Compile the kernels."""
     row = np.array([thing(PANE, 0, 0.5, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0)])
-    met_by(np.zeros((1, 3)), np.eye(3)[:1], row, 0.0, np.zeros((1, 2)))
+    trace_rays(np.zeros((1, 3)), np.eye(3)[:1], row, 0.0, np.zeros((1, 2)))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from processing.noise.training.scenes import Scene
+from processing.noise.training.scenes import TrainingScene
 
 _Floats = NDArray[np.float64]
 
@@ -77,7 +77,7 @@ def relief_of(random: Generator, length_m: float) -> Relief:
     return Relief(np.array(banks), np.array(waves))
 
 
-def on_relief(scene: Scene, seed: int) -> Scene:
+def on_relief(scene: TrainingScene, seed: int) -> TrainingScene:
     """The scene on a relief of its own."""
     random = np.random.default_rng(seed * 7 + _STREAM)
     relief = relief_of(random, float(np.ptp(np.percentile(scene.xyz[:, 0], [1, 99]))))

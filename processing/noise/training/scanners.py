@@ -26,7 +26,7 @@ class Shots:
 
     Attributes
     ----------
-    origins, ways : (n, 3) float64
+    origins, directions : (n, 3) float64
         m; unit vectors.
     rows, columns, scans : (n,) int64
         Of a scan of ``width`` columns; columns go round where ``is_round``.
@@ -36,7 +36,7 @@ class Shots:
     """
 
     origins: _Floats
-    ways: _Floats
+    directions: _Floats
     rows: _Integers
     columns: _Integers
     scans: _Integers
@@ -46,22 +46,25 @@ class Shots:
 
 def mobile_shots(random: Generator, length_m: float, budget: int) -> Shots:
     """A spinning scanner on a vehicle."""
-    width, turns = int(random.choice(_PULSES)), float(random.choice(_TURNS_PER_S))
+    width, revolutions = int(random.choice(_PULSES)), float(random.choice(_TURNS_PER_S))
     speed = random.uniform(4, 16)
-    seen_m = min(length_m, speed * budget / (width * turns))
-    rows = max(8, int(seen_m / speed * turns))
+    seen_m = min(length_m, speed * budget / (width * revolutions))
+    rows = max(8, int(seen_m / speed * revolutions))
     start = random.uniform(0.2, 0.8) * max(0.0, length_m - seen_m)
     high, beside = random.uniform(1.9, 3), random.uniform(-2, 2)
     tilt = np.radians(random.uniform(-10, 10))
     mount = np.radians(random.choice(_MOUNTS_DEG))
     pulses = np.arange(rows * width)
-    times, angles = pulses / (width * turns), 2 * np.pi * pulses / width
+    times, angles = pulses / (width * revolutions), 2 * np.pi * pulses / width
     aside = np.array([np.sin(mount), np.cos(mount), 0])
     up = np.array([np.cos(mount) * np.sin(tilt), -np.sin(mount) * np.sin(tilt), np.cos(tilt)])
-    ways = np.sin(angles)[:, None] * aside - np.cos(angles)[:, None] * up
+    directions = np.sin(angles)[:, None] * aside - np.cos(angles)[:, None] * up
     roll = 0.01 * np.sin(2 * np.pi * times * 1.3)
-    ways[:, 1], ways[:, 2] = ways[:, 1] + roll * ways[:, 2], ways[:, 2] - roll * ways[:, 1]
-    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    directions[:, 1], directions[:, 2] = (
+        directions[:, 1] + roll * directions[:, 2],
+        directions[:, 2] - roll * directions[:, 1],
+    )
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
     origins = np.column_stack(
         [
             start + speed * times,
@@ -71,7 +74,7 @@ def mobile_shots(random: Generator, length_m: float, budget: int) -> Shots:
     )
     half = pulses + width // 2
     scans = np.zeros(pulses.size, np.int64)
-    return Shots(origins, ways, half // width, half % width, scans, width, 2 * np.pi / width)
+    return Shots(origins, directions, half // width, half % width, scans, width, 2 * np.pi / width)
 
 
 def standing_shots(random: Generator, length_m: float, budget: int, stations: int) -> Shots:
@@ -81,21 +84,21 @@ def standing_shots(random: Generator, length_m: float, budget: int, stations: in
     around = random.uniform(0, 2 * np.pi) + np.arange(0, 2 * np.pi * share - turn / 2, turn)
     above = np.radians(_LOWEST_DEG) + np.arange(0, np.radians(_SWEEP_DEG), turn)
     azimuths, heights = (one.ravel() for one in np.meshgrid(around, above, indexing="ij"))
-    ways = np.column_stack(
+    directions = np.column_stack(
         [np.cos(heights) * np.cos(azimuths), np.cos(heights) * np.sin(azimuths), np.sin(heights)]
     )
-    places = np.column_stack(
+    positions = np.column_stack(
         [
             random.uniform(0.1, 0.9, stations) * length_m,
             random.uniform(-3, 3, stations),
             random.uniform(1.4, 1.9, stations),
         ]
     )
-    pulses = np.arange(ways.shape[0] * stations)
-    scans = pulses // ways.shape[0]
+    pulses = np.arange(directions.shape[0] * stations)
+    scans = pulses // directions.shape[0]
     return Shots(
-        places[scans],
-        np.tile(ways, (stations, 1)),
+        positions[scans],
+        np.tile(directions, (stations, 1)),
         pulses // above.size,
         pulses % above.size,
         scans,
@@ -116,8 +119,10 @@ def airborne_shots(random: Generator, length_m: float, budget: int) -> Shots:
     origins = np.stack(
         [np.broadcast_to(along, shape), np.zeros(shape), np.full(shape, high)], -1
     ).reshape(-1, 3)
-    ways = np.stack([x, y, np.zeros(shape)], -1).reshape(-1, 3) - origins
-    ways /= np.linalg.norm(ways, axis=1)[:, None]
+    directions = np.stack([x, y, np.zeros(shape)], -1).reshape(-1, 3) - origins
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
     pulses = np.arange(rows * width)
     scans = np.zeros(pulses.size, np.int64)
-    return Shots(origins, ways, pulses // width, pulses % width, scans, width, wide / width / high)
+    return Shots(
+        origins, directions, pulses // width, pulses % width, scans, width, wide / width / high
+    )

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from processing.noise.beam_kernels import Beams
+from processing.noise.beam_kernels import PointBeams
 from processing.noise.training.noise_kinds import NoiseMaker, ambiguity_of
-from processing.noise.training.rays import NOWHERE, met_by
+from processing.noise.training.rays import NOWHERE, trace_rays
 from processing.noise.training.scanners import (
     AIRBORNE,
     MOBILE,
@@ -20,7 +20,7 @@ from processing.noise.training.scanners import (
     mobile_shots,
     standing_shots,
 )
-from processing.noise.training.streets import GRASS, ROAD, Street, street_of
+from processing.noise.training.streets import GRASS, ROAD, TrainingStreet, street_of
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
@@ -34,7 +34,7 @@ _FAR_M = 1e9
 
 
 @dataclass(frozen=True)
-class Scene:
+class TrainingScene:
     """Points with their truth, in the order in which they were measured.
 
     Attributes
@@ -61,11 +61,11 @@ class Scene:
     kinds: _Integers
     noise: _Integers
 
-    def chosen(self, points: NDArray[np.bool_] | _Integers) -> Scene:
+    def chosen(self, points: NDArray[np.bool_] | _Integers) -> TrainingScene:
         """Some of the points."""
-        return Scene(*(getattr(self, one.name)[points] for one in fields(self)))
+        return TrainingScene(*(getattr(self, one.name)[points] for one in fields(self)))
 
-    def beams(self, turn: float) -> Beams:
+    def beams(self, turn: float) -> PointBeams:
         """As a recording whose beams are known, about its middle."""
         middle = np.median(self.xyz, axis=0)
         rows = self.rows - self.rows.min()
@@ -73,7 +73,7 @@ class Scene:
         segments = np.zeros(starts.size - 1, np.int32)
         firsts = np.minimum(starts[:-1], rows.size - 1)
         segments[:] = self.scans[firsts]
-        return Beams(
+        return PointBeams(
             self.xyz - middle,
             self.origins - middle,
             self.ranges,
@@ -84,7 +84,7 @@ class Scene:
         )
 
 
-def scene_of(seed: int, how: str, budget: int) -> tuple[Scene, float]:
+def scene_of(seed: int, how: str, budget: int) -> tuple[TrainingScene, float]:
     """A scene and the angle from beam to beam.
 
     Parameters
@@ -111,7 +111,7 @@ def scene_of(seed: int, how: str, budget: int) -> tuple[Scene, float]:
     return scene, shots.turn
 
 
-def thinned(scene: Scene, seed: int) -> Scene:
+def thin_scene(scene: TrainingScene, seed: int) -> TrainingScene:
     """As clouds are delivered without their order: some thinned, some by a grid, some in pieces."""
     random = np.random.default_rng(seed)
     if random.random() < _PIECES:
@@ -130,13 +130,17 @@ def thinned(scene: Scene, seed: int) -> Scene:
 
 
 def _measured(
-    random: Generator, street: Street, shots: Shots, footprint: float, where: tuple[str, float]
-) -> Scene:
+    random: Generator,
+    street: TrainingStreet,
+    shots: Shots,
+    footprint: float,
+    where: tuple[str, float],
+) -> TrainingScene:
     how, length_m = where
     things = np.array(street.things)
     count = shots.rows.size
     chances = random.random((count, 4))
-    met = met_by(shots.origins, shots.ways, things, footprint, chances[:, :2].copy())
+    met = trace_rays(shots.origins, shots.directions, things, footprint, chances[:, :2].copy())
     kinds = np.where(met.things >= 0, things[met.things, 1].astype(np.int64), -1)
     albedos = np.where(met.things >= 0, things[met.things, 2], 0.0)
     kinds = _grown(random, street, shots, met.ranges, (kinds, chances[:, 2:]))
@@ -156,11 +160,11 @@ def _measured(
     is_noise = maker.noise > 0
     fuzz = random.normal(0, random.uniform(0.001, 0.008), count) * (1 + met.ranges * 0.01)
     ranges = np.where(is_noise, maker.ranges, maker.ranges + np.where(met.things >= 0, fuzz, 0))
-    xyz = shots.origins + shots.ways * ranges[:, None]
+    xyz = shots.origins + shots.directions * ranges[:, None]
     kept = (ranges < most_m) & (ranges > 0.6) & (ranges < NOWHERE) & (xyz[:, 2] > _DEEPEST_M)
     kept &= is_noise | ((met.things >= 0) & (random.random(count) < random.uniform(0.93, 1)))
     kept &= ~(is_noise & (np.abs(maker.ranges - met.ranges) < _LIKE_TRUE_M))
-    scene = Scene(
+    scene = TrainingScene(
         xyz,
         shots.origins,
         ranges,
@@ -176,19 +180,19 @@ def _measured(
 
 def _grown(
     random: Generator,
-    street: Street,
+    street: TrainingStreet,
     shots: Shots,
     ranges: _Floats,
     seen: tuple[_Integers, _Floats],
 ) -> _Integers:
     """Let grass grow beside the pavement: shorter ``ranges``, in place, and the kinds."""
     kinds, chances = seen
-    aside = np.abs(shots.origins[:, 1] + ranges * shots.ways[:, 1])
+    aside = np.abs(shots.origins[:, 1] + ranges * shots.directions[:, 1])
     start = street.half_width + street.walk
     is_grass = (kinds == ROAD) & (aside > start) & (aside < start + 7) & (chances[:, 0] < 0.55)
     is_grass &= street.has_grass
     high = random.uniform(0.08, 0.35) * chances[:, 1] ** 0.7
-    nearer = np.minimum(high / np.maximum(np.abs(shots.ways[:, 2]), 0.08), 2.5)
+    nearer = np.minimum(high / np.maximum(np.abs(shots.directions[:, 2]), 0.08), 2.5)
     ranges[is_grass] -= nearer[is_grass]
     return np.where(is_grass, GRASS, kinds)
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.noise.training.noise_kinds import NOISE_KINDS
-from processing.noise.training.scenes import Scene
+from processing.noise.training.scenes import TrainingScene
 from processing.noise.training.streets import KINDS
 
 _Bools = NDArray[np.bool_]
@@ -21,7 +21,7 @@ def f_measure(said: _Bools, truth: _Bools) -> float:
     return 2 * int((said & truth).sum()) / both if both else 1.0
 
 
-def score_line(name: str, said: _Bools, scene: Scene) -> str:
+def score_line(name: str, said: _Bools, scene: TrainingScene) -> str:
     """One scene as a line: F of noise, F of kept points, noise found and things kept by kind."""
     truth = scene.noise > 0
     found = _shares(NOISE_KINDS, scene.noise, said, first=1)

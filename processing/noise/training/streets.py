@@ -32,7 +32,7 @@ _SIDES = (-1, 1)
 
 
 @dataclass
-class Street:
+class TrainingStreet:
     """A street along x.
 
     Attributes
@@ -61,7 +61,7 @@ class Street:
         return float(np.interp(y, self.across, self.heights))
 
 
-def street_of(random: Generator, length_m: float, *, has_far: bool) -> Street:
+def street_of(random: Generator, length_m: float, *, has_far: bool) -> TrainingStreet:
     """A street with what stands beside it, drawn by chance."""
     street = _bare_street(random)
     for side in _SIDES:
@@ -76,7 +76,7 @@ def street_of(random: Generator, length_m: float, *, has_far: bool) -> Street:
     return street
 
 
-def _add_one_side(street: Street, random: Generator, side: int, length_m: float) -> None:
+def _add_one_side(street: TrainingStreet, random: Generator, side: int, length_m: float) -> None:
     if random.random() < 0.6:
         _add_facades(street, random, side, length_m)
     if random.random() < 0.7:
@@ -95,7 +95,7 @@ def _add_one_side(street: Street, random: Generator, side: int, length_m: float)
         street.things.append(thing(BOX, CAR, 0.5, x, y, z, 2.1, 0.85, 0.75, random.normal() * 0.05))
 
 
-def _bare_street(random: Generator) -> Street:
+def _bare_street(random: Generator) -> TrainingStreet:
     half, fall, rise = (
         random.uniform(3, 6.5),
         random.uniform(0.01, 0.03),
@@ -110,7 +110,7 @@ def _bare_street(random: Generator) -> Street:
     heights = np.array(
         [left, left, outer, edge + rise, edge, 0.0, edge, edge + rise, outer, right, right]
     )
-    street = Street(across, heights, half, walk, bool(random.random() < 0.7))
+    street = TrainingStreet(across, heights, half, walk, bool(random.random() < 0.7))
     for strip in range(GROUND_STRIPS):
         kind = CURB if strip in _CURB_STRIPS else ROAD
         ends = across[strip], heights[strip], across[strip + 1], heights[strip + 1]
@@ -118,7 +118,7 @@ def _bare_street(random: Generator) -> Street:
     return street
 
 
-def _add_facades(street: Street, random: Generator, side: int, length_m: float) -> None:
+def _add_facades(street: TrainingStreet, random: Generator, side: int, length_m: float) -> None:
     y = side * (street.half_width + street.walk + random.uniform(0.5, 6))
     x = -length_m * 0.2
     while x < length_m * 1.2:
@@ -134,7 +134,7 @@ def _add_facades(street: Street, random: Generator, side: int, length_m: float) 
         x += long + random.uniform(0, 12)
 
 
-def _add_fence(street: Street, random: Generator, side: int, length_m: float) -> None:
+def _add_fence(street: TrainingStreet, random: Generator, side: int, length_m: float) -> None:
     y = side * (street.half_width + random.uniform(0.3, street.walk))
     start, end = random.uniform(0, length_m * 0.4), random.uniform(length_m * 0.5, length_m)
     z, radius = street.ground_at(y), random.uniform(0.012, 0.035)
@@ -145,12 +145,14 @@ def _add_fence(street: Street, random: Generator, side: int, length_m: float) ->
         street.things.append(thing(CAPSULE, POST, 0.6, x, y, z, x, y, z + 1.0, 0.03))
 
 
-def _add_poles_and_wires(street: Street, random: Generator, side: int, length_m: float) -> None:
+def _add_poles_and_wires(
+    street: TrainingStreet, random: Generator, side: int, length_m: float
+) -> None:
     y = side * (street.half_width + random.uniform(0.2, street.walk))
     step, high = random.uniform(20, 35), random.uniform(6, 11)
     ground = street.ground_at(y)
-    places = np.arange(random.uniform(-step, 0), length_m + step, step)
-    for x in places:
+    positions = np.arange(random.uniform(-step, 0), length_m + step, step)
+    for x in positions:
         ends = x, y, ground, x, y, ground + high
         street.things.append(thing(CAPSULE, POST, 0.5, *ends, random.uniform(0.08, 0.18)))
     along = np.linspace(0, 1, 7)
@@ -158,14 +160,14 @@ def _add_poles_and_wires(street: Street, random: Generator, side: int, length_m:
         radius, beside = random.uniform(0.004, 0.015), y + random.uniform(-0.4, 0.4)
         top = ground + high - 0.3 - number * random.uniform(0.4, 1.2)
         heights = top - random.uniform(0.2, 0.9) * 4 * along * (1 - along)
-        for start, end in pairwise(places):
+        for start, end in pairwise(positions):
             xs = start + along * (end - start)
             for one in range(along.size - 1):
                 ends = xs[one], beside, heights[one], xs[one + 1], beside, heights[one + 1]
                 street.things.append(thing(CAPSULE, WIRE, 0.4, *ends, radius))
 
 
-def _add_signs(street: Street, random: Generator, side: int, length_m: float) -> None:
+def _add_signs(street: TrainingStreet, random: Generator, side: int, length_m: float) -> None:
     for _ in range(random.integers(0, 3)):
         x = random.uniform(0, length_m)
         y = side * (street.half_width + random.uniform(0.2, street.walk))
@@ -176,7 +178,7 @@ def _add_signs(street: Street, random: Generator, side: int, length_m: float) ->
         street.things.append(thing(PANE, POST, BRIGHT, *plate))
 
 
-def _add_plants(street: Street, random: Generator, side: int, length_m: float) -> None:
+def _add_plants(street: TrainingStreet, random: Generator, side: int, length_m: float) -> None:
     for _ in range(random.integers(0, 3)):
         x = random.uniform(0, length_m)
         y = side * (street.half_width + random.uniform(0.5, street.walk + 6))
@@ -192,7 +194,7 @@ def _add_plants(street: Street, random: Generator, side: int, length_m: float) -
         street.things.append(thing(CROWN, TREE, 0.35, *shrub, random.uniform(0.15, 0.5)))
 
 
-def _add_traffic(street: Street, random: Generator, length_m: float) -> None:
+def _add_traffic(street: TrainingStreet, random: Generator, length_m: float) -> None:
     """What moves, as long or as short as the scanner's own way makes it, and people."""
     for _ in range(random.integers(0, 6)):
         x, y = random.uniform(0, length_m), random.uniform(-1, 1) * street.half_width * 0.8
@@ -210,7 +212,9 @@ def _add_traffic(street: Street, random: Generator, length_m: float) -> None:
         street.things.append(thing(CAPSULE, CAR, 0.5, *ends, radius))
 
 
-def _add_street_trees(street: Street, random: Generator, side: int, length_m: float) -> None:
+def _add_street_trees(
+    street: TrainingStreet, random: Generator, side: int, length_m: float
+) -> None:
     """A row of trees whose crowns reach over the road."""
     y = side * (street.half_width + random.uniform(0.3, street.walk))
     high, radius = random.uniform(2, 6), random.uniform(0.7, 2.8)
@@ -233,7 +237,7 @@ def _add_street_trees(street: Street, random: Generator, side: int, length_m: fl
             street.things.append(thing(CROWN, TREE, 0.35, *clump, depth * 0.3))
 
 
-def _add_hedge(street: Street, random: Generator, side: int, length_m: float) -> None:
+def _add_hedge(street: TrainingStreet, random: Generator, side: int, length_m: float) -> None:
     """Leaves along the street, as high as a knee or a man."""
     y = side * (street.half_width + random.uniform(0.3, street.walk + 2))
     start, long = random.uniform(0, length_m * 0.5), random.uniform(3, 50)
@@ -247,7 +251,7 @@ def _add_hedge(street: Street, random: Generator, side: int, length_m: float) ->
         street.things.append(thing(CROWN, TREE, 0.35, x, y, z, wide, wide, high, depth))
 
 
-def _add_wood(street: Street, random: Generator, length_m: float) -> None:
+def _add_wood(street: TrainingStreet, random: Generator, length_m: float) -> None:
     """Crowns that touch, of any height, as seen from the air more than from the street."""
     side = random.choice(_SIDES)
     near = street.half_width + street.walk + random.uniform(3, 15)
@@ -260,7 +264,9 @@ def _add_wood(street: Street, random: Generator, length_m: float) -> None:
         street.things.append(thing(CROWN, TREE, 0.35, *crown, random.uniform(0.3, 3)))
 
 
-def _add_far(street: Street, random: Generator, length_m: float, sizes: tuple[float, ...]) -> None:
+def _add_far(
+    street: TrainingStreet, random: Generator, length_m: float, sizes: tuple[float, ...]
+) -> None:
     near, far, short, long, low, high, middle = sizes
     for _ in range(random.integers(1, 6)):
         y = random.choice(_SIDES) * (random.uniform(near, far) + 5)

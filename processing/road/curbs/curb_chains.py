@@ -1,4 +1,4 @@
-"""Tracks of steps along the way, and tracks joined over what hides them: chains."""
+"""Tracks of steps along the vehicle's path, and tracks joined over what hides them: chains."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from processing.road.curbs.step_columns import (
     LOWER_HEIGHT,
     SECTION,
     SIGN,
-    SURENESS,
+    SIGNIFICANCE,
     UPPER_ACROSS,
     UPPER_HEIGHT,
 )
@@ -68,7 +68,7 @@ def chains_of(steps: PassSteps, settings: StepSettings) -> Iterator[Chain]:
 
 def _in_order(table: Floats, rows: Integers) -> Integers:
     """Rows in the order of their scanlines, of two of one scanline the surer."""
-    order = np.lexsort((-table[rows, SURENESS], table[rows, SECTION]))
+    order = np.lexsort((-table[rows, SIGNIFICANCE], table[rows, SECTION]))
     sections = table[rows[order], SECTION]
     is_first = np.append(True, np.diff(sections) > 0)
     kept: Integers = rows[order[is_first]]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from processing.road.curbs.curb_runs import StepRun, median_of
 
 _LEAST_SPREAD_M, _LEAST_ROUGH_M = 0.002, 0.003
-_USUAL_SPREAD_M, _USUAL_SURENESS = 0.01, 10.0
+_USUAL_SPREAD_M, _USUAL_SIGNIFICANCE = 0.01, 10.0
 _LONGEST_M, _WIDEST_M, _VEHICLE_M = 20.0, 0.3, 6.0
 
 # Fitted by logistic regression (L2, C = 1, runs weighed by their length up to 30 m) to 1,988 runs
@@ -25,7 +25,7 @@ _LONGEST_M, _WIDEST_M, _VEHICLE_M = 20.0, 0.3, 6.0
 # then what hangs over the foot was left out of its roughness along whatever is longer than a
 # vehicle; weights fitted anew on 42 streets (seeds 301 to 332, 575 to 589) gave no better lines.
 _CONSTANT = -3.12
-_SURENESS = 3.18  # of the logarithm: grass and gravel rise by few standard deviations
+_SIGNIFICANCE = 3.18  # of the logarithm: grass and gravel rise by few standard deviations
 _SPREAD = -0.94  # of the logarithm: concrete is straight, plants are not
 _LENGTH = 0.51  # of the logarithm
 _TOP, _FOOT = 4.49, 1.82  # per metre: level ground goes on behind and before a curb
@@ -42,15 +42,15 @@ class CurbFacts(NamedTuple):
     before : float
         The chance that its steps on scanlines gave it, 0 to 1.
     risen_m : float
-        What other steps between the vehicle's way and this one add up to, m, 0 to 0.2; the less
+        What other steps between the vehicle's path and this one add up to, m, 0 to 0.2; the less
         the longer the line is, 0 from 20 m on. Plinths, house steps and planters are short and
         stand on a pavement that a curb has already raised.
-    above_way_m : float
-        How far its foot lies above the road at the vehicle's way, m, −0.1 to 0.1; as `risen_m` the
+    above_path_m : float
+        How far its foot lies above the road at the vehicle's path, m, −0.1 to 0.1; as `risen_m` the
         less the longer the line is. Roads drain to their curbs; what lies 0.25 m below the road is
         none of it, which speaks neither for nor against (0).
     crossing : float
-        1 where it lies rather across the vehicle's way than along it, else 0.
+        1 where it lies rather across the vehicle's path than along it, else 0.
     too_tall_m : float
         Height beyond that of kerb stones, m, 0 to 0.2.
     too_flat : float
@@ -64,7 +64,7 @@ class CurbFacts(NamedTuple):
 
     before: float
     risen_m: float
-    above_way_m: float
+    above_path_m: float
     crossing: float
     too_tall_m: float
     too_flat: float
@@ -75,7 +75,7 @@ class CurbFacts(NamedTuple):
 WEIGHTS = CurbFacts(
     before=0.59,
     risen_m=-11.3,
-    above_way_m=-9.25,
+    above_path_m=-9.25,
     crossing=-1.45,
     too_tall_m=-20.8,
     too_flat=-9.35,
@@ -125,7 +125,7 @@ def confidence_of(run: StepRun) -> float:
     rough_m = run.foot_cover_m if run.seen_m < _VEHICLE_M else run.foot_roughness_m
     logit = (
         _CONSTANT
-        + _SURENESS * math.log(max(_median(run.sureness, run), 0.1) / _USUAL_SURENESS)
+        + _SIGNIFICANCE * math.log(max(_median(run.significance, run), 0.1) / _USUAL_SIGNIFICANCE)
         + _SPREAD * math.log(max(spread, _LEAST_SPREAD_M) / _USUAL_SPREAD_M)
         + _LENGTH * math.log(min(max(run.seen_m, 0.1), _LONGEST_M))
         + _TOP * min(_median(run.top_m, run), _WIDEST_M)
@@ -143,7 +143,7 @@ def _comes_down_again(run: StepRun) -> bool:
     Levees between fields rise and fall as well, from lower ground.
     """
     high_m = _median(run.heights_m, run)
-    is_on_road = _median(run.above_way_m, run) >= -_BELOW_M
+    is_on_road = _median(run.above_path_m, run) >= -_BELOW_M
     return is_on_road and abs(_median(run.risen_m, run) - high_m) <= _AS_HIGH * high_m
 
 

@@ -1,7 +1,7 @@
-"""Curbs that run across the way: side streets, corners of small radius, ends of islands.
+"""Curbs that run across the vehicle's path: side streets, corners of small radius, ends of islands.
 
 Scanlines run along such curbs and don't show them. The same surface is therefore cut square to the
-scanlines too: lines of constant distance from the way, through the heights of all scanlines of a
+scanlines too: lines of constant distance from the vehicle's path, through the heights of all scanlines of a
 stretch. What is found there is a run from left to right.
 """
 
@@ -48,7 +48,7 @@ class _Levels:
     """Heights of some scanlines at even places across; NaN where nothing was measured."""
 
     heights: Floats
-    places: Floats
+    positions: Floats
     rights: Floats
     stations_m: Floats
     times_s: Floats
@@ -57,7 +57,7 @@ class _Levels:
 def crossing_runs(
     stretches: Iterable[Scanlines], number: int, settings: StepSettings
 ) -> Iterator[StepRun]:
-    """Runs across the way of one pass.
+    """Runs across the vehicle's path of one pass.
 
     Parameters
     ----------
@@ -89,13 +89,13 @@ def _levels_of(stretch: Scanlines) -> _Levels:
     filled = np.diff(stretch.starts) > 0
     middle = (stretch.starts[:-1] + stretch.starts[1:]) // 2
     times[filled] = stretch.time_s[middle[filled]]
-    return _Levels(heights, stretch.places, stretch.rights, stretch.stations_m, times)
+    return _Levels(heights, stretch.positions, stretch.rights, stretch.stations_m, times)
 
 
 def _joined(parts: list[_Levels]) -> _Levels:
     return _Levels(
         np.vstack([one.heights for one in parts]),
-        np.vstack([one.places for one in parts]),
+        np.vstack([one.positions for one in parts]),
         np.vstack([one.rights for one in parts]),
         np.concatenate([one.stations_m for one in parts]),
         np.concatenate([one.times_s for one in parts]),
@@ -106,7 +106,7 @@ def _part(whole: _Levels, begin: int, end: int) -> _Levels:
     rows = slice(begin, end)
     return _Levels(
         whole.heights[rows],
-        whole.places[rows],
+        whole.positions[rows],
         whole.rights[rows],
         whole.stations_m[rows],
         whole.times_s[rows],
@@ -116,7 +116,7 @@ def _part(whole: _Levels, begin: int, end: int) -> _Levels:
 def _runs_in(
     levels: _Levels, is_end: tuple[bool, bool], number: int, settings: StepSettings
 ) -> Iterator[StepRun]:
-    """Runs across the way on some scanlines; of what is seen twice, one half."""
+    """Runs across the vehicle's path on some scanlines; of what is seen twice, one half."""
     stations = levels.stations_m
     if stations.size < 2:
         return
@@ -150,15 +150,15 @@ def _laid_out(run: StepRun, levels: _Levels, middle: float, sign: int) -> StepRu
     edges = []
     for edge in (run.lower, run.upper):
         at = edge[:, 0] + middle
-        place = _between(at, levels.stations_m, levels.places)
+        position = _between(at, levels.stations_m, levels.positions)
         right = _between(at, levels.stations_m, levels.rights)
         shift = np.column_stack([across[:, None] * right, edge[:, 2]])
-        edges.append(place + shift)
+        edges.append(position + shift)
     # Seen from left to right the way goes on to the left: higher there is higher on the left.
     return replace(
         run,
         face_m=np.maximum(run.face_m - _SPACING_M, 0.0),
-        sureness=run.sureness * _DENSER,
+        significance=run.significance * _DENSER,
         spread_m=np.maximum(
             np.sqrt(np.maximum(run.spread_m**2 - _GRID_M**2, 0.0)), _LEAST_SPREAD_M
         ),

@@ -281,17 +281,17 @@ def _face(
             values[i, 2] -= middle
             count += 1
     if count < 3:
-        place = (0.0, 0.0, 0.0, 0.0, math.nan)
+        position = (0.0, 0.0, 0.0, 0.0, math.nan)
     else:
         start = float(np.median(across[:count]))
         free = 0.15
-        place = _plane(
+        position = _plane(
             _FACE, span, values, kinds, np.array([tolerance, start, _TYPICAL_LEAN, free, 0.05])
         )
     for i in range(span[0], span[1]):
         if kinds[i - span[0]] == _FACE:
             values[i, 2] += middle
-    return place[0] - place[1] * middle, place[1], place[3], place[4]
+    return position[0] - position[1] * middle, position[1], position[3], position[4]
 
 
 @kernel
@@ -322,7 +322,7 @@ def _measure(
 def edges_kernel(
     along: _Floats, across_above: _Floats, stations: _Floats, settings: _Floats, measures: _Floats
 ) -> None:
-    """Edges at every station of one guide.
+    """Edges at every station of one approximate line.
 
     Parameters
     ----------
@@ -388,11 +388,11 @@ def warm_up() -> None:
     """Compile the kernel."""
     random = np.random.default_rng(0)
     across = random.uniform(-0.3, 0.3, 200)
-    place = np.column_stack([across, np.where(across > 0, 0.15, 0.0)])
+    position = np.column_stack([across, np.where(across > 0, 0.15, 0.0)])
     measures = np.full((3, MEASURES), np.nan)
     edges_kernel(
         np.linspace(0, 2, 200),
-        place,
+        position,
         np.zeros((3, 4)),
         np.array([0.25, 0.5, 50.0, 0.005]),
         measures,

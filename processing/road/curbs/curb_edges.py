@@ -12,9 +12,9 @@ from scipy.spatial import cKDTree
 from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.points.trajectory import Trajectory
+from processing.road.curbs.approximate_lines import ApproximateLine
 from processing.road.curbs.curb_edge_kernels import MEASURES, edges_kernel, nearest_kernel
-from processing.road.curbs.curb_guides import Guide
-from processing.road.curbs.curb_points import ChosenPoints, GuideCells, PointsAbout
+from processing.road.curbs.curb_points import ChosenPoints, LineCells, PointsAbout
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
@@ -42,7 +42,7 @@ class EdgeSettings:
 
 @dataclass(frozen=True)
 class MeasuredEdges:
-    """What one drive shows of one guide.
+    """What one drive shows of one approximate line.
 
     Attributes
     ----------
@@ -61,12 +61,12 @@ class MeasuredEdges:
     across_above: _Floats
     points: _Integers
 
-    def nearest(self, places: _Floats, within_m: float) -> tuple[_Integers, _Floats]:
-        """The measured points nearest to places in the guide's frame, and how far they are.
+    def nearest(self, positions: _Floats, within_m: float) -> tuple[_Integers, _Floats]:
+        """The measured points nearest to places in the approximate line's frame, and how far they are.
 
         Parameters
         ----------
-        places : (k, 3) float64
+        positions : (k, 3) float64
             Stations, rising; m across and above.
 
         Returns
@@ -76,68 +76,85 @@ class MeasuredEdges:
         away_m : (k,) float64
             Across and above; infinite where there is none.
         """
-        found = np.full(places.shape[0], -1, np.int64)
-        nearest_kernel(self.along, self.across_above, places, within_m, found)
+        found = np.full(positions.shape[0], -1, np.int64)
+        nearest_kernel(self.along, self.across_above, positions, within_m, found)
         has = found >= 0
         points, away = found.copy(), np.full(found.size, np.inf)
         points[has] = self.points[found[has]]
-        off = self.across_above[found[has]] - places[has, 1:]
+        off = self.across_above[found[has]] - positions[has, 1:]
         away[has] = np.hypot(off[:, 0], off[:, 1])
         return points, away
 
 
-def measured_edges(
-    drive: Drive, guides: Sequence[Guide], settings: EdgeSettings, monitor: Monitor
+def measure_edges(
+    drive: Drive,
+    approximate_lines: Sequence[ApproximateLine],
+    settings: EdgeSettings,
+    monitor: Monitor,
 ) -> list[MeasuredEdges]:
-    """Edges at the stations of guides, as one drive shows them."""
-    if not guides:
+    """Edges at the stations of approximate lines, as one drive shows them."""
+    if not approximate_lines:
         return []
-    about = GuideCells(guides, settings.across_m).about(drive, monitor)
+    about = LineCells(approximate_lines, settings.across_m).about(drive, monitor)
     monitor.check()
-    return _measured(drive, guides, about, settings)
+    return _measured(drive, approximate_lines, about, settings)
 
 
-def measured_among(
-    drive: Drive, guides: Sequence[Guide], chosen: ChosenPoints, settings: EdgeSettings
+def measure_edges_among(
+    drive: Drive,
+    approximate_lines: Sequence[ApproximateLine],
+    chosen: ChosenPoints,
+    settings: EdgeSettings,
 ) -> list[MeasuredEdges]:
     """The same by some points of the drive."""
-    about = GuideCells(guides, settings.across_m).among(drive, chosen)
-    return _measured(drive, guides, about, settings)
+    about = LineCells(approximate_lines, settings.across_m).among(drive, chosen)
+    return _measured(drive, approximate_lines, about, settings)
 
 
 def _measured(
-    drive: Drive, guides: Sequence[Guide], about: PointsAbout, settings: EdgeSettings
+    drive: Drive,
+    approximate_lines: Sequence[ApproximateLine],
+    about: PointsAbout,
+    settings: EdgeSettings,
 ) -> list[MeasuredEdges]:
     measured = []
-    is_hidden = _hidden(guides, drive.trajectory)
+    is_hidden = _hidden(approximate_lines, drive.trajectory)
     first = 0
-    for number, guide in enumerate(guides):
+    for number, approximate_line in enumerate(approximate_lines):
         part = slice(int(about.starts[number]), int(about.starts[number + 1]))
         along = about.along[part]
-        places = np.column_stack([about.across[part], about.above[part]])
-        hidden = is_hidden[first : first + guide.width_m.size]
+        positions = np.column_stack([about.across[part], about.above[part]])
+        hidden = is_hidden[first : first + approximate_line.width_m.size]
         first += hidden.size
-        stations = np.column_stack([guide.width_m, hidden, guide.step_m, guide.is_edging])
-        measures = _edges(along, places, stations, settings)
-        measured.append(MeasuredEdges(measures, along, places, about.point[part]))
+        stations = np.column_stack(
+            [approximate_line.width_m, hidden, approximate_line.step_m, approximate_line.is_edging]
+        )
+        measures = _edges(along, positions, stations, settings)
+        measured.append(MeasuredEdges(measures, along, positions, about.point[part]))
     return measured
 
 
-def _hidden(guides: Sequence[Guide], trajectory: Trajectory | None) -> NDArray[np.bool_]:
-    """Where the faces of guides look away from the vehicle, one guide after the other."""
+def _hidden(
+    approximate_lines: Sequence[ApproximateLine], trajectory: Trajectory | None
+) -> NDArray[np.bool_]:
+    """Where the faces of approximate lines look away from the vehicle, one approximate line after the other."""
     if trajectory is None:
-        return np.concatenate([guide.is_hidden for guide in guides])
-    xy = np.vstack([guide.xyz[:, :2] for guide in guides])
-    outwards = np.vstack([guide.outwards for guide in guides])
-    way = trajectory.xyz[:, :2]
-    nearest = cKDTree(way).query(xy)[1]
-    return np.asarray(((way[nearest] - xy) * outwards).sum(axis=1) > 0)
+        return np.concatenate(
+            [approximate_line.is_hidden for approximate_line in approximate_lines]
+        )
+    xy = np.vstack([approximate_line.xyz[:, :2] for approximate_line in approximate_lines])
+    outwards = np.vstack([approximate_line.outwards for approximate_line in approximate_lines])
+    vehicle_path = trajectory.xyz[:, :2]
+    nearest = cKDTree(vehicle_path).query(xy)[1]
+    return np.asarray(((vehicle_path[nearest] - xy) * outwards).sum(axis=1) > 0)
 
 
-def _edges(along: _Floats, places: _Floats, stations: _Floats, settings: EdgeSettings) -> _Floats:
+def _edges(
+    along: _Floats, positions: _Floats, stations: _Floats, settings: EdgeSettings
+) -> _Floats:
     window = np.array(
         [settings.along_m / 2, settings.along_m, settings.enough_points, settings.inlier_m]
     )
     measures = np.full((stations.shape[0], MEASURES), np.nan)
-    edges_kernel(along, places, stations, window, measures)
+    edges_kernel(along, positions, stations, window, measures)
     return measures

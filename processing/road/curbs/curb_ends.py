@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.road.curbs.curb_edge_kernels import STEP_M
-from processing.road.curbs.curb_joins import PooledEdges
+from processing.road.curbs.curb_joins import JointEdges
 
 _Floats = NDArray[np.float64]
 _Flags = NDArray[np.bool_]
@@ -26,7 +26,7 @@ _LEAST_ROUGH_M = 0.002  # by less no scanner tells surfaces apart
 _LEAST_M = 2.0  # what is shorter may be litter, a joint or a wheel
 
 
-def own_part(edges: PooledEdges, is_known: _Flags, span: tuple[int, int]) -> tuple[int, int]:
+def own_part(edges: JointEdges, is_known: _Flags, span: tuple[int, int]) -> tuple[int, int]:
     """What of a line is left once its ends are cut where its surfaces aren't its own.
 
     A place is doubted where the top is much rougher than along the line, or the ground at the foot
@@ -35,8 +35,8 @@ def own_part(edges: PooledEdges, is_known: _Flags, span: tuple[int, int]) -> tup
 
     Parameters
     ----------
-    edges : PooledEdges
-        At the stations of the guide.
+    edges : JointEdges
+        At the stations of the approximate line.
     is_known : (m,) bool
         Where something was measured.
     span : tuple of int

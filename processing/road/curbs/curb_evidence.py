@@ -13,11 +13,11 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.road.curbs.approximate_lines import ApproximateLine
 from processing.road.curbs.curb_confidence import CurbFacts, confidence_of
 from processing.road.curbs.curb_edge_kernels import HIGH_OFF, LEAN, LOW_OFF, STEP_M
 from processing.road.curbs.curb_ends import FACED
-from processing.road.curbs.curb_guides import Guide
-from processing.road.curbs.curb_joins import PooledEdges
+from processing.road.curbs.curb_joins import JointEdges
 from processing.road.curbs.curb_lines import CurbLine
 from processing.road.curbs.curb_runs import StepRun
 
@@ -43,30 +43,30 @@ def noise_of(measures: Sequence[_Floats]) -> float:
 
 
 def facts_of(
-    line: tuple[Guide, CurbLine],
+    line: tuple[ApproximateLine, CurbLine],
     runs: Sequence[StepRun],
-    edges: PooledEdges,
+    edges: JointEdges,
     measures: Sequence[_Floats],
     tolerances: tuple[float, float],
 ) -> CurbFacts:
-    """The facts of a line along a guide.
+    """The facts of a line along an approximate line.
 
     Parameters
     ----------
     line : tuple
         The guide and the line found along it.
     runs : sequence of StepRun
-        What the guide is made of.
-    edges : PooledEdges
-        At the guide's stations.
+        What the approximate line is made of.
+    edges : JointEdges
+        At the approximate line's stations.
     measures : sequence of (m, MEASURES) float64
         Of each drive.
     tolerances : tuple of float
         Inlier tolerance, m; noise of single points, m.
     """
-    guide, curb = line
+    approximate_line, curb = line
     stations = slice(int(curb.frame[0, 0]), int(curb.frame[-1, 0]) + 1)
-    shares = _shares(guide, stations)
+    shares = _shares(approximate_line, stations)
     # What repeats along a street may cross the way and stand where others have risen.
     lone = 1.0 - _weighed(shares, lambda number: float(runs[number].chance_beside > 0))
     crossing = lone * _weighed(shares, lambda number: float(not _is_along(runs[number]))) > 0.5
@@ -74,7 +74,7 @@ def facts_of(
     if not crossing:
         short *= max(1.0 - float(curb.is_seen.sum()) * STEP_M / _LONG_M, 0.0)
     risen_m = min(_weighed(shares, lambda number: _risen_m(runs[number])), _MOST_RISEN_M)
-    above_m = _weighed(shares, lambda number: _seen_median(runs[number], "above_way_m"))
+    above_m = _weighed(shares, lambda number: _seen_median(runs[number], "above_path_m"))
     above_m = 0.0 if above_m < -_FIELD_M else above_m
     known = np.isfinite(edges.across_error[stations])
     part = [one[stations] for one in measures]
@@ -82,14 +82,14 @@ def facts_of(
     inlier_m, noise_m = tolerances
     # Of a face that looks away from the vehicle nothing but the upper edge was measured. What was
     # found from its front without any point on the face is known by the ground before it alone.
-    is_foot_seen = is_faced or float(guide.is_hidden[stations].mean()) < _HIDDEN
+    is_foot_seen = is_faced or float(approximate_line.is_hidden[stations].mean()) < _HIDDEN
     surfaces = (LOW_OFF, HIGH_OFF) if is_foot_seen else (HIGH_OFF,)
     off_m = max(_median_of(part, column) for column in surfaces)
     lean = _median_of(part, LEAN) if is_faced else 0.0
     return CurbFacts(
         before=_weighed(shares, lambda number: confidence_of(runs[number])),
         risen_m=0.0 if crossing else short * risen_m,
-        above_way_m=short * min(max(above_m, -_MOST_ABOVE_M), _MOST_ABOVE_M),
+        above_path_m=short * min(max(above_m, -_MOST_ABOVE_M), _MOST_ABOVE_M),
         crossing=float(crossing),
         too_tall_m=min(max(_median(curb.steps_m) - _TALLEST_USUAL_M, 0.0), _MOST_TALL_M),
         too_flat=min(max(lean - _USUAL_LEAN, 0.0), _MOST_FLAT),
@@ -98,10 +98,10 @@ def facts_of(
     )
 
 
-def _shares(guide: Guide, stations: slice) -> dict[int, float]:
+def _shares(approximate_line: ApproximateLine, stations: slice) -> dict[int, float]:
     """How much of some stations is of each run; of the whole guide where they are of none."""
-    of = guide.runs[stations]
-    of = of[of >= 0] if (of >= 0).any() else guide.runs[guide.runs >= 0]
+    of = approximate_line.runs[stations]
+    of = of[of >= 0] if (of >= 0).any() else approximate_line.runs[approximate_line.runs >= 0]
     numbers, counts = np.unique(of, return_counts=True)
     return dict(zip(numbers.tolist(), (counts / max(of.size, 1)).tolist(), strict=True))
 
@@ -111,7 +111,7 @@ def _weighed(shares: dict[int, float], value: Callable[[int], float]) -> float:
 
 
 def _is_along(run: StepRun) -> bool:
-    """Whether a run goes on about as far along the way as it is long."""
+    """Whether a run goes on about as far along the vehicle's path as it is long."""
     ends = np.hypot(*np.diff(run.lower[:, :2], axis=0).T).sum()
     return float(np.ptp(run.stations_m)) >= _ALONG * float(ends)
 
@@ -124,7 +124,7 @@ def _seen_median(run: StepRun, name: str) -> float:
     return _median(getattr(run, name)[run.is_seen])
 
 
-def _unevenness(edges: PooledEdges, stations: slice, unit_m: float, *, is_faced: bool) -> float:
+def _unevenness(edges: JointEdges, stations: slice, unit_m: float, *, is_faced: bool) -> float:
     known = np.isfinite(edges.across_error[stations])
     if known.sum() < _LEAST_STATIONS:
         return 0.0

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.drafting.needed_places import needed_places
+from processing.drafting.needed_positions import needed_positions
+from processing.road.curbs.approximate_lines import ApproximateLine
 from processing.road.curbs.curb_edge_kernels import STEP_M
 from processing.road.curbs.curb_edges import MeasuredEdges
-from processing.road.curbs.curb_guides import Guide
 from processing.road.curbs.curb_lines import CurbLine, in_space
 from processing.road.curbs.curb_types import CurbType, TypedPart, typed_parts
 
@@ -66,18 +66,21 @@ class CurbFeature:
 
 
 def features_of(
-    guide: Guide, line: CurbLine, measured: Sequence[MeasuredEdges], confidence: float
+    approximate_line: ApproximateLine,
+    line: CurbLine,
+    measured: Sequence[MeasuredEdges],
+    confidence: float,
 ) -> Iterator[CurbFeature]:
     """The stretches of one curb, in the direction of the first drive."""
     parts = typed_parts(line.steps_m)
-    for part in parts if guide.is_along else reversed(parts):
+    for part in parts if approximate_line.is_along else reversed(parts):
         at = _stations(part)
         if (at[-1] - at[0]) * STEP_M < _SHORTEST_M:
             continue
         all_at = np.arange(line.is_seen.size)
         seen = np.interp(at, all_at, line.is_seen.astype(float)) > 0.5
         edges = [
-            _edge(guide, _between(frame, at), seen, measured)
+            _edge(approximate_line, _between(frame, at), seen, measured)
             for frame in (line.frame, line.upper_frame)
         ]
         steps = np.interp(at, all_at, line.steps_m)
@@ -99,9 +102,12 @@ def _between(frame: _Floats, at: _Floats) -> _Floats:
 
 
 def _edge(
-    guide: Guide, frame: _Floats, seen: NDArray[np.bool_], measured: Sequence[MeasuredEdges]
+    approximate_line: ApproximateLine,
+    frame: _Floats,
+    seen: NDArray[np.bool_],
+    measured: Sequence[MeasuredEdges],
 ) -> EdgeLine:
-    xyz = in_space(guide, frame)
+    xyz = in_space(approximate_line, frame)
     points = np.full(seen.size, -1, np.int64)
     drives = np.zeros(seen.size, np.int64)
     least = np.full(seen.size, np.inf)
@@ -111,7 +117,7 @@ def _edge(
         better = seen[kept] & (found >= 0) & (away < least[kept])
         which = kept[better]
         points[which], drives[which], least[which] = found[better], number, away[better]
-    if not guide.is_along:
+    if not approximate_line.is_along:
         kept = kept[::-1]
     return EdgeLine(xyz[kept], points[kept], drives[kept])
 
@@ -122,7 +128,7 @@ def _kept(xyz: _Floats, seen: NDArray[np.bool_]) -> _Integers:
     fixed = np.unique(np.concatenate([[0, seen.size - 1], ends, ends + 1]))
     kept = [fixed]
     for start, stop in itertools.pairwise(fixed):
-        needed = start + needed_places(xyz[start : stop + 1], _OFF_M)
+        needed = start + needed_positions(xyz[start : stop + 1], _OFF_M)
         for one, other in itertools.pairwise(needed):
             count = int(np.ceil((other - one) * STEP_M / _LONGEST_M))
             kept.append(np.linspace(one, other, count + 1).round().astype(np.int64))

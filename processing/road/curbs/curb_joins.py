@@ -29,13 +29,13 @@ _MOST_ASIDE_M = 0.25  # a rough line is off by less
 
 
 @dataclass(frozen=True)
-class PooledEdges:
+class JointEdges:
     """Edges of one curb at the stations of its guide, by all that measured it.
 
     Attributes
     ----------
     lower_across, upper_across, lower_above, upper_above : (m,) float64
-        In the guide's frame, m; NaN where nothing was measured.
+        In the approximate line's frame, m; NaN where nothing was measured.
     lean : (m,) float64
         Of the face, m across per m of height; NaN where no points lie on it.
     across_error, lower_error, upper_error : (m,) float64
@@ -65,7 +65,7 @@ class PooledEdges:
         return self.upper_above - self.lower_above
 
 
-def pooled(measures: Sequence[_Floats], most_step_m: float) -> PooledEdges:
+def join_edges(measures: Sequence[_Floats], most_step_m: float) -> JointEdges:
     """One result of what each drive measured.
 
     Parameters
@@ -94,7 +94,7 @@ def pooled(measures: Sequence[_Floats], most_step_m: float) -> PooledEdges:
     faces = np.where(is_good & np.isfinite(stack[:, :, LEAN]), stack[:, :, FACE_POINTS], 0.0)
     weight = faces.sum(axis=0)
     lean = np.where(faces > 0, stack[:, :, LEAN], 0.0) * faces
-    return PooledEdges(
+    return JointEdges(
         lower,
         upper,
         below,

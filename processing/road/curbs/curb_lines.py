@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import percentile_filter
 
+from processing.road.curbs.approximate_lines import ApproximateLine
 from processing.road.curbs.curb_edge_kernels import STEP_M
 from processing.road.curbs.curb_ends import FACED, own_part
-from processing.road.curbs.curb_guides import Guide
-from processing.road.curbs.curb_joins import PooledEdges
-from processing.road.curbs.curb_smoothing import Smoothness, smoothed
+from processing.road.curbs.curb_joins import JointEdges
+from processing.road.curbs.curb_smoothing import Smoothness, smooth_values
 
 _Floats = NDArray[np.float64]
 _Flags = NDArray[np.bool_]
@@ -47,7 +47,7 @@ class CurbLine:
     is_seen : (k,) bool
         False: bridged.
     frame : (k, 3) float64
-        Station of the guide, and the lower edge across and above it.
+        Station of the approximate line, and the lower edge across and above it.
     upper_frame : (k, 3) float64
         The same of the upper edge.
     """
@@ -64,8 +64,10 @@ class CurbLine:
         return self.upper[:, 2] - self.lower[:, 2]
 
 
-def lines_of(guide: Guide, edges: PooledEdges, bridge_m: float) -> Iterator[CurbLine]:
-    """The curbs along a guide: one, or several where it is open between them.
+def lines_of(
+    approximate_line: ApproximateLine, edges: JointEdges, bridge_m: float
+) -> Iterator[CurbLine]:
+    """The curbs along an approximate line: one, or several where it is open between them.
 
     Ends along ground unlike that about the rest are left out, see `curb_ends.own_part`.
     """
@@ -75,11 +77,11 @@ def lines_of(guide: Guide, edges: PooledEdges, bridge_m: float) -> Iterator[Curb
     is_edge &= ~_stands_out(edges.steps_m, is_edge)
     is_known = is_edge | is_flat
     # A face that looks away and is lowered to the ground shows nothing: there it ends.
-    drop_m = 0.0 if guide.is_hidden.mean() > _HIDDEN else _LONGEST_DROP_M
+    drop_m = 0.0 if approximate_line.is_hidden.mean() > _HIDDEN else _LONGEST_DROP_M
     for part in _parts(is_edge, is_flat, edges.steps_m, (bridge_m, drop_m)):
         first, stop = own_part(edges, is_edge, part)
         if (stop - first) * STEP_M >= _LEAST_M and is_edge[first:stop].sum() * STEP_M >= _LEAST_M:
-            yield _line(guide, edges, (is_edge, is_known), (first, stop))
+            yield _line(approximate_line, edges, (is_edge, is_known), (first, stop))
 
 
 def _stands_out(steps: _Floats, is_edge: _Flags) -> _Flags:
@@ -128,13 +130,14 @@ def _goes_on(
     if long_m > max(longest_m[1], 2 * STEP_M):
         return False
     return long_m <= 2 * STEP_M or all(
-        _comes_down(steps, is_edge, end, way) for end, way in ((hole.start - 1, -1), (hole.stop, 1))
+        _comes_down(steps, is_edge, end, vehicle_path)
+        for end, vehicle_path in ((hole.start - 1, -1), (hole.stop, 1))
     )
 
 
-def _comes_down(steps: _Floats, is_edge: _Flags, end: int, way: int) -> bool:
+def _comes_down(steps: _Floats, is_edge: _Flags, end: int, vehicle_path: int) -> bool:
     """Whether a curb is lowered towards an end."""
-    reach = np.arange(end, end + way * int(6.0 / STEP_M), way)
+    reach = np.arange(end, end + vehicle_path * int(6.0 / STEP_M), vehicle_path)
     reach = reach[(reach >= 0) & (reach < steps.size)]
     reach = reach[is_edge[reach]]
     near = steps[reach[:2]]
@@ -142,44 +145,49 @@ def _comes_down(steps: _Floats, is_edge: _Flags, end: int, way: int) -> bool:
 
 
 def _line(
-    guide: Guide, edges: PooledEdges, flags: tuple[_Flags, _Flags], span: tuple[int, int]
+    approximate_line: ApproximateLine,
+    edges: JointEdges,
+    flags: tuple[_Flags, _Flags],
+    span: tuple[int, int],
 ) -> CurbLine:
     part = slice(*span)
     is_edge, known = flags[0], flags[1][part]
     across = np.where(is_edge[part], (_USUAL_M / edges.across_error[part]) ** 2, 0.0)
     low = np.where(known, (_USUAL_M / edges.lower_error[part]) ** 2, 0.0)
     high = np.where(known, (_USUAL_M / edges.upper_error[part]) ** 2, 0.0)
-    step = np.maximum(smoothed(edges.steps_m[part], high, _STEP), 0.0)
+    step = np.maximum(smooth_values(edges.steps_m[part], high, _STEP), 0.0)
     lean_weight = np.where(np.isfinite(edges.lean[part]), edges.face_points[part], 0.0)
     lean_weight = lean_weight * np.nan_to_num(edges.steps_m[part]) ** 2
-    lean = smoothed(edges.lean[part], lean_weight, _LEAN)
+    lean = smooth_values(edges.lean[part], lean_weight, _LEAN)
     lean = np.clip(np.where(np.isfinite(lean), lean, _TYPICAL_LEAN), -0.1, 1.5)
     # The middle of a face is better known than its ends; of a hidden one only the upper is seen.
     is_faced = (edges.face_points[part][is_edge[part]] > 0).mean() >= FACED
     share = 0.5 if is_faced else 1.0
-    place = (1 - share) * edges.lower_across[part] + share * edges.upper_across[part]
-    lower = smoothed(place, across, _ACROSS) - share * lean * step
+    position = (1 - share) * edges.lower_across[part] + share * edges.upper_across[part]
+    lower = smooth_values(position, across, _ACROSS) - share * lean * step
     upper = lower + lean * step
-    below = smoothed(edges.lower_above[part], low, _HEIGHT)
+    below = smooth_values(edges.lower_above[part], low, _HEIGHT)
     stations = np.arange(*span, dtype=np.float64)
     frames = (
         np.column_stack([stations, lower, below]),
         np.column_stack([stations, upper, below + step]),
     )
     return CurbLine(
-        in_space(guide, frames[0]),
-        in_space(guide, frames[1]),
+        in_space(approximate_line, frames[0]),
+        in_space(approximate_line, frames[1]),
         is_edge[part],
         frames[0],
         frames[1],
     )
 
 
-def in_space(guide: Guide, frame: _Floats) -> _Floats:
-    """(k, 3) places of a guide's frame, m, project CRS; stations may lie between vertices."""
-    at = np.arange(guide.xyz.shape[0])
-    xyz = np.column_stack([np.interp(frame[:, 0], at, column) for column in guide.xyz.T])
-    left = np.column_stack([np.interp(frame[:, 0], at, column) for column in guide.outwards.T])
+def in_space(approximate_line: ApproximateLine, frame: _Floats) -> _Floats:
+    """(k, 3) places of an approximate line's frame, m, project CRS; stations may lie between vertices."""
+    at = np.arange(approximate_line.xyz.shape[0])
+    xyz = np.column_stack([np.interp(frame[:, 0], at, column) for column in approximate_line.xyz.T])
+    left = np.column_stack(
+        [np.interp(frame[:, 0], at, column) for column in approximate_line.outwards.T]
+    )
     xyz[:, :2] += left * frame[:, 1:2]
     xyz[:, 2] += frame[:, 2]
     return xyz

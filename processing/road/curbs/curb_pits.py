@@ -44,7 +44,7 @@ def _is_short(run: StepRun, settings: StepSettings) -> bool:
     if run.is_edging or run.rises < 0 or not _SHORTEST_M <= run.seen_m <= _LONGEST_M:
         return False
     seen = run.is_seen
-    is_sure = median_of(run.sureness[seen]) >= _LEAST_SURE
+    is_sure = median_of(run.significance[seen]) >= _LEAST_SURE
     return is_sure and median_of(run.heights_m[seen]) >= settings.least_step_m
 
 
@@ -59,7 +59,7 @@ def _alike(runs: Sequence[StepRun]) -> list[StepRun]:
 
 
 def _facts(run: StepRun) -> tuple[float, float, float, float, float]:
-    """Side, height, length, what has risen before, and where along the way."""
+    """Side, height, length, what has risen before, and where along the vehicle's path."""
     seen = run.is_seen
     return (
         float(run.side),

@@ -36,7 +36,7 @@ def fill_slots_kernel(keys: _Integers, slots: _Integers) -> None:
 @kernel
 def about_lines_kernel(
     integers: NDArray[np.int32],
-    place: _Floats,
+    position: _Floats,
     table: tuple[_Integers, _Integers, _Integers, _Integers],
     lines: tuple[_Floats, _Floats, _Integers],
     limits: _Floats,
@@ -44,7 +44,7 @@ def about_lines_kernel(
 ) -> int:
     """Points near lines, each once per line; gives their number, −1 where there is no room.
 
-    ``integers``: (n, 3) of a block; ``place``: scale and offset about the lines' origin, size of a
+    ``integers``: (n, 3) of a block; ``position``: scale and offset about the lines' origin, size of a
     cell; ``table``: slots, keys of cells, where each cell's segments start, the segments;
     ``lines``: places (m, 3), unit vectors to the higher ground (m, 2), number of each line (m,);
     ``limits``: how far across, below and above; ``found``: point of the block, line, and (k, 3)
@@ -52,16 +52,16 @@ def about_lines_kernel(
     """
     slots, keys, starts, segments = table
     xyz, outwards, line_of = lines
-    size = place[6]
+    size = position[6]
     count = 0
     for i in range(integers.shape[0]):
-        x = integers[i, 0] * place[0] + place[3]
-        y = integers[i, 1] * place[1] + place[4]
+        x = integers[i, 0] * position[0] + position[3]
+        y = integers[i, 1] * position[1] + position[4]
         key = math.floor(x / size) * 0x100000000 + math.floor(y / size)
         cell = slots[slot_of(key, slots, keys)]
         if cell < 0:
             continue
-        z = integers[i, 2] * place[2] + place[5]
+        z = integers[i, 2] * position[2] + position[5]
         line, nearest = -1, math.inf
         for k in range(starts[cell], starts[cell + 1]):
             s = segments[k]
@@ -96,26 +96,26 @@ def about_lines_kernel(
 @kernel
 def in_cells_kernel(
     integers: NDArray[np.int32],
-    place: _Floats,
+    position: _Floats,
     table: tuple[_Integers, _Integers],
     heights: _Floats,
     found: tuple[_Integers, _Integers],
 ) -> int:
     """Points in some cells of the plan and between the heights of each; gives their number.
 
-    ``place`` is as in :func:`about_lines_kernel`; ``heights``: (cells, 2) lowest and highest;
+    ``position`` is as in :func:`about_lines_kernel`; ``heights``: (cells, 2) lowest and highest;
     ``found``: the points, and which quarter of which cell each is in, four to a cell.
     """
     slots, keys = table
     count = 0
     for i in range(integers.shape[0]):
-        x = (integers[i, 0] * place[0] + place[3]) / place[6]
-        y = (integers[i, 1] * place[1] + place[4]) / place[6]
+        x = (integers[i, 0] * position[0] + position[3]) / position[6]
+        y = (integers[i, 1] * position[1] + position[4]) / position[6]
         column, row = math.floor(x), math.floor(y)
         key = column * 0x100000000 + row
         cell = slots[slot_of(key, slots, keys)]
         if cell >= 0:
-            z = integers[i, 2] * place[2] + place[5]
+            z = integers[i, 2] * position[2] + position[5]
             if heights[cell, 0] <= z <= heights[cell, 1]:
                 found[0][count] = i
                 found[1][count] = 4 * cell + 2 * (x - column >= 0.5) + (y - row >= 0.5)
@@ -149,12 +149,12 @@ def warm_up() -> None:
     order_kernel(keys, keys.copy(), keys.copy())
     integers = np.zeros((1, 3), np.int32)
     integers.flags.writeable = False
-    place = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.5])
+    position = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.5])
     for one in (np.zeros((1, 3), np.int32), integers):
-        in_cells_kernel(one, place, (slots, keys), np.zeros((1, 2)), (keys.copy(), keys.copy()))
+        in_cells_kernel(one, position, (slots, keys), np.zeros((1, 2)), (keys.copy(), keys.copy()))
         about_lines_kernel(
             one,
-            place,
+            position,
             (slots, keys, np.array([0, 1]), np.array([0])),
             (
                 np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]),

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from processing.monitor import Monitor
 from processing.points.drive import Drive
-from processing.points.ordering import read_stretch
+from processing.points.ordering import read_chunk
 from processing.road.curbs.curb_point_kernels import (
     about_lines_kernel,
     fill_slots_kernel,
@@ -39,14 +39,14 @@ _ROUNDED_M = 0.001  # two origins make one place two numbers
 
 @dataclass(frozen=True)
 class PointsAbout:
-    """The points of one drive about guides, by guide and along it.
+    """The points of one drive about approximate lines, by guide and along it.
 
     Attributes
     ----------
     starts : (g + 1,) int64
         Where each guide's points begin.
     along : (n,) float64
-        Station of the guide, counted in its vertices.
+        Station of the approximate line, counted in its vertices.
     across : (n,) float64
         m from its line towards the higher ground, in plan.
     above : (n,) float64
@@ -62,7 +62,7 @@ class PointsAbout:
     point: _Integers
 
 
-class GuideLine(Protocol):
+class PlanLine(Protocol):
     """A line in plan: places (m, 3) and level unit vectors to one side of it (m, 2)."""
 
     @property
@@ -99,11 +99,11 @@ class ChosenPoints:
     order: _Integers
     starts: _Integers
 
-    def about(self, guides: Sequence[GuideLine], across_m: float) -> _Integers:
-        """(k,) places in ``points``, rising: those in all quarters that guides come near to."""
+    def about(self, approximate_lines: Sequence[PlanLine], across_m: float) -> _Integers:
+        """(k,) places in ``points``, rising: those in all quarters that approximate lines come near to."""
         parts = []
-        for guide in guides:
-            ends = guide.xyz[:, :2] - self.origin[:2]
+        for approximate_line in approximate_lines:
+            ends = approximate_line.xyz[:, :2] - self.origin[:2]
             _, x, y = _boxes((ends[:-1], ends[1:]), across_m + _ROUNDED_M, _COARSE_M / 2)
             parts.append(((x >> 1) * _X_KEY + (y >> 1)) * 4 + (x & 1) * 2 + (y & 1))
         quarters = np.unique(np.concatenate(parts))
@@ -114,29 +114,29 @@ class ChosenPoints:
 
 
 def points_near(
-    drive: Drive, places: _Floats, reach: tuple[float, float], monitor: Monitor
+    drive: Drive, positions: _Floats, reach: tuple[float, float], monitor: Monitor
 ) -> ChosenPoints:
     """Points of a drive about places, by cells of the plan.
 
     Parameters
     ----------
-    places : (n, 3) float64
+    positions : (n, 3) float64
         At least one.
     reach : tuple of float
         How far aside, and how far above or below, m.
     """
-    origin: _Floats = np.floor(places[0])
-    keys, heights = _cells_about(places - origin, reach)
+    origin: _Floats = np.floor(positions[0])
+    keys, heights = _cells_about(positions - origin, reach)
     slots = _slots_of(keys)
-    place = _place(drive, origin, _COARSE_M)
+    position = _position(drive, origin, _COARSE_M)
     points, integers, quarters = [], [np.empty((0, 3), np.int32)], []
 
     def near(start: int) -> tuple[_Integers, NDArray[np.int32], _Integers]:
         monitor.check()
         stop = min(start + POINTS_AT_ONCE, drive.count)
-        block = read_stretch(drive.folder, "xyz", start, stop)
+        block = read_chunk(drive.folder, "xyz", start, stop)
         chosen, quarter = np.empty(stop - start, np.int64), np.empty(stop - start, np.int64)
-        count = in_cells_kernel(block, place, (slots, keys), heights, (chosen, quarter))
+        count = in_cells_kernel(block, position, (slots, keys), heights, (chosen, quarter))
         return chosen[:count] + start, block[chosen[:count]], quarter[:count].copy()
 
     starts = range(0, drive.count, POINTS_AT_ONCE)
@@ -152,14 +152,14 @@ def points_near(
     return ChosenPoints(_joined(points), np.vstack(integers), origin, keys, order, begins)
 
 
-def _cells_about(places: _Floats, reach: tuple[float, float]) -> tuple[_Integers, _Floats]:
+def _cells_about(positions: _Floats, reach: tuple[float, float]) -> tuple[_Integers, _Floats]:
     """Keys of the coarse cells about places, and (n, 2) the heights that are near in each."""
     aside = int(np.ceil(reach[0] / _COARSE_M))
     steps = np.arange(-aside, aside + 1)
-    cells = np.floor(places[:, :2] / _COARSE_M).astype(np.int64)
+    cells = np.floor(positions[:, :2] / _COARSE_M).astype(np.int64)
     x = (cells[:, 0, None, None] + steps[None, :, None]) * _X_KEY
-    keys = (x + cells[:, 1, None, None] + steps[None, None, :]).reshape(len(places), -1)
-    z = np.repeat(places[:, 2], keys.shape[1])
+    keys = (x + cells[:, 1, None, None] + steps[None, None, :]).reshape(len(positions), -1)
+    z = np.repeat(positions[:, 2], keys.shape[1])
     unique, where = np.unique(keys.ravel(), return_inverse=True)
     heights = np.tile([np.inf, -np.inf], (unique.size, 1))
     np.minimum.at(heights[:, 0], where, z - reach[1])
@@ -173,30 +173,35 @@ def _slots_of(keys: _Integers) -> _Integers:
     return slots
 
 
-def _place(drive: Drive, origin: _Floats, cell_m: float) -> _Floats:
+def _position(drive: Drive, origin: _Floats, cell_m: float) -> _Floats:
     """What makes metres about an origin of integers, and the size of a cell."""
     scale, offset = np.array(drive.info.scale), np.array(drive.info.offset) - origin
     return np.concatenate([scale, offset, [cell_m]])
 
 
-class GuideCells:
-    """Which guides pass through which cells of the plan.
+class LineCells:
+    """Which approximate lines pass through which cells of the plan.
 
     Parameters
     ----------
-    guides : sequence of GuideLine
+    approximate_lines : sequence of PlanLine
         At least one.
     across_m : float
-        How far from a guide points are wanted.
+        How far from an approximate line points are wanted.
     """
 
-    def __init__(self, guides: Sequence[GuideLine], across_m: float) -> None:
-        self._guides = guides
-        sizes = np.array([guide.xyz.shape[0] for guide in guides])
+    def __init__(self, approximate_lines: Sequence[PlanLine], across_m: float) -> None:
+        self._approximate_lines = approximate_lines
+        sizes = np.array([approximate_line.xyz.shape[0] for approximate_line in approximate_lines])
         self.firsts: _Integers = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
-        self.origin: _Floats = np.floor(guides[0].xyz[0])
-        self._xyz = np.vstack([guide.xyz for guide in guides]) - self.origin
-        self._outwards = np.ascontiguousarray(np.vstack([guide.outwards for guide in guides]))
+        self.origin: _Floats = np.floor(approximate_lines[0].xyz[0])
+        self._xyz = (
+            np.vstack([approximate_line.xyz for approximate_line in approximate_lines])
+            - self.origin
+        )
+        self._outwards = np.ascontiguousarray(
+            np.vstack([approximate_line.outwards for approximate_line in approximate_lines])
+        )
         self._line_of = np.repeat(np.arange(sizes.size), sizes).astype(np.int64)
         self._limits = np.array([across_m, BELOW_M, ABOVE_M])
         self._table = self._table_of(across_m)
@@ -204,14 +209,14 @@ class GuideCells:
     def about(
         self, drive: Drive, monitor: Monitor, points_at_once: int = POINTS_AT_ONCE
     ) -> PointsAbout:
-        """Points of a drive about the guides."""
-        place = _place(drive, self.origin, _CELL_M)
+        """Points of a drive about the approximate lines."""
+        position = _position(drive, self.origin, _CELL_M)
         points, owners, values = [], [], []
 
         def near(start: int) -> tuple[_Integers, _Integers, _Floats]:
             monitor.check()
             stop = min(start + points_at_once, drive.count)
-            found = self._found(read_stretch(drive.folder, "xyz", start, stop), place)
+            found = self._found(read_chunk(drive.folder, "xyz", start, stop), position)
             return found[0] + start, found[1], found[2]
 
         starts = range(0, drive.count, points_at_once)
@@ -220,28 +225,32 @@ class GuideCells:
             owners.append(found[1])
             values.append(found[2])
             monitor.report(done / len(starts))
-        return self._by_guide(_joined(points), _joined(owners), np.vstack([*values, _NO_VALUES]))
+        return self._by_approximate_line(
+            _joined(points), _joined(owners), np.vstack([*values, _NO_VALUES])
+        )
 
     def among(self, drive: Drive, chosen: ChosenPoints) -> PointsAbout:
-        """Points about the guides among some of a drive."""
-        near = chosen.about(self._guides, self._limits[0])
-        place = _place(drive, self.origin, _CELL_M)
-        which, owners, values = self._found(chosen.integers[near], place)
-        return self._by_guide(chosen.points[near[which]], owners, values)
+        """Points about the approximate lines among some of a drive."""
+        near = chosen.about(self._approximate_lines, self._limits[0])
+        position = _position(drive, self.origin, _CELL_M)
+        which, owners, values = self._found(chosen.integers[near], position)
+        return self._by_approximate_line(chosen.points[near[which]], owners, values)
 
     def _found(
-        self, integers: NDArray[np.int32], place: _Floats
+        self, integers: NDArray[np.int32], position: _Floats
     ) -> tuple[_Integers, _Integers, _Floats]:
         lines = (self._xyz, self._outwards, self._line_of)
         most = max(integers.shape[0], 1)
         while True:
             room = (np.empty(most, np.int64), np.empty(most, np.int64), np.empty((most, 3)))
-            count = about_lines_kernel(integers, place, self._table, lines, self._limits, room)
+            count = about_lines_kernel(integers, position, self._table, lines, self._limits, room)
             if count >= 0:
                 return room[0][:count].copy(), room[1][:count].copy(), room[2][:count].copy()
             most *= 2
 
-    def _by_guide(self, points: _Integers, owners: _Integers, values: _Floats) -> PointsAbout:
+    def _by_approximate_line(
+        self, points: _Integers, owners: _Integers, values: _Floats
+    ) -> PointsAbout:
         order = np.argsort(values[:, 0], kind="stable")
         starts = np.concatenate([[0], np.cumsum(np.bincount(owners, minlength=self._count))])
         along = values[order, 0] - self.firsts[owners[order]]

@@ -1,6 +1,6 @@
 """Steps of the ground on normalised scanlines: where level ground meets a low, steep rise.
 
-Every step of a scanline is looked at, not only the first beside the way, and steps down as well
+Every step of a scanline is looked at, not only the first beside the vehicle's path, and steps down as well
 as up: islands, medians and edgings have two.
 """
 
@@ -73,7 +73,7 @@ class PassSteps:
     """
 
     stations_m: Floats
-    places: Floats
+    positions: Floats
     rights: Floats
     table: Floats
     times_s: Floats
@@ -90,7 +90,7 @@ def steps_of(scanlines: Scanlines, settings: StepSettings) -> PassSteps:
     lines = (scanlines.across_m, scanlines.height_m, scanlines.starts)
     table = steps_on_lines(lines, half_m, settings, is_square=True)
     times = scanlines.time_s[table[:, VERTEX].astype(np.int64)]
-    return PassSteps(scanlines.stations_m, scanlines.places, scanlines.rights, table, times)
+    return PassSteps(scanlines.stations_m, scanlines.positions, scanlines.rights, table, times)
 
 
 def steps_on_lines(
@@ -109,7 +109,7 @@ def steps_on_lines(
     half_m : float
         No place is farther from 0.
     is_square : bool
-        Whether the lines are square to the way, which crosses them at 0: then far faces are in
+        Whether the lines are square to the vehicle's path, which crosses them at 0: then far faces are in
         shadow.
     """
     limits = np.array(
@@ -134,7 +134,7 @@ def steps_on_lines(
     return table[: edges_kernel(along, height, starts, heights, table)].copy()
 
 
-def joined_steps(parts: Sequence[PassSteps]) -> PassSteps:
+def join_steps(parts: Sequence[PassSteps]) -> PassSteps:
     """Steps of the stretches of one pass as of one; scanlines are counted on."""
     firsts = np.cumsum([0, *(part.stations_m.size for part in parts)])
     tables = []
@@ -144,7 +144,7 @@ def joined_steps(parts: Sequence[PassSteps]) -> PassSteps:
         tables.append(table)
     return PassSteps(
         np.concatenate([part.stations_m for part in parts]),
-        np.vstack([part.places for part in parts]),
+        np.vstack([part.positions for part in parts]),
         np.vstack([part.rights for part in parts]),
         np.vstack(tables),
         np.concatenate([part.times_s for part in parts]),

@@ -1,7 +1,7 @@
 """Edging stones seen from the road: between a planting strip, or a tree pit, and the walk behind.
 
 Their far edge is the one that maps want, and of it scanners see no more than where the top ends
-and how long its shadow is. Where the top begins is seen well: ridges are followed along the way by
+and how long its shadow is. Where the top begins is seen well: ridges are followed along the vehicle's path by
 that, and its straightness tells stone from plants.
 """
 
@@ -21,7 +21,7 @@ from processing.road.curbs.curb_profile import (
     LEAST_SCANNER_M,
     PassSteps,
     StepSettings,
-    joined_steps,
+    join_steps,
 )
 from processing.road.curbs.curb_runs import StepRun, run_of, spread_of
 from processing.road.curbs.ridge_kernels import ridges_kernel
@@ -33,7 +33,7 @@ _HIGHEST_M = 0.18
 """Blocks for edging are 12 to 15 cm high (JIS A 5371): what stands out by more is a wall."""
 
 _ABOVE_ROAD_M = 0.5  # how far an edge may lie above the road
-_ASIDE_M = 0.5  # how far a scanner may be beside the way: shadows look shorter by it
+_ASIDE_M = 0.5  # how far a scanner may be beside the vehicle's path: shadows look shorter by it
 _ROOM = 4  # ridges of a scanline
 
 
@@ -74,7 +74,7 @@ def ridges_of(scanlines: Scanlines, settings: StepSettings) -> PassRidges:
         room = count
     table, fronts = found[0][:count].copy(), found[1][:count].copy()
     times = scanlines.time_s[table[:, VERTEX].astype(np.int64)]
-    steps = PassSteps(scanlines.stations_m, scanlines.places, scanlines.rights, table, times)
+    steps = PassSteps(scanlines.stations_m, scanlines.positions, scanlines.rights, table, times)
     return PassRidges(steps, fronts)
 
 
@@ -92,7 +92,7 @@ def ridge_runs(
     number : int
         Which of the drives given it is.
     """
-    ridges = joined_steps([part.steps for part in parts])
+    ridges = join_steps([part.steps for part in parts])
     begun = ridges.table.copy()
     begun[:, [LOWER_ACROSS, UPPER_ACROSS]] = np.concatenate([part.fronts for part in parts])[
         :, None
@@ -104,7 +104,7 @@ def ridge_runs(
         yield replace(
             run,
             spread_m=spread_of(fronts, chain),
-            above_way_m=run.above_way_m * 0.0,
+            above_path_m=run.above_path_m * 0.0,
             risen_m=run.risen_m * 0.0,
             is_edging=True,
         )

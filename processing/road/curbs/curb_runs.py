@@ -18,7 +18,7 @@ from processing.road.curbs.step_columns import (
     LOWER_ACROSS,
     LOWER_HEIGHT,
     SIGN,
-    SURENESS,
+    SIGNIFICANCE,
     TOP_M,
     UPPER_ACROSS,
     UPPER_HEIGHT,
@@ -48,10 +48,10 @@ class StepRun:
     side : int
         −1 left, 1 right of the way.
     rises : int
-        1 where the ground is higher on the far side (seen from the way), −1 where it is lower: the
+        1 where the ground is higher on the far side (seen from the vehicle's path), −1 where it is lower: the
         far edges of islands, whose faces mostly are hidden.
     stations_m : (k,) float64
-        Along the pass. They increase but round corners, where a run turns away from the way.
+        Along the pass. They increase but round corners, where a run turns away from the vehicle's path.
     times_s : (k,) float64
         When the places were measured.
     lower, upper : (k, 3) float64
@@ -64,16 +64,16 @@ class StepRun:
         Over which width level ground was seen behind the upper and before the lower edge, m.
     spread_m : (k,) float64
         How far the place as found lies off the smooth line, m; NaN where bridged.
-    sureness : (k,) float64
+    significance : (k,) float64
         Height of the step as found, in its standard deviations; 0 where bridged.
     foot_roughness_m : (k,) float64
         How far points of the ground before the lower edge lie off it, m. NaN where bridged.
     foot_cover_m : (k,) float64
         The same of all points there, those too that hang over the ground. NaN where bridged.
-    above_way_m : (k,) float64
+    above_path_m : (k,) float64
         Height of the lower edge above the road where the vehicle passed it, m. NaN where bridged.
     risen_m : (k,) float64
-        What other steps between the vehicle's way and this one add up to, up less down, m: 0 for
+        What other steps between the vehicle's path and this one add up to, up less down, m: 0 for
         the first from the road, about the curb's height for what stands on the pavement behind it.
     is_edging : bool
         The far edge of a narrow edging stone.
@@ -93,10 +93,10 @@ class StepRun:
     top_m: Floats
     foot_m: Floats
     spread_m: Floats
-    sureness: Floats
+    significance: Floats
     foot_roughness_m: Floats
     foot_cover_m: Floats
-    above_way_m: Floats
+    above_path_m: Floats
     risen_m: Floats
     is_edging: bool = False
     chance_beside: float = 0.0
@@ -138,14 +138,14 @@ def run_of(steps: PassSteps, chain: Chain, number: int, among: PassSteps | None 
     rows = steps.table[chain.rows]
     every, nearest, line = _line_of(steps, chain)
     at, _, stations, is_seen = line
-    places = (rows[:, LOWER_ACROSS] + rows[:, UPPER_ACROSS]) / 2
+    positions = (rows[:, LOWER_ACROSS] + rows[:, UPPER_ACROSS]) / 2
     wide = np.abs(rows[:, UPPER_ACROSS] - rows[:, LOWER_ACROSS])
-    middle, face = _smooth(places, line), _smooth(wide, line)
+    middle, face = _smooth(positions, line), _smooth(wide, line)
     low = _smooth(rows[:, LOWER_HEIGHT], line, _HIGH_REACH_M)
     high = _smooth(rows[:, UPPER_HEIGHT], line, _HIGH_REACH_M)
     lower = _placed(steps, every, middle - chain.sign * face / 2, low)
     upper = _placed(steps, every, middle + chain.sign * face / 2, np.maximum(high, low))
-    off = np.abs(places - np.interp(at, stations, middle))
+    off = np.abs(positions - np.interp(at, stations, middle))
     side = 1 if median_of(middle) > 0 else -1
     unseen = np.where(is_seen, 0.0, np.nan)
     return StepRun(
@@ -161,10 +161,10 @@ def run_of(steps: PassSteps, chain: Chain, number: int, among: PassSteps | None 
         top_m=np.where(is_seen, rows[nearest, TOP_M], 0.0),
         foot_m=np.where(is_seen, rows[nearest, FOOT_M], 0.0),
         spread_m=off[nearest] + unseen,
-        sureness=np.where(is_seen, rows[nearest, SURENESS], 0.0),
+        significance=np.where(is_seen, rows[nearest, SIGNIFICANCE], 0.0),
         foot_roughness_m=rows[nearest, FOOT_ROUGH_M] + unseen,
         foot_cover_m=rows[nearest, FOOT_COVER_M] + unseen,
-        above_way_m=low + unseen,
+        above_path_m=low + unseen,
         risen_m=_risen(among or steps, (every, middle), side),
     )
 
@@ -174,8 +174,8 @@ def spread_of(steps: PassSteps, chain: Chain) -> Floats:
     rows = steps.table[chain.rows]
     _, nearest, line = _line_of(steps, chain)
     at, _, stations, is_seen = line
-    places = (rows[:, LOWER_ACROSS] + rows[:, UPPER_ACROSS]) / 2
-    off = np.abs(places - np.interp(at, stations, _smooth(places, line)))
+    positions = (rows[:, LOWER_ACROSS] + rows[:, UPPER_ACROSS]) / 2
+    off = np.abs(positions - np.interp(at, stations, _smooth(positions, line)))
     spread: Floats = off[nearest] + np.where(is_seen, 0.0, np.nan)
     return spread
 
@@ -205,10 +205,10 @@ def _smooth(values: Floats, line: _Line, reach_m: float = _REACH_M) -> Floats:
 
 
 def _placed(steps: PassSteps, every: NDArray[np.int64], across: Floats, height: Floats) -> Floats:
-    """Where places beside the way are: (k, 3), m, project CRS."""
+    """Where places beside the vehicle's path are: (k, 3), m, project CRS."""
     shift = np.column_stack([across[:, None] * steps.rights[every], height])
-    places: Floats = steps.places[every] + shift
-    return places
+    positions: Floats = steps.positions[every] + shift
+    return positions
 
 
 def _risen(steps: PassSteps, line: tuple[NDArray[np.int64], Floats], side: int) -> Floats:
@@ -216,9 +216,9 @@ def _risen(steps: PassSteps, line: tuple[NDArray[np.int64], Floats], side: int) 
     every, middle = line
     first, stop = np.searchsorted(steps.sections, [every[0], every[-1] + 1])
     rows = steps.table[first:stop]
-    place = steps.sections[first:stop] - every[0]
+    position = steps.sections[first:stop] - every[0]
     across = side * rows[:, LOWER_ACROSS]
-    is_between = (across > 0) & (across < side * middle[place] - _BEFORE_M)
+    is_between = (across > 0) & (across < side * middle[position] - _BEFORE_M)
     heights = (rows[:, UPPER_HEIGHT] - rows[:, LOWER_HEIGHT]) * rows[:, SIGN] * side
-    between = np.bincount(place[is_between], heights[is_between], minlength=every.size)
+    between = np.bincount(position[is_between], heights[is_between], minlength=every.size)
     return np.asarray(between, np.float64)

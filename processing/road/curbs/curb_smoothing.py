@@ -36,7 +36,7 @@ class Smoothness:
     kink: float
 
 
-def smoothed(values: _Floats, weights: _Floats, smoothness: Smoothness) -> _Floats:
+def smooth_values(values: _Floats, weights: _Floats, smoothness: Smoothness) -> _Floats:
     """Values at even spacing, smoothed.
 
     Parameters

@@ -89,15 +89,15 @@ def _usual(steps: _Floats) -> _Floats:
     return np.asarray(percentile_filter(steps, _USUAL_PERCENT, size=around, mode="nearest"))
 
 
-def _crossing(steps: _Floats, start: int, way: int, level: float) -> float:
+def _crossing(steps: _Floats, start: int, vehicle_path: int, level: float) -> float:
     """Where the step comes up to a level, from a station on; the line's end where it doesn't."""
     at = start
     while 0 <= at < steps.size and steps[at] >= level:
-        at -= way  # noise: begin inside
+        at -= vehicle_path  # noise: begin inside
     at = min(max(at, 0), steps.size - 1)
-    while 0 <= at + way < steps.size and steps[at + way] < level:
-        at += way
-    if not 0 <= at + way < steps.size:
+    while 0 <= at + vehicle_path < steps.size and steps[at + vehicle_path] < level:
+        at += vehicle_path
+    if not 0 <= at + vehicle_path < steps.size:
         return float(at)
-    rise = steps[at + way] - steps[at]
-    return float(at + way * np.clip((level - steps[at]) / max(rise, 1e-9), 0.0, 1.0))
+    rise = steps[at + vehicle_path] - steps[at]
+    return float(at + vehicle_path * np.clip((level - steps[at]) / max(rise, 1e-9), 0.0, 1.0))

@@ -55,5 +55,5 @@ def levels_kernel(
 
 def warm_up() -> None:
     """Compile the kernel."""
-    places = np.linspace(-1.0, 1.0, 5)
-    levels_kernel(places, places, np.array([0, 5]), np.array([1.0, 0.5]), np.empty((1, 5)))
+    positions = np.linspace(-1.0, 1.0, 5)
+    levels_kernel(positions, positions, np.array([0, 5]), np.array([1.0, 0.5]), np.empty((1, 5)))

@@ -1,4 +1,4 @@
-"""Loops that link steps of scanlines to tracks along the way, and join and smooth tracks.
+"""Loops that link steps of scanlines to tracks along the vehicle's path, and join and smooth tracks.
 
 A track is followed from scanline to scanline: its place and direction are predicted, the step that
 fits best is taken, and the prediction is made better by it (an alpha-beta filter), so that a step
@@ -175,18 +175,18 @@ def _cost(state: _Floats, gap: float, age: int, found: _Floats) -> float:
 
 @kernel
 def ends_kernel(
-    stations: _Floats, places: _Floats, rows: _Integers, bounds: _Integers, ends: _Floats
+    stations: _Floats, positions: _Floats, rows: _Integers, bounds: _Integers, ends: _Floats
 ) -> None:
     """Both ends of tracks.
 
     Parameters
     ----------
     stations : (n,)
-        Of each step, along the way, m.
-    places : (n, 2)
+        Of each step, along the vehicle's path, m.
+    positions : (n, 2)
         Middle of its face across, and height of its lower edge; m.
     rows : (k,)
-        Steps of one track after the other, each track's along the way.
+        Steps of one track after the other, each track's along the vehicle's path.
     bounds : (t, 2)
         Where each track begins and ends in ``rows``.
     ends : (t, 2, END_COLUMNS)
@@ -196,23 +196,23 @@ def ends_kernel(
         steps = rows[bounds[track, 0] : bounds[track, 1]]
         first, last = stations[steps[0]], stations[steps[-1]]
         for end in range(2):
-            _end_of(stations, places, steps, (last if end else first), ends[track, end])
+            _end_of(stations, positions, steps, (last if end else first), ends[track, end])
             ends[track, end, _LENGTH] = last - first
 
 
 @kernel
 def _end_of(
-    stations: _Floats, places: _Floats, steps: _Integers, station: float, end: _Floats
+    stations: _Floats, positions: _Floats, steps: _Integers, station: float, end: _Floats
 ) -> None:
     near = steps[np.abs(stations[steps] - station) <= _END_M]
-    away, across = stations[near] - station, places[near, 0]
+    away, across = stations[near] - station, positions[near, 0]
     middle = away.mean()
-    # A short end tells no direction: held along the way, within some degrees.
+    # A short end tells no direction: held along the vehicle's path, within some degrees.
     slope = ((away - middle) * across).sum() / (((away - middle) ** 2).sum() + 0.3)
     few = min(max(3, min(10, near.size)), near.size)
     close = near[near.size - few :] if station == stations[steps[-1]] else near[:few]
     end[_STATION], end[_ACROSS] = station, across.mean() - slope * middle
-    end[_SLOPE], end[_LOWER] = slope, np.median(places[close, 1])
+    end[_SLOPE], end[_LOWER] = slope, np.median(positions[close, 1])
 
 
 @kernel
@@ -273,7 +273,7 @@ def _misfit(tail: _Floats, head: _Floats, join_m: float) -> float:
 
 @kernel
 def smooth_kernel(
-    at: _Floats, values: _Floats, weights: _Floats, reach_m: float, places: _Floats, out: _Floats
+    at: _Floats, values: _Floats, weights: _Floats, reach_m: float, positions: _Floats, out: _Floats
 ) -> None:
     """Robust local straight lines through values along a run.
 
@@ -283,7 +283,7 @@ def smooth_kernel(
         Along the run, rising, m; what was measured there; how much it counts, changed here.
     reach_m : float
         How far to either side is looked.
-    places : (k,)
+    positions : (k,)
         Where the line is wanted, rising.
     out : (k,)
         Filled; straight on from the nearest where nothing is within reach.
@@ -301,21 +301,21 @@ def smooth_kernel(
             share = off[i] / scale
             robust[i] = weights[i] * (1 - share * share) ** 2 if share < 1 else 0.0
     weights[:] = robust
-    _local_lines(at, values, robust, reach_m, places, out)
+    _local_lines(at, values, robust, reach_m, positions, out)
 
 
 @kernel
 def _local_lines(
-    at: _Floats, values: _Floats, weights: _Floats, reach_m: float, places: _Floats, out: _Floats
+    at: _Floats, values: _Floats, weights: _Floats, reach_m: float, positions: _Floats, out: _Floats
 ) -> None:
-    for k in range(places.size):
+    for k in range(positions.size):
         reach = reach_m
         while True:
-            begin = np.searchsorted(at, places[k] - reach)
-            end = np.searchsorted(at, places[k] + reach)
+            begin = np.searchsorted(at, positions[k] - reach)
+            end = np.searchsorted(at, positions[k] + reach)
             w, u, v, uu, uv = 0.0, 0.0, 0.0, 0.0, 0.0
             for i in range(begin, end):
-                d = at[i] - places[k]
+                d = at[i] - positions[k]
                 near = 1 - (d / reach) ** 2
                 weight = weights[i] * near
                 w += weight

@@ -63,9 +63,9 @@ def ridges_kernel(
                 high = top[1] - ground[1]
                 if ground[0] == 0 or not limits[0] <= high <= limits[1]:
                     continue
-                place = min(count, rows.shape[0] - 1)
-                row = rows[place]
-                fronts[place] = x[i] - side * top[2]
+                position = min(count, rows.shape[0] - 1)
+                row = rows[position]
+                fronts[position] = x[i] - side * top[2]
                 _describe((section, side), side * x[i], top, ground, row)
                 row[of.VERTEX] = begin + i if side > 0 else end - 1 - i
                 count += 1
@@ -179,7 +179,7 @@ def _describe(
     row[of.LOWER_HEIGHT], row[of.UPPER_HEIGHT] = ground[1], top[1]
     row[of.SIGN] = -side
     error = noise * noise / top[0] + _MODEL_M**2 + ground[3]
-    row[of.SURENESS] = (top[1] - ground[1]) / math.sqrt(error)
+    row[of.SIGNIFICANCE] = (top[1] - ground[1]) / math.sqrt(error)
     # The top is level up to its end: nothing says that it is none.
     row[of.TOP_M], row[of.FOOT_M] = _GROUND_M, _GROUND_M
     row[of.FOOT_ROUGH_M], row[of.FOOT_COVER_M] = ground[2], ground[2]

@@ -7,7 +7,7 @@
     LOWER_HEIGHT,
     UPPER_HEIGHT,
     SIGN,
-    SURENESS,
+    SIGNIFICANCE,
     TOP_M,
     FOOT_M,
     FACE_COUNT,

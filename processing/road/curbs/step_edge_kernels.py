@@ -17,8 +17,8 @@ from processing.road.curbs.step_columns import (
     LOWER_HEIGHT,
     SECTION,
     SIGN,
+    SIGNIFICANCE,
     STEP_COLUMNS,
-    SURENESS,
     TOP_SLOPE,
     UPPER_ACROSS,
     UPPER_HEIGHT,
@@ -53,7 +53,7 @@ def edges_kernel(
         Where the scanlines begin.
     limits : (4,)
         Least and greatest step, m; least rise per metre of the face; height of a high scanner, m,
-        0 where lines don't run from the way.
+        0 where lines don't run from the vehicle's path.
     table : (k, STEP_COLUMNS)
         Steps as found; those that are kept are moved to the front.
 
@@ -78,7 +78,7 @@ def edges_kernel(
         _roughness(x, h, row)
         row[VERTEX] += begin
         if kept > 0 and _is_same(table[kept - 1], row):
-            if row[SURENESS] > table[kept - 1, SURENESS]:
+            if row[SIGNIFICANCE] > table[kept - 1, SIGNIFICANCE]:
                 table[kept - 1] = row
             continue
         table[kept] = row

@@ -89,7 +89,7 @@ def steps_kernel(
                 row = found[min(count, found.shape[0] - 1)]
                 if _describe(line, (cell, sign, chosen[cell]), limits, noise, row):
                     row[of.SECTION] = section
-                    row[of.SURENESS] = sure[cell]
+                    row[of.SIGNIFICANCE] = sure[cell]
                     count += 1
     return count
 
@@ -122,14 +122,14 @@ def _fill_cells(x: _Floats, h: _Floats, line: _Line) -> None:
 def _drop_overhead(level: _Floats, counts: _Floats) -> None:
     """Empty cells in which only something above the ground was met: a leaning stake, twigs."""
     near = np.empty((2, level.size))
-    for way in range(2):
+    for vehicle_path in range(2):
         ground = math.inf
         for k in range(level.size):
-            cell = k if way == 0 else level.size - 1 - k
+            cell = k if vehicle_path == 0 else level.size - 1 - k
             ground += _STEEPEST_RISE
             if counts[cell] > 0:
                 ground = min(ground, level[cell])
-            near[way, cell] = ground
+            near[vehicle_path, cell] = ground
     for cell in range(level.size):
         if level[cell] > min(near[0, cell], near[1, cell]) + _WALL_M:
             counts[cell] = 0.0
@@ -305,14 +305,14 @@ def _judge_cells(
         for face in range(-1 if shadow > 0 else 0, _GAPS.size):
             form = face if face >= 0 else -shadow
             least = max(max(sure[cell], _LEAST_SURE) * unit, limits[0])
-            value = _sureness(sums, (cell, sign, form), limits, (noise, least), foot)
+            value = _significance(sums, (cell, sign, form), limits, (noise, least), foot)
             if value > sure[cell]:
                 sure[cell] = value
                 chosen[cell] = form
 
 
 @kernel
-def _sureness(
+def _significance(
     sums: _Floats, step: _Step, limits: _Floats, known: tuple[float, float], foot: _Piece
 ) -> float:
     """Height of a step in its standard deviations; 0 where it is none or lower than a least.

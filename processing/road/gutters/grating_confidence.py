@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from processing.road.gutters.grating_found import GratingFacts
+from processing.road.gutters.grating_facts import GratingFacts
 
 _DEEP_M, _DEEPEST_M, _FLATTEST_M = 0.02, 0.10, 0.01
 _LITTLE = 0.02

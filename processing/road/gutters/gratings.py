@@ -19,7 +19,7 @@ from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.points.passes import Pass, passes_of
 from processing.road.gutters.grating_confidence import grating_chance
-from processing.road.gutters.grating_found import GratingFacts, GratingFound, in_rectangle, inside
+from processing.road.gutters.grating_facts import GratingFacts, GratingFound, in_rectangle, inside
 from processing.road.gutters.notches import Notches
 
 Floats = NDArray[np.float64]
@@ -74,9 +74,9 @@ def gratings_among(
 ) -> tuple[GratingFound, ...]:
     """Gratings among notches, in the order of passes and stations."""
     found: list[GratingFound] = []
-    for way in passes:
-        for members in _clusters(notches, way.number, parameters):
-            one = _grating(notches, members, way, parameters)
+    for vehicle_path in passes:
+        for members in _clusters(notches, vehicle_path.number, parameters):
+            one = _grating(notches, members, vehicle_path, parameters)
             if one is not None:
                 found.append(one)
     return tuple(found)
@@ -91,8 +91,8 @@ def _clusters(notches: Notches, stretch: int, parameters: GratingParameters) -> 
     chosen = np.flatnonzero((notches.stretch == stretch) & (notches.strength >= _LEAST_STRENGTH))
     if chosen.size < _FEWEST:
         return
-    places = notches.xyz[chosen, :2] - notches.xyz[chosen[0], :2]
-    tree = cKDTree(places)
+    positions = notches.xyz[chosen, :2] - notches.xyz[chosen[0], :2]
+    tree = cKDTree(positions)
     apart = float(np.median(notches.area_m2[chosen] / np.maximum(notches.width_m[chosen], 1e-6)))
     joining = min(max(parameters.joining_m, 1.1 * apart), _FARTHEST_M)
     radius = max(parameters.radius_m, joining)
@@ -101,7 +101,7 @@ def _clusters(notches: Notches, stretch: int, parameters: GratingParameters) -> 
     around = area + np.bincount(pairs[:, 0], area[pairs[:, 1]], minlength=area.size)
     around += np.bincount(pairs[:, 1], area[pairs[:, 0]], minlength=area.size)
     is_dense = around >= parameters.least_open * np.pi * radius**2
-    away = np.hypot(*(places[pairs[:, 0]] - places[pairs[:, 1]]).T)
+    away = np.hypot(*(positions[pairs[:, 0]] - positions[pairs[:, 1]]).T)
     pairs = pairs[away <= joining]
     pairs = pairs[is_dense[pairs[:, 0]] & is_dense[pairs[:, 1]]]
     links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(chosen.size,) * 2)
@@ -113,15 +113,15 @@ def _clusters(notches: Notches, stretch: int, parameters: GratingParameters) -> 
 
 
 def _grating(
-    notches: Notches, members: Integers, way: Pass, parameters: GratingParameters
+    notches: Notches, members: Integers, vehicle_path: Pass, parameters: GratingParameters
 ) -> GratingFound | None:
     """The rectangle that a cluster fills, if it is one."""
     centre = np.median(notches.xyz[members], axis=0)
     half = np.maximum(notches.width_m[members] / 2 - 0.01, 0.0)[:, None]
-    places = notches.xyz[members, :2] - centre[:2]
+    positions = notches.xyz[members, :2] - centre[:2]
     aside = half * notches.direction[members]
-    ends = np.stack([places - aside, places + aside])
-    ahead = way.directions_at(np.array([np.median(notches.station_m[members])]))[0]
+    ends = np.stack([positions - aside, positions + aside])
+    ahead = vehicle_path.directions_at(np.array([np.median(notches.station_m[members])]))[0]
     along, box = _least_box(ends, ahead)
     box = box + np.array([[-_EDGE_M], [_EDGE_M]])
     size = box[1] - box[0]
@@ -138,7 +138,7 @@ def _grating(
 
 
 def _least_box(ends: Floats, ahead: Floats) -> tuple[Floats, Floats]:
-    """Direction and (2, 2) low and high sides of the smallest rectangle about the way's direction.
+    """Direction and (2, 2) low and high sides of the smallest rectangle about the vehicle's path's direction.
 
     Parameters
     ----------
@@ -170,13 +170,13 @@ def _filled(ends: Floats) -> tuple[Floats, Floats]:
     low, high = ends.min(axis=0), ends.max(axis=0)
     first = low.min(axis=0)
     bins = int((high.max(axis=0) - first).max() / _BIN_M) + 2
-    places = np.arange(low.shape[1]) * (bins + 2)
+    positions = np.arange(low.shape[1]) * (bins + 2)
     begins, stops = (
         ((end - first) / _BIN_M).astype(np.int64) + shift for end, shift in ((low, 0), (high, 1))
     )
-    change = np.bincount((places + begins).ravel(), minlength=places.size * (bins + 2))
-    change -= np.bincount((places + stops).ravel(), minlength=places.size * (bins + 2))
-    covered = np.cumsum(change.reshape(places.size, -1), axis=1).astype(np.float64)
+    change = np.bincount((positions + begins).ravel(), minlength=positions.size * (bins + 2))
+    change -= np.bincount((positions + stops).ravel(), minlength=positions.size * (bins + 2))
+    covered = np.cumsum(change.reshape(positions.size, -1), axis=1).astype(np.float64)
     even = uniform_filter1d(covered, 3, axis=1, mode="constant")
     is_any = even > 0
     ordered = np.sort(np.where(is_any, even, np.inf), axis=1)

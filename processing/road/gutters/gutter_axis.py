@@ -29,14 +29,14 @@ class GutterAxis:
     outwards: _Floats
 
     @staticmethod
-    def through(places: _Floats) -> GutterAxis:
+    def through(positions: _Floats) -> GutterAxis:
         """The axis through places in order: (n, 3) float64, n ≥ 2, m."""
-        driven = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(places[:, :2], axis=0).T))])
+        driven = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(positions[:, :2], axis=0).T))])
         is_new = np.concatenate([[True], np.diff(driven) > 1e-6])
         count = max(2, int(np.ceil(driven[-1] / STEP_M)) + 1)
         at = np.arange(count) * STEP_M
         inside = np.minimum(at, driven[-1])
-        xyz = np.column_stack([np.interp(inside, driven[is_new], k[is_new]) for k in places.T])
+        xyz = np.column_stack([np.interp(inside, driven[is_new], k[is_new]) for k in positions.T])
         end = xyz[-1] - xyz[-2]
         if at[-1] > driven[-1]:
             left = max(float(np.hypot(end[0], end[1])), 1e-9)
@@ -50,7 +50,7 @@ class GutterAxis:
         """In plan."""
         return (len(self.xyz) - 1) * STEP_M
 
-    def places(self, along_m: _Floats, across_m: _Floats) -> _Floats:
+    def positions(self, along_m: _Floats, across_m: _Floats) -> _Floats:
         """Places at its height: (n, 3) float64, m, project CRS."""
         at = np.clip(along_m / STEP_M, 0.0, len(self.xyz) - 1.0)
         known = np.arange(len(self.xyz))
@@ -83,7 +83,7 @@ class GutterAxis:
         off = xyz[near] - self.xyz[at]
         ahead = -right[:, 1] * off[:, 0] + right[:, 0] * off[:, 1]
         along = np.asarray(at * STEP_M + ahead, np.float64)
-        back = self.places(along, np.zeros(near.size))
+        back = self.positions(along, np.zeros(near.size))
         known = np.arange(len(self.xyz))
         here = np.column_stack([np.interp(along / STEP_M, known, axis) for axis in self.outwards.T])
         off = xyz[near] - back

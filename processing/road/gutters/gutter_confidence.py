@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from processing.road.gutters.gutter_contrast import Contrast, contrast_of
-from processing.road.gutters.gutter_lids import Cover
+from processing.road.gutters.gutter_lids import GutterCover
 from processing.road.gutters.gutter_runs import GutterRun
 from processing.road.gutters.notches import Notches
 
@@ -81,7 +81,7 @@ CONSTANT = -6.03
 
 
 def facts_of(
-    run: GutterRun, covers: tuple[Cover, ...], notches: Sequence[Notches]
+    run: GutterRun, covers: tuple[GutterCover, ...], notches: Sequence[Notches]
 ) -> list[CoverFacts]:
     """The facts of all covers of a gutter.
 
@@ -102,7 +102,7 @@ def facts_of(
 
 
 def _facts(
-    cover: Cover, of_run: tuple[float, float, float], contrast: Contrast, number: int
+    cover: GutterCover, of_run: tuple[float, float, float], contrast: Contrast, number: int
 ) -> CoverFacts:
     lids, beside = (
         min(max(float(one[number]), -1.0), _MOST_CONTRAST)

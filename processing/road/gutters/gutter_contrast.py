@@ -63,7 +63,7 @@ def contrast_of(run: GutterRun, notches: Sequence[Notches]) -> Contrast:
     is_on = (along > row.starts_m[which] - _JOINT_M) & (along < row.ends_m[which] + _JOINT_M)
     is_lid = row.what == LID
     is_within, is_at = np.abs(across) <= half, to_joint <= _JOINT_M
-    places = (
+    positions = (
         (is_on & is_within & is_at, np.full(long.size, 2 * _JOINT_M * 2 * half)),
         (
             is_on & is_within & ~is_at & is_lid[which],
@@ -74,7 +74,7 @@ def contrast_of(run: GutterRun, notches: Sequence[Notches]) -> Contrast:
             long * 2 * (_BESIDE_M[1] - _BESIDE_M[0]),
         ),
     )
-    shares = [_share(which[chosen], area[chosen], of_m2) for chosen, of_m2 in places]
+    shares = [_share(which[chosen], area[chosen], of_m2) for chosen, of_m2 in positions]
     joints, lids, beside = (np.log(one + _CLOSED) for one in shares)
     return Contrast(joints - lids, joints - beside, raised_m)
 

@@ -56,8 +56,8 @@ def are_deep(
     middles = (row.starts_m + row.ends_m) / 2
     if joints.size == 0:
         return np.ones(middles.size, np.bool_)
-    by_places = (holes.gain - _GAIN_OF_GROOVES) * min(holes.count, joints.size) - _BY_CHOICE
-    is_lids = _parted(_told(joints, along_m, depth_m) + max(by_places, 0.0) / joints.size)
+    by_positions = (holes.gain - _GAIN_OF_GROOVES) * min(holes.count, joints.size) - _BY_CHOICE
+    is_lids = _parted(_told(joints, along_m, depth_m) + max(by_positions, 0.0) / joints.size)
     found: NDArray[np.bool_] = is_lids[nearest_rising(joints, middles)]
     return found
 

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.road.gutters.grating_found import GratingFound
+from processing.road.gutters.grating_facts import GratingFound
 from processing.road.gutters.gutter_axis import GutterAxis
-from processing.road.gutters.gutter_lids import Cover
+from processing.road.gutters.gutter_lids import GutterCover
 
 _Floats = NDArray[np.float64]
 
@@ -24,16 +24,16 @@ _SAME = 0.5  # of both together
 
 
 @dataclass(frozen=True)
-class SureCovers:
+class RatedCovers:
     """Covers of one gutter in order, and how sure each is."""
 
-    covers: tuple[Cover, ...]
+    covers: tuple[GutterCover, ...]
     sure: _Floats
 
 
-def with_gratings(
-    axis: GutterAxis, own: SureCovers, gratings: Sequence[GratingFound]
-) -> tuple[SureCovers, tuple[GratingFound, ...]]:
+def add_gratings(
+    axis: GutterAxis, own: RatedCovers, gratings: Sequence[GratingFound]
+) -> tuple[RatedCovers, tuple[GratingFound, ...]]:
     """Covers of a gutter with the gratings that lie on it, and the gratings that do not."""
     covers, sure = list(own.covers), own.sure.tolist()
     beside: list[GratingFound] = []
@@ -50,11 +50,13 @@ def with_gratings(
             covers = [*(other for k, other in enumerate(covers) if k not in clashing), one]
             sure = [*(value for k, value in enumerate(sure) if k not in clashing), found.confidence]
     order = sorted(range(len(covers)), key=lambda k: covers[k].along_m)
-    kept = SureCovers(tuple(covers[k] for k in order), np.array([sure[k] for k in order]))
+    kept = RatedCovers(tuple(covers[k] for k in order), np.array([sure[k] for k in order]))
     return kept, tuple(beside)
 
 
-def _on_gutter(axis: GutterAxis, covers: Sequence[Cover], found: GratingFound) -> Cover | None:
+def _on_gutter(
+    axis: GutterAxis, covers: Sequence[GutterCover], found: GratingFound
+) -> GutterCover | None:
     """A grating as a cover of a gutter; None where it lies beside all its covers."""
     along, _, _ = axis.told(found.corners.mean(axis=0)[None], found.length_m)
     if not np.isfinite(along[0]):
@@ -63,11 +65,11 @@ def _on_gutter(axis: GutterAxis, covers: Sequence[Cover], found: GratingFound) -
     near = [one for one in covers if abs(one.along_m - at) < one.length_m + found.length_m]
     if sum(found.share_in(one.corners) for one in near) < _ON_SHARE:
         return None
-    ahead = np.diff(axis.places(np.array([at - 0.1, at + 0.1]), np.zeros(2))[:, :2], axis=0)[0]
+    ahead = np.diff(axis.positions(np.array([at - 0.1, at + 0.1]), np.zeros(2))[:, :2], axis=0)[0]
     sides = np.roll(found.corners, -1, axis=0) - found.corners
     first = int(np.argmax(sides[:, :2] @ ahead / np.hypot(*sides[:, :2].T)))
     long, wide = (float(np.hypot(*sides[(first + k) % 4, :2])) for k in range(2))
-    return Cover(
+    return GutterCover(
         np.roll(found.corners, -first, axis=0),
         is_grating=True,
         is_bridged=False,
@@ -83,15 +85,15 @@ def _on_gutter(axis: GutterAxis, covers: Sequence[Cover], found: GratingFound) -
     )
 
 
-def _shared(one: Cover, other: Cover) -> float:
+def _shared(one: GutterCover, other: GutterCover) -> float:
     away = abs(one.along_m - other.along_m)
     return (one.length_m + other.length_m) / 2 - away
 
 
-def _clash(one: Cover, other: Cover) -> bool:
+def _clash(one: GutterCover, other: GutterCover) -> bool:
     return _shared(one, other) > _CLASH * min(one.length_m, other.length_m)
 
 
-def _are_same(one: Cover, other: Cover) -> bool:
+def _are_same(one: GutterCover, other: GutterCover) -> bool:
     shared = min(_shared(one, other), one.length_m, other.length_m)
     return shared > _SAME * (one.length_m + other.length_m - shared)

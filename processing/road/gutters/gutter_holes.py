@@ -108,7 +108,7 @@ def hole_fit(notches: JointNotches) -> HoleFit:
     A joint is a groove as wide as the lids, with the holes in it: narrow openings lie in either,
     wide ones in holes alone, and the wider the nearer to a hole's middle.
     """
-    places, likelihood = _fits()
+    positions, likelihood = _fits()
     counts = np.zeros((2, len(_USUAL_M), _EDGES_M.size - 1))
     kinds = np.searchsorted(_EXTENTS_M, notches.extent_m)
     for square in range(2):
@@ -120,9 +120,9 @@ def hole_fit(notches: JointNotches) -> HoleFit:
     gains = np.tensordot(likelihood, counts, axes=3).max(axis=2)
     gains += np.log([[one.share] for one in LID_TYPES])
     gains /= max(1.0, float(counts.sum()))
-    which, at = divmod(int(gains.argmax()), places.size)
+    which, at = divmod(int(gains.argmax()), positions.size)
     gain = float(gains[which, at])
-    return HoleFit(LID_TYPES[which], float(places[at]), gain, max(0, round(float(counts.sum()))))
+    return HoleFit(LID_TYPES[which], float(positions[at]), gain, max(0, round(float(counts.sum()))))
 
 
 @cache
@@ -132,22 +132,22 @@ def _fits() -> tuple[_Floats, _Floats]:
     The latter (types, k, grooves, 2, classes, bins) for rows that are oblique and square to the
     gutter, as logarithms.
     """
-    places: _Floats = np.arange(-0.2, 0.2001, _BIN_M)
+    positions: _Floats = np.arange(-0.2, 0.2001, _BIN_M)
     middles = (_EDGES_M[1:] + _EDGES_M[:-1]) / 2
-    shape = (len(LID_TYPES), places.size, len(_GROOVES), 2, len(_USUAL_M), middles.size)
+    shape = (len(LID_TYPES), positions.size, len(_GROOVES), 2, len(_USUAL_M), middles.size)
     mix = np.empty(shape)
     for number, one in enumerate(LID_TYPES):
-        for at, place in enumerate(places):
-            groove = _box(middles - place, one.width_m / 2)
+        for at, position in enumerate(positions):
+            groove = _box(middles - position, one.width_m / 2)
             for kind in range(len(_USUAL_M)):
-                holes = _holes(one, middles - place, kind)
+                holes = _holes(one, middles - position, kind)
                 for square in range(2):
                     mix[number, at, :, square, kind] = holes * _told(one, kind, square)
             share = np.array(_GROOVES)[:, None, None]
             mix[number, at, :, :, 0] *= 1 - share
             mix[number, at, :, :, 0] += share * groove
     mix = (1 - _CHANCE) * mix + _CHANCE / (2 * _REACH_M)
-    return places, np.log(mix * 2 * _REACH_M)
+    return positions, np.log(mix * 2 * _REACH_M)
 
 
 def _told(one: LidType, kind: int, square: int) -> float:

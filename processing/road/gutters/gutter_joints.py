@@ -28,7 +28,7 @@ LID, GRATING, GAP = 0, 1, 2
 GRATING_LENGTHS_M = {0.5: 1.0, 1.0: 1.0, 0.4: 2.0, 0.6: 2.0}
 """Lengths of gratings met, with what each costs a row: usual ones less."""
 
-_PLACE_M, _ROUGHLY_M = 0.005, 0.01
+_POSITION_M, _ROUGHLY_M = 0.005, 0.01
 _HOLE_M = 0.012  # a notch's place along the gutter is so uncertain
 _ABOUT_M = 0.6  # over which notches are everywhere, and say nothing
 _LITTLE = 0.08
@@ -111,15 +111,15 @@ def joint_row(
     most_missed : int
         Lids in a row whose joints may all be unseen.
     """
-    best, kinds, lengths = _best(notches, lids, end_m, _PLACE_M)
-    places, taken = _traced(best)
-    if places.size < 3:
+    best, kinds, lengths = _best(notches, lids, end_m, _POSITION_M)
+    positions, taken = _traced(best)
+    if positions.size < 3:
         return None
     what = np.where(taken < 0, GAP, kinds[taken])
     long = np.where(taken < 0, np.nan, lengths[taken])
     return _row(
         notches,
-        (places * _PLACE_M).astype(np.float64),
+        (positions * _POSITION_M).astype(np.float64),
         (what, long),
         (float(best[0].max()), most_missed),
     )
@@ -136,34 +136,34 @@ def joint_worth(
 
 
 def _best(
-    notches: tuple[_Floats, _Floats], lids: Mapping[float, float], end_m: float, place_m: float
+    notches: tuple[_Floats, _Floats], lids: Mapping[float, float], end_m: float, position_m: float
 ) -> tuple[tuple[_Floats, _Integers, _Integers], _Integers, _Floats]:
     """For each place the best row that ends there; what steps between joints cover, how long."""
     along_m, strength = notches
-    count = int(end_m / place_m) + 1
-    at = np.round(along_m / place_m).astype(np.int64)
+    count = int(end_m / position_m) + 1
+    at = np.round(along_m / position_m).astype(np.int64)
     is_in = (at >= 0) & (at < count)
     hits = np.bincount(at[is_in], strength[is_in], minlength=count).astype(np.float64)
-    steps, costs, kinds, lengths = _covers(lids, place_m)
-    occupied = maximum_filter1d(np.minimum(hits, 1.0), 2 * round(_OCCUPIED_M / place_m) + 1)
-    worth = place_m / _PLACE_M
+    steps, costs, kinds, lengths = _covers(lids, position_m)
+    occupied = maximum_filter1d(np.minimum(hits, 1.0), 2 * round(_OCCUPIED_M / position_m) + 1)
+    worth = position_m / _POSITION_M
     summed = np.concatenate([[0.0], np.cumsum(occupied * _OCCUPIED_WORTH * worth)])
     best = (np.empty(count), np.empty(count, np.int64), np.empty(count, np.int64))
     joints_kernel(
-        _evidence(hits, place_m),
+        _evidence(hits, position_m),
         steps,
         costs,
-        (round(_GAP_M[0] / place_m), round(_GAP_M[1] / place_m), _GAP_COST),
+        (round(_GAP_M[0] / position_m), round(_GAP_M[1] / position_m), _GAP_COST),
         (summed, (kinds == GRATING).astype(np.int64), _GRATING_WORTH * worth),
         best,
     )
     return best, kinds, lengths
 
 
-def _evidence(hits: _Floats, place_m: float) -> _Floats:
+def _evidence(hits: _Floats, position_m: float) -> _Floats:
     """What a joint at each place is worth: notches there against notches about."""
-    here = gaussian_filter1d(hits, _HOLE_M / place_m) * _HOLE_M / place_m * np.sqrt(2 * np.pi)
-    about = uniform_filter1d(here, round(_ABOUT_M / place_m), mode="nearest")
+    here = gaussian_filter1d(hits, _HOLE_M / position_m) * _HOLE_M / position_m * np.sqrt(2 * np.pi)
+    about = uniform_filter1d(here, round(_ABOUT_M / position_m), mode="nearest")
     ratio = np.log((here + _LITTLE) / (about + _LITTLE))
     unseen = _UNSEEN * np.exp(-here / _LITTLE)
     worth: _Floats = np.clip(ratio - unseen, _LEAST, _MOST)
@@ -171,16 +171,16 @@ def _evidence(hits: _Floats, place_m: float) -> _Floats:
 
 
 def _covers(
-    lids: Mapping[float, float], place_m: float
+    lids: Mapping[float, float], position_m: float
 ) -> tuple[_Integers, _Floats, _Integers, _Floats]:
     """Steps from joint to joint, their costs, what they are, and how long the cover is."""
     made = []
     kinds = [(LID, one, cost) for one, cost in lids.items()]
     kinds += [(GRATING, one, cost) for one, cost in GRATING_LENGTHS_M.items()]
     for kind, long, cost in kinds:
-        for joint in np.arange(0.0, _WIDEST_JOINT_M + 1e-6, place_m):
+        for joint in np.arange(0.0, _WIDEST_JOINT_M + 1e-6, position_m):
             wide = max(0.0, float(joint) - _WIDE_JOINT_M) * _WIDE_COST
-            made.append((round((long + joint) / place_m), cost + wide, kind, long))
+            made.append((round((long + joint) / position_m), cost + wide, kind, long))
     steps, costs, what, lengths = zip(*made, strict=True)
     return (
         np.array(steps, np.int64),
@@ -193,12 +193,12 @@ def _covers(
 def _traced(best: tuple[_Floats, _Integers, _Integers]) -> tuple[_Integers, _Integers]:
     """Places of the best row's joints, and the step behind each but the last."""
     value, before, taken = best
-    at, places, steps = int(value.argmax()), [], []
+    at, positions, steps = int(value.argmax()), [], []
     while at >= 0:
-        places.append(at)
+        positions.append(at)
         steps.append(int(taken[at]))
         at = int(before[at])
-    return np.array(places[::-1]), np.array(steps[-2::-1], np.int64)
+    return np.array(positions[::-1]), np.array(steps[-2::-1], np.int64)
 
 
 def _row(
@@ -224,13 +224,13 @@ def _measured(notches: tuple[_Floats, _Floats], joints_m: _Floats) -> tuple[_Flo
     """Mean place of the notches at each joint, and how many strong ones they are."""
     measured, seen = joints_m.copy(), np.zeros(joints_m.size, np.int64)
     order = np.argsort(notches[0], kind="stable")
-    places, strength = notches[0][order], notches[1][order]
-    first = np.searchsorted(places, joints_m - _SEEN_M)
-    last = np.searchsorted(places, joints_m + _SEEN_M)
+    positions, strength = notches[0][order], notches[1][order]
+    first = np.searchsorted(positions, joints_m - _SEEN_M)
+    last = np.searchsorted(positions, joints_m + _SEEN_M)
     for number, (low, high) in enumerate(zip(first, last, strict=True)):
         weights = strength[low:high]
         if weights.sum() > _LEAST_STRENGTH:
-            measured[number] = float((places[low:high] * weights).sum() / weights.sum())
+            measured[number] = float((positions[low:high] * weights).sum() / weights.sum())
             seen[number] = max(1, int((weights > _LEAST_STRENGTH).sum()))
     return measured, seen
 

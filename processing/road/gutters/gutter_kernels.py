@@ -15,20 +15,20 @@ _Integers = NDArray[np.int64]
 
 @kernel
 def near_kernel(
-    places: tuple[_Floats, _Integers, _Floats], near: tuple[float, int], summed: _Floats
+    positions: tuple[_Floats, _Integers, _Floats], near: tuple[float, int], summed: _Floats
 ) -> None:
     """Sum of the values about each place, its own with them.
 
     Parameters
     ----------
-    places : (n,) float64, (n,) int64 and (n,) float64
+    positions : (n,) float64, (n,) int64 and (n,) float64
         Along, m, rising; cells across; values.
     near : (float, int)
         How far along, m, and how many cells across.
     summed : (n,) float64
         Result.
     """
-    along, cells, values = places
+    along, cells, values = positions
     along_m, across = near
     first = 0
     for i in range(along.shape[0]):

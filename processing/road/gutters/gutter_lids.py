@@ -32,7 +32,7 @@ _LEVEL = 1.0  # points' worth of the belief that a lid lies as the gutter does
 
 
 @dataclass(frozen=True)
-class Cover:
+class GutterCover:
     """One lid or grating.
 
     Attributes
@@ -69,7 +69,7 @@ class Cover:
     drives: tuple[int, ...] = (0,) * 4
 
 
-def covers_of(run: GutterRun, number: int, about: Sequence[PointsAbout]) -> tuple[Cover, ...]:
+def covers_of(run: GutterRun, number: int, about: Sequence[PointsAbout]) -> tuple[GutterCover, ...]:
     """The covers of one gutter.
 
     Parameters
@@ -93,12 +93,14 @@ def covers_of(run: GutterRun, number: int, about: Sequence[PointsAbout]) -> tupl
     which = np.searchsorted(row.starts_m, along) - 1
     is_in = (which >= 0) & (across > edges[0] + _RIM_M) & (across < edges[1] - _RIM_M)
     is_in &= along < row.ends_m[np.maximum(which, 0)]
-    which, places = which[is_in], np.column_stack([along, across, above])
+    which, positions = which[is_in], np.column_stack([along, across, above])
     middles, wide = (row.starts_m + row.ends_m) / 2, (edges[0] + edges[1]) / 2
-    local = places[is_in] - np.column_stack([middles[which], *np.tile([[wide], [0.0]], which.size)])
+    local = positions[is_in] - np.column_stack(
+        [middles[which], *np.tile([[wide], [0.0]], which.size)]
+    )
     planes = _Planes.fitted(which, local, row.starts_m.size)
     is_grating = (row.what == GRATING) & planes.are_barred(row.what == LID)
-    nearest = _nearest_to(_corners_about(run, planes), places)
+    nearest = _nearest_to(_corners_about(run, planes), positions)
     point = np.concatenate([one.point[part] for one, part in zip(about, parts, strict=True)])
     drive = np.repeat(np.arange(len(about)), [part.stop - part.start for part in parts])
     measured = np.append(point, -1)[nearest], np.append(drive, 0)[nearest]
@@ -122,17 +124,17 @@ def _corners_about(run: GutterRun, planes: _Planes) -> _Floats:
     return np.stack([along, np.broadcast_to((left + right) / 2 + y, x.shape), above], axis=2)
 
 
-def _nearest_to(corners: _Floats, places: _Floats) -> _Integers:
+def _nearest_to(corners: _Floats, positions: _Floats) -> _Integers:
     """(k, 4) the nearest of some places to each corner; −1 where none is near."""
     ends = np.unique(corners[:, :, 0])
-    after = np.clip(np.searchsorted(ends, places[:, 0]), 1, ends.size - 1)
-    off = np.minimum(places[:, 0] - ends[after - 1], ends[after] - places[:, 0])
+    after = np.clip(np.searchsorted(ends, positions[:, 0]), 1, ends.size - 1)
+    off = np.minimum(positions[:, 0] - ends[after - 1], ends[after] - positions[:, 0])
     sides = corners[0, [0, 2], 1]
-    aside = np.abs(places[:, 1, None] - sides).min(axis=1)
+    aside = np.abs(positions[:, 1, None] - sides).min(axis=1)
     near = np.flatnonzero((np.abs(off) < _CORNER_M) & (aside < _CORNER_M))
     found = np.full(corners.shape[:2], -1, np.int64)
     if near.size:
-        away, which = cKDTree(places[near]).query(corners, distance_upper_bound=_CORNER_M)
+        away, which = cKDTree(positions[near]).query(corners, distance_upper_bound=_CORNER_M)
         is_met = np.isfinite(away)
         found[is_met] = near[np.asarray(which, np.int64)[is_met]]
     return found
@@ -203,11 +205,11 @@ def _least_squares(which: _Integers, design: _Floats, heights: _Floats, usual: _
     return planes
 
 
-def _cover(run: GutterRun, k: int, planes: _Planes, *, is_grating: bool) -> Cover:
+def _cover(run: GutterRun, k: int, planes: _Planes, *, is_grating: bool) -> GutterCover:
     row, edges = run.row, run.edges
     start, end = float(row.starts_m[k]), float(row.ends_m[k])
     middle = (edges[0] + edges[1]) / 2
-    ends = run.axis.places(np.array([start, end]), np.array([middle, middle]))
+    ends = run.axis.positions(np.array([start, end]), np.array([middle, middle]))
     ahead = ends[1, :2] - ends[0, :2]
     ahead /= max(float(np.hypot(*ahead)), 1e-9)
     left = np.array([-ahead[1], ahead[0]])
@@ -221,7 +223,7 @@ def _cover(run: GutterRun, k: int, planes: _Planes, *, is_grating: bool) -> Cove
         corners[number, :2] = centre[:2] + along * ahead + aside * left
         corners[number, 2] = centre[2] + height + along * rise - aside * tilt
     seen = (int(row.seen[k, 0]), int(row.seen[k, 1]))
-    return Cover(
+    return GutterCover(
         corners,
         is_grating,
         bool(row.is_bridged[k]),

@@ -1,4 +1,4 @@
-"""Where gutters may run: long smooth lines beside the way along which notches come regularly.
+"""Where gutters may run: long smooth lines beside the vehicle's path along which notches come regularly.
 
 The thesis' equal spacing (mms.md, 7.3 c2) asks pairs of notches; here all notches of some metres
 are asked at once, by the sum of the waves of their places (a periodogram), so that notches by
@@ -28,7 +28,7 @@ LENGTHS_M = (0.6, 0.5, 1.0)
 """Lids' lengths met in Japan, the usual one first (JIS A 5372; mms.md, Table 7-2)."""
 
 REACH_M = 13.0
-"""How far from the way gutters are looked for; the thesis has 6.5 m (mms.md, Table 7-3)."""
+"""How far from the vehicle's path gutters are looked for; the thesis has 6.5 m (mms.md, Table 7-3)."""
 
 _CELL_M = 0.05
 _BAND_CELLS = 5  # holes of one lid lie hardly farther apart, nor do their heights
@@ -64,7 +64,7 @@ class Search:
     seed, followed : float
         How regular a line is at its most regular place at least, and elsewhere.
     reach_m : float
-        How far from the way.
+        How far from the vehicle's path.
     """
 
     half_m: float
@@ -76,7 +76,7 @@ class Search:
 
     @property
     def cells(self) -> int:
-        """How many across the way."""
+        """How many across the vehicle's path."""
         return round(2 * self.reach_m / _CELL_M) + 1
 
 
@@ -134,12 +134,12 @@ def gutter_lines(
 
 def _told(one: Pass, xyz: _Floats, reach_m: float) -> tuple[_Floats, _Floats]:
     """Station and across of places by the nearest part of the way, whoever measured them."""
-    way = one.way.places[:, :2] + one.origin[:2]
-    away, nearest = cKDTree(way).query(xyz[:, :2], distance_upper_bound=reach_m + 2.0)
+    vehicle_path = one.vehicle_path.positions[:, :2] + one.origin[:2]
+    away, nearest = cKDTree(vehicle_path).query(xyz[:, :2], distance_upper_bound=reach_m + 2.0)
     station, across = np.full(len(xyz), np.nan), np.full(len(xyz), np.nan)
     near = np.flatnonzero(np.isfinite(away))
     if near.size:
-        times = one.time_at(np.asarray(nearest, np.int64)[near] * one.way.step_m)
+        times = one.time_at(np.asarray(nearest, np.int64)[near] * one.vehicle_path.step_m)
         order = np.argsort(times, kind="stable")
         found = one.stations_of(xyz[near[order]], times[order])
         station[near[order]], across[near[order]] = found
@@ -149,8 +149,8 @@ def _told(one: Pass, xyz: _Floats, reach_m: float) -> tuple[_Floats, _Floats]:
 def _lines_beside(one: Pass, own: _Own, search: Search, bridge_m: float) -> Iterator[GutterLine]:
     station, across, strength, _ = own
     cells = np.floor((across + search.reach_m) / _CELL_M).astype(np.int64)
-    places = _one_of_each(station, cells, strength)
-    found = _map_of(one, (station[places], cells[places], strength[places]), search)
+    positions = _one_of_each(station, cells, strength)
+    found = _map_of(one, (station[positions], cells[positions], strength[positions]), search)
     for windows, columns in _ridges(found, search, bridge_m):
         regularity = float(found[windows, columns].mean())
         line = _axis_of(one, (windows, columns), own, search)
@@ -304,9 +304,9 @@ def _ridges(
 
 
 def _followed(
-    left: _Floats, start: tuple[int, int], way: tuple[int, int], least: float
+    left: _Floats, start: tuple[int, int], vehicle_path: tuple[int, int], least: float
 ) -> list[tuple[int, int]]:
-    step, bridge = way
+    step, bridge = vehicle_path
     path, missed, last = [start], 0, 1
     window, cell = start
     while 0 <= window + step < len(left) and missed < bridge:

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from processing.monitor import Monitor
 from processing.points.drive import Drive
 from processing.points.passes import Pass, passes_of
-from processing.points.turns import Turns
+from processing.points.revolutions import Revolutions
 from processing.road.gutters.notch_kernels import FOUND, Limits, notches_kernel
-from processing.road.gutters.notches import DENT, OPENING, Notches, NotchParameters, joined
+from processing.road.gutters.notches import DENT, OPENING, Notches, NotchParameters, join_notches
 from processing.worked_ahead import in_order
 
 Floats = NDArray[np.float64]
@@ -44,7 +44,7 @@ def notches_of(
     monitor: Monitor,
     points_at_once: int = _POINTS_AT_ONCE,
 ) -> Notches:
-    """All notches of a drive; none without turns.
+    """All notches of a drive; none without revolutions.
 
     Raises
     ------
@@ -53,8 +53,8 @@ def notches_of(
     """
     passes = passes_of(drive)
     parts: list[Notches] = []
-    if drive.turns is not None:
-        sweeps = _Sweeps(drive, drive.turns, passes)
+    if drive.revolutions is not None:
+        sweeps = _Sweeps(drive, drive.revolutions, passes)
 
         def found(block: tuple[int, int]) -> tuple[int, list[Notches]]:
             monitor.check()
@@ -63,15 +63,15 @@ def notches_of(
         for stop, those in in_order(found, sweeps.blocks(points_at_once)):
             monitor.report(stop / sweeps.count)
             parts.extend(those)
-    return joined(parts)
+    return join_notches(parts)
 
 
-def notches_about(drive: Drive, place: Floats, parameters: NotchParameters) -> Notches:
-    """Notches of the rows that may pass a place, of every pass of a drive; none without turns.
+def notches_about(drive: Drive, position: Floats, parameters: NotchParameters) -> Notches:
+    """Notches of the rows that may pass a place, of every pass of a drive; none without revolutions.
 
     Parameters
     ----------
-    place : (3,) float64
+    position : (3,) float64
         m, project CRS.
 
     Raises
@@ -81,17 +81,17 @@ def notches_about(drive: Drive, place: Floats, parameters: NotchParameters) -> N
     """
     passes = passes_of(drive)
     parts: list[Notches] = []
-    if drive.turns is not None and passes:
-        sweeps = _Sweeps(drive, drive.turns, passes)
+    if drive.revolutions is not None and passes:
+        sweeps = _Sweeps(drive, drive.revolutions, passes)
         # A beam that is turned by 45 degrees meets the road as far ahead as aside.
         reach = 2.0 * parameters.reach_m
         for one in passes:
-            at = float(one.station_at(one.time_nearest(place)))
+            at = float(one.station_at(one.time_nearest(position)))
             near = (sweeps.stretch == one.number) & (np.abs(sweeps.stations - at) <= reach)
             about = sweeps.chosen(np.flatnonzero(near))
             for first, stop in about.blocks():
                 parts.extend(_found_in(about, first, stop, parameters))
-    return joined(parts)
+    return join_notches(parts)
 
 
 _OF_SWEEPS = ("rows", "times", "stretch", "stations", "advances", "starts", "stops", "below")
@@ -100,12 +100,12 @@ _OF_SWEEPS = ("rows", "times", "stretch", "stations", "advances", "starts", "sto
 class _Sweeps:
     """Rows of a drive from half a turn before the point below the scanner to half a turn after."""
 
-    def __init__(self, drive: Drive, turns: Turns, passes: tuple[Pass, ...]) -> None:
+    def __init__(self, drive: Drive, revolutions: Revolutions, passes: tuple[Pass, ...]) -> None:
         self.drive = drive
         self.passes = passes
-        folds = np.asarray(turns.fold_pulses, np.int64)
-        half = int(turns.pulses_per_turn / 2)
-        times = np.asarray(turns.reference_times, np.float64)
+        folds = np.asarray(revolutions.fold_pulses, np.int64)
+        half = int(revolutions.pulses_per_revolution / 2)
+        times = np.asarray(revolutions.reference_times, np.float64)
         number = np.full(len(times), -1, np.int64)
         stations = np.zeros(len(times))
         for one in passes:
@@ -157,7 +157,7 @@ def _advancing(stations: Floats, number: Integers) -> Integers:
 
 
 def _advances(stations: Floats, number: Integers) -> Floats:
-    """(s,) how far along the way each row stands for: half of the way to the rows beside it, m."""
+    """(s,) how far along the vehicle's path each row stands for: half of the way to the rows beside it, m."""
     steps = np.diff(stations)
     is_same = np.diff(number) == 0
     behind, ahead = np.full(len(stations), np.nan), np.full(len(stations), np.nan)
@@ -175,33 +175,33 @@ def _found_in(
     if end - start < 3:
         return
     drive = sweeps.drive
-    way = next(one for one in sweeps.passes if one.number == sweeps.stretch[first])
-    xyz = drive.xyz(slice(start, end)) - way.origin
+    vehicle_path = next(one for one in sweeps.passes if one.number == sweeps.stretch[first])
+    xyz = drive.xyz(slice(start, end)) - vehicle_path.origin
     pulse = np.asarray(drive.columns["pulse"][start:end], np.int64)
     stations = sweeps.stations[first:stop]
-    places = way.places_at(stations) - way.origin
+    positions = vehicle_path.positions_at(stations) - vehicle_path.origin
     below = np.clip(sweeps.below[first:stop] - start, 1, len(xyz) - 2)
-    height_m = _height_above_road(xyz, below, places, parameters)
-    places[:, 2] -= height_m
+    height_m = _height_above_road(xyz, below, positions, parameters)
+    positions[:, 2] -= height_m
     spans = np.column_stack([sweeps.starts[first:stop], sweeps.stops[first:stop]]) - start
-    rights = way.rights_at(stations)
-    noise = _noise(xyz, pulse, spans, places)
+    rights = vehicle_path.rights_at(stations)
+    noise = _noise(xyz, pulse, spans, positions)
     limits = _limits(parameters, noise)
     room = max(len(xyz) // _ROOM, 64)
     found, origin = np.empty((room, FOUND)), np.empty((room, 3), np.int64)
-    count = notches_kernel(xyz, pulse, (spans, places, rights), limits, (found, origin))
+    count = notches_kernel(xyz, pulse, (spans, positions, rights), limits, (found, origin))
     found, origin = found[:count], origin[:count]
     time = np.asarray(drive.columns["time"])[origin[:, 1] + start]
     between = xyz[origin[:, 2], :2] - xyz[origin[:, 1], :2]
     length = np.maximum(np.hypot(between[:, 0], between[:, 1]), 1e-9)
     spacing = length / np.maximum(origin[:, 2] - origin[:, 1] + found[:, 7], 1)
-    beyond = _beyond(found, places[origin[:, 0]], spacing, parameters)
-    placed = found[:, :3] + way.origin
+    beyond = _beyond(found, positions[origin[:, 0]], spacing, parameters)
+    placed = found[:, :3] + vehicle_path.origin
     placed[:, :2] += beyond
-    station, across = way.stations_of(placed, time)
+    station, across = vehicle_path.stations_of(placed, time)
     is_known = np.isfinite(station)
     beside = np.where(is_known, station, 0.0)
-    ahead = way.directions_at(beside)
+    ahead = vehicle_path.directions_at(beside)
     along = (between * ahead).sum(axis=1) / length
     apart = sweeps.advances[first:stop][origin[:, 0]] * np.sqrt(np.maximum(1.0 - along**2, 0.0))
     whole = Notches(
@@ -215,10 +215,10 @@ def _found_in(
         point=origin[:, 1] + start,
         station_m=station,
         across_m=across,
-        stretch=np.full(count, way.number, np.int64),
+        stretch=np.full(count, vehicle_path.number, np.int64),
         direction=between / length[:, None],
         area_m2=found[:, 4] * apart,
-        raised_m=placed[:, 2] - way.places_at(beside)[:, 2] + height_m,
+        raised_m=placed[:, 2] - vehicle_path.positions_at(beside)[:, 2] + height_m,
     )
     yield whole.chosen(is_known)
 
@@ -249,27 +249,27 @@ def _beyond(found: Floats, vehicle: Floats, spacing: Floats, parameters: NotchPa
 
 
 def _height_above_road(
-    xyz: Floats, below: Integers, places: Floats, parameters: NotchParameters
+    xyz: Floats, below: Integers, positions: Floats, parameters: NotchParameters
 ) -> float:
     """How far the trajectory is above the road: measured below the scanner where there are points.
 
     A trajectory may be that of the scanner, the antenna or the wheels (trap 25).
     """
-    aside = np.hypot(*(xyz[below, :2] - places[:, :2]).T)
-    heights = (places[:, 2] - xyz[below, 2])[aside <= _NEAR_M]
+    aside = np.hypot(*(xyz[below, :2] - positions[:, :2]).T)
+    heights = (positions[:, 2] - xyz[below, 2])[aside <= _NEAR_M]
     return float(np.median(heights)) if heights.size else parameters.height_m
 
 
-def _noise(xyz: Floats, pulse: Integers, spans: Integers, places: Floats) -> float:
+def _noise(xyz: Floats, pulse: Integers, spans: Integers, positions: Floats) -> float:
     """Height noise of the road, m: half the second differences of a few rows near the vehicle."""
     values = []
-    for sweep in range(0, len(places), max(1, len(places) // _SAMPLED_ROWS)):
+    for sweep in range(0, len(positions), max(1, len(positions) // _SAMPLED_ROWS)):
         part = xyz[slice(*spans[sweep])]
         if len(part) < 3:
             continue
         number = pulse[slice(*spans[sweep])]
         second = part[2:, 2] - 2 * part[1:-1, 2] + part[:-2, 2]
-        aside = np.hypot(*(part[1:-1, :2] - places[sweep, :2]).T)
+        aside = np.hypot(*(part[1:-1, :2] - positions[sweep, :2]).T)
         is_road = (aside <= _NEAR_M) & (number[2:] - number[:-2] == 2)
         values.append(np.abs(second[is_road]))
     every = np.concatenate([np.empty(0), *values])

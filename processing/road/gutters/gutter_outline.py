@@ -7,15 +7,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.drafting.needed_places import needed_places
-from processing.road.gutters.gutter_lids import Cover
+from processing.drafting.needed_positions import needed_positions
+from processing.road.gutters.gutter_lids import GutterCover
 
 _Floats = NDArray[np.float64]
 
 _OFF_M = 0.01
 
 
-def edge_lines(covers: Sequence[Cover], longest_gap_m: float) -> Iterator[_Floats]:
+def edge_lines(covers: Sequence[GutterCover], longest_gap_m: float) -> Iterator[_Floats]:
     """Both edges of each stretch of covers that follow each other: (n, 3) float64, m.
 
     Parameters
@@ -25,7 +25,7 @@ def edge_lines(covers: Sequence[Cover], longest_gap_m: float) -> Iterator[_Float
     longest_gap_m : float
         Between covers of one stretch.
     """
-    stretch: list[Cover] = []
+    stretch: list[GutterCover] = []
     for one in covers:
         if stretch and _gap(stretch[-1], one) > longest_gap_m:
             yield from _edges(stretch)
@@ -35,12 +35,12 @@ def edge_lines(covers: Sequence[Cover], longest_gap_m: float) -> Iterator[_Float
         yield from _edges(stretch)
 
 
-def _gap(one: Cover, other: Cover) -> float:
+def _gap(one: GutterCover, other: GutterCover) -> float:
     return other.along_m - one.along_m - (one.length_m + other.length_m) / 2
 
 
-def _edges(stretch: Sequence[Cover]) -> Iterator[_Floats]:
+def _edges(stretch: Sequence[GutterCover]) -> Iterator[_Floats]:
     for first, last in ((0, 1), (3, 2)):
-        places = np.array([one.corners[k] for one in stretch for k in (first, last)])
-        kept = needed_places(places, _OFF_M)
-        yield places[kept]
+        positions = np.array([one.corners[k] for one in stretch for k in (first, last)])
+        kept = needed_positions(positions, _OFF_M)
+        yield positions[kept]

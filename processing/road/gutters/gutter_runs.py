@@ -15,7 +15,7 @@ from processing.road.gutters.gutter_depths import are_deep
 from processing.road.gutters.gutter_holes import HoleFit, JointNotches, hole_fit
 from processing.road.gutters.gutter_joints import LID, JointRow, joint_row, joint_worth, lengths_of
 from processing.road.gutters.gutter_lines import LONG, REACH_M, SHORT, GutterLine, gutter_lines
-from processing.road.gutters.notches import Notches, joined
+from processing.road.gutters.notches import Notches, join_notches
 
 _Floats = NDArray[np.float64]
 
@@ -108,7 +108,7 @@ def gutter_runs(
     most_missed : int
         n_max of equation (7-5): lids in a row whose joints may all be unseen.
     reach_m : float
-        How far from the way.
+        How far from the vehicle's path.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def gutter_runs(
     """
     if not notches:
         return ()
-    left = joined(list(notches))
+    left = join_notches(list(notches))
     left = left.chosen(left.strength >= _WEAK)
     found: list[GutterRun] = []
     for search in (LONG, SHORT):
@@ -344,4 +344,4 @@ def _local_lines(at: _Floats, weight: _Floats, total: _Floats, sigma_m: float) -
 
 def _aside(axis: GutterAxis, aside: _Floats | float) -> GutterAxis:
     at = np.arange(len(axis.xyz), dtype=np.float64) * STEP_M
-    return GutterAxis.through(axis.places(at, np.broadcast_to(aside, at.shape)))
+    return GutterAxis.through(axis.positions(at, np.broadcast_to(aside, at.shape)))

@@ -58,18 +58,18 @@ def notches_kernel(
     limits : reach, range of heights, noise, h_t, z_t, z_t2, noise factor
     out : (m, FOUND), (m, 3): sweep, point before, point after
     """
-    spans, places, rights = sweeps
+    spans, positions, rights = sweeps
     longest = 1
-    for sweep in range(len(places)):
+    for sweep in range(len(positions)):
         longest = max(longest, spans[sweep, 1] - spans[sweep, 0])
     near, outwards = np.empty(longest, np.int64), np.empty(longest, np.int64)
     along = np.empty(longest)
     taken = np.zeros((7, longest + 1))
     origin = np.empty((2, longest), np.int64)
     count = 0
-    for sweep in range(len(places)):
+    for sweep in range(len(positions)):
         row = (spans[sweep, 0], spans[sweep, 1])
-        size, middle = _near_kernel(xyz, row, places[sweep], rights[sweep], limits, near)
+        size, middle = _near_kernel(xyz, row, positions[sweep], rights[sweep], limits, near)
         before = count
         for side in range(2):
             used = _side_kernel(near, (size, middle), side, outwards)
@@ -98,14 +98,19 @@ def _side_kernel(near: Integers, row: tuple[int, int], side: int, outwards: Inte
 
 @kernel
 def _near_kernel(
-    xyz: Floats, row: tuple[int, int], place: Floats, right: Floats, limits: Limits, near: Integers
+    xyz: Floats,
+    row: tuple[int, int],
+    position: Floats,
+    right: Floats,
+    limits: Limits,
+    near: Integers,
 ) -> tuple[int, int]:
     """Points of a row that may be on the road or beside it; how many, and the nearest of them."""
     size, middle, least = 0, 0, np.inf
     for point in range(row[0], row[1]):
-        east, north = xyz[point, 0] - place[0], xyz[point, 1] - place[1]
+        east, north = xyz[point, 0] - position[0], xyz[point, 1] - position[1]
         across = east * right[0] + north * right[1]
-        ahead, above = north * right[0] - east * right[1], xyz[point, 2] - place[2]
+        ahead, above = north * right[0] - east * right[1], xyz[point, 2] - position[2]
         if max(abs(across), abs(ahead) / 2.0) <= limits[0] and abs(above) <= limits[1]:
             near[size] = point
             if abs(across) < least:

@@ -40,7 +40,7 @@ class NotchParameters:
     below_m : float
         δ: how far points beside a hole may lie below the road's median.
     reach_m : float
-        Lids further from the vehicle's way than this are not looked for: holes are missed there.
+        Lids further from the vehicle's path than this are not looked for: holes are missed there.
     noise_factor : float
         Limits are at least this many times the ranging noise measured beside the place.
     """
@@ -79,7 +79,7 @@ class Notches:
     point : (n,) int64
         Point of the drive last measured before the opening.
     station_m, across_m : (n,) float64
-        Along the way of the vehicle (the trajectory, smoothed), and to its right.
+        Along the vehicle's path (the trajectory, smoothed), and to its right.
     stretch : (n,) int64
         Number of the pass: stations are one axis within each.
     direction : (n, 2) float64
@@ -121,7 +121,7 @@ class Notches:
         return Notches(**{field.name: getattr(self, field.name)[which] for field in fields(self)})
 
 
-def joined(parts: list[Notches]) -> Notches:
+def join_notches(parts: list[Notches]) -> Notches:
     """Notches of several blocks, one after another."""
     if not parts:
         empty = np.empty(0)

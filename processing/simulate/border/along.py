@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from processing.simulate.mesh import Floats, Shape, grid, plate
-from processing.simulate.street.section import Section
+from processing.simulate.mesh import Floats, TriangleShape, grid, plate
+from processing.simulate.street.section import StreetSection
 
 _STEP_M = 1.0
 
@@ -17,15 +17,15 @@ def stations(from_m: float, to_m: float, step_m: float = _STEP_M) -> Floats:
     return np.linspace(from_m, to_m, max(2, int(np.ceil((to_m - from_m) / step_m)) + 1))
 
 
-def swept(
-    section: Section,
+def sweep_section(
+    section: StreetSection,
     chainages: Floats,
     offset_m: float | Floats,
     outline: Sequence[tuple[float, float]] | Floats,
     *,
     is_closed: bool = True,
     sunk: Floats | float = 0.0,
-) -> Shape:
+) -> TriangleShape:
     """A cross section led along the road, over the ground's height on one line.
 
     Parameters
@@ -73,7 +73,7 @@ def pipe(radius_m: float, above_m: float, sides: int = 6) -> Floats:
 
 def posts(
     feet: Floats, radius_m: float, heights_m: Floats | float, sides: int = 8, below_m: float = 0.3
-) -> Shape:
+) -> TriangleShape:
     """Upright round posts.
 
     Parameters

@@ -12,15 +12,15 @@ from collections.abc import Mapping
 from numpy.random import Generator
 
 from processing.simulate.border.along import posts
-from processing.simulate.border.barrier_shapes import BARRIERS, Stretch
+from processing.simulate.border.barrier_shapes import BARRIERS, BarrierRun
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
-from processing.simulate.roadside.places import Places, Spot, free_from_m
+from processing.simulate.roadside.free_positions import FreePosition, FreePositions, free_from_m
 from processing.simulate.street.dropped_curbs import drops_of
 from processing.simulate.street.plan import SIDES, SidePlan
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.styles import HIGHWAY, URBAN
-from processing.simulate.things import Built, Fact, TrueFeature
+from processing.simulate.things import Fact, SectionBuilder, TrueFeature
 
 POLE = 66
 
@@ -43,9 +43,9 @@ _BESIDE: Mapping[str, Mapping[str, float]] = {
 _AT_WALKS = {"walkers": 0.3, "pipes": 0.15, "beam": 0.05, "": 0.5}
 
 
-def add_barriers(places: Places, built: Built) -> None:
+def add_barriers(positions: FreePositions, built: SectionBuilder) -> None:
     """Add barriers and rubber poles along both sides, and in a median without junctions."""
-    section = places.section
+    section = positions.section
     for side in SIDES:
         if side in section.plan.junctions:
             continue
@@ -55,16 +55,16 @@ def add_barriers(places: Places, built: Built) -> None:
         kind = _one_of(alike, _shares(section, plan))
         if kind:
             offset = side * (free_from_m(plan) + _behind_m(alike, section, plan))
-            for stretch in _stretches(random, places, side, offset):
+            for stretch in _stretches(random, positions, side, offset):
                 draws = chance(section.seed, "barrier shape", side, round(plan.drain_m * 1e6))
                 BARRIERS[kind](draws, section, built, stretch)
-        _add_noise_barrier(alike, places, built, side)
+        _add_noise_barrier(alike, positions, built, side)
         if not kind:  # rubber poles stand on the line of a barrier's posts
-            _add_rubber_poles(random, places, built, side)
+            _add_rubber_poles(random, positions, built, side)
     _add_in_median(section, built)
 
 
-def _shares(section: Section, plan: SidePlan) -> Mapping[str, float]:
+def _shares(section: StreetSection, plan: SidePlan) -> Mapping[str, float]:
     if section.plan.style is HIGHWAY:
         return _HIGHWAY
     if plan.walk_m > 0:
@@ -72,7 +72,7 @@ def _shares(section: Section, plan: SidePlan) -> Mapping[str, float]:
     return {"": 1.0} if section.plan.style is URBAN else _BESIDE[plan.outside]
 
 
-def _behind_m(random: Generator, section: Section, plan: SidePlan) -> float:
+def _behind_m(random: Generator, section: StreetSection, plan: SidePlan) -> float:
     """How far behind the curb or gutter a barrier's posts stand."""
     if plan.walk_m > 0 or plan.verge_m < _BEHIND_REFLECTORS_M + 0.2:
         return _BEHIND_M
@@ -85,13 +85,15 @@ def _one_of(random: Generator, shares: Mapping[str, float]) -> str:
     return names[int(random.choice(len(names), p=list(shares.values())))]
 
 
-def _stretches(random: Generator, places: Places, side: int, offset_m: float) -> list[Stretch]:
+def _stretches(
+    random: Generator, positions: FreePositions, side: int, offset_m: float
+) -> list[BarrierRun]:
     """Where a barrier can run along a side: not at dropped curbs, nor through what stands."""
-    section = places.section
+    section = positions.section
     plan = section.plan
     gaps = [
         (one.from_m - 0.2, one.to_m + 0.2) for one in drops_of(section.seed, plan, side)
-    ] + list(places.standing_near(offset_m, _ROOM_M))
+    ] + list(positions.standing_near(offset_m, _ROOM_M))
     at = plan.start_m + float(random.exponential(25.0))
     while plan.style is not HIGHWAY and at < plan.end_m:
         wide = float(random.uniform(2.0, 14.0))
@@ -100,38 +102,42 @@ def _stretches(random: Generator, places: Places, side: int, offset_m: float) ->
     free, stretches = plan.start_m, []
     for low, high in [*sorted(gaps), (plan.end_m, plan.end_m)]:
         if low - free > _LEAST_M:
-            stretches.append(Stretch(free, min(low, plan.end_m), offset_m))
+            stretches.append(BarrierRun(free, min(low, plan.end_m), offset_m))
         free = max(free, high)
     return stretches
 
 
-def _add_noise_barrier(random: Generator, places: Places, built: Built, side: int) -> None:
+def _add_noise_barrier(
+    random: Generator, positions: FreePositions, built: SectionBuilder, side: int
+) -> None:
     """Add a noise barrier at the far edge of a highway's verge."""
-    section = places.section
+    section = positions.section
     outside = section.plan.side(side).band("outside")
     is_wanted = random.random() < 0.3
     if section.plan.style is not HIGHWAY or not is_wanted or outside is None:
         return
     if section.plan.side(side).outside == "wall" or section.plan.side(side).verge_m < 1.2:
         return
-    stretch = Stretch(section.plan.start_m, section.plan.end_m, side * (outside.inner_m - 0.2))
+    stretch = BarrierRun(section.plan.start_m, section.plan.end_m, side * (outside.inner_m - 0.2))
     BARRIERS["noise"](random, section, built, stretch)
 
 
-def _add_in_median(section: Section, built: Built) -> None:
+def _add_in_median(section: StreetSection, built: SectionBuilder) -> None:
     plan = section.plan
     alike = chance(section.seed, "median barrier")
     # Wider ones in towns are planted.
     is_wanted = plan.style is HIGHWAY or (plan.median_m < 1.5 and alike.random() < 0.5)
     if plan.median_m < 1.0 or plan.junctions or not is_wanted:
         return
-    stretch = Stretch(plan.start_m, plan.end_m, 0.0, is_double=True)
+    stretch = BarrierRun(plan.start_m, plan.end_m, 0.0, is_double=True)
     BARRIERS[_one_of(alike, _MEDIAN)](alike, section, built, stretch)
 
 
-def _add_rubber_poles(random: Generator, places: Places, built: Built, side: int) -> None:
+def _add_rubber_poles(
+    random: Generator, positions: FreePositions, built: SectionBuilder, side: int
+) -> None:
     """Add a group of rubber poles at the edge of a street in a town (ラバーポール)."""
-    section = places.section
+    section = positions.section
     plan = section.plan
     if plan.style is not URBAN or random.random() > _RUBBER_SHARE:
         return
@@ -140,10 +146,10 @@ def _add_rubber_poles(random: Generator, places: Places, built: Built, side: int
     spacing = float(random.uniform(0.8, 3.0))
     high, radius = float(random.uniform(0.6, 0.8)), float(random.uniform(0.035, 0.045))
     for number in range(int(random.integers(2, 12))):
-        spot = Spot(start + number * spacing, side * away)
-        if not places.take(spot, 0.1):
+        spot = FreePosition(start + number * spacing, side * away)
+        if not positions.take(spot, 0.1):
             continue
-        foot, instance = places.where(spot), built.thing("rubber_pole")
+        foot, instance = positions.where(spot), built.thing("rubber_pole")
         built.mesh.add(posts(foot[None], radius, high), Material.PLASTIC, POLE, instance)
         built.mesh.add(posts(foot[None], 0.1, 0.03), Material.RUBBER, POLE, instance)
         facts: dict[str, Fact] = {

@@ -10,12 +10,12 @@ from numpy.random import Generator
 
 from processing.simulate.border.parts import (
     BELOW_M,
-    Block,
-    Part,
+    BorderPart,
+    BoxPart,
     block,
     gable_roof,
     hip_roof,
-    joined,
+    merge_parts,
     shed_roof,
     side_windows,
     slab,
@@ -40,10 +40,10 @@ class Plot:
         return self.wide_m / 2
 
 
-Building = Callable[[Generator, Plot], list[Part]]
+Building = Callable[[Generator, Plot], list[BorderPart]]
 
 
-def house(random: Generator, plot: Plot) -> list[Part]:
+def house(random: Generator, plot: Plot) -> list[BorderPart]:
     """A house of one or two storeys with a pitched roof, often a wing, a porch and a balcony."""
     wide = min(plot.wide_m - 1.6, float(random.uniform(6.0, 12.0)))
     deep = min(plot.deep_m - 2.0, float(random.uniform(5.5, 10.0)))
@@ -51,16 +51,16 @@ def house(random: Generator, plot: Plot) -> list[Part]:
     storey = float(random.uniform(*_STOREY_M))
     x = float(random.uniform(-plot.half_m + 0.8, plot.half_m - 0.8 - wide))
     y = float(random.uniform(0.8, max(0.9, plot.deep_m - deep - 0.5)))
-    body = Block((x, x + wide), (y, y + deep), (-BELOW_M, storeys * storey))
+    body = BoxPart((x, x + wide), (y, y + deep), (-BELOW_M, storeys * storey))
     wall = _WALLS[int(random.integers(len(_WALLS)))]
-    parts: list[Part] = [(body.shape(), wall), *_roof(random, body, wall)]
+    parts: list[BorderPart] = [(body.shape(), wall), *_roof(random, body, wall)]
     parts += _fronts(random, body, storeys, storey)
     if storeys == 2 and random.random() < 0.5:
         parts += _balcony(random, body, storey)
     if random.random() < 0.45 and body.y[0] > 2.0:
         jut = min(body.y[0] - 0.8, float(random.uniform(1.0, 3.0)))
         span = wide * float(random.uniform(0.3, 0.55))
-        wing = Block((x, x + span), (body.y[0] - jut, body.y[0] + 0.3), (-BELOW_M, storey))
+        wing = BoxPart((x, x + span), (body.y[0] - jut, body.y[0] + 0.3), (-BELOW_M, storey))
         parts += [(wing.shape(), wall), *_roof(random, wing, wall)]
         parts += _fronts(random, wing, 1, storey)
     parts += _porch(random, body)
@@ -71,7 +71,7 @@ def house(random: Generator, plot: Plot) -> list[Part]:
     return parts
 
 
-def _roof(random: Generator, body: Block, wall: Material) -> list[Part]:
+def _roof(random: Generator, body: BoxPart, wall: Material) -> list[BorderPart]:
     eaves, thick = float(random.uniform(0.2, 0.7)), float(random.uniform(0.12, 0.25))
     pitch = float(random.uniform(0.25, 0.6))
     kind = random.random()
@@ -86,7 +86,7 @@ def _roof(random: Generator, body: Block, wall: Material) -> list[Part]:
     return _parapet(body, float(random.uniform(0.2, 0.9)), wall)
 
 
-def _parapet(body: Block, high_m: float, wall: Material) -> list[Part]:
+def _parapet(body: BoxPart, high_m: float, wall: Material) -> list[BorderPart]:
     """A flat roof's rim."""
     (x0, x1), (y0, y1), (_, z) = body.x, body.y, body.z
     rims = [
@@ -95,12 +95,12 @@ def _parapet(body: Block, high_m: float, wall: Material) -> list[Part]:
         block((x0, x0 + 0.15), (y0, y1), (z, z + high_m)),
         block((x1 - 0.15, x1), (y0, y1), (z, z + high_m)),
     ]
-    return [(joined(rims), wall)]
+    return [(merge_parts(rims), wall)]
 
 
-def _fronts(random: Generator, body: Block, storeys: int, storey_m: float) -> list[Part]:
+def _fronts(random: Generator, body: BoxPart, storeys: int, storey_m: float) -> list[BorderPart]:
     """Windows towards the street and on both sides."""
-    parts: list[Part] = []
+    parts: list[BorderPart] = []
     for floor in range(storeys):
         count = max(1, int(body.wide_m / random.uniform(1.8, 3.5)))
         size = float(random.uniform(0.6, 1.7)), float(random.uniform(0.5, 1.4))
@@ -117,7 +117,7 @@ def _fronts(random: Generator, body: Block, storeys: int, storey_m: float) -> li
     return parts
 
 
-def _balcony(random: Generator, body: Block, storey_m: float) -> list[Part]:
+def _balcony(random: Generator, body: BoxPart, storey_m: float) -> list[BorderPart]:
     wide = body.wide_m * float(random.uniform(0.3, 0.9))
     x = float(random.uniform(body.x[0], body.x[1] - wide))
     out = min(float(random.uniform(0.7, 1.4)), body.y[0] - 0.2)
@@ -130,10 +130,10 @@ def _balcony(random: Generator, body: Block, storey_m: float) -> list[Part]:
         block((x, x + 0.08), (face - out, face), (storey_m, storey_m + 1.1)),
         block((x + wide - 0.08, x + wide), (face - out, face), (storey_m, storey_m + 1.1)),
     ]
-    return [(joined([floor, *rails]), Material.PLASTER)]
+    return [(merge_parts([floor, *rails]), Material.PLASTER)]
 
 
-def _porch(random: Generator, body: Block) -> list[Part]:
+def _porch(random: Generator, body: BoxPart) -> list[BorderPart]:
     """A door with one to three steps up to it and often a small roof."""
     x = float(random.uniform(body.x[0] + 0.6, body.x[1] - 1.5))
     y, parts = body.y[0], []
@@ -144,7 +144,7 @@ def _porch(random: Generator, body: Block) -> list[Part]:
         block((x - 0.2, x + 1.2), (y - deep * (steps - n), y), (-BELOW_M, rise * (n + 1)))
         for n in range(steps)
     ]
-    parts.append((joined(treads), Material.CONCRETE))
+    parts.append((merge_parts(treads), Material.CONCRETE))
     base = rise * steps
     parts.append((block((x, x + 0.95), (y - 0.05, y), (base, base + 2.1)), Material.WOOD))
     if random.random() < 0.6:
@@ -154,15 +154,15 @@ def _porch(random: Generator, body: Block) -> list[Part]:
     return parts
 
 
-def shop(random: Generator, plot: Plot) -> list[Part]:
+def shop(random: Generator, plot: Plot) -> list[BorderPart]:
     """A shop with a glass front, an awning and a board above it, one to four storeys."""
     wide = plot.wide_m - float(random.uniform(0.2, 1.0))
     deep = min(plot.deep_m - 1.0, float(random.uniform(7.0, 14.0)))
     storeys, storey = int(random.integers(1, 5)), float(random.uniform(2.9, 3.6))
     y = float(random.uniform(0.1, 1.2)) if random.random() < 0.8 else plot.deep_m - deep
-    body = Block((-wide / 2, wide / 2), (y, y + deep), (-BELOW_M, storeys * storey))
+    body = BoxPart((-wide / 2, wide / 2), (y, y + deep), (-BELOW_M, storeys * storey))
     wall = _WALLS[int(random.integers(len(_WALLS)))]
-    parts: list[Part] = [
+    parts: list[BorderPart] = [
         (body.shape(), wall),
         *_parapet(body, float(random.uniform(0.2, 1.2)), wall),
     ]
@@ -190,7 +190,7 @@ def shop(random: Generator, plot: Plot) -> list[Part]:
             ]
         )
         parts.append((slab(edge, 0.04), Material.CLOTH))
-    upper = Block(body.x, body.y, (0.0, body.z[1]))
+    upper = BoxPart(body.x, body.y, (0.0, body.z[1]))
     for floor in range(1, storeys):
         count = max(1, int(wide / random.uniform(1.8, 3.0)))
         xs = upper.x[0] + (np.arange(count) + 0.5) * wide / count
@@ -199,15 +199,15 @@ def shop(random: Generator, plot: Plot) -> list[Part]:
     return parts
 
 
-def flats(random: Generator, plot: Plot) -> list[Part]:
+def flats(random: Generator, plot: Plot) -> list[BorderPart]:
     """A block of flats of three to eleven storeys with balconies along its front."""
     wide = plot.wide_m - float(random.uniform(0.8, 2.0))
     deep = min(plot.deep_m - 3.0, float(random.uniform(8.0, 13.0)))
     storeys, storey = int(random.triangular(3, 4, 13)), float(random.uniform(2.8, 3.1))
     y = float(random.uniform(1.8, max(1.9, plot.deep_m - deep)))
-    body = Block((-wide / 2, wide / 2), (y, y + deep), (-BELOW_M, storeys * storey))
+    body = BoxPart((-wide / 2, wide / 2), (y, y + deep), (-BELOW_M, storeys * storey))
     wall = _WALLS[int(random.integers(4))]
-    parts: list[Part] = [(body.shape(), wall), *_parapet(body, 0.6, wall)]
+    parts: list[BorderPart] = [(body.shape(), wall), *_parapet(body, 0.6, wall)]
     out, homes = float(random.uniform(1.1, 1.6)), max(2, int(wide / random.uniform(4.0, 6.5)))
     edges = np.linspace(-wide / 2 + 0.3, wide / 2 - 0.3, homes + 1)
     is_glass = random.random() < 0.25
@@ -218,8 +218,8 @@ def flats(random: Generator, plot: Plot) -> list[Part]:
         slabs.append(block(across, (y - out, y), (z - 0.18, z)))
         rails.append(block(across, (y - out, y - out + 0.1), (z, z + 1.1)))
         slabs += [block((x - 0.06, x + 0.06), (y - out, y), (z, z + storey - 0.2)) for x in edges]
-    parts.append((joined(slabs), wall))
-    parts.append((joined(rails), Material.GLASS if is_glass else Material.PLASTER))
+    parts.append((merge_parts(slabs), wall))
+    parts.append((merge_parts(rails), Material.GLASS if is_glass else Material.PLASTER))
     for floor in range(storeys):
         middles = (edges[:-1] + edges[1:]) / 2
         at = np.column_stack([middles, np.full(homes, floor * storey + 0.15)])
@@ -231,10 +231,10 @@ def flats(random: Generator, plot: Plot) -> list[Part]:
     return parts
 
 
-def second_row(random: Generator, plot: Plot) -> list[Part]:
+def second_row(random: Generator, plot: Plot) -> list[BorderPart]:
     """A plain building behind the plot, as it is seen through the gaps of the first row."""
     y = plot.deep_m + float(random.uniform(2.5, 8.0))
-    body = Block(
+    body = BoxPart(
         (-plot.half_m + 0.5, plot.half_m - 0.5),
         (y, y + float(random.uniform(6.0, 11.0))),
         (-2 * BELOW_M, float(random.choice([3.0, 5.8, 5.8, 8.7, 14.0]))),
@@ -243,13 +243,13 @@ def second_row(random: Generator, plot: Plot) -> list[Part]:
     return [(body.shape(), wall), *_roof(random, body, wall)]
 
 
-def hall(random: Generator, plot: Plot) -> list[Part]:
+def hall(random: Generator, plot: Plot) -> list[BorderPart]:
     """A workshop, store or barn: a low pitch over a long body, a wide gate."""
     wide = plot.wide_m - float(random.uniform(1.0, 4.0))
     deep = min(plot.deep_m - 1.0, float(random.uniform(8.0, 20.0)))
     high = float(random.uniform(3.2, 7.5))
     y = float(random.uniform(1.0, max(1.1, plot.deep_m - deep)))
-    body = Block((-wide / 2, wide / 2), (y, y + deep), (-BELOW_M, high))
+    body = BoxPart((-wide / 2, wide / 2), (y, y + deep), (-BELOW_M, high))
     wall = Material.PAINTED_METAL if random.random() < 0.7 else Material.OLD_CONCRETE
     slopes, gables = gable_roof(body, 0.3, float(random.uniform(0.1, 0.3)), 0.1)
     gate = min(wide - 1.0, float(random.uniform(3.0, 5.0)))
@@ -263,14 +263,14 @@ def hall(random: Generator, plot: Plot) -> list[Part]:
     ]
 
 
-def greenhouse(random: Generator, plot: Plot) -> list[Part]:
+def greenhouse(random: Generator, plot: Plot) -> list[BorderPart]:
     """One to four tunnels of plastic sheets beside each other (ビニールハウス)."""
     span, high = float(random.uniform(4.5, 6.5)), float(random.uniform(2.4, 3.3))
     count = max(1, min(int(plot.wide_m / (span + 0.6)), int(random.integers(1, 5))))
     deep = min(plot.deep_m - 1.0, float(random.uniform(10.0, 25.0)))
     angles = np.linspace(0, np.pi, 13)
     rise = np.maximum(np.sin(angles), 0.0) ** 0.8 * high
-    parts: list[Part] = []
+    parts: list[BorderPart] = []
     for number in range(count):
         middle = (number - (count - 1) / 2) * (span + 0.6)
         arch = np.column_stack([np.cos(angles) * span / 2 + middle, rise])

@@ -11,15 +11,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator
 
-from processing.simulate.border.along import stations, swept
+from processing.simulate.border.along import stations, sweep_section
 from processing.simulate.border.yards import add_mesh_fence
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats, Shape, grid
-from processing.simulate.roadside.places import Places
+from processing.simulate.mesh import Floats, TriangleShape, grid
+from processing.simulate.roadside.free_positions import FreePositions
 from processing.simulate.street.plan import SIDES, SidePlan
-from processing.simulate.street.section import Section
-from processing.simulate.things import Built
+from processing.simulate.street.section import StreetSection
+from processing.simulate.things import SectionBuilder
 
 OTHER, GROUND, GRASS = 1, 2, 3
 
@@ -43,9 +43,9 @@ class _Slope:
     rise_m: float
 
 
-def add_land(places: Places, built: Built) -> None:
+def add_land(positions: FreePositions, built: SectionBuilder) -> None:
     """Add what covers the land on both sides."""
-    section = places.section
+    section = positions.section
     for side in SIDES:
         slope = _slope(section, side)
         if slope is None or side in section.plan.junctions:
@@ -62,7 +62,7 @@ def add_land(places: Places, built: Built) -> None:
             add_mesh_fence(section, built, line, float(alike.uniform(0.8, 1.6)))
 
 
-def _slope(section: Section, side: int) -> _Slope | None:
+def _slope(section: StreetSection, side: int) -> _Slope | None:
     """The strip between the verge and the land, None where the ground has none."""
     plan: SidePlan = section.plan.side(side)
     ground = section.ground
@@ -77,7 +77,11 @@ def _slope(section: Section, side: int) -> _Slope | None:
 
 
 def _add_field(
-    alike: Generator, random: Generator, section: Section, built: Built, slope: _Slope
+    alike: Generator,
+    random: Generator,
+    section: StreetSection,
+    built: SectionBuilder,
+    slope: _Slope,
 ) -> None:
     plan = section.plan
     kind = alike.random()
@@ -95,7 +99,7 @@ def _add_field(
         high, wide = float(alike.uniform(0.2, 0.45)), float(alike.uniform(0.5, 1.0))
         outline = [(-wide, -0.1), (-wide / 3, high), (wide / 3, high), (wide, -0.1)]
         middle = start + wide
-        levee = swept(section, stations(low, far, 2.0), slope.side * middle, outline)
+        levee = sweep_section(section, stations(low, far, 2.0), slope.side * middle, outline)
         instance = built.thing("levee")
         built.mesh.add(levee, Material.GRASS, GRASS, instance)
         across = low + float(random.uniform(2.0, 15.0))
@@ -107,8 +111,8 @@ def _add_field(
 
 def _add_ridges(
     random: Generator,
-    section: Section,
-    built: Built,
+    section: StreetSection,
+    built: SectionBuilder,
     line: tuple[float, float, float],
     measures: tuple[float, float, int],
 ) -> None:
@@ -117,7 +121,7 @@ def _add_ridges(
     pitch, high, count = measures
     if count < 1:
         return
-    way = float(np.sign(offset))
+    direction = float(np.sign(offset))
     shares = np.array([0.0, 0.25, 0.4, 0.6, 0.75])
     levels = np.array([-0.05, 0.0, 1.0, 1.0, 0.0])
     away = np.append((np.arange(count)[:, None] + shares).ravel(), count) * pitch
@@ -126,7 +130,7 @@ def _add_ridges(
     rough = random.normal(0, 0.02, (along.size, away.size))
     heights = high * above + np.where(above > 0, rough, 0.0)
     heights[[0, -1]] = -0.05
-    rows = section.place(along[:, None], offset + way * away[None, :], heights)
+    rows = section.position(along[:, None], offset + direction * away[None, :], heights)
     vertices, triangles = grid(rows)
     grows = random.random() < 0.5
     is_top_column = np.arange(away.size - 1) % shares.size == 2
@@ -138,22 +142,24 @@ def _add_ridges(
 
 
 def _across(
-    section: Section,
+    section: StreetSection,
     chainage: float,
     side: int,
     aways: tuple[float, float],
     measures: tuple[float, float],
-) -> Shape:
+) -> TriangleShape:
     """A bank or beam square to the road, of a half width and a height, between two distances."""
     wide, high = measures
     outline = np.array(
         [[-wide, -0.3], [-wide / 2, high], [wide / 2, high], [wide, -0.3], [-wide, -0.3]]
     )
     away = side * np.linspace(*aways, 8)[:, None]
-    return grid(section.place(chainage + outline[None, :, 0], away, outline[None, :, 1]))
+    return grid(section.position(chainage + outline[None, :, 0], away, outline[None, :, 1]))
 
 
-def _add_slope_works(random: Generator, section: Section, built: Built, slope: _Slope) -> None:
+def _add_slope_works(
+    random: Generator, section: StreetSection, built: SectionBuilder, slope: _Slope
+) -> None:
     """Add a frame of beams (法枠), a low wall at the foot or a fence against falling stones."""
     kind = random.random()
     run = slope.head_m - slope.foot_m
@@ -165,14 +171,18 @@ def _add_slope_works(random: Generator, section: Section, built: Built, slope: _
         deep = max(run / slope.rise_m * high, 0.2)
         outline = [(0.0, -0.4), (0.08 * high, high), (deep, high), (deep, -0.4)]
         worn = Material.OLD_CONCRETE if random.random() < 0.7 else Material.CONCRETE
-        shape = swept(section, stations(low, far), slope.side * (slope.foot_m + 0.02), outline)
+        shape = sweep_section(
+            section, stations(low, far), slope.side * (slope.foot_m + 0.02), outline
+        )
         built.mesh.add(shape, worn, OTHER, built.thing("wall"))
     elif kind < 0.7:
         line = low, far, slope.side * (slope.foot_m + 0.1)
         add_mesh_fence(section, built, line, float(random.uniform(1.2, 2.5)))
 
 
-def _add_frame(random: Generator, section: Section, built: Built, slope: _Slope) -> None:
+def _add_frame(
+    random: Generator, section: StreetSection, built: SectionBuilder, slope: _Slope
+) -> None:
     pitch, wide = float(random.uniform(1.5, 3.0)), float(random.uniform(0.2, 0.35))
     proud = float(random.uniform(0.12, 0.3))
     worn = Material.OLD_CONCRETE if random.random() < 0.7 else Material.CONCRETE
@@ -183,7 +193,7 @@ def _add_frame(random: Generator, section: Section, built: Built, slope: _Slope)
     low, high = slope.foot_m + 0.3, slope.head_m - 0.2
     levels: Floats = np.linspace(low, high, max(2, round((high - low) / (0.83 * pitch)) + 1))
     for away in levels:
-        beam = swept(section, along, slope.side * float(away), outline)
+        beam = sweep_section(section, along, slope.side * float(away), outline)
         built.mesh.add(beam, worn, OTHER, instance)
     # The same chainages in every section, so that the frame goes on evenly.
     first, last = np.ceil((plan.start_m + half) / pitch), np.floor((plan.end_m - half) / pitch)

@@ -22,14 +22,14 @@ from processing.simulate.border.houses import (
     second_row,
     shop,
 )
-from processing.simulate.border.parts import Part
+from processing.simulate.border.parts import BorderPart
 from processing.simulate.border.yards import add_boundary, yard_parts
-from processing.simulate.mesh import Floats, placed
-from processing.simulate.roadside.places import Places
+from processing.simulate.mesh import Floats, place_shape
+from processing.simulate.roadside.free_positions import FreePositions
 from processing.simulate.street.plan import LEFT, SIDES
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.styles import URBAN
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 BUILDING = 6
 
@@ -78,12 +78,12 @@ class Lot:
         """Chainage of its middle."""
         return (self.from_m + self.to_m) / 2
 
-    def heading(self, section: Section) -> float:
+    def heading(self, section: StreetSection) -> float:
         """Of its own x axis, so that its y axis leads away from the street."""
         return section.heading(self.middle_m) + (0.0 if self.side == LEFT else np.pi)
 
 
-def lots_of(section: Section, side: int) -> Iterator[Lot]:
+def lots_of(section: StreetSection, side: int) -> Iterator[Lot]:
     """The lots along one side of a section; none where a side street meets it."""
     plan = section.plan.side(side)
     outside = plan.band("outside")
@@ -111,7 +111,7 @@ def lots_of(section: Section, side: int) -> Iterator[Lot]:
         at += wide
 
 
-def _bend(section: Section, from_m: float, to_m: float) -> float:
+def _bend(section: StreetSection, from_m: float, to_m: float) -> float:
     """The curvature to the left that matters most within a stretch, 1/m."""
     alignment = section.alignment
     along = np.linspace(from_m, to_m, 9)
@@ -119,17 +119,17 @@ def _bend(section: Section, from_m: float, to_m: float) -> float:
     return float(bends[np.abs(bends).argmax()])
 
 
-def add_lots(places: Places, built: Built) -> None:
+def add_lots(positions: FreePositions, built: SectionBuilder) -> None:
     """Add buildings, walls, fences and what stands in yards."""
-    section = places.section
+    section = positions.section
     for side in SIDES:
         for number, lot in enumerate(lots_of(section, side)):
             random = section.chance("lot", side * (number + 1))
-            _add_lot(random, places, built, lot)
+            _add_lot(random, positions, built, lot)
 
 
-def _add_lot(random: Generator, places: Places, built: Built, lot: Lot) -> None:
-    section = places.section
+def _add_lot(random: Generator, positions: FreePositions, built: SectionBuilder, lot: Lot) -> None:
+    section = positions.section
     column = 1 if section.plan.style is URBAN else 2
     names = list(_KINDS)
     shares = np.array([_KINDS[one][column] for one in names], np.float64)
@@ -140,43 +140,45 @@ def _add_lot(random: Generator, places: Places, built: Built, lot: Lot) -> None:
     parts = made(random, lot.plot) if made is not None else []
     if parts:
         _add_parts(built, parts, where, heading, "building")
-        _block(places, lot, parts)
+        _block(positions, lot, parts)
     if lot.back_m == 0.0 and random.random() < (0.5 if section.plan.style is URBAN else 0.1):
         behind = second_row(random, lot.plot)
         _add_parts(built, behind, where, heading, "building")
-        _block(places, lot, behind)
+        _block(positions, lot, behind)
     front = float(parts[0][0][0][:, 1].min()) if parts else lot.plot.deep_m
     for name, part in yard_parts(random, lot.plot, kind, parts, front_m=front):
         _add_parts(built, [part], where, heading, name)
     add_boundary(random, section, built, lot.side * lot.front_m, (kind, lot.from_m, lot.to_m))
     line = lot.side * lot.front_m
-    places.block((lot.from_m, lot.to_m), (line - _WALL_M, line + _WALL_M))
+    positions.block((lot.from_m, lot.to_m), (line - _WALL_M, line + _WALL_M))
 
 
-def _add_parts(built: Built, parts: list[Part], where: Floats, heading: float, kind: str) -> None:
+def _add_parts(
+    built: SectionBuilder, parts: list[BorderPart], where: Floats, heading: float, kind: str
+) -> None:
     instance = built.thing(kind)
     label = BUILDING if kind == "building" else 1
     for shape, material in parts:
-        built.mesh.add(placed(shape, where.tolist(), heading), material, label, instance)
+        built.mesh.add(place_shape(shape, where.tolist(), heading), material, label, instance)
 
 
-def _ground(section: Section, lot: Lot) -> tuple[Floats, float]:
+def _ground(section: StreetSection, lot: Lot) -> tuple[Floats, float]:
     """The place of a lot's front middle on its mean height, and how far its ground falls."""
     along = np.linspace(lot.from_m, lot.to_m, 5)[:, None]
     away = lot.side * (lot.front_m + np.array([[0.0, 4.0, 8.0]]))
     heights = section.ground.height(along, away)
-    where = section.place(lot.middle_m, lot.side * (lot.front_m + lot.back_m))
+    where = section.position(lot.middle_m, lot.side * (lot.front_m + lot.back_m))
     where[2] = heights.mean()
     return where, float(np.ptp(heights))
 
 
-def _block(places: Places, lot: Lot, parts: list[Part]) -> None:
+def _block(positions: FreePositions, lot: Lot, parts: list[BorderPart]) -> None:
     corners = np.concatenate([shape[0] for shape, _ in parts])[:, :2]
     low, high = corners.min(axis=0), corners.max(axis=0)
     # The lot's x axis runs against the chainage on the right.
     along = np.array([low[0], high[0]]) * (1.0 if lot.side == LEFT else -1.0)
     away = lot.side * (lot.front_m + lot.back_m + np.array([low[1], high[1]]))
-    places.block(
+    positions.block(
         (lot.middle_m + float(along.min()), lot.middle_m + float(along.max())),
         (float(away.min()), float(away.max())),
     )

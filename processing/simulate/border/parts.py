@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats, Integers, Shape, box, plate
+from processing.simulate.mesh import Floats, Integers, TriangleShape, box, plate
 
-Part = tuple[Shape, Material]
-Pair = tuple[float, float]
+BorderPart = tuple[TriangleShape, Material]
+Interval = tuple[float, float]
 
 BELOW_M = 0.8
 """How far bodies reach below the ground where they stand, so that none floats on a slope."""
@@ -24,12 +24,12 @@ _PROUD_M = 0.03  # how far a window's frame stands before its wall
 
 
 @dataclass(frozen=True)
-class Block:
+class BoxPart:
     """An upright body with a rectangle for its plan: from and to on each axis, m."""
 
-    x: Pair
-    y: Pair
-    z: Pair
+    x: Interval
+    y: Interval
+    z: Interval
 
     @property
     def wide_m(self) -> float:
@@ -41,17 +41,17 @@ class Block:
         """Away from the street."""
         return self.y[1] - self.y[0]
 
-    def shape(self) -> Shape:
+    def shape(self) -> TriangleShape:
         """Its box."""
         return block(self.x, self.y, self.z)
 
 
-def block(x: Pair, y: Pair, z: Pair) -> Shape:
+def block(x: Interval, y: Interval, z: Interval) -> TriangleShape:
     """A box from its extents."""
     return box((x[0], y[0], z[0]), (x[1], y[1], z[1]))
 
 
-def joined(shapes: Iterable[Shape]) -> Shape:
+def merge_parts(shapes: Iterable[TriangleShape]) -> TriangleShape:
     """Several shapes as one."""
     parts = list(shapes)
     starts = np.cumsum([0, *(len(one[0]) for one in parts)])
@@ -62,7 +62,7 @@ def joined(shapes: Iterable[Shape]) -> Shape:
     return vertices, triangles
 
 
-def slab(outline: Floats, thick_m: float) -> Shape:
+def slab(outline: Floats, thick_m: float) -> TriangleShape:
     """A plate with a thickness below it, from the corners of its top in order: (n, 3)."""
     count = len(outline)
     low = outline - [0.0, 0.0, thick_m]
@@ -81,7 +81,9 @@ def slab(outline: Floats, thick_m: float) -> Shape:
     )
 
 
-def gable_roof(body: Block, eaves_m: float, pitch: float, thick_m: float) -> tuple[Shape, Shape]:
+def gable_roof(
+    body: BoxPart, eaves_m: float, pitch: float, thick_m: float
+) -> tuple[TriangleShape, TriangleShape]:
     """Two slopes about a ridge along the longer side (切妻), and the gables' walls below them."""
     (u0, u1), (v0, v1), is_turned = _long_way(body)
     middle, rise, z = (v0 + v1) / 2, pitch * (v1 - v0) / 2, body.z[1] + 0.02
@@ -95,10 +97,10 @@ def gable_roof(body: Block, eaves_m: float, pitch: float, thick_m: float) -> tup
         plate(np.array([(u, v0, z - 0.02), (u, v1, z - 0.02), (u, middle, z + rise)]))
         for u in (u0, u1)
     ]
-    return _turned(joined(slopes), is_turned), _turned(joined(gables), is_turned)
+    return _turned(merge_parts(slopes), is_turned), _turned(merge_parts(gables), is_turned)
 
 
-def hip_roof(body: Block, eaves_m: float, pitch: float, thick_m: float) -> Shape:
+def hip_roof(body: BoxPart, eaves_m: float, pitch: float, thick_m: float) -> TriangleShape:
     """Four slopes that meet in a ridge or a point (寄棟), over a soffit."""
     (u0, u1), (v0, v1), is_turned = _long_way(body)
     u0, u1, v0, v1 = u0 - eaves_m, u1 + eaves_m, v0 - eaves_m, v1 + eaves_m
@@ -112,10 +114,12 @@ def hip_roof(body: Block, eaves_m: float, pitch: float, thick_m: float) -> Shape
         np.array([low[1], low[2], ridge[1]]),
         np.array([low[3], low[0], ridge[0]]),
     ]
-    return _turned(joined([slab(low, thick_m), *(plate(one) for one in faces)]), is_turned)
+    return _turned(merge_parts([slab(low, thick_m), *(plate(one) for one in faces)]), is_turned)
 
 
-def shed_roof(body: Block, eaves_m: float, pitch: float, thick_m: float) -> tuple[Shape, Shape]:
+def shed_roof(
+    body: BoxPart, eaves_m: float, pitch: float, thick_m: float
+) -> tuple[TriangleShape, TriangleShape]:
     """One slope that rises away from the street (片流れ), and the walls up to it."""
     x0, x1 = body.x[0] - eaves_m, body.x[1] + eaves_m
     z = body.z[1] + 0.02
@@ -143,38 +147,38 @@ def shed_roof(body: Block, eaves_m: float, pitch: float, thick_m: float) -> tupl
             )
         )
     ]
-    return slab(np.add(outline, [0.0, 0.0, thick_m]), thick_m), joined(walls)
+    return slab(np.add(outline, [0.0, 0.0, thick_m]), thick_m), merge_parts(walls)
 
 
-def _long_way(body: Block) -> tuple[Pair, Pair, bool]:
+def _long_way(body: BoxPart) -> tuple[Interval, Interval, bool]:
     """The body's extents along and across its longer side, and whether x and y are changed."""
     if body.wide_m >= body.deep_m:
         return body.x, body.y, False
     return body.y, body.x, True
 
 
-def _turned(shape: Shape, is_turned: bool) -> Shape:  # noqa: FBT001 (a fact of the body)
+def _turned(shape: TriangleShape, is_turned: bool) -> TriangleShape:  # noqa: FBT001 (a fact of the body)
     vertices, triangles = shape
     return (vertices[:, [1, 0, 2]] if is_turned else vertices), triangles
 
 
-def windows(places: Floats, size: Pair, face_y: float) -> list[Part]:
+def windows(positions: Floats, size: Interval, face_y: float) -> list[BorderPart]:
     """Windows in a wall towards the street: frames that stand out a little, glass in them.
 
     Parameters
     ----------
-    places : (n, 2) float64
+    positions : (n, 2) float64
         x of each one's middle and z of its sill, m.
     size : (float, float)
         Width and height, m.
     face_y : float
         Where the wall is.
     """
-    if len(places) == 0:
+    if len(positions) == 0:
         return []
     wide, high = size
     frames, panes = [], []
-    for x, z in places:
+    for x, z in positions:
         frames.append(
             block(
                 (x - wide / 2 - _FRAME_M, x + wide / 2 + _FRAME_M),
@@ -195,13 +199,13 @@ def windows(places: Floats, size: Pair, face_y: float) -> list[Part]:
                 )
             )
         )
-    return [(joined(frames), Material.PAINTED_METAL), (joined(panes), Material.GLASS)]
+    return [(merge_parts(frames), Material.PAINTED_METAL), (merge_parts(panes), Material.GLASS)]
 
 
-def side_windows(places: Floats, size: Pair, face_x: float) -> list[Part]:
-    """Windows in a wall square to the street; ``places`` are y and z, the wall looks to −x."""
+def side_windows(positions: Floats, size: Interval, face_x: float) -> list[BorderPart]:
+    """Windows in a wall square to the street; ``positions`` are y and z, the wall looks to −x."""
     turned = []
-    for (vertices, triangles), material in windows(places, size, 0.0):
+    for (vertices, triangles), material in windows(positions, size, 0.0):
         there = np.column_stack([vertices[:, 1] + face_x, vertices[:, 0], vertices[:, 2]])
         turned.append(((there, triangles), material))
     return turned

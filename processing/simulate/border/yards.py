@@ -7,13 +7,13 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.random import Generator
 
-from processing.simulate.border.along import pipe, posts, stations, swept, wall
+from processing.simulate.border.along import pipe, posts, stations, sweep_section, wall
 from processing.simulate.border.houses import Plot
-from processing.simulate.border.parts import BELOW_M, Part, block, joined
+from processing.simulate.border.parts import BELOW_M, BorderPart, block, merge_parts
 from processing.simulate.materials import Material
 from processing.simulate.mesh import grid
-from processing.simulate.street.section import Section
-from processing.simulate.things import Built
+from processing.simulate.street.section import StreetSection
+from processing.simulate.things import SectionBuilder
 
 OTHER = 1
 
@@ -24,8 +24,8 @@ _NO_WALL_SHARE = {"shop": 0.9, "parking": 0.45, "empty": 0.5, "greenhouse": 0.7,
 
 def add_boundary(
     random: Generator,
-    section: Section,
-    built: Built,
+    section: StreetSection,
+    built: SectionBuilder,
     offset_m: float,
     lot: tuple[str, float, float],
 ) -> None:
@@ -53,11 +53,11 @@ def add_boundary(
             continue
         along = stations(low, far)
         if choice < 0.5:
-            shape = swept(section, along, offset_m, wall(thick, high))
+            shape = sweep_section(section, along, offset_m, wall(thick, high))
             built.mesh.add(shape, wall_kind, OTHER, built.thing("wall"))
         elif choice < 0.75:
             base = min(high, 0.7)
-            shape = swept(section, along, offset_m, wall(thick, base))
+            shape = sweep_section(section, along, offset_m, wall(thick, base))
             built.mesh.add(shape, wall_kind, OTHER, built.thing("wall"))
             add_bars(random, section, built, (low, far, offset_m + 0.05), (base, high * 0.6))
         else:
@@ -67,7 +67,7 @@ def add_boundary(
 
 
 def add_mesh_fence(
-    section: Section, built: Built, line: tuple[float, float, float], high_m: float
+    section: StreetSection, built: SectionBuilder, line: tuple[float, float, float], high_m: float
 ) -> None:
     """Add a fence of wire mesh that beams partly pass, with posts every two metres.
 
@@ -79,18 +79,18 @@ def add_mesh_fence(
     low, far, offset = line
     along = stations(low, far, 2.0)
     instance = built.thing("fence")
-    sheet = swept(section, along, offset, [(0.0, 0.05), (0.0, high_m)], is_closed=False)
+    sheet = sweep_section(section, along, offset, [(0.0, 0.05), (0.0, high_m)], is_closed=False)
     built.mesh.add(sheet, Material.NET, OTHER, instance)
-    feet = section.place(along, offset)
+    feet = section.position(along, offset)
     built.mesh.add(posts(feet, 0.024, high_m), Material.PAINTED_METAL, OTHER, instance)
-    rail = swept(section, along, offset, pipe(0.016, high_m, 4))
+    rail = sweep_section(section, along, offset, pipe(0.016, high_m, 4))
     built.mesh.add(rail, Material.PAINTED_METAL, OTHER, instance)
 
 
 def add_bars(
     random: Generator,
-    section: Section,
-    built: Built,
+    section: StreetSection,
+    built: SectionBuilder,
     line: tuple[float, float, float],
     heights: tuple[float, float],
 ) -> None:
@@ -107,31 +107,31 @@ def add_bars(
     base, high = heights
     instance = built.thing("fence")
     spacing = float(random.uniform(0.1, 0.25))
-    bars = section.place(stations(low, far, spacing), offset, base)
+    bars = section.position(stations(low, far, spacing), offset, base)
     built.mesh.add(
         posts(bars, 0.01, high, sides=3, below_m=0.0), Material.PAINTED_METAL, OTHER, instance
     )
     for above in (base + 0.06, base + high - 0.03):
-        rail = swept(section, stations(low, far, 2.0), offset, pipe(0.018, above, 4))
+        rail = sweep_section(section, stations(low, far, 2.0), offset, pipe(0.018, above, 4))
         built.mesh.add(rail, Material.PAINTED_METAL, OTHER, instance)
 
 
 def _add_gate_posts(
-    section: Section,
-    built: Built,
+    section: StreetSection,
+    built: SectionBuilder,
     line: tuple[float, float, float],
     size: tuple[float, float],
 ) -> None:
     low, far, offset = line
     wide, high = size
     for at in (low - wide, far):
-        shape = swept(section, stations(at, at + wide), offset, wall(0.35, high))
+        shape = sweep_section(section, stations(at, at + wide), offset, wall(0.35, high))
         built.mesh.add(shape, Material.BRICK, OTHER, built.thing("gate"))
 
 
 def yard_parts(
-    random: Generator, plot: Plot, kind: str, parts: list[Part], *, front_m: float
-) -> Iterator[tuple[str, Part]]:
+    random: Generator, plot: Plot, kind: str, parts: list[BorderPart], *, front_m: float
+) -> Iterator[tuple[str, BorderPart]]:
     """What stands in a yard, with its kind: carports, vending machines, wheel stops.
 
     Parameters
@@ -153,7 +153,7 @@ def yard_parts(
                 return
 
 
-def _machines(random: Generator, plot: Plot) -> Iterator[tuple[str, Part]]:
+def _machines(random: Generator, plot: Plot) -> Iterator[tuple[str, BorderPart]]:
     """Vending machines: some 1.0–1.2 m wide, 0.75 m deep, 1.83 m high."""
     count = int(random.integers(1, 4))
     x = float(random.uniform(-plot.half_m, max(plot.half_m - count * 1.3, -plot.half_m + 0.1)))
@@ -166,7 +166,7 @@ def _machines(random: Generator, plot: Plot) -> Iterator[tuple[str, Part]]:
         x += wide + float(random.uniform(0.02, 0.12))
 
 
-def _wheel_stops(random: Generator, plot: Plot) -> Iterator[tuple[str, Part]]:
+def _wheel_stops(random: Generator, plot: Plot) -> Iterator[tuple[str, BorderPart]]:
     y, bay = float(random.uniform(5.0, 6.5)), float(random.uniform(2.3, 2.7))
     xs = np.arange(-plot.half_m + bay / 2, plot.half_m - bay / 2, bay)
     stops = [
@@ -175,10 +175,10 @@ def _wheel_stops(random: Generator, plot: Plot) -> Iterator[tuple[str, Part]]:
         for shift in (-0.5, 0.5)
     ]
     if stops:
-        yield "wheel_stop", (joined(stops), Material.CONCRETE)
+        yield "wheel_stop", (merge_parts(stops), Material.CONCRETE)
 
 
-def _carport(random: Generator, across: tuple[float, float]) -> Part:
+def _carport(random: Generator, across: tuple[float, float]) -> BorderPart:
     """Two or four thin posts and a bent sheet on top."""
     x0, x1 = across
     start, deep = float(random.uniform(0.5, 1.5)), float(random.uniform(4.6, 5.6))
@@ -194,4 +194,4 @@ def _carport(random: Generator, across: tuple[float, float]) -> Part:
         for x in sides
         for y in (start + 0.4, start + deep - 0.5)
     ]
-    return joined([grid(rows), *legs]), Material.PAINTED_METAL
+    return merge_parts([grid(rows), *legs]), Material.PAINTED_METAL

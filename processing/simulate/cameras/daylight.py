@@ -34,19 +34,19 @@ class Daylight:
     strength: float
     clouds: float
 
-    def sky(self, ways: Floats) -> Singles:
+    def sky(self, directions: Floats) -> Singles:
         """What is seen where nothing is met: (n, 3) float32 linear red, green, blue."""
-        high = np.clip(ways[:, 2], 0, 1)[:, None]
+        high = np.clip(directions[:, 2], 0, 1)[:, None]
         share = (high**0.5).astype(np.float32)
         colours = _HORIZON + (_ZENITH - _HORIZON) * share
-        near = np.clip(ways @ self.sun, 0, 1)[:, None] ** 60
+        near = np.clip(directions @ self.sun, 0, 1)[:, None] ** 60
         colours = colours + (1 - self.clouds) * 0.8 * near
-        flat = ways / np.maximum(ways[:, 2:], 0.08) * _CLOUDS_HIGH
+        flat = directions / np.maximum(directions[:, 2:], 0.08) * _CLOUDS_HIGH
         flat[:, 2] = 0.0
         cover = 0.5 + 0.35 * grain(flat, 1.0) + 0.15 * grain(flat, 0.37) + (self.clouds - 0.5) * 1.6
         thick = np.clip(cover * 1.4, 0, 1)[:, None] * np.clip(high * 6, 0, 1)
         colours = colours + (_CLOUD * (1 - 0.25 * self.clouds) - colours) * thick
-        land = np.clip(-ways[:, 2] * 12, 0, 1)[:, None]
+        land = np.clip(-directions[:, 2] * 12, 0, 1)[:, None]
         return np.asarray(colours + (_FAR_LAND - colours) * land, np.float32)
 
     def haze(self, ranges: Floats) -> Singles:

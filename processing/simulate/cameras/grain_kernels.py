@@ -11,12 +11,12 @@ from processing.simulate.mesh import Floats
 Singles = NDArray[np.float32]
 
 
-def grain(places: Floats, cell_m: float) -> Singles:
+def grain(positions: Floats, cell_m: float) -> Singles:
     """Noise at places.
 
     Parameters
     ----------
-    places : (n, 3) float64
+    positions : (n, 3) float64
     cell_m : float
         Over which it changes.
 
@@ -25,16 +25,16 @@ def grain(places: Floats, cell_m: float) -> Singles:
     (n,) float32
         −1 to 1, the same at the same place.
     """
-    out = np.empty(places.shape[0], np.float32)
-    _grain_kernel(np.ascontiguousarray(places, np.float64), 1.0 / cell_m, out)
+    out = np.empty(positions.shape[0], np.float32)
+    _grain_kernel(np.ascontiguousarray(positions, np.float64), 1.0 / cell_m, out)
     return out
 
 
 @kernel
-def _grain_kernel(places: Floats, per_m: float, out: Singles) -> None:
+def _grain_kernel(positions: Floats, per_m: float, out: Singles) -> None:
     """Values of a lattice, between them by smooth weights (Perlin 1985, value noise)."""
-    for row in range(places.shape[0]):
-        x, y, z = places[row, 0] * per_m, places[row, 1] * per_m, places[row, 2] * per_m
+    for row in range(positions.shape[0]):
+        x, y, z = positions[row, 0] * per_m, positions[row, 1] * per_m, positions[row, 2] * per_m
         i, j, k = np.floor(x), np.floor(y), np.floor(z)
         u, v, w = x - i, y - j, z - k
         u, v, w = u * u * (3 - 2 * u), v * v * (3 - 2 * v), w * w * (3 - 2 * w)

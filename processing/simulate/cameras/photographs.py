@@ -10,14 +10,14 @@ from pathlib import Path
 import numpy as np
 
 from processing.cameras.image_list import CameraImage
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.monitor import Monitor
 from processing.simulate.cameras.daylight import daylight_of
-from processing.simulate.cameras.rendering import Picture, rendered
+from processing.simulate.cameras.rendering import Picture, render_image
 from processing.simulate.cameras.rigs import Pose, RigCamera, image_of
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats
-from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.casting import RaycastScene
 from processing.text import Text
 
 _QUALITY = 85
@@ -30,7 +30,7 @@ _TAKING = Text("Taking photographs", "写真を撮影しています")
 
 
 @dataclass(frozen=True)
-class Frame:
+class DeliveryFrame:
     """How what is written counts.
 
     Attributes
@@ -51,12 +51,12 @@ class Frame:
 def write_images(
     folder: Path,
     poses: Sequence[Pose],
-    scenes_of: Callable[[Pose], Sequence[Scene]],
+    scenes_of: Callable[[Pose], Sequence[RaycastScene]],
     monitor: Monitor,
     *,
     seed: int,
     rig: Sequence[RigCamera],
-    frame: Frame,
+    frame: DeliveryFrame,
 ) -> list[CameraImage]:
     """Take the photographs of a pass.
 
@@ -91,7 +91,7 @@ def write_images(
             path = folder / "images" / f"{frame.prefix}{camera.name}_{number:04d}.jpg"
             image = image_of(camera, pose, path)
             random = chance(seed, "sensor", frame.prefix, camera.name, number)
-            _write_picture(path, rendered(image, scenes, light, random, monitor.check))
+            _write_picture(path, render_image(image, scenes, light, random, monitor.check))
             delivered.append(_delivered(image, pose, frame))
     monitor.report(1.0, _TAKING)
     return delivered
@@ -105,7 +105,7 @@ def write_image_list(path: Path, images: Sequence[CameraImage]) -> None:
     NoSpace, MissingInput, BadFile
         What the operating system says.
     """
-    with written_safely(path) as part, part.open("w", encoding="utf-8", newline="") as file:
+    with write_safely(path) as part, part.open("w", encoding="utf-8", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
         table.writerow(_COLUMNS)
         table.writerows(_row(one, path.parent) for one in images)
@@ -126,7 +126,7 @@ def _row(image: CameraImage, folder: Path) -> list[str]:
     ]
 
 
-def _delivered(image: CameraImage, pose: Pose, frame: Frame) -> CameraImage:
+def _delivered(image: CameraImage, pose: Pose, frame: DeliveryFrame) -> CameraImage:
     easting, northing, height = (np.array(image.xyz) + pose.error + frame.origin).tolist()
     return replace(image, time_s=pose.time_s + frame.clock_s, xyz=(easting, northing, height))
 
@@ -136,5 +136,5 @@ def _write_picture(path: Path, picture: Picture) -> None:
 
     quality = [cv2.IMWRITE_JPEG_QUALITY, _QUALITY]
     _, content = cv2.imencode(".jpg", np.ascontiguousarray(picture[:, :, ::-1]), quality)
-    with written_safely(path) as part:
+    with write_safely(path) as part:
         content.tofile(part)

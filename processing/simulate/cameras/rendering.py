@@ -14,10 +14,10 @@ from processing.cameras.camera import Camera
 from processing.cameras.image_list import CameraImage
 from processing.simulate.cameras.daylight import Daylight
 from processing.simulate.cameras.grain_kernels import Singles
-from processing.simulate.cameras.surface_colours import colours_of, shown
+from processing.simulate.cameras.surface_colours import colours_of, tone_map
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, Integers
-from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.casting import RaycastScene
 
 Picture = NDArray[np.uint8]
 
@@ -31,9 +31,9 @@ _GREYING = 0.2  # small sensors show less colour than there is
 _REFLECTS = {Material.GLASS: 0.55, Material.MIRROR: 0.7, Material.WATER: 0.5}
 
 
-def rendered(
+def render_image(
     image: CameraImage,
-    scenes: Sequence[Scene],
+    scenes: Sequence[RaycastScene],
     light: Daylight,
     random: Generator,
     check: Callable[[], None] = lambda: None,
@@ -56,37 +56,37 @@ def rendered(
     (h, w, 3) uint8
         Red, green, blue.
     """
-    ways = ways_of(image)
+    directions = directions_of(image)
     centre = np.array(image.xyz)
-    origins = np.broadcast_to(centre, ways.shape)
-    ranges, nearest, triangles = _first_met(scenes, origins, ways)
+    origins = np.broadcast_to(centre, directions.shape)
+    ranges, nearest, triangles = _first_met(scenes, origins, directions)
     check()
-    linear = light.sky(ways)
+    linear = light.sky(directions)
     for number, scene in enumerate(scenes):
         rows = np.flatnonzero(nearest == number)
         if rows.size:
-            places = centre + ranges[rows, None] * ways[rows]
-            normals = _normals(scene, triangles[rows], ways[rows])
-            is_lit = _lit(scenes, light, places, normals)
+            positions = centre + ranges[rows, None] * directions[rows]
+            normals = _normals(scene, triangles[rows], directions[rows])
+            is_lit = _lit(scenes, light, positions, normals)
             check()
-            seen = colours_of(scene.mesh, triangles[rows], places)
+            seen = colours_of(scene.mesh, triangles[rows], positions)
             seen *= light.falling_on(normals, is_lit)
-            _mirror(light, scene.mesh.material[triangles[rows]], (ways[rows], normals), seen)
+            _mirror(light, scene.mesh.material[triangles[rows]], (directions[rows], normals), seen)
             linear[rows] = seen
     _add_haze(light, ranges, linear)
     check()
     return _developed(linear.reshape(image.height_px, image.width_px, 3), image, random)
 
 
-def ways_of(image: CameraImage) -> Floats:
+def directions_of(image: CameraImage) -> Floats:
     """Where the pixels of an image look, row by row: (h × w, 3) float64 unit vectors."""
     lens = replace(image, path=image.path.parent, time_s=0.0, xyz=(0.0, 0.0, 0.0))
     lens = replace(lens, omega_deg=0.0, phi_deg=0.0, kappa_deg=0.0)
-    return np.asarray(_ways_of_lens(lens) @ Camera(image).rotation)
+    return np.asarray(_directions_of_lens(lens) @ Camera(image).rotation)
 
 
 @lru_cache(maxsize=4)
-def _ways_of_lens(lens: CameraImage) -> Floats:
+def _directions_of_lens(lens: CameraImage) -> Floats:
     """Where pixels look in the camera's axes, by the program's own model of cameras."""
     columns, rows = np.meshgrid(
         np.arange(lens.width_px, dtype=np.float64), np.arange(lens.height_px, dtype=np.float64)
@@ -95,14 +95,14 @@ def _ways_of_lens(lens: CameraImage) -> Floats:
 
 
 def _first_met(
-    scenes: Sequence[Scene], origins: Floats, ways: Floats
+    scenes: Sequence[RaycastScene], origins: Floats, directions: Floats
 ) -> tuple[Floats, NDArray[np.int16], Integers]:
     """Range, number of the scene (−1: none) and triangle that each ray meets first."""
-    ranges = np.full(ways.shape[0], np.inf)
-    nearest = np.full(ways.shape[0], -1, np.int16)
-    triangles = np.full(ways.shape[0], -1, np.int64)
+    ranges = np.full(directions.shape[0], np.inf)
+    nearest = np.full(directions.shape[0], -1, np.int16)
+    triangles = np.full(directions.shape[0], -1, np.int64)
     for number, scene in enumerate(scenes):
-        hits = scene.cast(origins, ways)
+        hits = scene.cast(origins, directions)
         is_nearer = hits.ranges < ranges
         ranges = np.where(is_nearer, hits.ranges, ranges)
         nearest[is_nearer] = number
@@ -110,21 +110,23 @@ def _first_met(
     return ranges, nearest, triangles
 
 
-def _normals(scene: Scene, triangles: Integers, ways: Floats) -> Floats:
+def _normals(scene: RaycastScene, triangles: Integers, directions: Floats) -> Floats:
     corners = scene.mesh.vertices[scene.mesh.triangles[triangles]]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     long = np.sqrt(np.einsum("ij,ij->i", normals, normals))
-    turned = np.where(np.einsum("ij,ij->i", normals, ways) > 0, -1.0, 1.0)
+    turned = np.where(np.einsum("ij,ij->i", normals, directions) > 0, -1.0, 1.0)
     return np.asarray(normals * (turned / np.maximum(long, 1e-12))[:, None])
 
 
-def _lit(scenes: Sequence[Scene], light: Daylight, places: Floats, normals: Floats) -> Floats:
+def _lit(
+    scenes: Sequence[RaycastScene], light: Daylight, positions: Floats, normals: Floats
+) -> Floats:
     """1 where the sun reaches a place, 0 in shadow."""
-    lit = np.zeros(places.shape[0])
+    lit = np.zeros(positions.shape[0])
     rows = np.flatnonzero(normals @ light.sun > 0.0)
     for scene in scenes:
         if rows.size:
-            origins = places[rows] + normals[rows] * _OFF_M
+            origins = positions[rows] + normals[rows] * _OFF_M
             hits = scene.cast(origins, np.broadcast_to(light.sun, origins.shape))
             rows = rows[~np.isfinite(hits.ranges)]
     lit[rows] = 1.0
@@ -134,16 +136,16 @@ def _lit(scenes: Sequence[Scene], light: Daylight, places: Floats, normals: Floa
 def _mirror(
     light: Daylight,
     material: NDArray[np.uint8],
-    ways_and_normals: tuple[Floats, Floats],
+    directions_and_normals: tuple[Floats, Floats],
     seen: Singles,
 ) -> None:
     """Let glass, mirrors and water show the sky as well."""
-    ways, normals = ways_and_normals
+    directions, normals = directions_and_normals
     for kind, share in _REFLECTS.items():
         rows = np.flatnonzero(material == kind)
         if rows.size:
-            across = 2 * np.einsum("ij,ij->i", ways[rows], normals[rows])
-            back = ways[rows] - across[:, None] * normals[rows]
+            across = 2 * np.einsum("ij,ij->i", directions[rows], normals[rows])
+            back = directions[rows] - across[:, None] * normals[rows]
             seen[rows] = (1 - share) * seen[rows] + share * 0.8 * light.sky(back)
 
 
@@ -167,6 +169,6 @@ def _developed(linear: Singles, image: CameraImage, random: Generator) -> Pictur
         linear = linear * (1 - _FALL_OFF * (rows**2 + columns**2) / 2)[:, :, None]
     linear = linear + _GREYING * (linear.mean(axis=2, keepdims=True) - linear)
     blurred = cv2.GaussianBlur((linear * exposure).astype(np.float32), (3, 3), _BLUR_PX)
-    picture = shown(np.asarray(blurred)).astype(np.float32)
+    picture = tone_map(np.asarray(blurred)).astype(np.float32)
     picture += _NOISE * random.standard_normal(picture.shape, np.float32)
     return np.clip(np.rint(picture), 0, 255).astype(np.uint8)

@@ -9,10 +9,10 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.cameras.calibration import angles_of
-from processing.cameras.image_list import CameraImage, Projection
+from processing.cameras.image_list import CameraImage, ProjectionName
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats
-from processing.simulate.scanning.passes import Pass
+from processing.simulate.scanning.simulated_passes import SimulatedPass
 
 Distortion = tuple[float, float, float, float, float]
 
@@ -47,7 +47,7 @@ class RigCamera:
     width_px: int
     height_px: int
     distortion: Distortion = (0.0, 0.0, 0.0, 0.0, 0.0)
-    projection: Projection = "perspective"
+    projection: ProjectionName = "perspective"
 
     def turn(self) -> Floats:
         """(3, 3): rows are the camera's right, up and backward axes in the vehicle's axes."""
@@ -67,7 +67,7 @@ class Pose:
     ----------
     time_s : float
         From the pass' beginning.
-    place : (3,) float64
+    position : (3,) float64
         Of the reference point, m, the street's frame.
     turn : (3, 3) float64
         Columns: the vehicle's forward, left and up axes.
@@ -77,7 +77,7 @@ class Pose:
     """
 
     time_s: float
-    place: Floats
+    position: Floats
     turn: Floats
     error: Floats
     chainage_m: float
@@ -98,16 +98,16 @@ def rig_of(seed: int) -> tuple[RigCamera, ...]:
     return (front, panorama) if kind < 0.85 else (panorama,)
 
 
-def poses_of_pass(driven: Pass, spacing_m: float = 10.0) -> list[Pose]:
+def poses_of_pass(driven: SimulatedPass, spacing_m: float = 10.0) -> list[Pose]:
     """A pose every so many metres driven; none while the vehicle stands."""
-    way = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(driven.chainages)))])
-    marks = np.arange(0.3 * spacing_m, way[-1], spacing_m)
-    rows = np.searchsorted(way, marks).tolist()
+    direction = np.concatenate([[0.0], np.cumsum(np.abs(np.diff(driven.chainages)))])
+    marks = np.arange(0.3 * spacing_m, direction[-1], spacing_m)
+    rows = np.searchsorted(direction, marks).tolist()
     return [
         Pose(
             float(driven.time_s[row]),
-            driven.places[row],
-            driven.turns[row],
+            driven.positions[row],
+            driven.rotations[row],
             driven.errors[row],
             float(driven.chainages[row]),
         )
@@ -118,7 +118,7 @@ def poses_of_pass(driven: Pass, spacing_m: float = 10.0) -> list[Pose]:
 def image_of(camera: RigCamera, pose: Pose, path: Path) -> CameraImage:
     """The image that a camera truly takes, in the street's frame and on the pass' time."""
     omega, phi, kappa = angles_of(camera.turn() @ pose.turn.T).tolist()
-    x, y, z = (pose.place + pose.turn @ np.array(camera.lever_m)).tolist()
+    x, y, z = (pose.position + pose.turn @ np.array(camera.lever_m)).tolist()
     return CameraImage(
         path=path,
         time_s=pose.time_s,

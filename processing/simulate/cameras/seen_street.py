@@ -8,8 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from processing.simulate.cameras.rigs import Pose
-from processing.simulate.mesh import Mesh, placed
-from processing.simulate.scanning.casting import Scene
+from processing.simulate.mesh import Mesh, place_shape
+from processing.simulate.scanning.casting import RaycastScene
 from processing.simulate.scanning.moving import poses_of
 from processing.simulate.scanning.surroundings import scene_around
 from processing.simulate.street.street import Street
@@ -33,9 +33,9 @@ class SeenStreet:
     def __init__(self, street: Street, movers: Sequence[Mover], check: Callable[[], None]) -> None:
         self._street, self._movers, self._check = street, movers, check
         self._row = -1
-        self._standing: Scene | None = None
+        self._standing: RaycastScene | None = None
 
-    def at(self, pose: Pose) -> list[Scene]:
+    def at(self, pose: Pose) -> list[RaycastScene]:
         """The scenes around a pose at its time: what stands, and what moves."""
         row = self._street.within(pose.chainage_m, pose.chainage_m)[0]
         if self._standing is None or row != self._row:
@@ -44,17 +44,17 @@ class SeenStreet:
         meshes = [self._placed(one, pose) for one in self._movers if self._is_near(one, pose)]
         if not meshes:
             return [self._standing]
-        return [self._standing, Scene(Mesh.joined(meshes), pose.place)]
+        return [self._standing, RaycastScene(Mesh.joined(meshes), pose.position)]
 
     def _is_near(self, mover: Mover, pose: Pose) -> bool:
         if not mover.from_s <= pose.time_s <= mover.to_s:
             return False
-        at, _ = mover.way_at(pose.time_s)
+        at, _ = mover.direction_at(pose.time_s)
         return abs(float(at) - pose.chainage_m) < _REACH_M
 
     def _placed(self, mover: Mover, pose: Pose) -> Mesh:
-        places, headings = poses_of(mover, self._street, np.array([pose.time_s]))
-        vertices, _ = placed(
-            (mover.mesh.vertices, mover.mesh.triangles), places[0].tolist(), float(headings[0])
+        positions, headings = poses_of(mover, self._street, np.array([pose.time_s]))
+        vertices, _ = place_shape(
+            (mover.mesh.vertices, mover.mesh.triangles), positions[0].tolist(), float(headings[0])
         )
         return replace(mover.mesh, vertices=vertices)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, Integers, Mesh
 
-Colours = NDArray[np.float32]
+LinearColours = NDArray[np.float32]
 
 _WHITE, _BLACK = (236, 236, 232), (34, 34, 36)
 _RED, _BLUE = (192, 32, 40), (24, 70, 160)
@@ -41,7 +41,7 @@ class _Face:
     shape: str
 
 
-def paint_signs(mesh: Mesh, triangles: Integers, places: Floats, colours: Colours) -> None:
+def paint_signs(mesh: Mesh, triangles: Integers, positions: Floats, colours: LinearColours) -> None:
     """Paint the pixels that show faces of signs.
 
     Parameters
@@ -49,7 +49,7 @@ def paint_signs(mesh: Mesh, triangles: Integers, places: Floats, colours: Colour
     mesh : Mesh
     triangles : (n,) int64
         Rows of the mesh that pixels show.
-    places : (n, 3) float64
+    positions : (n, 3) float64
         Where, in the frame of the mesh.
     colours : (n, 3) float32
         0–255; changed in place.
@@ -65,7 +65,7 @@ def paint_signs(mesh: Mesh, triangles: Integers, places: Floats, colours: Colour
     for instance in np.unique(own[~is_vehicle]).tolist():
         seen = rows[own == instance]
         face = _face_of(mesh, faces[mesh.instance[faces] == instance])
-        away = places[seen] - face.middle
+        away = positions[seen] - face.middle
         u, v = away @ face.across / face.half[0], away @ face.upward / face.half[1]
         colours[seen] = _picture(face, np.asarray(u), np.asarray(v), instance)
 

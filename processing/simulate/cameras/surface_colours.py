@@ -45,14 +45,14 @@ _LINEAR = ((np.arange(256) / 255.0) ** _GAMMA).astype(np.float32)
 _SHOWN = np.round(255 * (np.arange(4096) / 4095.0) ** (1 / _GAMMA)).astype(np.uint8)
 
 
-def colours_of(mesh: Mesh, triangles: Integers, places: Floats) -> Singles:
+def colours_of(mesh: Mesh, triangles: Integers, positions: Floats) -> Singles:
     """What surfaces look like in plain light.
 
     Parameters
     ----------
     mesh : Mesh
     triangles : (n,) int64
-    places : (n, 3) float64
+    positions : (n, 3) float64
         Where on them, in the frame of the mesh.
 
     Returns
@@ -69,8 +69,8 @@ def colours_of(mesh: Mesh, triangles: Integers, places: Floats) -> Singles:
         colours[rows] = table[mixed[rows] % len(table)]
     is_lamp = (material == Material.PLASTIC) & (mesh.label[triangles] == _VEHICLES)
     colours[is_lamp] = _LAMPS[mixed[is_lamp] % len(_LAMPS)]
-    paint_signs(mesh, triangles, places, colours)
-    stains = 0.6 * grain(places, _COARSE_M) + 0.7 * grain(places, _FINE_M)
+    paint_signs(mesh, triangles, positions, colours)
+    stains = 0.6 * grain(positions, _COARSE_M) + 0.7 * grain(positions, _FINE_M)
     bright = 1 + _SPREADS[material] * stains
     bright *= 1 + _GREY_VARIETY * ((mixed >> 9) % 101 / 50.0 - 1.0).astype(np.float32) * (
         instance > 0
@@ -79,7 +79,7 @@ def colours_of(mesh: Mesh, triangles: Integers, places: Floats) -> Singles:
     return np.asarray(linear * bright[:, None], np.float32)
 
 
-def shown(linear: Singles) -> NDArray[np.uint8]:
+def tone_map(linear: Singles) -> NDArray[np.uint8]:
     """Linear light 0 to 1 as bytes of a picture, with a soft shoulder above three quarters."""
     knee = 0.75
     over = np.maximum(linear - knee, 0)

@@ -18,9 +18,9 @@ from processing.simulate.gutters.lid_shapes import Grating, grating_pieces
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, grid
 from processing.simulate.street.plan import LEFT, SIDES
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.sweep import Sweep
-from processing.simulate.things import NO_THING, Built, Fact, TrueFeature
+from processing.simulate.things import NO_THING, Fact, SectionBuilder, TrueFeature
 
 GUTTER = 11
 _RUN_IN_M = 1.0  # no basin so near to a ramp or to the section's end
@@ -80,7 +80,7 @@ class _Apron:
     material: Material
 
     @staticmethod
-    def of(section: Section, sweep: Sweep, number: int, side: int) -> _Apron:
+    def of(section: StreetSection, sweep: Sweep, number: int, side: int) -> _Apron:
         """The apron between two lines of a sweep."""
         lines = [
             section.alignment.at(
@@ -99,7 +99,7 @@ class _Apron:
         return np.column_stack([np.interp(along, self.along, line[:, axis]) for axis in range(3)])
 
 
-def add_aprons(section: Section, built: Built) -> None:
+def add_aprons(section: StreetSection, built: SectionBuilder) -> None:
     """Add the aprons of a section's sides and of the corners of its side streets."""
     for side in SIDES:
         part = section.layout.sides[side]
@@ -114,13 +114,13 @@ def add_aprons(section: Section, built: Built) -> None:
             _add_apron(built, apron, habit, basins, random)
 
 
-def _aprons(section: Section, sweep: Sweep, side: int) -> Iterator[_Apron]:
+def _aprons(section: StreetSection, sweep: Sweep, side: int) -> Iterator[_Apron]:
     for number, strip in enumerate(sweep.profile.strips):
         if strip.kind == "apron":
             yield _Apron.of(section, sweep, number, side)
 
 
-def _habit_of(section: Section, side: int) -> _Habit:
+def _habit_of(section: StreetSection, side: int) -> _Habit:
     plan = section.plan.side(side)
     random = chance(section.seed, "aprons", side, int(plan.drain_m * 1e6))
     # Blocks of 0.6 m (JIS A 5371, 鉄筋コンクリートL形), or cast in place with joints up to 2 m.
@@ -139,7 +139,9 @@ def _habit_of(section: Section, side: int) -> _Habit:
     )
 
 
-def _basins(section: Section, apron: _Apron, habit: _Habit, random: Generator) -> Iterator[float]:
+def _basins(
+    section: StreetSection, apron: _Apron, habit: _Habit, random: Generator
+) -> Iterator[float]:
     """Where catch basins begin, m along the apron: where the curb is whole, about evenly."""
     drops = section.layout.sides[apron.side].drops
     at = float(random.uniform(0.0, habit.basin_m))
@@ -157,7 +159,7 @@ def _basins(section: Section, apron: _Apron, habit: _Habit, random: Generator) -
 
 
 def _add_apron(
-    built: Built, apron: _Apron, habit: _Habit, basins: list[float], random: Generator
+    built: SectionBuilder, apron: _Apron, habit: _Habit, basins: list[float], random: Generator
 ) -> None:
     at = 0.0
     for basin in basins:
@@ -168,7 +170,11 @@ def _add_apron(
 
 
 def _add_blocks(
-    built: Built, apron: _Apron, habit: _Habit, ends: tuple[float, float], random: Generator
+    built: SectionBuilder,
+    apron: _Apron,
+    habit: _Habit,
+    ends: tuple[float, float],
+    random: Generator,
 ) -> None:
     """Blocks between two places: one surface that dips into each joint."""
     low, high = ends
@@ -184,24 +190,26 @@ def _add_blocks(
     sunk = (np.abs(inner[:, None] - joints) < half) @ -deep
     walls = [joints - half, joints - half, joints + half, joints + half]
     none = np.zeros(joints.size)
-    places = np.concatenate([[low], inner, *walls, [high]])
+    positions = np.concatenate([[low], inner, *walls, [high]])
     levels = np.concatenate([[0.0], sunk, none, -deep, -deep, none, [0.0]])
     # Both ends of a wall lie on one place: it goes down before the joint and up behind it.
     turn = np.concatenate([[0.0], 0 * inner, none, none + 1, none + 2, none + 3, [0.0]])
-    order = np.lexsort((turn, places))
-    places, levels = places[order], levels[order]
+    order = np.lexsort((turn, positions))
+    positions, levels = positions[order], levels[order]
     steps = np.clip(random.normal(0, habit.step_m, joints.size + 1), -_STEP_MOST_M, _STEP_MOST_M)
     steps[[0, -1]] = 0.0
-    block = np.searchsorted(joints, places)
+    block = np.searchsorted(joints, positions)
     upright = np.array([0.0, 0.0, 1.0])
-    edge, foot = apron.at(places, 0.0), apron.at(places, 1.0)
+    edge, foot = apron.at(positions, 0.0), apron.at(positions, 1.0)
     near, far = edge + upright * (levels + steps[block])[:, None], foot + upright * levels[:, None]
     under = np.array([0.0, 0.0, _SKIRT_M])
     rows = np.stack([edge - under, near, far, foot - under], axis=1)
     built.mesh.add(grid(rows), apron.material, GUTTER, NO_THING)
 
 
-def _add_basin(built: Built, apron: _Apron, habit: _Habit, start: float, random: Generator) -> None:
+def _add_basin(
+    built: SectionBuilder, apron: _Apron, habit: _Habit, start: float, random: Generator
+) -> None:
     """A catch basin (集水桝): a shaft, its concrete rims beside the grating, the grating."""
     end = start + habit.grating_m + 2 * _GAP_M
     inside = apron.along[(apron.along > start) & (apron.along < end)]
@@ -220,12 +228,12 @@ def _add_basin(built: Built, apron: _Apron, habit: _Habit, start: float, random:
     floor = np.stack([lines[1] - deep, lines[2] - deep], axis=1)
     built.mesh.add(grid(floor), silt, GUTTER, basin)
     edges = lines[1][[0, -1]], lines[2][[0, -1]]
-    place = float(np.interp(start + habit.grating_m / 2, apron.along, apron.chainages))
-    _add_grating(built, (apron.side, place), habit, edges, basin)
+    position = float(np.interp(start + habit.grating_m / 2, apron.along, apron.chainages))
+    _add_grating(built, (apron.side, position), habit, edges, basin)
 
 
 def _add_grating(
-    built: Built,
+    built: SectionBuilder,
     where: tuple[int, float],
     habit: _Habit,
     edges: tuple[Floats, Floats],
@@ -261,7 +269,7 @@ def _add_grating(
 
 
 def grating_facts(
-    size_m: tuple[float, float], place: tuple[int, int], side: int
+    size_m: tuple[float, float], position: tuple[int, int], side: int
 ) -> dict[str, Fact]:
     """What the truth tells of a grating.
 
@@ -269,7 +277,7 @@ def grating_facts(
     ----------
     size_m : (float, float)
         Across its gutter and along it.
-    place : (int, int)
+    position : (int, int)
         Its run, and which it is there.
     """
     return {
@@ -277,8 +285,8 @@ def grating_facts(
         "type": "grating",
         "width_m": round(size_m[0], 4),
         "length_m": round(size_m[1], 4),
-        "run": place[0],
-        "order": place[1],
+        "run": position[0],
+        "order": position[1],
         "holes": 0,
         "hole_length_m": 0.0,
         "hole_width_m": 0.0,

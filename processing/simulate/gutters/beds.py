@@ -11,8 +11,8 @@ from numpy.random import Generator
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, Integers, grid
 from processing.simulate.street.plan import LEFT, RIGHT
-from processing.simulate.street.section import Section
-from processing.simulate.things import Built
+from processing.simulate.street.section import StreetSection
+from processing.simulate.things import SectionBuilder
 
 GUTTER = 11
 
@@ -69,13 +69,13 @@ class Bed:
 
     def line(self, across_m: float | Floats) -> Floats:
         """Places at a distance (m, or (n,) float64) from the inner edge, one at each node."""
-        ways = self.outer - self.inner
-        share = np.asarray(across_m) / np.linalg.norm(ways, axis=1)
-        places: Floats = self.inner + share[:, None] * ways
-        return places
+        directions = self.outer - self.inner
+        share = np.asarray(across_m) / np.linalg.norm(directions, axis=1)
+        positions: Floats = self.inner + share[:, None] * directions
+        return positions
 
 
-def beds_of(section: Section) -> Iterator[Bed]:
+def beds_of(section: StreetSection) -> Iterator[Bed]:
     """The strips that the ground leaves open for covered gutters."""
     ground = section.ground
     for number, strip in enumerate(ground.strips):
@@ -83,14 +83,14 @@ def beds_of(section: Section) -> Iterator[Bed]:
             continue
         rows = _thinned(ground.nodes)
         nodes = ground.nodes[rows]
-        places = section.alignment.at(
+        positions = section.alignment.at(
             np.broadcast_to(nodes[:, None], (nodes.size, 2)),
             ground.offsets[rows, number : number + 2],
             ground.heights[rows, number : number + 2],
         )
         side = LEFT if ground.offsets[:, number].mean() > 0 else RIGHT
         near, far = (0, 1) if side == LEFT else (1, 0)
-        yield Bed(side, nodes, places[:, near], places[:, far])
+        yield Bed(side, nodes, positions[:, near], positions[:, far])
 
 
 def _thinned(nodes: Floats) -> Integers:
@@ -141,14 +141,18 @@ def channel_of(random: Generator, wide_m: float, opening_m: float) -> Channel:
     )
 
 
-def squeezed_to(bed: Bed, end_m: float) -> Floats:
+def squeeze_share(bed: Bed, end_m: float) -> Floats:
     """By how much a channel's cross section is narrowed at each node, so that it fits: (n,)."""
     share: Floats = np.minimum(1.0, (bed.widths_m - _EDGE_M) / end_m)
     return share
 
 
 def add_channel(
-    built: Built, bed: Bed, channel: Channel, floor: Floats, made_of: tuple[Material, Material]
+    built: SectionBuilder,
+    bed: Bed,
+    channel: Channel,
+    floor: Floats,
+    made_of: tuple[Material, Material],
 ) -> int:
     """Add rims, seats, walls and floor of a channel as one thing of kind ``gutter``; its instance.
 
@@ -166,7 +170,7 @@ def add_channel(
     inside, outside = start + channel.seat_m, end - channel.seat_m
     across = [0.0, start, start, inside, inside, outside, outside, end, end]
     levels = [flat, flat, seat, seat, deep, deep, seat, seat, flat]
-    squeezed = squeezed_to(bed, end)
+    squeezed = squeeze_share(bed, end)
     lines = [
         bed.line(one * squeezed) + np.column_stack([flat, flat, level])
         for one, level in zip(across, levels, strict=True)

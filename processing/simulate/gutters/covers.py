@@ -13,13 +13,13 @@ from processing.simulate.gutters.dirt import Heap
 from processing.simulate.gutters.lid_shapes import (
     CELLS_ACROSS,
     CELLS_ALONG,
+    CoverShape,
     Grating,
     Lid,
-    Pieces,
     grating_pieces,
     lid_pieces,
 )
-from processing.simulate.gutters.runs import Habit, Lie, Place
+from processing.simulate.gutters.runs import CoverPosition, CoverStyle, CoverTilts
 from processing.simulate.mesh import Floats
 from processing.simulate.street.plan import LEFT
 
@@ -27,7 +27,7 @@ _HIDDEN_M = 0.003  # a cell under so much dirt does not show
 
 
 @dataclass(frozen=True)
-class Lying:
+class CoverPlacement:
     """Where covers lie.
 
     Attributes
@@ -70,7 +70,9 @@ class HoleRow:
         return replace(self, instance=instance)
 
 
-def lying(line: Floats, across: Floats, arcs: Floats, places: Sequence[Place], lie: Lie) -> Lying:
+def cover_placement(
+    line: Floats, across: Floats, arcs: Floats, positions: Sequence[CoverPosition], lie: CoverTilts
+) -> CoverPlacement:
     """Where the covers of a run lie: on chords of the lids' middle line, on the bed's height.
 
     Parameters
@@ -82,8 +84,8 @@ def lying(line: Floats, across: Floats, arcs: Floats, places: Sequence[Place], l
     arcs : (n,) float64
         m along the line.
     """
-    starts = np.array([one.start_m for one in places])
-    ends = starts + [one.long_m for one in places]
+    starts = np.array([one.start_m for one in positions])
+    ends = starts + [one.long_m for one in positions]
     first, last, side = (
         np.column_stack([np.interp(at, arcs, of[:, axis]) for axis in range(3)])
         for at, of in ((starts, line), (ends, line), ((starts + ends) / 2, across))
@@ -93,7 +95,7 @@ def lying(line: Floats, across: Floats, arcs: Floats, places: Sequence[Place], l
     left = np.where(is_left, side, -side)
     up = _unit(np.cross(along, left))
     left = np.cross(up, along)
-    turned = np.array([one.turned_rad for one in places])[:, None]
+    turned = np.array([one.turned_rad for one in positions])[:, None]
     along, left = (
         np.cos(turned) * along + np.sin(turned) * left,
         np.cos(turned) * left - np.sin(turned) * along,
@@ -102,25 +104,27 @@ def lying(line: Floats, across: Floats, arcs: Floats, places: Sequence[Place], l
     up = _unit(np.cross(along, left + lie.rolled[:, None] * up))
     left = np.cross(up, along)
     middles = (first + last) / 2 + lie.raised[:, None] * up
-    return Lying(middles, np.stack([along, left, up], axis=1))
+    return CoverPlacement(middles, np.stack([along, left, up], axis=1))
 
 
-def _unit(ways: Floats) -> Floats:
-    unit: Floats = ways / np.linalg.norm(ways, axis=1)[:, None]
+def _unit(directions: Floats) -> Floats:
+    unit: Floats = directions / np.linalg.norm(directions, axis=1)[:, None]
     return unit
 
 
-def corners_of(covers: Lying, number: int, long_m: float, wide_m: float) -> Floats:
+def corners_of(covers: CoverPlacement, number: int, long_m: float, wide_m: float) -> Floats:
     """A cover's top as a closed ring: (5, 3) float64, m, anticlockwise from its rear right."""
     x, y = long_m / 2, wide_m / 2
     ring = np.array([[-x, -y, 0.0], [x, -y, 0.0], [x, y, 0.0], [-x, y, 0.0], [-x, -y, 0.0]])
     return covers.moved(number, ring)
 
 
-def holes_of(habit: Habit, wide_m: float, place: Place, *, is_other: bool) -> HoleRow:
+def holes_of(
+    habit: CoverStyle, wide_m: float, position: CoverPosition, *, is_other: bool
+) -> HoleRow:
     """The holes of a cover; a lid of another mould (`is_other`) has a single one."""
     kind = habit.kind
-    if place.what == "grating":
+    if position.what == "grating":
         return HoleRow(0, 0.0, 0.0, ())
     half = kind.hole_wide_m / 2
     if kind.holes == 1 or is_other:
@@ -131,30 +135,30 @@ def holes_of(habit: Habit, wide_m: float, place: Place, *, is_other: bool) -> Ho
 
 
 def cover_pieces(
-    random: Generator, habit: Habit, channel: Channel, place: Place, holes: HoleRow
-) -> Pieces:
+    random: Generator, habit: CoverStyle, channel: Channel, position: CoverPosition, holes: HoleRow
+) -> CoverShape:
     """The shape of a lid or a grating."""
     wide = channel.opening_m - 2 * habit.gap_m
-    if place.what == "grating":
+    if position.what == "grating":
         # Bars as in makers' tables: 5–8 mm wide every 20–33 mm, fine ones (細目) every 15 mm.
         bar = float(random.uniform(0.005, 0.008))
         pitch = float(random.choice([0.015, random.uniform(0.02, 0.033)], p=[0.15, 0.85]))
         high = min(channel.thick_m, float(random.uniform(0.03, 0.06)))
-        return grating_pieces(Grating(place.long_m, wide, high, max(pitch, 2 * bar), bar))
+        return grating_pieces(Grating(position.long_m, wide, high, max(pitch, 2 * bar), bar))
     depth = holes.long_m / 2 - 0.001
-    is_cut = min(abs(place.long_m - one) for one in habit.lengths_m) > 1e-6
+    is_cut = min(abs(position.long_m - one) for one in habit.lengths_m) > 1e-6
     depths = (depth, 0.0 if is_cut else depth)
-    return lid_pieces(Lid(place.long_m, wide, channel.thick_m - 0.005, holes.notches, depths))
+    return lid_pieces(Lid(position.long_m, wide, channel.thick_m - 0.005, holes.notches, depths))
 
 
 def uncovered_share(
-    heaps: Sequence[Heap], place: Place, wide_m: float, middle_m: float, side: int
+    heaps: Sequence[Heap], position: CoverPosition, wide_m: float, middle_m: float, side: int
 ) -> float:
     """Share of a cover's top that lies under no soil, leaves or grass."""
     x = (np.arange(CELLS_ALONG) + 0.5) / CELLS_ALONG - 0.5
     y = (np.arange(CELLS_ACROSS) + 0.5) / CELLS_ACROSS - 0.5
-    along, left = np.meshgrid(x * place.long_m, y * wide_m, indexing="ij")
-    arcs = (place.start_m + place.long_m / 2 + along).ravel()
+    along, left = np.meshgrid(x * position.long_m, y * wide_m, indexing="ij")
+    arcs = (position.start_m + position.long_m / 2 + along).ravel()
     outwards = (middle_m + (left if side == LEFT else -left)).ravel()
     is_hidden = np.zeros(arcs.size, bool)
     for heap in heaps:
@@ -164,8 +168,8 @@ def uncovered_share(
 
 
 def plugs_between(
-    covers: Lying,
-    places: Sequence[Place],
+    covers: CoverPlacement,
+    positions: Sequence[CoverPosition],
     rows: Sequence[HoleRow | None],
     number: int,
     *,
@@ -175,8 +179,8 @@ def plugs_between(
     row, after = rows[number], rows[number + 1]
     if row is None or after is None or not row.count or not after.count:
         return
-    gap = places[number + 1].start_m - places[number].start_m - places[number].long_m
-    end = places[number].long_m / 2
+    gap = positions[number + 1].start_m - positions[number].start_m - positions[number].long_m
+    end = positions[number].long_m / 2
     low, high = end - row.long_m / 2 - 0.01, end + gap + row.long_m / 2 + 0.01
     for left, right in row.notches:
         corners = np.array(

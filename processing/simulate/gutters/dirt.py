@@ -11,7 +11,7 @@ from processing.simulate.gutters.beds import Bed
 from processing.simulate.gutters.lid_shapes import quads
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, grid
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 _ALONG_M, _ACROSS_M = 0.15, 0.08
 _BESIDE_M = 0.12  # how far it spills beyond the bed
@@ -50,7 +50,7 @@ class Heap:
         return np.where(is_inside, low * (1 - u) + high * u, -1.0)
 
 
-def add_heaps(random: Generator, built: Built, bed: Bed, arcs: Floats) -> list[Heap]:
+def add_heaps(random: Generator, built: SectionBuilder, bed: Bed, arcs: Floats) -> list[Heap]:
     """Add soil, leaves and grass over some stretches of a bed.
 
     Parameters
@@ -70,7 +70,7 @@ def add_heaps(random: Generator, built: Built, bed: Bed, arcs: Floats) -> list[H
 
 
 def _add_heap(
-    random: Generator, built: Built, bed: Bed, arcs: Floats, stretch: tuple[float, float]
+    random: Generator, built: SectionBuilder, bed: Bed, arcs: Floats, stretch: tuple[float, float]
 ) -> Heap:
     kind, material, label = _KINDS[int(random.choice(3, p=[0.45, 0.25, 0.3]))]
     start, long = stretch
@@ -94,15 +94,15 @@ def _add_heap(
     lines = np.stack([bed.line(float(one)) for one in across], axis=1)
     row = np.clip(np.searchsorted(arcs, along) - 1, 0, arcs.size - 2)
     share = ((along - arcs[row]) / (arcs[row + 1] - arcs[row]))[:, None, None]
-    places = lines[row] * (1 - share) + lines[row + 1] * share
-    places[..., 2] += thick
-    vertices, triangles = grid(places)
+    positions = lines[row] * (1 - share) + lines[row + 1] * share
+    positions[..., 2] += thick
+    vertices, triangles = grid(positions)
     stands = (thick.ravel()[triangles] > 0).any(axis=1)
     built.mesh.add((vertices, triangles[stands]), material, label, built.thing(kind))
     return Heap(along, across, thick)
 
 
-def add_plugs(built: Built, corners: Floats) -> None:
+def add_plugs(built: SectionBuilder, corners: Floats) -> None:
     """Add soil that fills holes.
 
     Parameters

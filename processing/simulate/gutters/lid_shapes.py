@@ -61,7 +61,7 @@ LID_KINDS = (
 
 
 @dataclass(frozen=True)
-class Pieces:
+class CoverShape:
     """A shape in its own frame: (n, 3) float64 m, (m, 3) int64, (m,) int64 pieces."""
 
     vertices: Floats
@@ -99,7 +99,7 @@ class Grating:
     bar_m: float
 
 
-def lid_pieces(lid: Lid) -> Pieces:
+def lid_pieces(lid: Lid) -> CoverShape:
     """A lid with its notches cut out: top and sides, no underside (the channel's dark)."""
     half = lid.long_m / 2
     xs = np.linspace(-half, half, CELLS_ALONG + 1)
@@ -109,9 +109,9 @@ def lid_pieces(lid: Lid) -> Pieces:
         for row in range(1, CELLS_ALONG - 1)
         for column in range(CELLS_ACROSS)
     ]
-    for row, end, way in ((0, -half, 1.0), (CELLS_ALONG - 1, half, -1.0)):
-        depth = lid.depths_m[0 if way > 0 else 1]
-        inner, cut = xs[1 if way > 0 else -2], end + way * depth
+    for row, end, direction in ((0, -half, 1.0), (CELLS_ALONG - 1, half, -1.0)):
+        depth = lid.depths_m[0 if direction > 0 else 1]
+        inner, cut = xs[1 if direction > 0 else -2], end + direction * depth
         rectangles += [
             (
                 min(cut, inner),
@@ -159,7 +159,7 @@ def _outline(lid: Lid) -> Floats:
     return np.array(points)
 
 
-def _flat(rectangles: Floats) -> Pieces:
+def _flat(rectangles: Floats) -> CoverShape:
     """Level rectangles at z = 0 from rows of x0, x1, y0, y1, piece."""
     x0, x1, y0, y1, piece = rectangles.T
     corners = np.stack(
@@ -169,18 +169,20 @@ def _flat(rectangles: Floats) -> Pieces:
         ],
         axis=1,
     )
-    return Pieces(
+    return CoverShape(
         corners.reshape(-1, 3), quads(len(rectangles)), np.repeat(piece.astype(np.int64), 2)
     )
 
 
-def _skirt(outline: Floats, deep_m: float) -> Pieces:
+def _skirt(outline: Floats, deep_m: float) -> CoverShape:
     """Upright faces below a closed outline."""
     top = np.column_stack([outline, np.zeros(len(outline))])
     low = top - [0.0, 0.0, deep_m]
     corners = np.stack([low[:-1], low[1:], top[1:], top[:-1]], axis=1)
     count = len(outline) - 1
-    return Pieces(corners.reshape(-1, 3), quads(count), np.full(2 * count, SIDES_PIECE, np.int64))
+    return CoverShape(
+        corners.reshape(-1, 3), quads(count), np.full(2 * count, SIDES_PIECE, np.int64)
+    )
 
 
 def quads(count: int) -> Integers:
@@ -190,16 +192,16 @@ def quads(count: int) -> Integers:
     return triangles
 
 
-def _joined(parts: list[Pieces]) -> Pieces:
+def _joined(parts: list[CoverShape]) -> CoverShape:
     starts = np.cumsum([0, *(len(one.vertices) for one in parts[:-1])])
-    return Pieces(
+    return CoverShape(
         np.concatenate([one.vertices for one in parts]),
         np.concatenate([one.triangles + at for one, at in zip(parts, starts, strict=True)]),
         np.concatenate([one.piece for one in parts]),
     )
 
 
-def grating_pieces(grating: Grating) -> Pieces:
+def grating_pieces(grating: Grating) -> CoverShape:
     """A grating of real bars with open gaps: bearing bars, thinner cross bars, a frame."""
     half, side = grating.long_m / 2, grating.wide_m / 2
     count = max(2, round(grating.long_m / grating.pitch_m))
@@ -233,7 +235,7 @@ def grating_pieces(grating: Grating) -> Pieces:
     )
 
 
-def _walls(xs: Floats, side_m: float, high_m: float) -> Pieces:
+def _walls(xs: Floats, side_m: float, high_m: float) -> CoverShape:
     """Upright faces across the gutter at some x, from −side to side."""
     corners = np.array(
         [
@@ -245,10 +247,10 @@ def _walls(xs: Floats, side_m: float, high_m: float) -> Pieces:
     )
     vertices = corners + np.column_stack([xs, np.zeros((xs.size, 2))])[:, None]
     piece = np.full(2 * xs.size, SIDES_PIECE, np.int64)
-    return Pieces(vertices.reshape(-1, 3), quads(xs.size), piece)
+    return CoverShape(vertices.reshape(-1, 3), quads(xs.size), piece)
 
 
-def _bars(bars: Floats, high_m: float) -> Pieces:
+def _bars(bars: Floats, high_m: float) -> CoverShape:
     """Upright bars from rows of x0, x1, y0, y1, depth of the top, piece: top and four sides."""
     x0, x1, y0, y1, below, piece = bars.T
     corners = [
@@ -265,4 +267,4 @@ def _bars(bars: Floats, high_m: float) -> Pieces:
     triangles = (first + np.array(faces)).reshape(-1, 3)
     sides = np.full((len(bars), len(faces)), SIDES_PIECE, np.int64)
     sides[:, :2] = piece.astype(np.int64)[:, None]
-    return Pieces(vertices, triangles, sides.ravel())
+    return CoverShape(vertices, triangles, sides.ravel())

@@ -11,13 +11,13 @@ from numpy.random import Generator
 from processing.simulate.gutters.lid_shapes import LID_KINDS, LidKind
 from processing.simulate.mesh import Floats
 
-Cover = Literal["lid", "grating", "missing", "slab"]
+CoverType = Literal["lid", "grating", "missing", "slab"]
 
 _LEAST_M = 0.25  # a shorter rest of a run is cast in concrete
 
 
 @dataclass(frozen=True)
-class Habit:
+class CoverStyle:
     """What one gutter's covers have in common; lengths in m.
 
     Attributes
@@ -45,7 +45,7 @@ class Habit:
 
 
 @dataclass(frozen=True)
-class Place:
+class CoverPosition:
     """One cover's place in a run: metres along the lids' middle line from the bed's beginning.
 
     Attributes
@@ -54,13 +54,13 @@ class Place:
         About its upright axis.
     """
 
-    what: Cover
+    what: CoverType
     start_m: float
     long_m: float
     turned_rad: float
 
 
-def habit_of(random: Generator, wide_m: float, radius_m: float) -> Habit:
+def cover_style_of(random: Generator, wide_m: float, radius_m: float) -> CoverStyle:
     """What a gutter's covers are like in a bed of a width, on a curve of a radius."""
     gap = float(random.uniform(0.003, 0.008))
     fits = [one for one in LID_KINDS if one.wide_m + 2 * gap + 0.006 <= wide_m] or [LID_KINDS[0]]
@@ -72,7 +72,7 @@ def habit_of(random: Generator, wide_m: float, radius_m: float) -> Habit:
     lengths = usual[int(random.choice(len(usual), p=shares_of))]
     notch_at = float(random.uniform(0.22, 0.27)) if kind.holes == 2 else 0.0
     joint = float(random.uniform(0.002, 0.005))
-    return Habit(
+    return CoverStyle(
         kind,
         lengths,
         (joint, joint + float(random.uniform(0.001, 0.005))),
@@ -84,12 +84,14 @@ def habit_of(random: Generator, wide_m: float, radius_m: float) -> Habit:
     )
 
 
-def wide_m(habit: Habit, bed_m: float) -> float:
+def wide_m(habit: CoverStyle, bed_m: float) -> float:
     """Of the lids of a habit in a bed."""
     return min(habit.kind.wide_m, bed_m - 2 * habit.gap_m - 0.006)
 
 
-def places_of(random: Generator, habit: Habit, long_m: float, bend: float) -> list[Place]:
+def cover_positions_of(
+    random: Generator, habit: CoverStyle, long_m: float, bend: float
+) -> list[CoverPosition]:
     """The covers along a bed, one after the other, never overlapping.
 
     Parameters
@@ -100,12 +102,12 @@ def places_of(random: Generator, habit: Habit, long_m: float, bend: float) -> li
         Its sharpest curvature, 1/m: joints become wedges there.
     """
     wide = habit.kind.wide_m
-    places: list[Place] = []
+    positions: list[CoverPosition] = []
     at, before, next_grating = float(random.uniform(0.0, 0.01)), 0.0, _distance(random, habit)
     slab_at = float(random.uniform(0, long_m)) if random.random() < 0.2 else np.inf
     while at < long_m - _LEAST_M:
         long = float(random.choice(habit.lengths_m))
-        what: Cover = "lid"
+        what: CoverType = "lid"
         if at > slab_at:
             what, long, slab_at = "slab", float(random.uniform(1.5, 5.0)), np.inf
         elif at > next_grating:
@@ -123,16 +125,16 @@ def places_of(random: Generator, habit: Habit, long_m: float, bend: float) -> li
         long = min(long, long_m - start)
         if long < _LEAST_M:
             break
-        places.append(Place(what, start, long, turned))
+        positions.append(CoverPosition(what, start, long, turned))
         at, before = start + long, abs(turned)
-    return places
+    return positions
 
 
-def _distance(random: Generator, habit: Habit) -> float:
+def _distance(random: Generator, habit: CoverStyle) -> float:
     return float(random.uniform(*habit.between_m))
 
 
-def _turned(random: Generator, habit: Habit, long_m: float) -> float:
+def _turned(random: Generator, habit: CoverStyle, long_m: float) -> float:
     """Turned up to one degree, as far as the opening lets it."""
     most = min(np.deg2rad(1.0), 2 * (habit.gap_m - 0.001) / long_m)
     usual = random.normal(0, 0.0015 + 0.002 * habit.wear)
@@ -142,7 +144,7 @@ def _turned(random: Generator, habit: Habit, long_m: float) -> float:
 
 
 @dataclass(frozen=True)
-class Lie:
+class CoverTilts:
     """How covers lie about their level places: (n,) float64 each.
 
     Attributes
@@ -156,7 +158,7 @@ class Lie:
     rolled: Floats
 
 
-def lie_of(random: Generator, wear: float, count: int) -> Lie:
+def cover_tilts_of(random: Generator, wear: float, count: int) -> CoverTilts:
     """Small scatter everywhere, and accidents: a lid that has sunk, rises or tilts."""
     raised = random.normal(0, 0.0005 + 0.0025 * wear, count)
     pitched = random.normal(0, 0.001 + 0.004 * wear, count)
@@ -164,7 +166,7 @@ def lie_of(random: Generator, wear: float, count: int) -> Lie:
     accident = random.random(count)
     raised += np.where(accident < 0.02, random.uniform(-0.035, 0.02, count), 0.0)
     steep = np.where((accident > 0.02) & (accident < 0.035), 0.03, 0.0)
-    return Lie(
+    return CoverTilts(
         raised,
         pitched + steep * random.uniform(-1, 1, count),
         rolled + steep * random.uniform(-1, 1, count),

@@ -10,23 +10,23 @@ import numpy as np
 
 from processing.simulate.gutters.aprons import grating_facts
 from processing.simulate.gutters.beds import GUTTER, Bed, Channel, add_channel
-from processing.simulate.gutters.covers import corners_of, lying
+from processing.simulate.gutters.covers import corners_of, cover_placement
 from processing.simulate.gutters.lid_shapes import Grating, grating_pieces
-from processing.simulate.gutters.runs import Lie, Place
+from processing.simulate.gutters.runs import CoverPosition, CoverTilts
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, grid
 from processing.simulate.roadway.junctions import CARRIAGEWAY_COLUMNS, street_height, street_sides
 from processing.simulate.roadway.transverse import transverse_of
 from processing.simulate.street.layout import SideLayout
-from processing.simulate.street.section import Section
-from processing.simulate.things import Built, TrueFeature
+from processing.simulate.street.section import StreetSection
+from processing.simulate.things import SectionBuilder, TrueFeature
 
 _GAP_M, _JOINT_M = 0.004, 0.006
 _RIM_M = 0.02
 _LEAST_END_M = 0.05
 
 
-def add_transverse_gutters(section: Section, built: Built) -> None:
+def add_transverse_gutters(section: StreetSection, built: SectionBuilder) -> None:
     """Add the gutters across a section's side streets."""
     for side in section.plan.junctions:
         part = section.layout.sides[side]
@@ -35,7 +35,7 @@ def add_transverse_gutters(section: Section, built: Built) -> None:
             _add_gutter(section, built, _bed(section, part, beside))
 
 
-def _bed(section: Section, part: SideLayout, beside: tuple[float, float]) -> Bed:
+def _bed(section: StreetSection, part: SideLayout, beside: tuple[float, float]) -> Bed:
     """The opening that the side street's asphalt leaves, on its own nodes."""
     mouth, track = part.mouth, part.corners[0].track
     if mouth is None:
@@ -52,7 +52,7 @@ def _bed(section: Section, part: SideLayout, beside: tuple[float, float]) -> Bed
     return Bed(mouth.side, lines[0][0], lines[0][1], lines[1][1])
 
 
-def _add_gutter(section: Section, built: Built, bed: Bed) -> None:
+def _add_gutter(section: StreetSection, built: SectionBuilder, bed: Bed) -> None:
     random = section.chance("transverse gutter", bed.side)
     wide = bed.least_width_m
     deep, high = float(random.uniform(0.25, 0.5)), float(random.uniform(0.032, 0.06))
@@ -68,9 +68,9 @@ def _add_gutter(section: Section, built: Built, bed: Bed) -> None:
     count = int((arcs[-1] - 2 * _LEAST_END_M) / (long + _JOINT_M))
     start = (arcs[-1] - count * (long + _JOINT_M)) / 2
     first = start + np.arange(count) * (long + _JOINT_M)
-    places = [Place("grating", float(one), long, 0.0) for one in first]
-    lie = Lie(*(random.normal(0, one, count) for one in (0.0015, 0.002, 0.003)))
-    covers = lying(line, bed.outer - bed.inner, arcs, places, lie)
+    positions = [CoverPosition("grating", float(one), long, 0.0) for one in first]
+    lie = CoverTilts(*(random.normal(0, one, count) for one in (0.0015, 0.002, 0.003)))
+    covers = cover_placement(line, bed.outer - bed.inner, arcs, positions, lie)
     bar = float(random.uniform(0.005, 0.009))
     shape = grating_pieces(
         Grating(long, opening - 2 * _GAP_M, high, max(2 * bar, random.uniform(0.015, 0.035)), bar)
@@ -87,7 +87,7 @@ def _add_gutter(section: Section, built: Built, bed: Bed) -> None:
 
 
 def _add_ends(
-    built: Built, bed: Bed, channel: Channel, run: tuple[Floats, float], worn: Material
+    built: SectionBuilder, bed: Bed, channel: Channel, run: tuple[Floats, float], worn: Material
 ) -> None:
     """Concrete between the last gratings and the side street's curbs."""
     arcs, rest = run

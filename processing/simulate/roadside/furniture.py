@@ -7,11 +7,11 @@ from processing.simulate.border.boxes import add_boxes
 from processing.simulate.border.land import add_land
 from processing.simulate.border.lots import add_lots
 from processing.simulate.roadside.bollards import add_bollards
+from processing.simulate.roadside.free_positions import FreePositions
 from processing.simulate.roadside.hedges import add_hedges
 from processing.simulate.roadside.lights import add_lights
 from processing.simulate.roadside.mirrors import add_mirrors
 from processing.simulate.roadside.overhead_signs import add_overhead_signs
-from processing.simulate.roadside.places import Places
 from processing.simulate.roadside.poles import add_utility_poles
 from processing.simulate.roadside.signals import add_signals
 from processing.simulate.roadside.signs import add_signs
@@ -19,8 +19,8 @@ from processing.simulate.roadside.street_trees import add_street_trees
 from processing.simulate.roadside.weeds import add_weeds
 from processing.simulate.roadside.wires import add_wires
 from processing.simulate.roadway.box_lids import box_lids_of
-from processing.simulate.street.section import Section
-from processing.simulate.things import Built
+from processing.simulate.street.section import StreetSection
+from processing.simulate.things import SectionBuilder
 
 KINDS = (
     add_lots,
@@ -42,14 +42,14 @@ KINDS = (
 """In this order: what comes first chooses its places first."""
 
 
-def add_furniture(section: Section, built: Built) -> None:
+def add_furniture(section: StreetSection, built: SectionBuilder) -> None:
     """Add poles, wires, lights, signals, signs and plants of a section."""
-    places = Places(section)
+    positions = FreePositions(section)
     for lid in box_lids_of(section):
         half = lid.long_m / 2, lid.wide_m / 2
-        places.block(
+        positions.block(
             (lid.chainage_m - half[0], lid.chainage_m + half[0]),
             (lid.offset_m - half[1], lid.offset_m + half[1]),
         )
     for add in KINDS:
-        add(places, built)
+        add(positions, built)

@@ -11,13 +11,13 @@ from numpy.random import Generator
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, grid
-from processing.simulate.roadside.crowns import scattered_leaves
-from processing.simulate.roadside.places import Places
+from processing.simulate.roadside.crowns import scatter_leaves
+from processing.simulate.roadside.free_positions import FreePositions
 from processing.simulate.street.dropped_curbs import drops_of
 from processing.simulate.street.plan import SIDES
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.styles import URBAN
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 SHRUB = 4
 _STEP_M = 0.22
@@ -41,9 +41,9 @@ class _Hedge:
     high_m: float
 
 
-def add_hedges(places: Places, built: Built) -> None:
+def add_hedges(positions: FreePositions, built: SectionBuilder) -> None:
     """Add the hedges of this section."""
-    section = places.section
+    section = positions.section
     for side in SIDES:
         if side in section.plan.junctions:
             continue
@@ -60,7 +60,7 @@ def add_hedges(places: Places, built: Built) -> None:
             _add_hedge(section, built, _Hedge(start, end, 0.0, wide, high), random)
 
 
-def _beside(section: Section, random: Generator, side: int) -> Iterator[_Hedge]:
+def _beside(section: StreetSection, random: Generator, side: int) -> Iterator[_Hedge]:
     plan = section.plan.side(side)
     strip, verge = plan.band("strip"), plan.band("verge")
     planted = chance(section.seed, "planted", side).random()
@@ -77,7 +77,7 @@ def _beside(section: Section, random: Generator, side: int) -> Iterator[_Hedge]:
     yield from _pieces(section, random, _Hedge(0, 0, side * middle, wide, high))
 
 
-def _pieces(section: Section, random: Generator, like: _Hedge) -> Iterator[_Hedge]:
+def _pieces(section: StreetSection, random: Generator, like: _Hedge) -> Iterator[_Hedge]:
     """Hedges of 1.5 to 14 m with gaps, over a part of the section."""
     at = section.plan.start_m + _END_GAP_M + float(random.exponential(3.0))
     end = section.plan.end_m - _END_GAP_M
@@ -94,7 +94,9 @@ def _pieces(section: Section, random: Generator, like: _Hedge) -> Iterator[_Hedg
         at += long + float(random.exponential(1.5)) + 0.3
 
 
-def _add_hedge(section: Section, built: Built, hedge: _Hedge, random: Generator) -> None:
+def _add_hedge(
+    section: StreetSection, built: SectionBuilder, hedge: _Hedge, random: Generator
+) -> None:
     if hedge.wide_m < 0.2 or hedge.end_m - hedge.start_m < 0.8:
         return
     count = max(4, int((hedge.end_m - hedge.start_m) / _STEP_M) + 1)
@@ -109,21 +111,21 @@ def _add_hedge(section: Section, built: Built, hedge: _Hedge, random: Generator)
         hedge.high_m * swell[:, None] * _PROFILE[:, 1] + random.normal(0, rough, across.shape), 0.0
     )
     level[:, [0, -1]] = -0.03
-    rows = section.place(chainage, offset, level)
+    rows = section.position(chainage, offset, level)
     rows[[0, -1], :, :2] = rows[[0, -1], :, :2].mean(axis=1, keepdims=True)
     instance = built.thing("hedge")
     built.mesh.add(grid(rows), Material.LEAVES, SHRUB, instance)
     centres = _on(random, rows, int(min(_MOST_LEAVES, 60 * (hedge.end_m - hedge.start_m))))
-    leaves = scattered_leaves(random, centres, float(random.uniform(0.05, 0.1)))
+    leaves = scatter_leaves(random, centres, float(random.uniform(0.05, 0.1)))
     built.mesh.add(leaves, Material.LEAVES, SHRUB, instance)
 
 
 def _on(random: Generator, rows: Floats, count: int) -> Floats:
     """Chance places on a hedge's surface."""
     row = random.integers(0, rows.shape[0] - 1, count)
-    place = random.integers(0, rows.shape[1] - 1, count)
+    position = random.integers(0, rows.shape[1] - 1, count)
     one, other = random.random((count, 1)), random.random((count, 1))
-    low = rows[row, place] * (1 - one) + rows[row + 1, place] * one
-    high = rows[row, place + 1] * (1 - one) + rows[row + 1, place + 1] * one
-    places: Floats = low * (1 - other) + high * other + random.normal(0, 0.035, (count, 3))
-    return places
+    low = rows[row, position] * (1 - one) + rows[row + 1, position] * one
+    high = rows[row, position + 1] * (1 - one) + rows[row + 1, position + 1] * one
+    positions: Floats = low * (1 - other) + high * other + random.normal(0, 0.035, (count, 3))
+    return positions

@@ -12,8 +12,8 @@ from numpy.random import Generator
 
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats, Shape, box, placed
-from processing.simulate.roadside.places import Places, Spot
+from processing.simulate.mesh import Floats, TriangleShape, box, place_shape
+from processing.simulate.roadside.free_positions import FreePosition, FreePositions
 from processing.simulate.roadside.pole_line import axis, pole_line
 from processing.simulate.roadside.poles import (
     FITTING_PIECE,
@@ -23,13 +23,13 @@ from processing.simulate.roadside.poles import (
     pole_truth,
 )
 from processing.simulate.roadside.posts import Post
-from processing.simulate.roadside.rods import joined, rod, rods
+from processing.simulate.roadside.rods import join_shapes, rod, rods
 from processing.simulate.roadside.sign_choice import plates_of
 from processing.simulate.roadside.signs import against_traffic_rad, hang_plates
 from processing.simulate.street.plan import LEFT, RIGHT, SIDES
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.styles import HIGHWAY, RURAL
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 _SHARES = {"urban": 0.75, "rural": 0.25, "highway": 0.75}
 _BREAST_M = 1.2
@@ -50,7 +50,7 @@ class LampKind:
     is_led: bool
 
 
-def lamp_kind(section: Section) -> LampKind | None:
+def lamp_kind(section: StreetSection) -> LampKind | None:
     """The lamps of a street; None where it has none.
 
     Posts of 4.5 to 12 m after 道路照明施設設置基準: 10 and 12 m on wide roads, low ones over walks.
@@ -78,9 +78,9 @@ def lamp_kind(section: Section) -> LampKind | None:
     )
 
 
-def add_lights(places: Places, built: Built) -> None:
+def add_lights(positions: FreePositions, built: SectionBuilder) -> None:
     """Add lamp posts at their numbers along the chainage, and lamps on utility poles."""
-    section = places.section
+    section = positions.section
     kind = lamp_kind(section)
     if kind is not None:
         plan = section.plan
@@ -90,17 +90,21 @@ def add_lights(places: Places, built: Built) -> None:
             for number in range(first, int(plan.end_m / kind.pitch_m - shift) + 1):
                 random = section.chance("lamp", number * 2 + (side > 0))
                 at = (number + shift + float(random.normal(0, 0.04))) * kind.pitch_m
-                spot = places.beside(random, side, at, kind.foot_m / 2 + 0.12)
+                spot = positions.beside(random, side, at, kind.foot_m / 2 + 0.12)
                 if spot is not None:
-                    _add_lamp_post(places, built, kind, spot, random)
-    _add_on_poles(places, built)
+                    _add_lamp_post(positions, built, kind, spot, random)
+    _add_on_poles(positions, built)
 
 
 def _add_lamp_post(
-    places: Places, built: Built, kind: LampKind, spot: Spot, random: Generator
+    positions: FreePositions,
+    built: SectionBuilder,
+    kind: LampKind,
+    spot: FreePosition,
+    random: Generator,
 ) -> None:
-    section = places.section
-    foot = places.where(spot)
+    section = positions.section
+    foot = positions.where(spot)
     high = kind.high_m + float(random.normal(0, 0.05))
     lean = random.normal(0, 0.004 if random.random() < 0.93 else 0.025, 2)
     levels = np.array([-SUNK_M, 0.0, 0.25, 0.26, high * 0.5, high])
@@ -113,16 +117,16 @@ def _add_lamp_post(
     built.mesh.add(rods(path[None], radii, 16), material, POLE, instance, piece=SHAFT_PIECE)
     parts, end = _arm(section, kind, spot, path[-1])
     turn = section.heading(spot.chainage_m) - spot.side * np.pi / 2
-    parts.append(placed(_head(kind), end, turn))
+    parts.append(place_shape(_head(kind), end, turn))
     if random.random() < 0.6:
         hatch = box((-0.06, kind.foot_m * 0.35, 0.5), (0.06, kind.foot_m / 2 + 0.02, 0.85))
-        parts.append(placed(hatch, foot, turn))
-    built.mesh.add(joined(parts), material, POLE, instance, piece=FITTING_PIECE)
+        parts.append(place_shape(hatch, foot, turn))
+    built.mesh.add(join_shapes(parts), material, POLE, instance, piece=FITTING_PIECE)
     if random.random() < _SIGNED:
-        way = np.array([lean[0], lean[1], 1.0])
+        direction = np.array([lean[0], lean[1], 1.0])
         radius = (kind.foot_m + slope * _BREAST_M) / 2
-        post = Post(spot, foot, way / np.linalg.norm(way), radius, float(foot[2]))
-        looks = against_traffic_rad(places, spot) + float(random.normal(0, 0.1))
+        post = Post(spot, foot, direction / np.linalg.norm(direction), radius, float(foot[2]))
+        looks = against_traffic_rad(positions, spot) + float(random.normal(0, 0.1))
         plates = plates_of(random, section.plan.style)[:2]
         hang_plates(built, random, post, plates, (looks, float(random.uniform(2.0, 2.9))))
     pole_truth(
@@ -136,7 +140,9 @@ def _add_lamp_post(
     )
 
 
-def _arm(section: Section, kind: LampKind, spot: Spot, top: Floats) -> tuple[list[Shape], Floats]:
+def _arm(
+    section: StreetSection, kind: LampKind, spot: FreePosition, top: Floats
+) -> tuple[list[TriangleShape], Floats]:
     """The arm towards the road and its end."""
     if kind.reach_m == 0.0:
         return [], top
@@ -149,7 +155,7 @@ def _arm(section: Section, kind: LampKind, spot: Spot, top: Floats) -> tuple[lis
     return [rods(path[None], np.linspace(kind.top_m / 2, 0.028, 7), 10)], path[-1]
 
 
-def _head(kind: LampKind) -> Shape:
+def _head(kind: LampKind) -> TriangleShape:
     """Its own x axis points over the road."""
     if kind.is_led:
         return box((-0.1, -0.14, -0.05), (0.5, 0.14, 0.06))
@@ -159,9 +165,9 @@ def _head(kind: LampKind) -> Shape:
     return rods(path[None], np.array([0.05, 0.12, 0.16, 0.11, 0.03]), 10)
 
 
-def _add_on_poles(places: Places, built: Built) -> None:
+def _add_on_poles(positions: FreePositions, built: SectionBuilder) -> None:
     """Small lamps for the walk on every other utility pole (防犯灯)."""
-    section = places.section
+    section = positions.section
     share = float(chance(section.seed, "small lamps").uniform(0.1, 0.6))
     for pole in pole_line(section).poles:
         random = section.chance("small lamp", pole.number)
@@ -173,6 +179,6 @@ def _add_on_poles(places: Places, built: Built) -> None:
         end = start - pole.spot.side * left * float(random.uniform(0.5, 0.9)) + [0.0, 0.0, 0.15]
         instance = built.thing("lamp")
         turn = heading - pole.spot.side * np.pi / 2
-        head = placed(box((-0.05, -0.07, -0.05), (0.4, 0.07, 0.03)), end, turn)
-        parts = joined([rod(start, end, 0.017), head])
+        head = place_shape(box((-0.05, -0.07, -0.05), (0.4, 0.07, 0.03)), end, turn)
+        parts = join_shapes([rod(start, end, 0.017), head])
         built.mesh.add(parts, Material.PAINTED_METAL, POLE, instance)

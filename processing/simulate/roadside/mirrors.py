@@ -6,14 +6,14 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats, Shape, grid, placed
-from processing.simulate.roadside.places import Places
+from processing.simulate.mesh import Floats, TriangleShape, grid, place_shape
+from processing.simulate.roadside.free_positions import FreePositions
 from processing.simulate.roadside.posts import Post, add_post, post_at
-from processing.simulate.roadside.rods import joined, rod, tilted
+from processing.simulate.roadside.rods import join_shapes, rod, tilt_shape
 from processing.simulate.roadside.signals import has_signals
 from processing.simulate.street.plan import SIDES
 from processing.simulate.street.styles import HIGHWAY, RURAL
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 OTHER = 1
 # Diameters, posts and heights after 道路反射鏡設置指針: 600, 800 and 1000 mm; lower edge 1.8 m up
@@ -24,9 +24,9 @@ _ON_BENDS_PER_M = 1 / 160
 _BENT_PER_M = 1 / 250
 
 
-def add_mirrors(places: Places, built: Built) -> None:
+def add_mirrors(positions: FreePositions, built: SectionBuilder) -> None:
     """Add the mirrors of this section."""
-    plan, section = places.section.plan, places.section
+    plan, section = positions.section.plan, positions.section
     if plan.style is HIGHWAY:
         return
     random = section.chance("mirrors")
@@ -35,7 +35,7 @@ def add_mirrors(places: Places, built: Built) -> None:
         if is_opposite and not has_signals(section.seed, plan) and random.random() < 0.7:
             at = (plan.start_m + plan.end_m) / 2 + float(random.uniform(-3, 3))
             looks = section.heading(at) - side * np.pi / 2
-            _add_mirror(places, built, random, (side, at, looks))
+            _add_mirror(positions, built, random, (side, at, looks))
     middle = (plan.start_m + plan.end_m) / 2
     is_bent = abs(np.interp(middle, section.alignment.chainages, section.alignment.curvatures))
     rate = _ON_BENDS_PER_M if is_bent > _BENT_PER_M else _ON_BENDS_PER_M / 6
@@ -43,14 +43,17 @@ def add_mirrors(places: Places, built: Built) -> None:
         side = SIDES[int(random.integers(2))]
         at = float(random.uniform(plan.start_m, plan.end_m))
         looks = section.heading(at) + (np.pi if random.random() < 0.5 else 0.0)
-        _add_mirror(places, built, random, (side, at, looks))
+        _add_mirror(positions, built, random, (side, at, looks))
 
 
 def _add_mirror(
-    places: Places, built: Built, random: Generator, wish: tuple[int, float, float]
+    positions: FreePositions,
+    built: SectionBuilder,
+    random: Generator,
+    options: tuple[int, float, float],
 ) -> None:
-    side, at, looks_rad = wish
-    post = post_at(places, random, (side, at), float(random.choice(_POSTS_M)))
+    side, at, looks_rad = options
+    post = post_at(positions, random, (side, at), float(random.choice(_POSTS_M)))
     if post is None:
         return
     diameter = float(random.choice(_DIAMETERS_M))
@@ -68,7 +71,11 @@ def _add_mirror(
 
 
 def _add_glass(
-    built: Built, post: Post, diameter: float, hung: tuple[float, float, float], random: Generator
+    built: SectionBuilder,
+    post: Post,
+    diameter: float,
+    hung: tuple[float, float, float],
+    random: Generator,
 ) -> None:
     level, aside, turn = hung
     instance = built.thing("mirror")
@@ -78,15 +85,15 @@ def _add_glass(
     tilt = float(np.deg2rad(random.uniform(2, 9)))
     cap, shell = _cap(diameter / 2, 0.0), _cap(diameter / 2 + 0.015, -0.03)
     built.mesh.add(
-        placed(tilted(cap, -tilt), where, turn), Material.MIRROR, OTHER, instance, piece=1
+        place_shape(tilt_shape(cap, -tilt), where, turn), Material.MIRROR, OTHER, instance, piece=1
     )
-    back = joined([tilted(shell, -tilt), tilted(_hood(diameter / 2), -tilt)])
-    built.mesh.add(placed(back, where, turn), Material.PLASTIC, OTHER, instance, piece=2)
+    back = join_shapes([tilt_shape(shell, -tilt), tilt_shape(_hood(diameter / 2), -tilt)])
+    built.mesh.add(place_shape(back, where, turn), Material.PLASTIC, OTHER, instance, piece=2)
     arm = rod(post.at(level), where - look * 0.05, 0.02, 6)
     built.mesh.add(arm, Material.STEEL, OTHER, instance)
 
 
-def _cap(radius: float, back_m: float) -> Shape:
+def _cap(radius: float, back_m: float) -> TriangleShape:
     """A spherical cap that bulges along x."""
     away = np.array([0.02, 0.35, 0.7, 1.0]) * radius
     angles = np.linspace(0, 2 * np.pi, 21)
@@ -102,7 +109,7 @@ def _cap(radius: float, back_m: float) -> Shape:
     return grid(rows)
 
 
-def _hood(radius: float) -> Shape:
+def _hood(radius: float) -> TriangleShape:
     angles = np.deg2rad(np.linspace(25, 155, 13))
     rim: Floats = (radius + 0.03) * np.column_stack([np.cos(angles), np.sin(angles)])
     rows = np.stack([np.column_stack([np.full(13, x), rim]) for x in (-0.03, 0.1)])

@@ -6,7 +6,7 @@ from functools import lru_cache
 
 from processing.simulate.street.alignment import MARGIN_M, Alignment
 from processing.simulate.street.plan import SectionPlan, plans_of
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.styles import Style
 
 
@@ -15,7 +15,7 @@ def driven_m(alignment: Alignment) -> float:
     return float(alignment.chainages[-1]) - MARGIN_M
 
 
-def neighbour(section: Section, step: int) -> SectionPlan | None:
+def neighbour(section: StreetSection, step: int) -> SectionPlan | None:
     """The plan ``step`` sections further on, None beyond the street's ends."""
     plan = section.plan
     return plans(section.seed, plan.style, driven_m(section.alignment)).get(plan.index + step)

@@ -14,12 +14,12 @@ import numpy as np
 
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats
+from processing.simulate.roadside.free_positions import FreePosition, free_from_m, free_to_m
 from processing.simulate.roadside.neighbours import driven_m, plans
-from processing.simulate.roadside.places import Spot, free_from_m, free_to_m
 from processing.simulate.street.alignment import Alignment
 from processing.simulate.street.dropped_curbs import drops_of
 from processing.simulate.street.plan import LEFT, RIGHT, SectionPlan
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.styles import HIGHWAY, URBAN, Style
 
 # Prestressed concrete poles (JIS A 5373): 1/75 taper, ends of 14 to 22 cm.
@@ -54,7 +54,7 @@ class LinePole:
 
     number: int
     section: int
-    spot: Spot
+    spot: FreePosition
     high_m: float
     top_diameter_m: float
     lean: tuple[float, float]
@@ -75,7 +75,7 @@ class PoleLine:
     cables: Floats
 
 
-def pole_line(section: Section) -> PoleLine:
+def pole_line(section: StreetSection) -> PoleLine:
     """The poles of the street that a section belongs to."""
     return _pole_line(section.seed, section.plan.style, driven_m(section.alignment))
 
@@ -88,15 +88,15 @@ def axis(alignment: Alignment, pole: LinePole, above_m: Floats) -> Floats:
     heading = float(alignment.heading(spot.chainage_m))
     along, aside = pole.lean
     foot = alignment.at(spot.chainage_m, spot.offset_m, edge)
-    way = np.array(
+    direction = np.array(
         [
             along * np.cos(heading) - aside * np.sin(heading),
             along * np.sin(heading) + aside * np.cos(heading),
             1.0,
         ]
     )
-    places: Floats = foot + up[:, None] * way
-    return places
+    positions: Floats = foot + up[:, None] * direction
+    return positions
 
 
 def cable_ends(alignment: Alignment, pole: LinePole, line: PoleLine) -> Floats:
@@ -150,26 +150,26 @@ class _Wish:
     near_m: float
 
 
-def _pole(seed: int, number: int, plan: SectionPlan, wish: _Wish) -> LinePole | None:
+def _pole(seed: int, number: int, plan: SectionPlan, options: _Wish) -> LinePole | None:
     random = chance(seed, "utility pole", number)
-    side = plan.side(wish.side)
-    at = float(np.clip(wish.chainage_m, plan.start_m + _END_GAP_M, plan.end_m - _END_GAP_M))
-    high = wish.high_m + float(random.normal(0, 0.35))
+    side = plan.side(options.side)
+    at = float(np.clip(options.chainage_m, plan.start_m + _END_GAP_M, plan.end_m - _END_GAP_M))
+    high = options.high_m + float(random.normal(0, 0.35))
     top = float(random.choice([0.14, 0.17, 0.19, 0.19, 0.22]))
     radius = (top + high * TAPER) / 2 + 0.05
-    near, far = wish.near_m + _KERB_GAP_M + radius, free_to_m(side) - radius
+    near, far = options.near_m + _KERB_GAP_M + radius, free_to_m(side) - radius
     verge = side.band("verge")
     if verge is not None:
         far = max(near, min(far, verge.outer_m - radius))
-    for drop in drops_of(seed, plan, wish.side):
+    for drop in drops_of(seed, plan, options.side):
         if drop.from_m - radius < at < drop.to_m + radius:
             is_early = at - drop.from_m < drop.to_m - at
             at = drop.from_m - radius - 0.1 if is_early else drop.to_m + radius + 0.1
     walk = side.band("walk")
     away = near + float(random.uniform(0.0, 0.25))
-    if walk is not None and random.random() < wish.walk_share * 0.8:
+    if walk is not None and random.random() < options.walk_share * 0.8:
         away = walk.outer_m + float(random.uniform(-radius, 0.3))
-    if wish.side in plan.junctions or near > far:
+    if options.side in plan.junctions or near > far:
         return None
     away = float(np.clip(away, near, far))
     wide = 0.004 if random.random() < 0.85 else 0.025
@@ -177,7 +177,7 @@ def _pole(seed: int, number: int, plan: SectionPlan, wish: _Wish) -> LinePole | 
     return LinePole(
         number,
         plan.index,
-        Spot(at, wish.side * away),
+        FreePosition(at, options.side * away),
         high,
         top,
         (float(along), float(aside)),

@@ -9,48 +9,50 @@ from numpy.random import Generator
 
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats
-from processing.simulate.roadside.places import Places, Spot
+from processing.simulate.roadside.free_positions import FreePosition, FreePositions
 from processing.simulate.roadside.poles import POLE, SHAFT_PIECE, SUNK_M, pole_truth
 from processing.simulate.roadside.rods import rods
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 
 @dataclass(frozen=True)
 class Post:
     """A post as it stands: foot, way of its axis (unit), radius, and where it belongs."""
 
-    spot: Spot
+    spot: FreePosition
     foot: Floats
-    way: Floats
+    direction: Floats
     radius_m: float
     ground_m: float
 
     def at(self, above_m: float) -> Floats:
         """A place on its axis, by the height above the foot."""
-        return np.asarray(self.foot + self.way * (above_m / self.way[2]), np.float64)
+        return np.asarray(self.foot + self.direction * (above_m / self.direction[2]), np.float64)
 
 
 def post_at(
-    places: Places, random: Generator, wish: tuple[int, float], diameter_m: float
+    positions: FreePositions, random: Generator, options: tuple[int, float], diameter_m: float
 ) -> Post | None:
-    """A place for a post on a side at a chainage (``wish``); None where there is none."""
-    side, at = wish
-    spot = places.beside(random, side, at, diameter_m / 2 + 0.12)
+    """A place for a post on a side at a chainage (``options``); None where there is none."""
+    side, at = options
+    spot = positions.beside(random, side, at, diameter_m / 2 + 0.12)
     if spot is None:
         return None
-    return post_on(places, random, spot, diameter_m)
+    return post_on(positions, random, spot, diameter_m)
 
 
-def post_on(places: Places, random: Generator, spot: Spot, diameter_m: float) -> Post:
+def post_on(
+    positions: FreePositions, random: Generator, spot: FreePosition, diameter_m: float
+) -> Post:
     """A post on a place that was taken for it: upright, or as cars left it."""
-    foot = places.where(spot)
+    foot = positions.where(spot)
     lean = random.normal(0, 0.006 if random.random() < 0.9 else 0.05, 2)
-    way = np.array([lean[0], lean[1], 1.0])
-    return Post(spot, foot, way / np.linalg.norm(way), diameter_m / 2, float(foot[2]))
+    direction = np.array([lean[0], lean[1], 1.0])
+    return Post(spot, foot, direction / np.linalg.norm(direction), diameter_m / 2, float(foot[2]))
 
 
 def add_post(
-    built: Built,
+    built: SectionBuilder,
     post: Post,
     high_m: float,
     kind: str,

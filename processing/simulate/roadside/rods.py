@@ -6,10 +6,12 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from processing.simulate.mesh import Floats, Shape
+from processing.simulate.mesh import Floats, TriangleShape
 
 
-def rods(paths: Floats, radii: Floats | float, sides: int, *, is_closed: bool = True) -> Shape:
+def rods(
+    paths: Floats, radii: Floats | float, sides: int, *, is_closed: bool = True
+) -> TriangleShape:
     """Round bodies along paths of equally many places.
 
     Parameters
@@ -30,14 +32,16 @@ def rods(paths: Floats, radii: Floats | float, sides: int, *, is_closed: bool = 
     count, length = paths.shape[:2]
     wide = np.broadcast_to(np.asarray(radii, np.float64), (count, length))
     wide = wide * (np.pi / sides) / np.sin(np.pi / sides)
-    ways = np.gradient(paths, axis=1) if length > 2 else np.repeat(np.diff(paths, axis=1), 2, 1)
-    ways = ways / np.maximum(np.linalg.norm(ways, axis=2, keepdims=True), 1e-12)
+    directions = (
+        np.gradient(paths, axis=1) if length > 2 else np.repeat(np.diff(paths, axis=1), 2, 1)
+    )
+    directions = directions / np.maximum(np.linalg.norm(directions, axis=2, keepdims=True), 1e-12)
     whole = paths[:, -1] - paths[:, 0]
     is_steep = np.abs(whole[:, 2]) > 0.7 * np.linalg.norm(whole, axis=1)
     aside = np.where(is_steep[:, None], [[1.0, 0.0, 0.0]], [[0.0, 0.0, 1.0]])[:, None]
-    first = np.cross(ways, aside)
+    first = np.cross(directions, aside)
     first /= np.maximum(np.linalg.norm(first, axis=2, keepdims=True), 1e-12)
-    second = np.cross(ways, first)
+    second = np.cross(directions, first)
     angles = np.arange(sides) * (2 * np.pi / sides)
     around = (
         np.cos(angles)[:, None] * first[:, :, None] + np.sin(angles)[:, None] * second[:, :, None]
@@ -60,12 +64,12 @@ def rods(paths: Floats, radii: Floats | float, sides: int, *, is_closed: bool = 
     return rings.reshape(-1, 3), all_faces.reshape(-1, 3)
 
 
-def rod(start: Floats, end: Floats, radius_m: float, sides: int = 6) -> Shape:
+def rod(start: Floats, end: Floats, radius_m: float, sides: int = 6) -> TriangleShape:
     """One straight rod between two places, (3,) each."""
     return rods(np.stack([start, end])[None], radius_m, sides)
 
 
-def joined(shapes: Iterable[Shape]) -> Shape:
+def join_shapes(shapes: Iterable[TriangleShape]) -> TriangleShape:
     """Several shapes as one, in their order."""
     parts = list(shapes)
     starts = np.cumsum([0, *(len(one[0]) for one in parts)])
@@ -75,7 +79,7 @@ def joined(shapes: Iterable[Shape]) -> Shape:
     )
 
 
-def tilted(shape: Shape, angle_rad: float) -> Shape:
+def tilt_shape(shape: TriangleShape, angle_rad: float) -> TriangleShape:
     """A shape turned about its y axis: what looks along x looks up by the angle."""
     cosine, sine = np.cos(angle_rad), np.sin(angle_rad)
     turn = np.array([[cosine, 0.0, sine], [0.0, 1.0, 0.0], [-sine, 0.0, cosine]])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from numpy.random import Generator
 
-from processing.simulate.roadside.sign_plates import Plate, PlateShape
+from processing.simulate.roadside.sign_plates import PlateShape, SignPlate
 from processing.simulate.street.styles import HIGHWAY, Style
 
 # Sides and diameters of the Order on Road Signs (標識令, 別表第二): regulatory plates of 60 cm,
@@ -28,12 +28,12 @@ _SHARES: dict[PlateShape, float] = {
 }  # fmt: skip
 
 
-def plates_of(random: Generator, style: Style) -> list[Plate]:
+def plates_of(random: Generator, style: Style) -> list[SignPlate]:
     """One to four plates for one post, the highest first."""
     names = list(_SHARES)
     shares = list(_SHARES.values())
     count = int(random.choice([1, 2, 3], p=[0.72, 0.22, 0.06]))
-    plates: list[Plate] = []
+    plates: list[SignPlate] = []
     for _ in range(count):
         shape = names[int(random.choice(len(names), p=shares))]
         plates.append(plate_of(random, shape, style))
@@ -42,19 +42,19 @@ def plates_of(random: Generator, style: Style) -> list[Plate]:
     return plates
 
 
-def plate_of(random: Generator, shape: PlateShape, style: Style) -> Plate:
+def plate_of(random: Generator, shape: PlateShape, style: Style) -> SignPlate:
     """A plate of a shape in one of its sizes."""
     if shape == "rectangle":
         wide = float(random.choice([0.4, 0.5, 0.6, 0.9, 1.2]))
         high = wide * float(random.choice([0.4, 0.5, 0.7] if wide > 0.6 else [0.4, 0.5, 0.7, 1.5]))
-        return Plate("rectangle", wide, high)
+        return SignPlate("rectangle", wide, high)
     sizes = _WIDE_CIRCLES_M if style is HIGHWAY and shape == "circle" else _SIZES[shape]
     shares = [one[1] for one in sizes]
-    return Plate(shape, sizes[int(random.choice(len(sizes), p=shares))][0])
+    return SignPlate(shape, sizes[int(random.choice(len(sizes), p=shares))][0])
 
 
-def supplement_of(random: Generator, above: Plate) -> Plate:
+def supplement_of(random: Generator, above: SignPlate) -> SignPlate:
     """The small plate below a sign (補助標識)."""
     wide = 0.4 if above.size_m < 0.7 else 0.6
     high = float(random.choice([0.1, 0.15, 0.2, 0.2, 0.3])) * wide / 0.4
-    return Plate("rectangle", wide, high, is_supplementary=True)
+    return SignPlate("rectangle", wide, high, is_supplementary=True)

@@ -11,8 +11,8 @@ from typing import Literal
 import numpy as np
 
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats, Shape
-from processing.simulate.things import Built, TrueFeature
+from processing.simulate.mesh import Floats, TriangleShape
+from processing.simulate.things import SectionBuilder, TrueFeature
 
 SIGN = 65
 FRONT_PIECE, BACK_PIECE = 1, 2
@@ -25,7 +25,7 @@ _CORNER_SHARE = {"triangle": 0.03, "square": 0.05, "diamond": 0.06, "pentagon": 
 
 
 @dataclass(frozen=True)
-class Plate:
+class SignPlate:
     """A plate as it hangs.
 
     Attributes
@@ -47,7 +47,7 @@ class Plate:
 
 
 @dataclass(frozen=True)
-class Hung:
+class PlateMounting:
     """Where and how a plate hangs.
 
     Attributes
@@ -72,7 +72,7 @@ class Hung:
     ground_m: float = 0.0
 
 
-def outline(plate: Plate) -> Floats:
+def outline(plate: SignPlate) -> Floats:
     """Its corners, (n, 2) float64, m: to the right and up as one looks at it, anticlockwise.
 
     Proportions after the Order on Road Signs (標識令, 別表第二) and templates of the literature:
@@ -101,7 +101,7 @@ def outline(plate: Plate) -> Floats:
 
 def _rounded(corners: Floats, radius: float) -> Floats:
     before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
-    places = []
+    positions = []
     for one, previous, following in zip(corners, before, after, strict=True):
         back = (previous - one) / np.linalg.norm(previous - one)
         ahead = (following - one) / np.linalg.norm(following - one)
@@ -112,11 +112,11 @@ def _rounded(corners: Floats, radius: float) -> Floats:
         end = one + ahead * radius / np.tan(half) - centre
         turn = np.arctan2(start[0] * end[1] - start[1] * end[0], start @ end)
         angles = np.arctan2(start[1], start[0]) + np.linspace(0, turn, _ARC)
-        places.append(centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]))
-    return np.concatenate(places)
+        positions.append(centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]))
+    return np.concatenate(positions)
 
 
-def axes_of(hung: Hung) -> tuple[Floats, Floats, Floats]:
+def axes_of(hung: PlateMounting) -> tuple[Floats, Floats, Floats]:
     """Unit vectors of a plate: to its right as one looks at it, up, and where it looks."""
     cosine, sine = np.cos(hung.facing_rad), np.sin(hung.facing_rad)
     flat = np.cos(hung.tilt_rad)
@@ -127,18 +127,20 @@ def axes_of(hung: Hung) -> tuple[Floats, Floats, Floats]:
     return c * right + s * up, c * up - s * right, look
 
 
-def face(corners: Floats, hung: Hung, behind_m: float) -> Shape:
+def face(corners: Floats, hung: PlateMounting, behind_m: float) -> TriangleShape:
     """One sheet of a plate: a fan about its middle, looking where the plate looks."""
     right, up, look = axes_of(hung)
     flat = np.concatenate([corners.mean(axis=0)[None], corners])
     deep = -hung.bend * flat[:, 0] ** 2 - behind_m
-    places = hung.middle + flat[:, :1] * right + flat[:, 1:] * up + deep[:, None] * look
+    positions = hung.middle + flat[:, :1] * right + flat[:, 1:] * up + deep[:, None] * look
     rim = np.arange(len(corners))
     following = (rim + 1) % len(corners)
-    return places, np.column_stack([np.zeros_like(rim), rim + 1, following + 1])
+    return positions, np.column_stack([np.zeros_like(rim), rim + 1, following + 1])
 
 
-def add_plate(built: Built, plate: Plate, hung: Hung, chainage_m: float) -> int:
+def add_plate(
+    built: SectionBuilder, plate: SignPlate, hung: PlateMounting, chainage_m: float
+) -> int:
     """Add a plate and its truth; its instance."""
     corners = outline(plate)
     front, back = face(corners, hung, 0.0), face(corners, hung, THICK_M)
@@ -184,7 +186,7 @@ def add_plate(built: Built, plate: Plate, hung: Hung, chainage_m: float) -> int:
     return instance
 
 
-def centre_and_normal(shape: Shape) -> tuple[Floats, Floats]:
+def centre_and_normal(shape: TriangleShape) -> tuple[Floats, Floats]:
     """Centroid of the area of some triangles, and their mean unit normal: (3,) each."""
     corners = shape[0][shape[1]]
     areas = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

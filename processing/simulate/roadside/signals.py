@@ -7,16 +7,16 @@ from numpy.random import Generator
 
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats, Shape, box, placed
+from processing.simulate.mesh import Floats, TriangleShape, box, place_shape
+from processing.simulate.roadside.free_positions import FreePositions
 from processing.simulate.roadside.neighbours import neighbour
-from processing.simulate.roadside.places import Places
 from processing.simulate.roadside.poles import POLE
 from processing.simulate.roadside.posts import Post, add_post, post_at
-from processing.simulate.roadside.rods import joined, rods
-from processing.simulate.roadside.sign_plates import Hung, Plate, add_plate
+from processing.simulate.roadside.rods import join_shapes, rods
+from processing.simulate.roadside.sign_plates import PlateMounting, SignPlate, add_plate
 from processing.simulate.street.plan import LEFT, RIGHT, SectionPlan
 from processing.simulate.street.styles import RURAL
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 OTHER = 1
 _LAMPS = 3
@@ -33,36 +33,36 @@ def has_signals(seed: int, plan: SectionPlan) -> bool:
     return bool(plan.junctions) and bool(chance(seed, "signals", plan.index).random() < share)
 
 
-def add_signals(places: Places, built: Built) -> None:
+def add_signals(positions: FreePositions, built: SectionBuilder) -> None:
     """Add the lights of junctions next door that stand in this section.
 
     Drivers look at the light on the far left corner: those ahead see it behind a junction on the
     left, those who come towards them before it on the right.
     """
-    section = places.section
+    section = positions.section
     plan = section.plan
     for step, side, at in ((-1, LEFT, plan.start_m + 1.0), (1, RIGHT, plan.end_m - 1.0)):
         junction = neighbour(section, step)
         if junction is None or not has_signals(section.seed, junction):
             continue
         random = section.chance("signal", step)
-        post = post_at(places, random, (side, at), float(random.uniform(0.14, 0.22)))
+        post = post_at(positions, random, (side, at), float(random.uniform(0.14, 0.22)))
         if post is None:
             continue
         heading = section.heading(at)
         looks = heading + np.pi if side == LEFT else heading
-        _add_signal(places, built, random, post, looks)
+        _add_signal(positions, built, random, post, looks)
 
 
 def _add_signal(
-    places: Places, built: Built, random: Generator, post: Post, looks_rad: float
+    positions: FreePositions, built: SectionBuilder, random: Generator, post: Post, looks_rad: float
 ) -> None:
     edge = float(
-        places.section.alignment.carriageway_height(post.spot.chainage_m, post.spot.offset_m)
+        positions.section.alignment.carriageway_height(post.spot.chainage_m, post.spot.offset_m)
     )
     level = _LOWEST_M + 0.3 + float(random.uniform(0.0, 0.6)) + edge - post.ground_m
     pole = add_post(built, post, level + float(random.uniform(0.3, 0.9)), "signal_pole")
-    heading = places.section.heading(post.spot.chainage_m)
+    heading = positions.section.heading(post.spot.chainage_m)
     towards = -post.spot.side * np.array([-np.sin(heading), np.cos(heading), 0.0])
     reach = float(random.uniform(1.6, 4.2))
     start = post.at(level)
@@ -73,19 +73,19 @@ def _add_signal(
     body, lenses = _three_lamps(random)
     where = start + towards * reach + look * 0.16
     instance = built.thing("signal")
-    built.mesh.add(placed(body, where, looks_rad), Material.PAINTED_METAL, OTHER, instance)
-    built.mesh.add(placed(lenses, where, looks_rad), Material.GLASS, OTHER, instance)
+    built.mesh.add(place_shape(body, where, looks_rad), Material.PAINTED_METAL, OTHER, instance)
+    built.mesh.add(place_shape(lenses, where, looks_rad), Material.GLASS, OTHER, instance)
     if random.random() < 0.3:
         most = 2 * ((1 - _NAME_AT) * reach - _HALF_HOUSING_M)
-        plate = Plate("rectangle", min(float(random.uniform(0.9, 1.5)), most), 0.35)
+        plate = SignPlate("rectangle", min(float(random.uniform(0.9, 1.5)), most), 0.35)
         middle = start + towards * (reach * _NAME_AT) + look * 0.07 - [0.0, 0.0, 0.3]
-        where_hung = Hung(middle, looks_rad, ground_m=post.ground_m)
+        where_hung = PlateMounting(middle, looks_rad, ground_m=post.ground_m)
         add_plate(built, plate, where_hung, post.spot.chainage_m)
     if random.random() < 0.7:
         _add_walkers_light(built, random, post, towards)
 
 
-def _three_lamps(random: Generator) -> tuple[Shape, Shape]:
+def _three_lamps(random: Generator) -> tuple[TriangleShape, TriangleShape]:
     """Housing and lamps; x looks at the drivers."""
     lamp = float(random.choice([0.125, 0.15, 0.15]))
     is_flat = random.random() < 0.5
@@ -99,23 +99,25 @@ def _three_lamps(random: Generator) -> tuple[Shape, Shape]:
         if not is_flat or random.random() < 0.2:
             path = np.array([[0.0, y, 0.0], [0.22, y, -0.03]])
             parts.append(rods(path[None], lamp + 0.01, 12, is_closed=False))
-    return joined(parts), joined(lenses)
+    return join_shapes(parts), join_shapes(lenses)
 
 
-def _disc(middle: Floats, radius: float) -> Shape:
+def _disc(middle: Floats, radius: float) -> TriangleShape:
     angles = np.arange(16) * (2 * np.pi / 16)
     rim = middle + radius * np.column_stack([np.zeros(16), np.cos(angles), np.sin(angles)])
     fan = np.arange(1, 15)
     return rim, np.column_stack([np.zeros_like(fan), fan, fan + 1])
 
 
-def _add_walkers_light(built: Built, random: Generator, post: Post, towards: Floats) -> None:
+def _add_walkers_light(
+    built: SectionBuilder, random: Generator, post: Post, towards: Floats
+) -> None:
     turn = float(np.arctan2(towards[1], towards[0]))
     high = float(random.uniform(2.6, 3.0))
     where = post.at(high) + towards * (post.radius_m + 0.02)
     body = box((0.0, -0.21, 0.0), (0.17, 0.21, 0.85))
     instance = built.thing("signal")
-    built.mesh.add(placed(body, where, turn), Material.PAINTED_METAL, OTHER, instance)
-    lenses = [placed(box((0.172, -0.14, z), (0.178, 0.14, z + 0.28)), where, turn)
+    built.mesh.add(place_shape(body, where, turn), Material.PAINTED_METAL, OTHER, instance)
+    lenses = [place_shape(box((0.172, -0.14, z), (0.178, 0.14, z + 0.28)), where, turn)
               for z in (0.08, 0.48)]  # fmt: skip
-    built.mesh.add(joined(lenses), Material.GLASS, OTHER, instance)
+    built.mesh.add(join_shapes(lenses), Material.GLASS, OTHER, instance)

@@ -6,25 +6,25 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.simulate.materials import Material
+from processing.simulate.roadside.free_positions import FreePosition, FreePositions
 from processing.simulate.roadside.neighbours import neighbour
-from processing.simulate.roadside.places import Places, Spot
 from processing.simulate.roadside.pole_line import TAPER, axis, pole_line
 from processing.simulate.roadside.posts import Post, add_post, post_on
-from processing.simulate.roadside.rods import joined, rod
+from processing.simulate.roadside.rods import join_shapes, rod
 from processing.simulate.roadside.sign_choice import plate_of, plates_of
 from processing.simulate.roadside.sign_plates import (
     SIGN,
     THICK_M,
-    Hung,
-    Plate,
+    PlateMounting,
     PlateShape,
+    SignPlate,
     add_plate,
     axes_of,
     outline,
 )
 from processing.simulate.roadside.signals import has_signals
 from processing.simulate.street.plan import LEFT, RIGHT, SIDES
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 # Posts of signs: steel pipes of 60.5, 76.3 and 89.1 mm (道路標識ハンドブック); the lower edge of a
 # plate is 1.8 m up, 2.5 m over walks (道路標識設置基準 2-2).
@@ -34,28 +34,28 @@ _BRACKET_M = 0.025
 _PER_M = {"urban": 1 / 26, "rural": 1 / 60, "highway": 1 / 90}
 
 
-def add_signs(places: Places, built: Built) -> None:
+def add_signs(positions: FreePositions, built: SectionBuilder) -> None:
     """Add sign posts at chance places, the signs of junctions next door, and signs on poles."""
-    section = places.section
+    section = positions.section
     plan = section.plan
     for side in SIDES:
         random = section.chance("signs", side)
         for _ in range(int(random.poisson(plan.length_m * _PER_M[plan.style.id] / 2 * 1.6))):
             at = float(random.uniform(plan.start_m, plan.end_m))
-            _add_post(places, built, random, (side, at, plates_of(random, plan.style)))
-    _add_stop_signs(places, built)
-    _add_on_poles(places, built)
+            _add_post(positions, built, random, (side, at, plates_of(random, plan.style)))
+    _add_stop_signs(positions, built)
+    _add_on_poles(positions, built)
 
 
-def against_traffic_rad(places: Places, spot: Spot) -> float:
+def against_traffic_rad(positions: FreePositions, spot: FreePosition) -> float:
     """Where a sign looks: to those who drive on its side, anticlockwise from east."""
-    heading = places.section.heading(spot.chainage_m)
+    heading = positions.section.heading(spot.chainage_m)
     return heading + np.pi if spot.side == LEFT else heading
 
 
-def _add_stop_signs(places: Places, built: Built) -> None:
+def _add_stop_signs(positions: FreePositions, built: SectionBuilder) -> None:
     """Side streets stop: their signs stand at the far corner on the left of who comes out."""
-    section = places.section
+    section = positions.section
     random = section.chance("stop signs")
     for step, side in ((-1, LEFT), (1, RIGHT)):
         plan = neighbour(section, step)
@@ -66,48 +66,48 @@ def _add_stop_signs(places: Places, built: Built) -> None:
         at = section.plan.start_m + 0.7 if step < 0 else section.plan.end_m - 0.7
         stop = [plate_of(random, "triangle", section.plan.style)]
         outwards = section.heading(at) + side * np.pi / 2
-        _add_post(places, built, random, (side, at, stop), looks_rad=outwards)
+        _add_post(positions, built, random, (side, at, stop), looks_rad=outwards)
 
 
 def _add_post(
-    places: Places,
-    built: Built,
+    positions: FreePositions,
+    built: SectionBuilder,
     random: Generator,
-    wish: tuple[int, float, list[Plate]],
+    options: tuple[int, float, list[SignPlate]],
     *,
     looks_rad: float | None = None,
 ) -> None:
-    side, at, plates = wish
+    side, at, plates = options
     diameter = float(random.choice(POSTS_M))
     wide = max(one.size_m for one in plates)
-    spot = places.beside(random, side, at, max(0.12, min(wide / 2, 0.45)))
+    spot = positions.beside(random, side, at, max(0.12, min(wide / 2, 0.45)))
     if spot is None:
         return
-    post = post_on(places, random, spot, diameter)
-    looks = against_traffic_rad(places, spot) if looks_rad is None else looks_rad
+    post = post_on(positions, random, spot, diameter)
+    looks = against_traffic_rad(positions, spot) if looks_rad is None else looks_rad
     looks += side * float(np.deg2rad(random.uniform(-4, 14)))
-    over_walk = places.section.plan.side(side).walk_m > 0
+    over_walk = positions.section.plan.side(side).walk_m > 0
     lowest = LOWEST_OVER_WALK_M if over_walk and random.random() < 0.5 else LOWEST_M
     lowest += float(random.uniform(-0.1, 0.35))
     top = hang_plates(built, random, post, plates, (looks, lowest))
     if random.random() < 0.18:
-        other = plates_of(random, places.section.plan.style)[:2]
+        other = plates_of(random, positions.section.plan.style)[:2]
         top = max(top, hang_plates(built, random, post, other, (looks + np.pi, lowest)))
     add_post(built, post, top + float(random.uniform(-0.03, 0.12)), "sign_pole")
 
 
 def hang_plates(
-    built: Built,
+    built: SectionBuilder,
     random: Generator,
     post: Post,
-    plates: list[Plate],
-    wish: tuple[float, float],
+    plates: list[SignPlate],
+    options: tuple[float, float],
 ) -> float:
     """Hang plates on a post, the last one lowest.
 
     Parameters
     ----------
-    wish : (float, float)
+    options : (float, float)
         Where they look (anticlockwise from east), and the height of the lowest edge above the
         foot, m.
 
@@ -116,12 +116,12 @@ def hang_plates(
     float
         Height of the highest edge above the foot, m.
     """
-    looks_rad, edge = wish
+    looks_rad, edge = options
     for plate in plates[::-1]:
         corners = outline(plate)
         low, high = corners[:, 1].min(), corners[:, 1].max()
         is_hit = random.random() < 0.06
-        hung = Hung(
+        hung = PlateMounting(
             np.zeros(3),
             looks_rad + float(np.deg2rad(random.normal(0, 14 if is_hit else 1.5))),
             float(np.deg2rad(random.normal(0, 4 if is_hit else 0.8))),
@@ -136,20 +136,22 @@ def hang_plates(
         instance = add_plate(
             built,
             plate,
-            Hung(middle, hung.facing_rad, hung.tilt_rad, hung.roll_rad, hung.bend, post.ground_m),
+            PlateMounting(
+                middle, hung.facing_rad, hung.tilt_rad, hung.roll_rad, hung.bend, post.ground_m
+            ),
             post.spot.chainage_m,
         )
         holds = [post.at(edge - low + y) for y in (low * 0.4, high * 0.4)]
         reach = look * (away - THICK_M)
-        brackets = joined([rod(one, one + reach, 0.012) for one in holds])
+        brackets = join_shapes([rod(one, one + reach, 0.012) for one in holds])
         built.mesh.add(brackets, Material.STEEL, SIGN, instance)
         edge += float(high - low) + float(random.uniform(0.015, 0.06))
     return edge
 
 
-def _add_on_poles(places: Places, built: Built) -> None:
+def _add_on_poles(positions: FreePositions, built: SectionBuilder) -> None:
     """A few signs hang on utility poles."""
-    section = places.section
+    section = positions.section
     for pole in pole_line(section).poles:
         random = section.chance("sign on a pole", pole.number)
         if pole.section != section.plan.index or random.random() > 0.14:
@@ -164,5 +166,5 @@ def _add_on_poles(places: Places, built: Built) -> None:
         )
         shape: PlateShape = "circle" if random.random() < 0.6 else "rectangle"
         plates = [plate_of(random, shape, section.plan.style)]
-        looks = against_traffic_rad(places, pole.spot)
+        looks = against_traffic_rad(positions, pole.spot)
         hang_plates(built, random, post, plates, (looks, float(random.uniform(2.2, 3.0))))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.random import Generator
 
-from processing.simulate.mesh import Floats, Shape
-from processing.simulate.roadside.rods import joined, rod, rods
+from processing.simulate.mesh import Floats, TriangleShape
+from processing.simulate.roadside.rods import join_shapes, rod, rods
 from processing.simulate.roadside.trunks import Stem
 
 _SUNK_M = 0.3
@@ -15,7 +15,7 @@ _FRAME_ROOM_M, _TRIPOD_ROOM_M = 0.6, 1.15
 
 def stakes_of(
     random: Generator, stem: Stem, heading_rad: float, room_m: float
-) -> tuple[Shape, Shape, int]:
+) -> tuple[TriangleShape, TriangleShape, int]:
     """Stakes about a stem, in the tree's frame.
 
     Parameters
@@ -50,19 +50,21 @@ def _frame_of(turn: float) -> tuple[Floats, Floats]:
     return along, np.array([-along[1], along[0], 0.0])
 
 
-def _strap(stem: Stem, height_m: float) -> Shape:
+def _strap(stem: Stem, height_m: float) -> TriangleShape:
     angles = np.linspace(0, 2 * np.pi, 13)
     wide = stem.radius_m(height_m) * 1.04 + 0.004
     circle = np.column_stack([np.cos(angles), np.sin(angles), np.zeros(13)]) * wide
     return rods((stem.at(height_m) + circle)[None], 0.012, 5, is_closed=False)
 
 
-def _post(foot: Floats, high_m: float, radius: float, tilt: Floats) -> Shape:
+def _post(foot: Floats, high_m: float, radius: float, tilt: Floats) -> TriangleShape:
     low = np.array([foot[0], foot[1], -_SUNK_M])
     return rod(low, np.array([foot[0] + tilt[0], foot[1] + tilt[1], high_m]), radius, 10)
 
 
-def _gate(random: Generator, stem: Stem, turn: float, radius: float) -> tuple[Shape, Shape, int]:
+def _gate(
+    random: Generator, stem: Stem, turn: float, radius: float
+) -> tuple[TriangleShape, TriangleShape, int]:
     along, aside = _frame_of(turn)
     high = float(random.uniform(0.65, 1.3))
     half = float(random.uniform(0.22, 0.42)) + stem.radius_m(high)
@@ -75,10 +77,12 @@ def _gate(random: Generator, stem: Stem, turn: float, radius: float) -> tuple[Sh
     ]
     level = np.array([0.0, 0.0, high - 0.08 + float(random.normal(0, 0.01))])
     beam = rod(middle - along * (half + 0.1) + level, middle + along * (half + 0.1) + level, radius)
-    return joined([*posts, beam]), _strap(stem, high - 0.08), 2
+    return join_shapes([*posts, beam]), _strap(stem, high - 0.08), 2
 
 
-def _frame(random: Generator, stem: Stem, turn: float, radius: float) -> tuple[Shape, Shape, int]:
+def _frame(
+    random: Generator, stem: Stem, turn: float, radius: float
+) -> tuple[TriangleShape, TriangleShape, int]:
     along, aside = _frame_of(turn)
     high = float(random.uniform(0.7, 1.4))
     half = float(random.uniform(0.25, 0.4)) + stem.radius_m(high)
@@ -99,32 +103,34 @@ def _frame(random: Generator, stem: Stem, turn: float, radius: float) -> tuple[S
         parts.append(
             rod(cross - aside * (half + 0.06), cross + aside * (half + 0.06), radius * 0.8)
         )
-    return joined(parts), _strap(stem, high - 0.02), 4
+    return join_shapes(parts), _strap(stem, high - 0.02), 4
 
 
-def _tripod(random: Generator, stem: Stem, turn: float, radius: float) -> tuple[Shape, Shape, int]:
+def _tripod(
+    random: Generator, stem: Stem, turn: float, radius: float
+) -> tuple[TriangleShape, TriangleShape, int]:
     high = float(random.uniform(1.4, 2.0))
     reach = high * float(random.uniform(0.35, 0.55))
     centre = stem.at(high)
     legs = []
     for each in range(3):
         angle = turn + each * 2 * np.pi / 3 + float(random.normal(0, 0.15))
-        way = np.array([np.cos(angle), np.sin(angle), 0.0])
-        touch = centre + way * (stem.radius_m(high) + radius + 0.008)
-        foot = np.array([centre[0], centre[1], 0.0]) + way * reach
+        direction = np.array([np.cos(angle), np.sin(angle), 0.0])
+        touch = centre + direction * (stem.radius_m(high) + radius + 0.008)
+        foot = np.array([centre[0], centre[1], 0.0]) + direction * reach
         down = (foot - touch) / np.linalg.norm(foot - touch)
         legs.append(
             rod(foot + down * 0.25, touch - down * float(random.uniform(0.1, 0.3)), radius, 8)
         )
-    return joined(legs), _strap(stem, high), 3
+    return join_shapes(legs), _strap(stem, high), 3
 
 
-def _cane(random: Generator, stem: Stem, turn: float) -> tuple[Shape, Shape, int]:
+def _cane(random: Generator, stem: Stem, turn: float) -> tuple[TriangleShape, TriangleShape, int]:
     along, _ = _frame_of(turn)
     high = float(random.uniform(1.5, 2.4))
     radius = float(random.uniform(0.012, 0.025))
     foot, top = stem.at(0.0), stem.at(high)
-    low_way = along * (stem.radius_m(0.05) + radius + 0.02)
-    top_way = along * (stem.radius_m(high) + radius + 0.01)
-    cane = rod(foot + low_way - [0.0, 0.0, _SUNK_M], top + top_way, radius, 8)
+    low_direction = along * (stem.radius_m(0.05) + radius + 0.02)
+    top_direction = along * (stem.radius_m(high) + radius + 0.01)
+    cane = rod(foot + low_direction - [0.0, 0.0, _SUNK_M], top + top_direction, radius, 8)
     return cane, _strap(stem, high - 0.2), 1

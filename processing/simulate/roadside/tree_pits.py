@@ -16,15 +16,15 @@ from numpy.random import Generator
 
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats, Shape, grid
-from processing.simulate.roadside.places import Places, Spot
+from processing.simulate.mesh import Floats, TriangleShape, grid
+from processing.simulate.roadside.free_positions import FreePosition, FreePositions
 from processing.simulate.street.ground import Strip
-from processing.simulate.street.measures import looks_of
-from processing.simulate.street.profile import CURB, GRASS, GROUND, Edge, Profile
-from processing.simulate.street.section import Section
+from processing.simulate.street.measures import band_surfaces_of
+from processing.simulate.street.profile import CURB, GRASS, GROUND, Edge, RoadProfile
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.sweep import Sweep, add_runs, add_surfaces
 from processing.simulate.street.walk_lines import walk_lines
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 # 0.9 to 1.5 m inside walks that keep a metre free (道路緑化技術基準, 1988; 道路構造令, article 11).
 _SIZES_M = (0.9, 1.5)
@@ -40,7 +40,7 @@ _LIFTED_SHARE, _GONE_SHARE = 0.08, 0.06  # of pits: a corner raised by roots, a 
 
 
 @dataclass(frozen=True)
-class PitHabit:
+class PitStyle:
     """What the pits of one row have in common; lengths in m.
 
     Attributes
@@ -71,7 +71,7 @@ class PitHabit:
         return near_m + self.gap_m + self.wide_m / 2
 
 
-def pit_habit(section: Section, side: int) -> PitHabit | None:
+def pit_habit(section: StreetSection, side: int) -> PitStyle | None:
     """The pits of a side's walk; None where they have no room or the trees stand in paving."""
     plan = section.plan.side(side)
     random = chance(section.seed, "pits", side, int(plan.walk_m * 1e6))
@@ -90,7 +90,7 @@ def pit_habit(section: Section, side: int) -> PitHabit | None:
     if wide < _LEAST_M or random.random() < 0.1:
         return None
     soil = float(random.uniform(0.005, 0.03))
-    return PitHabit(
+    return PitStyle(
         is_round,
         long,
         wide,
@@ -98,30 +98,30 @@ def pit_habit(section: Section, side: int) -> PitHabit | None:
         stone,
         _FLUSH_M if is_flush else high,
         0.004 if is_flush else min(soil, max(0.005, high - 0.01)),
-        Material.BRICK if random.random() < 0.12 else looks_of(section.seed, plan).stone,
+        Material.BRICK if random.random() < 0.12 else band_surfaces_of(section.seed, plan).stone,
         Material.SOIL if has_grating else filling,
         has_grating,
     )
 
 
-def take_pit(places: Places, spot: Spot, habit: PitHabit) -> bool:
+def take_pit(positions: FreePositions, spot: FreePosition, habit: PitStyle) -> bool:
     """Give the place of a pit away; False where it isn't free or not paved."""
     long, wide = habit.long_m / 2, habit.wide_m / 2
-    if not places.is_free(spot, wide) or not _is_paved(places.section, spot, habit):
+    if not positions.is_free(spot, wide) or not _is_paved(positions.section, spot, habit):
         return False
     for along in (-long, 0.0, long):
         for across in (-wide, wide) if along else ():
-            corner = Spot(spot.chainage_m + along, spot.offset_m + across)
-            if not places.is_free(corner, 0.01):
+            corner = FreePosition(spot.chainage_m + along, spot.offset_m + across)
+            if not positions.is_free(corner, 0.01):
                 return False
-    places.block(
+    positions.block(
         (spot.chainage_m - long, spot.chainage_m + long),
         (spot.offset_m - wide, spot.offset_m + wide),
     )
     return True
 
 
-def _is_paved(section: Section, spot: Spot, habit: PitHabit) -> bool:
+def _is_paved(section: StreetSection, spot: FreePosition, habit: PitStyle) -> bool:
     lines = walk_lines(section, spot.side)
     if lines is None:
         return False
@@ -130,7 +130,13 @@ def _is_paved(section: Section, spot: Spot, habit: PitHabit) -> bool:
     return bool((away - half > inner).all() and (away + half < outer - _KERB_GAP_M).all())
 
 
-def add_pit(section: Section, built: Built, spot: Spot, habit: PitHabit, random: Generator) -> None:
+def add_pit(
+    section: StreetSection,
+    built: SectionBuilder,
+    spot: FreePosition,
+    habit: PitStyle,
+    random: Generator,
+) -> None:
     """Add a pit at a place that was taken for it."""
     frame = _Frame(section, spot, float(random.normal(0, 0.008)))
     outer, inner = _outlines(random, habit)
@@ -160,8 +166,8 @@ def add_pit(section: Section, built: Built, spot: Spot, habit: PitHabit, random:
 class _Frame:
     """A pit's own frame: along the road and to the left, m from its middle."""
 
-    section: Section
-    spot: Spot
+    section: StreetSection
+    spot: FreePosition
     turned_rad: float
 
     def spread(self, own: Floats) -> tuple[Floats, Floats]:
@@ -170,13 +176,13 @@ class _Frame:
         chainages = self.spot.chainage_m + own[..., 0] * cosine - own[..., 1] * sine
         return chainages, self.spot.offset_m + own[..., 0] * sine + own[..., 1] * cosine
 
-    def place(self, own: Floats, above_m: Floats | float) -> Floats:
+    def position(self, own: Floats, above_m: Floats | float) -> Floats:
         """Places over the walk: (..., 3) float64, m, the street's frame."""
         chainages, offsets = self.spread(own)
-        return self.section.place(chainages, offsets, above_m)
+        return self.section.position(chainages, offsets, above_m)
 
 
-def _outlines(random: Generator, habit: PitHabit) -> tuple[Floats, Floats]:
+def _outlines(random: Generator, habit: PitStyle) -> tuple[Floats, Floats]:
     """The edging's outer and inner corners in order: (n, 2) each, the first one again at the end.
 
     A round pit's are on circles.
@@ -193,7 +199,7 @@ def _outlines(random: Generator, habit: PitHabit) -> tuple[Floats, Floats]:
     return corners * half + off, corners * (half - habit.stone_m) + off
 
 
-def _sides(habit: PitHabit) -> Iterator[tuple[int, int]]:
+def _sides(habit: PitStyle) -> Iterator[tuple[int, int]]:
     """First and last corner of each side; those beside the road lead along the drive."""
     if habit.is_round:
         yield 0, _ROUND_SIDES
@@ -219,7 +225,7 @@ def _along(
     )
 
 
-def _stones(frame: _Frame, rows: tuple[Floats, Floats, Floats], habit: PitHabit) -> Sweep:
+def _stones(frame: _Frame, rows: tuple[Floats, Floats, Floats], habit: PitStyle) -> Sweep:
     outer, inner, highs = rows
     none = np.zeros(highs.size)
     stone = Strip("edging", habit.stone, CURB)
@@ -230,7 +236,7 @@ def _stones(frame: _Frame, rows: tuple[Floats, Floats, Floats], habit: PitHabit)
         (inner, habit.stone_m, highs),
         (inner, habit.stone_m, none - _SKIRT_M),
     )
-    profile = Profile()
+    profile = RoadProfile()
     for number, (_, away, above) in enumerate(lines):
         profile.line(none + away, above, stone if number else None)
     if habit.high_m > _TRUE_FROM_M:
@@ -243,7 +249,7 @@ def _stones(frame: _Frame, rows: tuple[Floats, Floats, Floats], habit: PitHabit)
     return Sweep(profile, chainages, offsets, heights, frame.spot.side)
 
 
-def _filling(frame: _Frame, inner: Floats, soil_m: float, random: Generator) -> Shape:
+def _filling(frame: _Frame, inner: Floats, soil_m: float, random: Generator) -> TriangleShape:
     """Soil from the middle to the edging, uneven by some millimetres."""
     shares = np.array([0.02, 0.3, 0.55, 0.8, 1.0])
     ring = np.concatenate(
@@ -252,11 +258,11 @@ def _filling(frame: _Frame, inner: Floats, soil_m: float, random: Generator) -> 
     )  # fmt: skip
     bumps = random.uniform(0.0, min(0.008, soil_m), (shares.size, len(ring)))
     bumps[:, -1], bumps[0] = bumps[:, 0], 0.0
-    rows = frame.place(shares[:, None, None] * ring[None], soil_m - bumps / 2)
+    rows = frame.position(shares[:, None, None] * ring[None], soil_m - bumps / 2)
     return grid(rows)
 
 
-def _grating(frame: _Frame, habit: PitHabit, random: Generator) -> Shape:
+def _grating(frame: _Frame, habit: PitStyle, random: Generator) -> TriangleShape:
     """Bars along the road with a hole for the trunk, and a frame round them."""
     bar, slot = float(random.uniform(0.012, 0.03)), float(random.uniform(0.012, 0.02))
     hole = float(random.uniform(0.2, 0.28))
@@ -281,10 +287,12 @@ def _grating(frame: _Frame, habit: PitHabit, random: Generator) -> Shape:
     return _low_boxes(frame, boxes, top)
 
 
-def _low_boxes(frame: _Frame, boxes: Floats, top_m: float) -> Shape:
+def _low_boxes(frame: _Frame, boxes: Floats, top_m: float) -> TriangleShape:
     """Boxes without undersides on the walk, from rows of from and to along and across."""
     corners = boxes[:, [[0, 2], [1, 2], [1, 3], [0, 3]]]
-    vertices = np.concatenate([frame.place(corners, 0.0), frame.place(corners, top_m)], axis=1)
+    vertices = np.concatenate(
+        [frame.position(corners, 0.0), frame.position(corners, top_m)], axis=1
+    )
     faces = [[4, 5, 6], [4, 6, 7]]
     for one in range(4):
         other = (one + 1) % 4

@@ -12,26 +12,26 @@ from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats
 from processing.simulate.roadside.crowns import (
-    CrownWish,
-    Keeps,
+    CrownOptions,
+    LeafFilter,
     branches_of,
     leaves_of,
-    scattered_leaves,
+    scatter_leaves,
 )
+from processing.simulate.roadside.free_positions import FreePosition, FreePositions
 from processing.simulate.roadside.growth import Growth
-from processing.simulate.roadside.places import Places, Spot
 from processing.simulate.roadside.stakes import stakes_of
 from processing.simulate.roadside.trunks import (
     HIGH_PIECE,
     TAPE_M,
     Stem,
-    StemWish,
+    StemOptions,
     girth_of_stem_m,
     stem_of,
     stem_shape,
 )
-from processing.simulate.street.section import Section
-from processing.simulate.things import Built, TrueFeature
+from processing.simulate.street.section import StreetSection
+from processing.simulate.things import SectionBuilder, TrueFeature
 
 TRUNK, CROWN, SHRUB = 66, 5, 4
 TRUTH_WITHIN_M = 8.0
@@ -50,7 +50,7 @@ Age = Literal["young", "grown", "wild"]
 
 
 @dataclass(frozen=True)
-class TreeWish:
+class TreeOptions:
     """What one tree is to be like.
 
     Attributes
@@ -65,14 +65,14 @@ class TreeWish:
     """
 
     growth: Growth
-    spot: Spot
+    spot: FreePosition
     high_m: float
     age: Age
     leaves: int
     above_m: float = 0.0
 
 
-def leaf_share(section: Section, growth: Growth) -> float:
+def leaf_share(section: StreetSection, growth: Growth) -> float:
     """How many of its leaves a tree carries in this street's season; 0 is a bare winter."""
     if growth.is_evergreen:
         return 1.0
@@ -80,18 +80,20 @@ def leaf_share(section: Section, growth: Growth) -> float:
     return 0.0 if season < 0.2 else 0.35 if season < 0.35 else 1.0
 
 
-def add_tree(places: Places, built: Built, wish: TreeWish, random: Generator) -> None:
+def add_tree(
+    positions: FreePositions, built: SectionBuilder, options: TreeOptions, random: Generator
+) -> None:
     """Add a tree at a place that was taken for it."""
-    section, growth, spot = places.section, wish.growth, wish.spot
-    foot = places.where(spot) + np.array([0.0, 0.0, wish.above_m])
+    section, growth, spot = positions.section, options.growth, options.spot
+    foot = positions.where(spot) + np.array([0.0, 0.0, options.above_m])
     instance = built.thing("tree")
-    stems = _stems(random, wish)
+    stems = _stems(random, options)
     girths = []
     for stem in stems:
         shape, pieces = stem_shape(stem)
         girths.append(girth_of_stem_m(stem, shape))
         built.mesh.add((shape[0] + foot, shape[1]), Material.BARK, TRUNK, instance, piece=pieces)
-    crown = _crown_wish(random, wish, leaf_share(section, growth))
+    crown = _crown_wish(random, options, leaf_share(section, growth))
     keeps = _clear_of_road(section, spot)
     branches, leafy = branches_of(random, growth, stems, crown, keeps)
     leaves = leaves_of(random, growth, leafy, crown, keeps)
@@ -101,8 +103,8 @@ def add_tree(places: Places, built: Built, wish: TreeWish, random: Generator) ->
     built.mesh.add((leaves[0] + foot, leaves[1]), Material.LEAVES, CROWN, instance)
     stakes = 0
     is_thin = len(stems) == 1 and stems[0].radius_m(TAPE_M) < _STAKED_TO_M / 2
-    if is_thin and random.random() < _STAKED[wish.age]:
-        stakes = _add_stakes(places, built, wish, stems[0])
+    if is_thin and random.random() < _STAKED[options.age]:
+        stakes = _add_stakes(positions, built, options, stems[0])
     _add_undergrowth(built, random, stems[0], foot)
     if abs(spot.offset_m) - section.plan.side(spot.side).edge_m > TRUTH_WITHIN_M:
         return
@@ -130,70 +132,76 @@ def add_tree(places: Places, built: Built, wish: TreeWish, random: Generator) ->
     )
 
 
-def _stems(random: Generator, wish: TreeWish) -> list[Stem]:
-    growth = wish.growth
+def _stems(random: Generator, options: TreeOptions) -> list[Stem]:
+    growth = options.growth
     count = int(random.integers(growth.stems[0], growth.stems[1] + 1))
-    diameter = wish.high_m / float(random.uniform(*growth.slenderness))
+    diameter = options.high_m / float(random.uniform(*growth.slenderness))
     diameter = float(np.clip(diameter * random.lognormal(0, 0.15), 0.035, 0.6))
-    if wish.age == "young":
+    if options.age == "young":
         diameter = float(np.clip(diameter * 0.6, 0.035, 0.12))
     lean = float(min(random.exponential(0.025), 0.14))
     turn = float(random.uniform(0, 2 * np.pi))
     common = np.array([np.cos(turn), np.sin(turn)]) * lean
     if count == 1:
         end = 0.25 if growth.form < 0.7 else 0.35
-        top = wish.high_m * (0.92 if growth.form < 0.35 else 0.72)
-        return [stem_of(random, StemWish(diameter / 2, top, end, (common[0], common[1])))]
+        top = options.high_m * (0.92 if growth.form < 0.35 else 0.72)
+        return [stem_of(random, StemOptions(diameter / 2, top, end, (common[0], common[1])))]
     stems = []
     apart = diameter * float(random.uniform(0.5, 1.0)) + 0.03
     for each in range(count):
         angle = turn + each * 2 * np.pi / count + float(random.normal(0, 0.3))
-        way = np.array([np.cos(angle), np.sin(angle)])
-        out = common + way * float(random.uniform(0.06, 0.2))
+        direction = np.array([np.cos(angle), np.sin(angle)])
+        out = common + direction * float(random.uniform(0.06, 0.2))
         radius = diameter / 2 * float(random.uniform(0.45, 0.85))
-        foot = way * apart
-        top = wish.high_m * float(random.uniform(0.6, 0.8))
+        foot = direction * apart
+        top = options.high_m * float(random.uniform(0.6, 0.8))
         stems.append(
-            stem_of(random, StemWish(radius, top, 0.3, (out[0], out[1]), (foot[0], foot[1])))
+            stem_of(random, StemOptions(radius, top, 0.3, (out[0], out[1]), (foot[0], foot[1])))
         )
     return stems
 
 
-def _crown_wish(random: Generator, wish: TreeWish, share: float) -> CrownWish:
-    growth = wish.growth
-    base = max(wish.high_m * float(random.uniform(*growth.base)), min(1.6, wish.high_m * 0.45))
-    wide = (
-        wish.high_m * float(random.uniform(*growth.crown)) * (0.5 if wish.age == "young" else 1.0)
+def _crown_wish(random: Generator, options: TreeOptions, share: float) -> CrownOptions:
+    growth = options.growth
+    base = max(
+        options.high_m * float(random.uniform(*growth.base)), min(1.6, options.high_m * 0.45)
     )
-    most = 24 if wish.leaves > _MANY_LEAVES else 13 if wish.leaves > _FEW_LEAVES else 9
-    branches = int(np.clip(wish.high_m * random.uniform(1.5, 3.0), 5, most))
-    leaves = int(wish.leaves * share * np.clip(wide * wish.high_m / 24, 0.25, 1.0))
-    cover = _COVER * wide * (wish.high_m - base) * float(random.uniform(0.6, 1.3))
-    leaf = float(np.clip(np.sqrt(cover / max(wish.leaves, 1) / 0.45), 0.05, _WIDEST_LEAF_M))
-    return CrownWish(base, wish.high_m, wide, branches, leaves, leaf)
+    wide = (
+        options.high_m
+        * float(random.uniform(*growth.crown))
+        * (0.5 if options.age == "young" else 1.0)
+    )
+    most = 24 if options.leaves > _MANY_LEAVES else 13 if options.leaves > _FEW_LEAVES else 9
+    branches = int(np.clip(options.high_m * random.uniform(1.5, 3.0), 5, most))
+    leaves = int(options.leaves * share * np.clip(wide * options.high_m / 24, 0.25, 1.0))
+    cover = _COVER * wide * (options.high_m - base) * float(random.uniform(0.6, 1.3))
+    leaf = float(np.clip(np.sqrt(cover / max(options.leaves, 1) / 0.45), 0.05, _WIDEST_LEAF_M))
+    return CrownOptions(base, options.high_m, wide, branches, leaves, leaf)
 
 
-def _clear_of_road(section: Section, spot: Spot) -> Keeps:
+def _clear_of_road(section: StreetSection, spot: FreePosition) -> LeafFilter:
     """Nothing low hangs over the carriageway: lorries see to that."""
     heading = section.heading(spot.chainage_m)
     outwards = spot.side * np.array([-np.sin(heading), np.cos(heading)])
     reach = abs(spot.offset_m) - section.plan.side(spot.side).edge_m
 
-    def keeps(places: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-        is_over = places[:, :2] @ outwards < -reach + 0.3
+    def keeps(positions: Floats) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+        is_over = positions[:, :2] @ outwards < -reach + 0.3
         kept: np.ndarray[tuple[int], np.dtype[np.bool_]] = ~is_over | (
-            places[:, 2] > _CLEAR_OVER_ROAD_M
+            positions[:, 2] > _CLEAR_OVER_ROAD_M
         )
         return kept
 
     return keeps
 
 
-def _add_stakes(places: Places, built: Built, wish: TreeWish, stem: Stem) -> int:
-    section, spot = places.section, wish.spot
+def _add_stakes(
+    positions: FreePositions, built: SectionBuilder, options: TreeOptions, stem: Stem
+) -> int:
+    section, spot = positions.section, options.spot
     random = section.chance("stakes", int(spot.chainage_m * 100) * spot.side)
-    foot = places.where(spot) + np.array([0.0, 0.0, wish.above_m])
-    room = abs(spot.offset_m) - places.near_m(spot.side)
+    foot = positions.where(spot) + np.array([0.0, 0.0, options.above_m])
+    room = abs(spot.offset_m) - positions.near_m(spot.side)
     wood, straps, count = stakes_of(random, stem, section.heading(spot.chainage_m), room)
     instance = built.thing("stake")
     built.mesh.add((wood[0] + foot, wood[1]), Material.WOOD, TRUNK, instance)
@@ -201,7 +209,7 @@ def _add_stakes(places: Places, built: Built, wish: TreeWish, stem: Stem) -> int
     return count
 
 
-def _add_undergrowth(built: Built, random: Generator, stem: Stem, foot: Floats) -> None:
+def _add_undergrowth(built: SectionBuilder, random: Generator, stem: Stem, foot: Floats) -> None:
     """Shoots and shrubs about the foot, ivy on the trunk: now and then."""
     kind = random.random()
     if kind < 0.14:
@@ -220,5 +228,5 @@ def _add_undergrowth(built: Built, random: Generator, stem: Stem, foot: Floats) 
         centres = np.column_stack([axis + turned, level])
     else:
         return
-    leaves = scattered_leaves(random, centres, 0.06)
+    leaves = scatter_leaves(random, centres, 0.06)
     built.mesh.add((leaves[0] + foot, leaves[1]), Material.LEAVES, SHRUB, built.thing("shrub"))

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from processing.simulate.mesh import Floats, Integers, Shape
+from processing.simulate.mesh import Floats, Integers, TriangleShape
 
 TAPE_M = 1.2
 """Height above the foot at which a tape goes round (都市公園・街路樹の幹周)."""
@@ -59,7 +59,7 @@ class Stem:
 
 
 @dataclass(frozen=True)
-class StemWish:
+class StemOptions:
     """What a stem is to be like.
 
     Attributes
@@ -81,20 +81,20 @@ class StemWish:
     foot: tuple[float, float] = (0.0, 0.0)
 
 
-def stem_of(random: Generator, wish: StemWish) -> Stem:
+def stem_of(random: Generator, options: StemOptions) -> Stem:
     """A stem with chance bends, flare, burrs and section."""
-    upper = np.arange(4.0, wish.high_m - 0.3, max(0.9, wish.high_m / 8))
-    levels = np.array([one for one in _LEVELS_M if one < wish.high_m - 0.1])
-    levels = np.concatenate([levels, upper, [wish.high_m]])
-    share = np.clip(levels / wish.high_m, 0.0, 1.0)
-    bend = random.normal(0, 0.02, 2) * wish.high_m * (random.random() < 0.6)
+    upper = np.arange(4.0, options.high_m - 0.3, max(0.9, options.high_m / 8))
+    levels = np.array([one for one in _LEVELS_M if one < options.high_m - 0.1])
+    levels = np.concatenate([levels, upper, [options.high_m]])
+    share = np.clip(levels / options.high_m, 0.0, 1.0)
+    bend = random.normal(0, 0.02, 2) * options.high_m * (random.random() < 0.6)
     swing = random.uniform(0, 2 * np.pi)
     wave = np.sin(share * random.uniform(2, 5) + swing) - np.sin(swing)
-    aside = np.array(wish.lean) * np.maximum(levels, -0.3)[:, None]
-    path = np.column_stack([np.array(wish.foot) + aside + bend * wave[:, None], levels])
-    taper = 1 + (wish.end_share - 1) * (levels - TAPE_M) / max(wish.high_m - TAPE_M, 0.5)
+    aside = np.array(options.lean) * np.maximum(levels, -0.3)[:, None]
+    path = np.column_stack([np.array(options.foot) + aside + bend * wave[:, None], levels])
+    taper = 1 + (options.end_share - 1) * (levels - TAPE_M) / max(options.high_m - TAPE_M, 0.5)
     flare = 1 + random.uniform(0.1, 0.7) * np.exp(-np.maximum(levels, 0.0) / 0.15)
-    radii = wish.radius_m * np.clip(taper, 0.05, 1.4) * flare
+    radii = options.radius_m * np.clip(taper, 0.05, 1.4) * flare
     lobes = _lobes(random, levels)
     ratio = float(np.clip(random.normal(0.95, 0.035), 0.84, 1.0))
     return Stem(path, radii, ratio, float(random.uniform(0, np.pi)), lobes)
@@ -116,7 +116,7 @@ def _lobes(random: Generator, levels: Floats) -> Floats:
     return swollen
 
 
-def stem_shape(stem: Stem) -> tuple[Shape, Integers]:
+def stem_shape(stem: Stem) -> tuple[TriangleShape, Integers]:
     """The bark's triangles and their pieces."""
     normals = np.arange(_SECTORS) * (2 * np.pi / _SECTORS) - stem.turn_rad
     inner = np.arctan2(stem.ratio * np.sin(normals), np.cos(normals))
@@ -155,18 +155,18 @@ def pieces_of_bark(vertices: Floats, faces: NDArray[np.int64]) -> Integers:
     return np.where(is_breast, sector, piece)
 
 
-def taped_girth_m(shape: Shape, at: Floats, way: Floats) -> float:
+def tape_girth_m(shape: TriangleShape, at: Floats, direction: Floats) -> float:
     """What a tape shows that is laid round a body: the girth of the section's convex hull.
 
     Parameters
     ----------
-    at, way : (3,) float64
+    at, direction : (3,) float64
         A place in the tape's plane, and the plane's normal: the axis of the stem.
     """
     from scipy.spatial import ConvexHull
 
     vertices, triangles = shape
-    normal = way / np.linalg.norm(way)
+    normal = direction / np.linalg.norm(direction)
     high = (vertices - at) @ normal
     edges = triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     below, above = edges[(high[edges[:, 0]] <= 0) & (high[edges[:, 1]] > 0)].T
@@ -178,7 +178,7 @@ def taped_girth_m(shape: Shape, at: Floats, way: Floats) -> float:
     return float(ConvexHull(plane).area)
 
 
-def girth_of_stem_m(stem: Stem, shape: Shape) -> float:
+def girth_of_stem_m(stem: Stem, shape: TriangleShape) -> float:
     """What a tape shows 1.2 m above the foot, square to the stem."""
-    way = stem.at(TAPE_M + 0.05) - stem.at(TAPE_M - 0.05)
-    return taped_girth_m(shape, stem.at(TAPE_M), way)
+    direction = stem.at(TAPE_M + 0.05) - stem.at(TAPE_M - 0.05)
+    return tape_girth_m(shape, stem.at(TAPE_M), direction)

@@ -8,20 +8,20 @@ from numpy.random import Generator
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import grid
-from processing.simulate.roadside.places import Places, free_from_m
+from processing.simulate.roadside.free_positions import FreePositions, free_from_m
 from processing.simulate.street.plan import SIDES, SidePlan
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.styles import URBAN
-from processing.simulate.things import NO_THING, Built
+from processing.simulate.things import NO_THING, SectionBuilder
 
 GRASS = 3
 _MOST_TUFTS = 110
 _BLADES = 12
 
 
-def add_weeds(places: Places, built: Built) -> None:
+def add_weeds(positions: FreePositions, built: SectionBuilder) -> None:
     """Add tufts in joints and verges, and mats that hang over curbs, as neglected as the street."""
-    section = places.section
+    section = positions.section
     street = chance(section.seed, "neglect")
     neglect = float(street.beta(1.2, 3.0) if section.plan.style is URBAN else street.beta(2, 2))
     for side in SIDES:
@@ -51,7 +51,7 @@ def _lines(plan: SidePlan) -> list[float]:
 
 
 def _add_tufts(
-    section: Section, built: Built, random: Generator, side: int, *, neglect: float
+    section: StreetSection, built: SectionBuilder, random: Generator, side: int, *, neglect: float
 ) -> None:
     plan = section.plan
     count = int(min(_MOST_TUFTS, random.poisson(neglect * plan.length_m * 1.6)))
@@ -62,13 +62,13 @@ def _add_tufts(
     at = np.clip(at, plan.start_m + 0.2, plan.end_m - 0.2)
     lines = np.array(_lines(plan.side(side)))
     away = lines[random.integers(0, len(lines), count)] + random.normal(0, 0.02, count)
-    feet = section.place(at, side * away)
+    feet = section.position(at, side * away)
     size = np.clip(random.lognormal(-2.0, 0.6, count), 0.04, 0.6)
     base = feet[:, None] + random.normal(0, 0.22, (count, _BLADES, 3)) * size[:, None, None]
     base[..., 2] = feet[:, None, 2] - 0.005
-    way = random.normal(0, 0.5, (count, _BLADES, 3))
-    way[..., 2] = random.uniform(0.5, 1.2, (count, _BLADES))
-    tips = base + way * size[:, None, None]
+    direction = random.normal(0, 0.5, (count, _BLADES, 3))
+    direction[..., 2] = random.uniform(0.5, 1.2, (count, _BLADES))
+    tips = base + direction * size[:, None, None]
     turn = random.uniform(0, np.pi, (count, _BLADES))
     wide = (0.04 + 0.05 * random.random((count, _BLADES))) * size[:, None] + 0.004
     flat = np.stack([np.cos(turn), np.sin(turn), np.zeros_like(turn)], axis=2) * wide[..., None]
@@ -77,7 +77,7 @@ def _add_tufts(
     built.mesh.add((corners, faces), Material.LEAVES, GRASS, NO_THING)
 
 
-def _add_mat(section: Section, built: Built, random: Generator, side: int) -> None:
+def _add_mat(section: StreetSection, built: SectionBuilder, random: Generator, side: int) -> None:
     """Grass that has grown from the soil over the curb: as irregular as it likes."""
     plan = section.plan
     long = float(random.uniform(0.4, 4.0))
@@ -94,5 +94,5 @@ def _add_mat(section: Section, built: Built, random: Generator, side: int) -> No
     level = 0.035 + random.normal(0, 0.012, away.shape)
     level[:, [0, -1]] = 0.006
     level[[0, -1]] = 0.006
-    rows = section.place(along[:, None], side * away, np.maximum(level, 0.004))
+    rows = section.position(along[:, None], side * away, np.maximum(level, 0.004))
     built.mesh.add(grid(rows), Material.GRASS, GRASS, NO_THING)

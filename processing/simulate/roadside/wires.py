@@ -9,11 +9,11 @@ import numpy as np
 
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats
-from processing.simulate.roadside.places import Places, Spot, free_to_m
+from processing.simulate.roadside.free_positions import FreePosition, FreePositions, free_to_m
 from processing.simulate.roadside.pole_line import LinePole, cable_ends, pole_line
 from processing.simulate.roadside.poles import POLE, SUNK_M, WIRE, pole_truth
 from processing.simulate.roadside.rods import rods
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 LONGEST_SPAN_M = 75.0
 _STEPS = 12
@@ -32,9 +32,9 @@ def hanging(starts: Floats, ends: Floats, sags: Floats, steps: int = _STEPS) -> 
     return paths
 
 
-def add_wires(places: Places, built: Built) -> None:
+def add_wires(positions: FreePositions, built: SectionBuilder) -> None:
     """Add the spans that begin in this section, and the cables to its yards."""
-    section = places.section
+    section = positions.section
     line = pole_line(section)
     for pole, following in zip(line.poles, line.poles[1:], strict=False):
         if pole.section != section.plan.index:
@@ -58,11 +58,11 @@ def add_wires(places: Places, built: Built) -> None:
         )
     for pole in line.poles:
         if pole.section == section.plan.index:
-            _add_drop_wires(places, built, pole)
+            _add_drop_wires(positions, built, pole)
 
 
-def _add_drop_wires(places: Places, built: Built, pole: LinePole) -> None:
-    section = places.section
+def _add_drop_wires(positions: FreePositions, built: SectionBuilder, pole: LinePole) -> None:
+    section = positions.section
     random = section.chance("drop wires", pole.number)
     start = cable_ends(section.alignment, pole, pole_line(section))[-1]
     for _ in range(int(random.integers(0, 4))):
@@ -73,21 +73,23 @@ def _add_drop_wires(places: Places, built: Built, pole: LinePole) -> None:
             continue
         reach = float(random.uniform(-9.0, 9.0))
         away = outside.inner_m + float(random.uniform(0.25, 0.6))
-        spot = Spot(pole.spot.chainage_m + reach, side * away)
-        if away > free_to_m(plan) or not places.take(spot, 0.7):
+        spot = FreePosition(pole.spot.chainage_m + reach, side * away)
+        if away > free_to_m(plan) or not positions.take(spot, 0.7):
             continue
         # Lowest height of service drops over roads: 5 m (電気設備技術基準の解釈, article 116).
         crosses = side != pole.spot.side
         high = float(random.uniform(5.6, 7.0) if crosses else random.uniform(4.2, 6.2))
-        top = _add_service_pole(places, built, spot, high)
+        top = _add_service_pole(positions, built, spot, high)
         lines = hanging(start[None], top[None], np.array([0.15]))
         built.mesh.add(rods(lines, 0.006, 5), Material.CABLE, WIRE, built.thing("wire"))
 
 
-def _add_service_pole(places: Places, built: Built, spot: Spot, high_m: float) -> Floats:
+def _add_service_pole(
+    positions: FreePositions, built: SectionBuilder, spot: FreePosition, high_m: float
+) -> Floats:
     """A thin steel pole in a yard (引込柱); its top."""
-    random = places.section.chance("service pole", int(spot.chainage_m * 100))
-    foot = places.where(spot)
+    random = positions.section.chance("service pole", int(spot.chainage_m * 100))
+    foot = positions.where(spot)
     top = foot + np.array([*random.normal(0, 0.03, 2), high_m])
     radius = float(random.choice([0.0445, 0.05715, 0.0695]))
     instance = built.thing("pole")

@@ -16,10 +16,10 @@ from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, grid
 from processing.simulate.street.plan import SIDES
 from processing.simulate.street.profile import GROUND, ROAD
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.styles import HIGHWAY, URBAN
 from processing.simulate.street.walk_lines import walk_lines
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 # Hand holes of power and telephone companies, valve boxes: as they lie in the street, m.
 _SIZES_M = ((0.6, 0.6), (0.45, 0.45), (0.9, 0.6), (1.2, 0.6), (0.3, 0.3), (0.25, 0.4))
@@ -54,13 +54,13 @@ class BoxLid:
     label: int
 
 
-def add_box_lids(section: Section, built: Built) -> None:
+def add_box_lids(section: StreetSection, built: SectionBuilder) -> None:
     """Add the lids of a section."""
     for lid in (*box_lids_of(section), *_on_road(section)):
         _add_lid(section, built, lid)
 
 
-def box_lids_of(section: Section) -> Iterator[BoxLid]:
+def box_lids_of(section: StreetSection) -> Iterator[BoxLid]:
     """The lids in a section's walks: away from lowered curbs and tactile blocks."""
     plan = section.plan
     for side in SIDES:
@@ -86,7 +86,7 @@ def box_lids_of(section: Section) -> Iterator[BoxLid]:
             yield replace(lid, offset_m=side * float(first + share * (last - first)))
 
 
-def _on_road(section: Section) -> Iterator[BoxLid]:
+def _on_road(section: StreetSection) -> Iterator[BoxLid]:
     plan = section.plan
     random = section.chance("box lids of the road")
     if plan.style is HIGHWAY:
@@ -119,7 +119,7 @@ def _drawn(random: Generator, start: float, end: float, label: int) -> BoxLid:
     )
 
 
-def _add_lid(section: Section, built: Built, lid: BoxLid) -> None:
+def _add_lid(section: StreetSection, built: SectionBuilder, lid: BoxLid) -> None:
     """A plate in a steel frame, both on the pavement's surface."""
     instance = built.thing("box_lid")
     half = np.array([lid.long_m, lid.wide_m]) / 2
@@ -137,8 +137,8 @@ def _add_lid(section: Section, built: Built, lid: BoxLid) -> None:
     built.mesh.add(grid(np.stack(rows)), Material.STEEL, lid.label, instance)
 
 
-def _placed(section: Section, lid: BoxLid, own: Floats, above_m: float) -> Floats:
+def _placed(section: StreetSection, lid: BoxLid, own: Floats, above_m: float) -> Floats:
     cosine, sine = np.cos(lid.turned_rad), np.sin(lid.turned_rad)
     along = own[..., 0] * cosine - own[..., 1] * sine
     across = own[..., 0] * sine + own[..., 1] * cosine
-    return section.place(lid.chainage_m + along, lid.offset_m + across, above_m)
+    return section.position(lid.chainage_m + along, lid.offset_m + across, above_m)

@@ -8,25 +8,28 @@ from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats
 from processing.simulate.street.layout import Outline
 from processing.simulate.street.profile import CURB, GRASS, OTHER
-from processing.simulate.street.section import Section
-from processing.simulate.things import NO_THING, Built
+from processing.simulate.street.section import StreetSection
+from processing.simulate.things import NO_THING, SectionBuilder
 
 _LEAST_STEP_M = 1e-4
-_SAME_PLACE_M = 1e-7
+_SAME_POSITION_M = 1e-7
 
 
-def add_ends(section: Section, built: Built) -> None:
+def add_ends(section: StreetSection, built: SectionBuilder) -> None:
     """Add the faces at the end of a section."""
     for side, part in section.layout.sides.items():
         if part.end is not None:
             _add_face(section, side, part.end, built)
 
 
-def _add_face(section: Section, side: int, pair: tuple[Outline, Outline], built: Built) -> None:
+def _add_face(
+    section: StreetSection, side: int, pair: tuple[Outline, Outline], built: SectionBuilder
+) -> None:
     own, other = (_risen(one) for one in pair)
     away = np.unique(np.concatenate([own, other]))
     levels = [
-        np.interp(away, places, one.above) for places, one in zip((own, other), pair, strict=True)
+        np.interp(away, positions, one.above)
+        for positions, one in zip((own, other), pair, strict=True)
     ]
     steps = np.abs(levels[0] - levels[1])
     open_at = np.flatnonzero(np.maximum(steps[1:], steps[:-1]) > _LEAST_STEP_M)
@@ -53,19 +56,19 @@ def _add_face(section: Section, side: int, pair: tuple[Outline, Outline], built:
 
 def _risen(one: Outline) -> Floats:
     """Distances that rise strictly, so that a vertical face has two."""
-    return one.away + _SAME_PLACE_M * np.arange(one.away.size)
+    return one.away + _SAME_POSITION_M * np.arange(one.away.size)
 
 
 def _looks(
     pair: tuple[Outline, Outline],
-    places: tuple[Floats, Floats],
+    positions: tuple[Floats, Floats],
     middles: Floats,
     levels: list[Floats],
     rows: np.ndarray[tuple[int], np.dtype[np.int64]],
 ) -> tuple[np.ndarray[tuple[int], np.dtype[np.uint8]], np.ndarray[tuple[int], np.dtype[np.uint8]]]:
     """Material and label of each piece: those of the surface that stands higher."""
     kinds, names = [], []
-    for one, away in zip(pair, places, strict=True):
+    for one, away in zip(pair, positions, strict=True):
         strip = np.clip(np.searchsorted(away, middles) - 1, 0, len(one.strips) - 1)
         kinds.append(np.array([int(each.material) for each in one.strips], np.uint8)[strip])
         names.append(np.array([each.label for each in one.strips], np.uint8)[strip])

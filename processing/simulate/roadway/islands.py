@@ -12,10 +12,10 @@ from processing.simulate.mesh import Floats
 from processing.simulate.street.corner_track import CornerTrack
 from processing.simulate.street.ground import Strip
 from processing.simulate.street.junction_shape import Mouth
-from processing.simulate.street.profile import CURB, GRASS, GROUND, STONE_TOP_M, Edge, Profile
-from processing.simulate.street.section import Section
+from processing.simulate.street.profile import CURB, GRASS, GROUND, STONE_TOP_M, Edge, RoadProfile
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.sweep import Sweep, add_runs, add_surfaces
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 _LEAST_HALF_M = 3.3
 """Half the carriageway of a side street that has room for an island."""
@@ -23,7 +23,7 @@ _LEAST_HALF_M = 3.3
 _STEP_M = 0.12
 
 
-def add_islands(section: Section, built: Built) -> None:
+def add_islands(section: StreetSection, built: SectionBuilder) -> None:
     """Add the islands of a section's side streets."""
     for side in section.plan.junctions:
         part = section.layout.sides[side]
@@ -57,7 +57,7 @@ def _outline(shape: tuple[float, float, float], taper: float) -> Floats:
 
 
 def _island(
-    section: Section, mouth: Mouth, track: CornerTrack, outline: Floats, side: int
+    section: StreetSection, mouth: Mouth, track: CornerTrack, outline: Floats, side: int
 ) -> Sweep:
     random = section.chance("island stones", side)
     high = float(random.uniform(0.12, 0.25))
@@ -77,7 +77,7 @@ def _island(
     beside = np.column_stack([one[:, 1] for one in lines])
     chainages, offsets = track.placed(along, beside)
     base = section.layout.terrain.height(chainages, offsets) + mouth.crown(chainages, beside)
-    profile = Profile()
+    profile = RoadProfile()
     stone, surface = Strip("curb", Material.CONCRETE, CURB), Strip("island", top, label)
     flat = np.zeros(reach.size)
     away = (0.0, lean, lean + STONE_TOP_M, float(reach.max()))

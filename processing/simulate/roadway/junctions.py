@@ -11,10 +11,10 @@ from processing.simulate.street.corner_track import CornerTrack
 from processing.simulate.street.junction_shape import Mouth
 from processing.simulate.street.layout import CornerLayout
 from processing.simulate.street.profile import ROAD
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.surfaces import asphalt_of
 from processing.simulate.street.sweep import SKIRT_M, add_runs, add_surfaces
-from processing.simulate.things import NO_THING, Built
+from processing.simulate.things import NO_THING, SectionBuilder
 
 CARRIAGEWAY_COLUMNS = 9
 """Nodes across a side street."""
@@ -27,7 +27,7 @@ _LEAST_ROW_M = 0.02
 _LAND_ACROSS_M, _LAND_ALONG_M = 0.8, 2.0
 
 
-def add_junctions(section: Section, built: Built) -> None:
+def add_junctions(section: StreetSection, built: SectionBuilder) -> None:
     """Add the side streets of a section."""
     for side in section.plan.junctions:
         part = section.layout.sides[side]
@@ -40,7 +40,7 @@ def add_junctions(section: Section, built: Built) -> None:
         _add_carriageway(section, part.mouth, part.corners, built)
 
 
-def _add_land(section: Section, corner: CornerLayout, built: Built) -> None:
+def _add_land(section: StreetSection, corner: CornerLayout, built: SectionBuilder) -> None:
     """The block behind a corner: from the section's end to the side street's last line."""
     track = corner.track
     from_end, beside = track.square(corner.sweep.profile.away[-1])
@@ -72,9 +72,9 @@ def _add_land(section: Section, corner: CornerLayout, built: Built) -> None:
     built.mesh.add(grid(skirt), corner.land.material, corner.land.label, NO_THING)
 
 
-def _thinned(places: Floats, least_m: float) -> NDArray[np.bool_]:
+def _thinned(positions: Floats, least_m: float) -> NDArray[np.bool_]:
     """Rising places, the first and last always, no closer than this where more are there."""
-    steps = np.floor((places - places[0]) / least_m)
+    steps = np.floor((positions - positions[0]) / least_m)
     kept = np.append(True, np.diff(steps) > 0)
     kept[-1] = True
     return kept
@@ -93,7 +93,7 @@ def street_sides(corners: tuple[CornerLayout, ...], beside: Floats) -> tuple[Flo
 
 
 def street_height(
-    section: Section, mouth: Mouth, track: CornerTrack, along: Floats, beside: Floats
+    section: StreetSection, mouth: Mouth, track: CornerTrack, along: Floats, beside: Floats
 ) -> Floats:
     """Height of a side street's asphalt, z in m, at places of the square frame."""
     chainage, offset = track.placed(along, beside)
@@ -101,7 +101,7 @@ def street_height(
 
 
 def _add_carriageway(
-    section: Section, mouth: Mouth, corners: tuple[CornerLayout, ...], built: Built
+    section: StreetSection, mouth: Mouth, corners: tuple[CornerLayout, ...], built: SectionBuilder
 ) -> None:
     depths = [one.track.square(one.sweep.profile.away[0])[1][one.track.first :] for one in corners]
     top = min(float(one[-1]) for one in depths)

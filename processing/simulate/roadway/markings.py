@@ -17,9 +17,9 @@ from processing.simulate.street.corner_track import CornerTrack
 from processing.simulate.street.junction_shape import Mouth
 from processing.simulate.street.plan import LEFT, RIGHT, SIDES
 from processing.simulate.street.profile import ROAD
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.styles import RURAL, URBAN
-from processing.simulate.things import NO_THING, Built
+from processing.simulate.things import NO_THING, SectionBuilder
 
 # Widths and patterns of the ordinance on signs and markings (道路標識、区画線及び道路標示に関する
 # 命令, 1960, table 4) and of the police's standards for markings.
@@ -34,7 +34,7 @@ _SEGMENTS = {
 _SIDE_PAINT_M = 0.003
 
 
-def add_markings(section: Section, built: Built) -> None:
+def add_markings(section: StreetSection, built: SectionBuilder) -> None:
     """Add the paint of a section."""
     random = section.chance("markings")
     habits = chance(section.seed, "markings")
@@ -53,7 +53,9 @@ def add_markings(section: Section, built: Built) -> None:
     add_paint(section, built, rectangles + crossing, random, wear)
 
 
-def _lines(section: Section, habits: Generator, crossing: list[Rectangle]) -> Iterator[Rectangle]:
+def _lines(
+    section: StreetSection, habits: Generator, crossing: list[Rectangle]
+) -> Iterator[Rectangle]:
     plan = section.plan
     start, end = plan.start_m, plan.end_m
     has_edges = plan.style is not RURAL or habits.random() < 0.7
@@ -77,7 +79,7 @@ def _lines(section: Section, habits: Generator, crossing: list[Rectangle]) -> It
 
 
 def _borders(
-    section: Section,
+    section: StreetSection,
     side: int,
     stretches: tuple[list[tuple[float, float]], list[tuple[float, float]]],
     *,
@@ -114,11 +116,11 @@ def _line(
             yield low, high, right, left
 
 
-def _crossing(section: Section, random: Generator) -> Iterator[Rectangle]:
+def _crossing(section: StreetSection, random: Generator) -> Iterator[Rectangle]:
     """A zebra crossing with its stop lines, where a curb is lowered if there is one."""
     plan = section.plan
     wide = float(random.uniform(3.0, 4.5))
-    places = [
+    positions = [
         (drop.from_m + drop.to_m) / 2
         for one in section.layout.sides.values()
         for drop in one.drops
@@ -127,7 +129,11 @@ def _crossing(section: Section, random: Generator) -> Iterator[Rectangle]:
     clear = wide / 2 + _STOP_BEFORE_M + _STOP_M
     if plan.length_m < 2 * clear + 1 or plan.median_m > 0:
         return
-    middle = places[0] if places else float(random.uniform(0.3, 0.7)) * plan.length_m + plan.start_m
+    middle = (
+        positions[0]
+        if positions
+        else float(random.uniform(0.3, 0.7)) * plan.length_m + plan.start_m
+    )
     middle = min(max(middle, plan.start_m + clear), plan.end_m - clear)
     low, high = middle - wide / 2, middle + wide / 2
     right, left = -plan.right.edge_m + 0.3, plan.left.edge_m - 0.3
@@ -137,7 +143,7 @@ def _crossing(section: Section, random: Generator) -> Iterator[Rectangle]:
     yield high + _STOP_BEFORE_M, high + _STOP_BEFORE_M + _STOP_M, right, -0.1
 
 
-def symbols_of(section: Section, random: Generator) -> Iterator[Rectangle]:
+def symbols_of(section: StreetSection, random: Generator) -> Iterator[Rectangle]:
     """An arrow or a speed in each lane of one direction; arrows tell lanes of a town apart."""
     plan = section.plan
     if plan.length_m < 16 or plan.lane_m < _NARROW_M:
@@ -183,7 +189,7 @@ def _speed(first: str) -> Iterator[Rectangle]:
 
 
 def _add_side_street(
-    section: Section, built: Built, side: int, random: Generator, wear: float
+    section: StreetSection, built: SectionBuilder, side: int, random: Generator, wear: float
 ) -> None:
     """Add the crossing and the stop line of a side street."""
     part = section.layout.sides[side]
@@ -213,8 +219,8 @@ def _add_side_street(
 
 
 def _add_patch(
-    section: Section,
-    built: Built,
+    section: StreetSection,
+    built: SectionBuilder,
     street: tuple[Mouth, CornerTrack],
     where: tuple[float, float, float, float],
     worn: tuple[Generator, float],

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, grid
 from processing.simulate.street.profile import ROAD
-from processing.simulate.street.section import Section
-from processing.simulate.things import NO_THING, Built
+from processing.simulate.street.section import StreetSection
+from processing.simulate.things import NO_THING, SectionBuilder
 
 PAINT_M = 0.002
 """Thickness of hot paint (熔融式, 1.5 to 2 mm, JIS K 5665 class 3)."""
@@ -24,8 +24,8 @@ Rectangle = tuple[float, float, float, float]
 
 
 def add_paint(
-    section: Section,
-    built: Built,
+    section: StreetSection,
+    built: SectionBuilder,
     rectangles: Sequence[Rectangle],
     random: Generator,
     wear: float,
@@ -51,8 +51,8 @@ def add_paint(
 
 
 def add_sheet(
-    section: Section,
-    built: Built,
+    section: StreetSection,
+    built: SectionBuilder,
     where: Rectangle,
     *,
     material: Material = Material.PAINT,
@@ -76,7 +76,7 @@ def add_sheet(
     lines = ground.offsets[row]
     inner = lines[(lines > right) & (lines < left)]
     across = np.unique(np.concatenate([[right, left], inner]))
-    rows = section.place(along[:, None], across[None, :], above_m)
+    rows = section.position(along[:, None], across[None, :], above_m)
     vertices, triangles = grid(rows)
     if is_kept is not None:
         kept = np.repeat(is_kept(along.size - 1), 2 * (across.size - 1))

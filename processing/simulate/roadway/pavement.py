@@ -14,11 +14,11 @@ from processing.simulate.roadway.paint import add_sheet
 from processing.simulate.street.layout import CornerLayout
 from processing.simulate.street.plan import SIDES
 from processing.simulate.street.profile import GROUND, ROAD
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.styles import HIGHWAY, URBAN
 from processing.simulate.street.surfaces import asphalt_of
 from processing.simulate.street.walk_lines import first_of_walk, walk_lines
-from processing.simulate.things import NO_THING, Built
+from processing.simulate.things import NO_THING, SectionBuilder
 
 _DISC_SIDES = 24
 _BLOCK_M = 0.3  # 視覚障害者誘導用ブロック, JIS T 9251: 30 cm squares, dots and bars 5 mm high
@@ -27,7 +27,7 @@ _FROM_CURB_M = 0.3
 _CLEAR_M = 0.4
 
 
-def add_pavement(section: Section, built: Built) -> None:
+def add_pavement(section: StreetSection, built: SectionBuilder) -> None:
     """Add patches, manholes and tactile blocks of a section."""
     _add_patches(section, built)
     _add_manholes(section, built)
@@ -38,7 +38,7 @@ def add_pavement(section: Section, built: Built) -> None:
             _add_tactile_of_corner(section, corner, (side, number), built)
 
 
-def _add_patches(section: Section, built: Built) -> None:
+def _add_patches(section: StreetSection, built: SectionBuilder) -> None:
     random = section.chance("patches")
     plan = section.plan
     if plan.style is HIGHWAY or random.random() < 0.5:
@@ -61,7 +61,7 @@ def _add_patches(section: Section, built: Built) -> None:
         add_sheet(section, built, where, material=other, above_m=above)
 
 
-def _add_manholes(section: Section, built: Built) -> None:
+def _add_manholes(section: StreetSection, built: SectionBuilder) -> None:
     random = section.chance("manholes")
     plan = section.plan
     if plan.style is HIGHWAY:
@@ -80,18 +80,22 @@ def _add_manholes(section: Section, built: Built) -> None:
 
 
 def _add_disc(
-    section: Section, built: Built, where: tuple[float, float], radius: float, above: float
+    section: StreetSection,
+    built: SectionBuilder,
+    where: tuple[float, float],
+    radius: float,
+    above: float,
 ) -> None:
     angles = np.linspace(0, 2 * np.pi, _DISC_SIDES + 1)
     rings = np.array([0.02, 0.5, 1.0, 1.0]) * radius
     heights = np.array([above, above, above, -0.01])
     chainage = where[0] + rings[:, None] * np.cos(angles)
     offset = where[1] + rings[:, None] * np.sin(angles)
-    rows = section.place(chainage, offset, heights[:, None])
+    rows = section.position(chainage, offset, heights[:, None])
     built.mesh.add(grid(rows), Material.STEEL, ROAD, built.thing("manhole"))
 
 
-def _add_tactile(section: Section, side: int, built: Built) -> None:
+def _add_tactile(section: StreetSection, side: int, built: SectionBuilder) -> None:
     """Blocks along the walk where it is wide enough, and across it at crossings."""
     lines = walk_lines(section, side)
     random = section.chance("tactile", side)
@@ -118,7 +122,7 @@ def _add_tactile(section: Section, side: int, built: Built) -> None:
 
 
 def _add_tactile_of_corner(
-    section: Section, corner: CornerLayout, where: tuple[int, int], built: Built
+    section: StreetSection, corner: CornerLayout, where: tuple[int, int], built: SectionBuilder
 ) -> None:
     """Blocks with dots before a corner's lowered curb, as wide as it is."""
     side, number = where
@@ -145,19 +149,19 @@ def _add_tactile_of_corner(
             if last - first_node < 3:
                 continue
             blocks = 2 if wide[there].min() >= _FROM_CURB_M + 2 * _BLOCK_M else 1
-            ways = (far - near)[there] / wide[there, None]
-            starts = near[there] + _FROM_CURB_M * ways + np.array([0.0, 0.0, _BLOCK_HIGH_M])
+            directions = (far - near)[there] / wide[there, None]
+            starts = near[there] + _FROM_CURB_M * directions + np.array([0.0, 0.0, _BLOCK_HIGH_M])
             steps = np.linspace(0.0, blocks * _BLOCK_M, blocks + 1)
-            rows = starts[:, None] + steps[:, None] * ways[:, None]
+            rows = starts[:, None] + steps[:, None] * directions[:, None]
             built.mesh.add(grid(rows), Material.TACTILE, GROUND, NO_THING)
 
 
 def _add_blocks(
-    section: Section, built: Built, lines: tuple[Floats, Floats, Floats], side: int
+    section: StreetSection, built: SectionBuilder, lines: tuple[Floats, Floats, Floats], side: int
 ) -> None:
     chainages, near, far = lines
     offsets = side * np.column_stack([near, far])
-    rows = section.place(chainages[:, None], offsets, _BLOCK_HIGH_M)
+    rows = section.position(chainages[:, None], offsets, _BLOCK_HIGH_M)
     built.mesh.add(grid(rows), Material.TACTILE, GROUND, NO_THING)
 
 

@@ -9,18 +9,18 @@ from numpy.typing import NDArray
 
 from processing.kernels import kernel
 from processing.simulate.mesh import Floats
-from processing.simulate.scanning.passes import Pass
 from processing.simulate.scanning.sensors import Head
+from processing.simulate.scanning.simulated_passes import SimulatedPass
 
 
 @dataclass(frozen=True)
-class Spin:
+class ScanPattern:
     """How a head sends its pulses.
 
     Attributes
     ----------
     pulses : int
-        In one turn.
+        In one revolution.
     turns_per_s : float
     phase_rad : float
         Where the mirror points at time 0.
@@ -46,14 +46,14 @@ class Beams:
         Number of the first pulse, counted from the beginning of the pass.
     time_s : (n,) float64
         From the beginning of the pass.
-    origins, ways : (n, 3) float64
+    origins, directions : (n, 3) float64
         m, the street's frame; unit vectors.
     """
 
     first: int
     time_s: Floats
     origins: Floats
-    ways: Floats
+    directions: Floats
 
 
 def head_axes(head: Head) -> Floats:
@@ -72,34 +72,34 @@ def head_axes(head: Head) -> Floats:
     return np.stack([up, np.cross(axis, up), axis], axis=-1)
 
 
-def beams_of(driven: Pass, head: Head, spin: Spin, pulses: range) -> Beams:
+def beams_of(driven: SimulatedPass, head: Head, scan_pattern: ScanPattern, pulses: range) -> Beams:
     """Pulses of a head, by their numbers from the beginning of the pass."""
     count = len(pulses)
-    time_s = (pulses.start + np.arange(count)) / spin.rate_hz
-    origins, ways = np.empty((count, 3)), np.empty((count, 3))
+    time_s = (pulses.start + np.arange(count)) / scan_pattern.rate_hz
+    origins, directions = np.empty((count, 3)), np.empty((count, 3))
     _beams_kernel(
         pulses.start,
-        (spin.rate_hz, 1.0 / spin.pulses, spin.phase_rad),
-        (driven.time_s, driven.places, driven.turns),
+        (scan_pattern.rate_hz, 1.0 / scan_pattern.pulses, scan_pattern.phase_rad),
+        (driven.time_s, driven.positions, driven.rotations),
         (np.array(head.lever_m), head_axes(head)),
-        (origins, ways),
+        (origins, directions),
     )
-    return Beams(pulses.start, time_s, origins, ways)
+    return Beams(pulses.start, time_s, origins, directions)
 
 
 @kernel
 def _beams_kernel(
     first: int,
-    spin: tuple[float, float, float],
+    scan_pattern: tuple[float, float, float],
     poses: tuple[Floats, Floats, Floats],
     head: tuple[Floats, Floats],
     out: tuple[Floats, Floats],
 ) -> None:
     """Poses are interpolated between records element by element."""
-    rate, per_turn, phase = spin
-    times, places, turns = poses
+    rate, per_revolution, phase = scan_pattern
+    times, positions, rotations = poses
     lever, axes = head
-    origins, ways = out
+    origins, directions = out
     row = 0
     beam = np.empty(3)
     for number in range(origins.shape[0]):
@@ -108,24 +108,24 @@ def _beams_kernel(
         while row < times.size - 2 and times[row + 1] <= time:
             row += 1
         share = (time - times[row]) / (times[row + 1] - times[row])
-        angle = phase + 2 * np.pi * (pulse * per_turn - np.floor(pulse * per_turn))
+        angle = phase + 2 * np.pi * (pulse * per_revolution - np.floor(pulse * per_revolution))
         c, s = np.cos(angle), np.sin(angle)
         for axis in range(3):
             beam[axis] = c * axes[axis, 0] + s * axes[axis, 1]
         length = 0.0
         for axis in range(3):
-            at = places[row, axis] + share * (places[row + 1, axis] - places[row, axis])
-            way = 0.0
+            at = positions[row, axis] + share * (positions[row + 1, axis] - positions[row, axis])
+            direction = 0.0
             for one in range(3):
-                low, high = turns[row, axis, one], turns[row + 1, axis, one]
+                low, high = rotations[row, axis, one], rotations[row + 1, axis, one]
                 turn = low + share * (high - low)
                 at += turn * lever[one]
-                way += turn * beam[one]
-            origins[number, axis], ways[number, axis] = at, way
-            length += way * way
+                direction += turn * beam[one]
+            origins[number, axis], directions[number, axis] = at, direction
+            length += direction * direction
         length = np.sqrt(length)
         for axis in range(3):
-            ways[number, axis] /= length
+            directions[number, axis] /= length
 
 
 def warm_up() -> None:

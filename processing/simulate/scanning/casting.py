@@ -12,7 +12,7 @@ from processing.simulate.mesh import Floats, Integers, Mesh
 NOWHERE = np.inf
 
 
-class Hits(NamedTuple):
+class CastHits(NamedTuple):
     """What beams meet first.
 
     Attributes
@@ -30,7 +30,7 @@ class Hits(NamedTuple):
     cosines: Floats
 
 
-class Scene:
+class RaycastScene:
     """Triangles to cast at; single precision about an origin inside, double outside.
 
     Parameters
@@ -53,24 +53,24 @@ class Scene:
             self._scene.add_triangles(self._tensor(local), self._tensor(triangles))
             self._scene.cast_rays(self._tensor(np.ones((1, 6), np.float32)))  # builds its tree
 
-    def cast(self, origins: Floats, ways: Floats) -> Hits:
+    def cast(self, origins: Floats, directions: Floats) -> CastHits:
         """What beams meet first.
 
         Parameters
         ----------
-        origins, ways : (n, 3) float64
+        origins, directions : (n, 3) float64
             m, the frame of the mesh; unit vectors.
         """
         count = origins.shape[0]
         if count == 0 or self.mesh.triangles.shape[0] == 0:
-            return Hits(np.full(count, NOWHERE), np.full(count, -1, np.int64), np.ones(count))
+            return CastHits(np.full(count, NOWHERE), np.full(count, -1, np.int64), np.ones(count))
         rays = np.empty((count, 6), np.float32)
         rays[:, :3] = origins - self._origin
-        rays[:, 3:] = ways
+        rays[:, 3:] = directions
         answer = self._scene.cast_rays(self._tensor(rays))
         ranges = answer["t_hit"].numpy().astype(np.float64)
         found: NDArray[np.uint32] = answer["primitive_ids"].numpy()
         is_hit = np.isfinite(ranges)
         normals = answer["primitive_normals"].numpy()
         cosines = np.abs(np.einsum("ij,ij->i", normals, rays[:, 3:])).astype(np.float64)
-        return Hits(ranges, np.where(is_hit, found.astype(np.int64), -1), cosines)
+        return CastHits(ranges, np.where(is_hit, found.astype(np.int64), -1), cosines)

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from pyproj import CRS
 
-from processing.formats.told_writes import ToldWrites, failures_told
+from processing.formats.reported_writes import ReportedWrites, report_write_failures
 from processing.simulate.mesh import Floats
 
 CRS_NAME = "EPSG:6677"
@@ -65,7 +65,7 @@ class PointFile:
         header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
         header.add_crs(CRS.from_user_input(CRS_NAME))
         self._header, self.count = header, 0
-        self._file = ToldWrites(path.open("wb"))
+        self._file = ReportedWrites(path.open("wb"))
         self._writer = laspy.LasWriter(
             self._file, header, do_compress=True, laz_backend=laspy.LazBackend.LazrsParallel
         )
@@ -78,7 +78,7 @@ class PointFile:
         record["gps_time"], record["intensity"] = points.time_s, points.intensity
         record["return_number"], record["number_of_returns"] = points.number, points.count
         record["point_source_id"] = np.full(points.time_s.size, points.source_id)
-        with failures_told(self._file):
+        with report_write_failures(self._file):
             self._writer.write_points(record)
         self.count += points.time_s.size
 
@@ -92,7 +92,7 @@ class PointFile:
         trace: TracebackType | None,
     ) -> None:
         if error is None:
-            with failures_told(self._file):
+            with report_write_failures(self._file):
                 self._writer.close()
         self._file.close()
 

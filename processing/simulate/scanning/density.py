@@ -9,8 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from processing.errors import OutOfRange
 from processing.simulate.scanning.beams import head_axes
-from processing.simulate.scanning.passes import REFERENCE_HIGH_M
 from processing.simulate.scanning.sensors import Head, Sensor
+from processing.simulate.scanning.simulated_passes import REFERENCE_HIGH_M
 from processing.text import Text
 
 Floats = NDArray[np.float64]
@@ -23,7 +23,7 @@ _LEAST_WALL_M = 1.5  # nearer than that the vehicle itself drives
 
 
 @dataclass(frozen=True)
-class Survey:
+class DrivingSensor:
     """A sensor on a vehicle that drives straight on at one speed.
 
     Attributes
@@ -32,7 +32,7 @@ class Survey:
     turns_per_s : float
         Of each head's mirror.
     pulses : int
-        In one turn.
+        In one revolution.
     most_m : float
         Reach; farther surfaces are not measured.
     speed_m_s : float
@@ -48,7 +48,7 @@ class Survey:
     height_m: float = sum(REFERENCE_HIGH_M) / 2
 
     @property
-    def between_turns_m(self) -> float:
+    def between_revolutions_m(self) -> float:
         """How far the vehicle drives during one turn: from scan line to scan line."""
         return self.speed_m_s / self.turns_per_s
 
@@ -73,7 +73,7 @@ class DensityMap:
         Points/m² of an upright wall along the road at each distance; NaN where the vehicle drives.
     """
 
-    survey: Survey
+    survey: DrivingSensor
     across_m: Floats
     up_m: Floats
     road: Floats
@@ -83,7 +83,7 @@ class DensityMap:
 
 def survey_of(
     sensor: Sensor, speed_km_h: float, *, pulses: int = 0, turns_per_s: float = 0.0
-) -> Survey:
+) -> DrivingSensor:
     """A sensor as it is usually mounted, at a speed.
 
     Parameters
@@ -102,7 +102,7 @@ def survey_of(
             Text.same(f"{speed_km_h:g} km/h"),
             Text("Give more than 0 km/h.", "0 km/h より大きい値を指定してください。"),
         )
-    return Survey(
+    return DrivingSensor(
         sensor.heads,
         turns_per_s or sensor.turns_per_s,
         pulses or sensor.pulses,
@@ -111,7 +111,7 @@ def survey_of(
     )
 
 
-def road_density(survey: Survey, across_m: ArrayLike) -> Floats:
+def road_density(survey: DrivingSensor, across_m: ArrayLike) -> Floats:
     """Points per square metre of a level road.
 
     Parameters
@@ -130,7 +130,7 @@ def road_density(survey: Survey, across_m: ArrayLike) -> Floats:
     return total
 
 
-def wall_density(survey: Survey, across_m: ArrayLike, up_m: ArrayLike) -> Floats:
+def wall_density(survey: DrivingSensor, across_m: ArrayLike, up_m: ArrayLike) -> Floats:
     """Points per square metre of an upright wall along the road.
 
     Parameters
@@ -153,14 +153,14 @@ def wall_density(survey: Survey, across_m: ArrayLike, up_m: ArrayLike) -> Floats
     return total
 
 
-def density_map(survey: Survey) -> DensityMap:
+def density_map(survey: DrivingSensor) -> DensityMap:
     """Road and walls up to 20 m to both sides and 10 m up, in cells of 0.1 m."""
     cells = round(_REACH_ACROSS_M / _CELL_M)
     across = _middles(-cells, cells)
     up = _middles(0, round(_REACH_UP_M / _CELL_M))
     each = np.array([_on_road(survey, head, across) for head in survey.heads])
     with np.errstate(divide="ignore"):
-        spacing = 1 / (each.max(axis=0) * survey.between_turns_m)
+        spacing = 1 / (each.max(axis=0) * survey.between_revolutions_m)
     wall = wall_density(survey, across[None, :], up[:, None])
     wall[:, np.abs(across) < _LEAST_WALL_M] = np.nan
     spacing[~np.isfinite(spacing)] = np.nan
@@ -172,7 +172,7 @@ def _middles(first: int, stop: int) -> Floats:
     return (np.arange(first, stop, dtype=np.float64) + 0.5) * _CELL_M
 
 
-def _on_road(survey: Survey, head: Head, across: Floats) -> Floats:
+def _on_road(survey: DrivingSensor, head: Head, across: Floats) -> Floats:
     below = survey.height_m + head.lever_m[2]
     beside = across - head.lever_m[1]
     return _density(
@@ -180,7 +180,9 @@ def _on_road(survey: Survey, head: Head, across: Floats) -> Floats:
     )
 
 
-def _density(survey: Survey, head: Head, beside: Floats, above: Floats, distance: Floats) -> Floats:
+def _density(
+    survey: DrivingSensor, head: Head, beside: Floats, above: Floats, distance: Floats
+) -> Floats:
     """Points/m² of one head on a plane along the road.
 
     1. Beams lie in the plane square to the axis a, so a place ``beside`` and ``above`` the head is
@@ -200,5 +202,5 @@ def _density(survey: Survey, head: Head, beside: Floats, above: Floats, distance
     x = -(left * beside + up * above) / ahead
     square = x**2 + beside**2 + above**2
     per_radian = survey.pulses / (2 * np.pi)
-    found: Floats = per_radian / survey.between_turns_m * distance / (square * abs(ahead))
+    found: Floats = per_radian / survey.between_revolutions_m * distance / (square * abs(ahead))
     return np.where(square > survey.most_m**2, 0.0, found)

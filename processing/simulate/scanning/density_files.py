@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from processing.errors import OutOfRange
 from processing.formats.png import write_png
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 from processing.image.colour_maps import UNKNOWN_COLOUR, height_ramp
 from processing.simulate.scanning.density import DensityMap
 from processing.text import Text
@@ -43,8 +43,8 @@ def density_colours(densities: ArrayLike) -> Picture:
     values = np.asarray(densities, np.float64)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = np.log(values / LEAST) / np.log(MOST / LEAST)
-        places = np.clip(np.nan_to_num(share * 255, nan=0.0), 0, 255).astype(np.uint8)
-    found: Picture = height_ramp()[places].copy()
+        positions = np.clip(np.nan_to_num(share * 255, nan=0.0), 0, 255).astype(np.uint8)
+    found: Picture = height_ramp()[positions].copy()
     found[~np.isfinite(values)] = UNKNOWN_COLOUR
     return found
 
@@ -131,10 +131,10 @@ def _paint_scale(whole: Picture, left: int, rows: int) -> None:
         _write(whole, f"{decade:,}", (left + 28, row + 5))
 
 
-def _write(whole: Picture, words: str, place: tuple[int, int]) -> None:
+def _write(whole: Picture, words: str, position: tuple[int, int]) -> None:
     import cv2
 
-    cv2.putText(whole, words, place, cv2.FONT_HERSHEY_SIMPLEX, 0.45, _BLACK, 1, cv2.LINE_AA)
+    cv2.putText(whole, words, position, cv2.FONT_HERSHEY_SIMPLEX, 0.45, _BLACK, 1, cv2.LINE_AA)
 
 
 def _write_table(path: Path, found: DensityMap) -> None:
@@ -142,9 +142,9 @@ def _write_table(path: Path, found: DensityMap) -> None:
     rows = np.searchsorted(found.up_m, heights) - 1
     head = ["across_m", "road_points_per_m2", "between_points_m", "between_lines_m"]
     head += [f"wall_{height}_m_points_per_m2" for height in heights]
-    lines = np.full(found.across_m.size, found.survey.between_turns_m)
+    lines = np.full(found.across_m.size, found.survey.between_revolutions_m)
     columns = [found.across_m, found.road, found.spacing_m, lines, *found.wall[rows]]
-    with written_safely(path) as temporary, temporary.open("w", encoding="utf-8") as file:
+    with write_safely(path) as temporary, temporary.open("w", encoding="utf-8") as file:
         file.write(",".join(head) + "\n")
         for values in zip(*columns, strict=True):
             file.write(",".join("" if np.isnan(one) else f"{one:.5g}" for one in values) + "\n")

@@ -7,8 +7,8 @@ import numpy as np
 from processing.kernels import kernel
 from processing.simulate.mesh import Floats, Integers
 from processing.simulate.scanning.beams import Beams
-from processing.simulate.scanning.casting import Scene
-from processing.simulate.scanning.returns import Met
+from processing.simulate.scanning.casting import RaycastScene
+from processing.simulate.scanning.returns import BeamHits
 from processing.simulate.street.street import Street
 from processing.simulate.things import Mover
 
@@ -29,9 +29,9 @@ class MovingScene:
 
     def __init__(self, street: Street, movers: list[Mover]) -> None:
         self._street, self._movers = street, movers
-        self._scenes: dict[int, tuple[Scene, float]] = {}
+        self._scenes: dict[int, tuple[RaycastScene, float]] = {}
 
-    def meet(self, beams: Beams, met: Met) -> None:
+    def meet(self, beams: Beams, met: BeamHits) -> None:
         """Put what moves before what stands, where it is nearer."""
         if beams.time_s.size == 0:
             return
@@ -46,45 +46,45 @@ class MovingScene:
             if not self._may_be_near(mover, first, middle, reach):
                 continue
             times = np.arange(np.floor(first / _STEP_S), np.ceil(last / _STEP_S) + 2) * _STEP_S
-            places, headings = poses_of(mover, self._street, times)
-            if np.linalg.norm(places - middle, axis=1).min() > _REACH_M:
+            positions, headings = poses_of(mover, self._street, times)
+            if np.linalg.norm(positions - middle, axis=1).min() > _REACH_M:
                 continue
-            self._meet_one(beams, met, number, (times, places, headings))
+            self._meet_one(beams, met, number, (times, positions, headings))
 
-    def _may_be_near(self, mover: Mover, time_s: float, place: Floats, reach_m: float) -> bool:
+    def _may_be_near(self, mover: Mover, time_s: float, position: Floats, reach_m: float) -> bool:
         """Whether it is worth to work out where it stands: that takes the ground's height."""
-        at, offset = mover.way_at(time_s)
-        away = self._street.alignment.at(at, offset, place[2]) - place
+        at, offset = mover.direction_at(time_s)
+        away = self._street.alignment.at(at, offset, position[2]) - position
         return bool(np.linalg.norm(away) < reach_m)
 
     def _meet_one(
-        self, beams: Beams, met: Met, number: int, poses: tuple[Floats, Floats, Floats]
+        self, beams: Beams, met: BeamHits, number: int, poses: tuple[Floats, Floats, Floats]
     ) -> None:
         mover = self._movers[number]
         scene, radius = self._scene(number)
         rays = np.empty(beams.time_s.size, np.int64)
-        origins, ways = np.empty((rays.size, 3)), np.empty((rays.size, 3))
+        origins, directions = np.empty((rays.size, 3)), np.empty((rays.size, 3))
         span = (mover.from_s, mover.to_s, radius)
-        sent = (beams.time_s, beams.origins, beams.ways)
-        count = _turned_kernel(sent, poses, span, (rays, origins, ways))
+        sent = (beams.time_s, beams.origins, beams.directions)
+        count = _turned_kernel(sent, poses, span, (rays, origins, directions))
         if count:
             chosen = rays[:count]
-            hits = scene.cast(origins[:count], ways[:count])
+            hits = scene.cast(origins[:count], directions[:count])
             met.take(chosen, hits, mover.mesh)
 
-    def _scene(self, number: int) -> tuple[Scene, float]:
+    def _scene(self, number: int) -> tuple[RaycastScene, float]:
         if number not in self._scenes:
             mesh = self._movers[number].mesh
             radius = float(np.linalg.norm(mesh.vertices, axis=1).max()) + 0.05
-            self._scenes[number] = Scene(mesh, np.zeros(3)), radius
+            self._scenes[number] = RaycastScene(mesh, np.zeros(3)), radius
         return self._scenes[number]
 
 
 def poses_of(mover: Mover, street: Street, times: Floats) -> tuple[Floats, Floats]:
     """Where a mover is at times: its place on the ground (n, 3) and its heading (n,) in radians."""
-    at, offset = mover.way_at(times)
-    places = street.alignment.at(at, offset, street.ground_height(at, offset))
-    return places, street.alignment.heading(at) + mover.turn_rad
+    at, offset = mover.direction_at(times)
+    positions = street.alignment.at(at, offset, street.ground_height(at, offset))
+    return positions, street.alignment.heading(at) + mover.turn_rad
 
 
 @kernel
@@ -95,10 +95,10 @@ def _turned_kernel(
     out: tuple[Integers, Floats, Floats],
 ) -> int:
     """Choose beams that pass near the mover, and turn them into its own frame."""
-    times, origins, ways = beams
-    marks, places, headings = poses
+    times, origins, directions = beams
+    marks, positions, headings = poses
     start, end, radius = span
-    rays, own_origins, own_ways = out
+    rays, own_origins, own_directions = out
     found, row = 0, 0
     for ray in range(times.size):
         time = times[ray]
@@ -107,10 +107,16 @@ def _turned_kernel(
         while row < marks.size - 2 and marks[row + 1] <= time:
             row += 1
         share = (time - marks[row]) / (marks[row + 1] - marks[row])
-        x = origins[ray, 0] - (places[row, 0] + share * (places[row + 1, 0] - places[row, 0]))
-        y = origins[ray, 1] - (places[row, 1] + share * (places[row + 1, 1] - places[row, 1]))
-        z = origins[ray, 2] - (places[row, 2] + share * (places[row + 1, 2] - places[row, 2]))
-        along = x * ways[ray, 0] + y * ways[ray, 1] + z * ways[ray, 2]
+        x = origins[ray, 0] - (
+            positions[row, 0] + share * (positions[row + 1, 0] - positions[row, 0])
+        )
+        y = origins[ray, 1] - (
+            positions[row, 1] + share * (positions[row + 1, 1] - positions[row, 1])
+        )
+        z = origins[ray, 2] - (
+            positions[row, 2] + share * (positions[row + 1, 2] - positions[row, 2])
+        )
+        along = x * directions[ray, 0] + y * directions[ray, 1] + z * directions[ray, 2]
         away = x * x + y * y + z * z
         if away > radius * radius and (along > 0 or away - along * along > radius * radius):
             continue
@@ -118,9 +124,9 @@ def _turned_kernel(
         c, s = np.cos(turn), np.sin(turn)
         rays[found] = ray
         own_origins[found, 0], own_origins[found, 1] = c * x + s * y, c * y - s * x
-        own_origins[found, 2], own_ways[found, 2] = z, ways[ray, 2]
-        own_ways[found, 0] = c * ways[ray, 0] + s * ways[ray, 1]
-        own_ways[found, 1] = c * ways[ray, 1] - s * ways[ray, 0]
+        own_origins[found, 2], own_directions[found, 2] = z, directions[ray, 2]
+        own_directions[found, 0] = c * directions[ray, 0] + s * directions[ray, 1]
+        own_directions[found, 1] = c * directions[ray, 1] - s * directions[ray, 0]
         found += 1
     return found
 

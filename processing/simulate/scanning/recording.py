@@ -20,19 +20,19 @@ from processing.errors import Cancelled
 from processing.monitor import Monitor
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats, Integers
-from processing.simulate.scanning.beams import Spin, beams_of
-from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.beams import ScanPattern, beams_of
+from processing.simulate.scanning.casting import RaycastScene
 from processing.simulate.scanning.moving import MovingScene
-from processing.simulate.scanning.passes import Pass
 from processing.simulate.scanning.returns import (
-    Met,
+    BeamHits,
     Returns,
     Weather,
     returns_of,
     scanner_numbers,
 )
-from processing.simulate.scanning.scanner_noise import NoiseSource, Recorded
+from processing.simulate.scanning.scanner_noise import NoiseSource, PulseHits
 from processing.simulate.scanning.sensors import Head, Sensor
+from processing.simulate.scanning.simulated_passes import SimulatedPass
 from processing.simulate.scanning.surroundings import scene_around
 from processing.simulate.street.street import BuiltSection, Street
 
@@ -41,7 +41,7 @@ _REACH_M = 110.0
 _PATIENCE_S = 0.05  # between questions whether to stop
 _WORKERS = max(2, min(8, os.cpu_count() or 2))
 
-Found = TypeVar("Found")
+BatchT = TypeVar("BatchT")
 
 
 @dataclass(frozen=True)
@@ -51,25 +51,25 @@ class Setup:
     Attributes
     ----------
     sensor : Sensor
-    spin : Spin
+    scan_pattern : Spin
         Of all heads; each starts at an angle of its own.
     weather : Weather
     """
 
     sensor: Sensor
-    spin: Spin
+    scan_pattern: ScanPattern
     weather: Weather
 
 
 @dataclass(frozen=True)
-class Stretch:
+class HeadChunk:
     """Some points of one head, in their order."""
 
     head: Head
     returns: Returns
 
 
-class Recording:
+class SimulatedRecording:
     """One pass along a street.
 
     Parameters
@@ -79,23 +79,25 @@ class Recording:
         What drives and walks meanwhile.
     """
 
-    def __init__(self, street: Street, setup: Setup, driven: Pass, moving: MovingScene) -> None:
+    def __init__(
+        self, street: Street, setup: Setup, driven: SimulatedPass, moving: MovingScene
+    ) -> None:
         self._street, self._setup, self._driven, self._moving = street, setup, driven, moving
-        self._spins = [self._spin(number) for number in range(len(setup.sensor.heads))]
-        self._scanner = scanner_numbers(setup.sensor, setup.spin.pulses, setup.weather)
+        self._spins = [self._scan_pattern(number) for number in range(len(setup.sensor.heads))]
+        self._scanner = scanner_numbers(setup.sensor, setup.scan_pattern.pulses, setup.weather)
         self._keys = [
             int(chance(street.seed, "returns", driven.number, number).integers(1 << 40))
             for number in range(len(self._spins))
         ]
         self._noise = [
-            NoiseSource(street.seed, (driven.number, number), setup.sensor, spin)
-            for number, spin in enumerate(self._spins)
+            NoiseSource(street.seed, (driven.number, number), setup.sensor, scan_pattern)
+            for number, scan_pattern in enumerate(self._spins)
         ]
 
     @property
     def pulses(self) -> int:
         """Of one head, in all; one at least, however short the pass."""
-        return max(1, int(self._driven.duration_s * self._setup.spin.rate_hz))
+        return max(1, int(self._driven.duration_s * self._setup.scan_pattern.rate_hz))
 
     def sections(self) -> Iterator[BuiltSection]:
         """The sections that are seen, in their order along the street; built when asked for."""
@@ -103,7 +105,7 @@ class Recording:
         for row in self._street.within(low - _REACH_M, high + _REACH_M):
             yield self._street.section(row)
 
-    def stretches(self, monitor: Monitor) -> Iterator[Stretch]:
+    def chunks(self, monitor: Monitor) -> Iterator[HeadChunk]:
         """All points, of every head in the order of its time.
 
         Raises
@@ -119,7 +121,7 @@ class Recording:
 
         with ThreadPoolExecutor(_WORKERS) as pool:
             coming = pool.submit(scene_around, self._street, spans[0][0], _REACH_M, check)
-            waiting: deque[Future[Stretch]] = deque()
+            waiting: deque[Future[HeadChunk]] = deque()
             try:
                 for number, (_, pulses) in enumerate(spans):
                     scene = _result(coming, monitor)
@@ -139,21 +141,29 @@ class Recording:
                 for one in waiting:
                     one.cancel()
 
-    def _spin(self, head: int) -> Spin:
-        spin = self._setup.spin
+    def _scan_pattern(self, head: int) -> ScanPattern:
+        scan_pattern = self._setup.scan_pattern
         random = chance(self._street.seed, "spin", self._driven.number, head)
-        return Spin(spin.pulses, spin.turns_per_s, float(random.uniform(0, 2 * np.pi)))
+        return ScanPattern(
+            scan_pattern.pulses, scan_pattern.turns_per_s, float(random.uniform(0, 2 * np.pi))
+        )
 
     def _spans(self) -> list[tuple[int, range]]:
         """Sections (rows of the street's plans) that are driven through, and pulses sent there."""
         driven = self._driven
-        way = -1 if driven.number % 2 else 1
-        rows = list(self._street.within(driven.chainages.min(), driven.chainages.max()))[::way]
+        direction = -1 if driven.number % 2 else 1
+        rows = list(self._street.within(driven.chainages.min(), driven.chainages.max()))[
+            ::direction
+        ]
         plans = self._street.plans
-        edges = [plans[row].end_m if way > 0 else plans[row].start_m for row in rows[:-1]]
-        at = np.searchsorted(way * driven.chainages, way * np.array(edges))
+        edges = [plans[row].end_m if direction > 0 else plans[row].start_m for row in rows[:-1]]
+        at = np.searchsorted(direction * driven.chainages, direction * np.array(edges))
         times = driven.time_s[np.minimum(at, driven.time_s.size - 1)]
-        cuts = [0, *np.ceil(times * self._setup.spin.rate_hz).astype(int).tolist(), self.pulses]
+        cuts = [
+            0,
+            *np.ceil(times * self._setup.scan_pattern.rate_hz).astype(int).tolist(),
+            self.pulses,
+        ]
         cuts = np.minimum(cuts, self.pulses).tolist()
         return [
             (row, range(start, stop))
@@ -169,17 +179,17 @@ class Recording:
                 yield head, range(start, stop)
             start = stop
 
-    def _record(self, scene: Scene, number: int, pulses: range) -> Stretch:
+    def _record(self, scene: RaycastScene, number: int, pulses: range) -> HeadChunk:
         head = self._setup.sensor.heads[number]
         beams = beams_of(self._driven, head, self._spins[number], pulses)
-        met = Met.of(scene.cast(beams.origins, beams.ways), scene.mesh)
+        met = BeamHits.of(scene.cast(beams.origins, beams.directions), scene.mesh)
         self._moving.meet(beams, met)
         returns, _ = returns_of(beams, met, scene, self._scanner, self._keys[number])
-        noisy = self._noise[number].added(Recorded(beams, met, returns, scene))
-        return Stretch(head, noisy)
+        noisy = self._noise[number].added(PulseHits(beams, met, returns, scene))
+        return HeadChunk(head, noisy)
 
 
-def _result(coming: Future[Found], monitor: Monitor) -> Found:
+def _result(coming: Future[BatchT], monitor: Monitor) -> BatchT:
     """What a worker finds; whoever waits for it can be stopped meanwhile."""
     monitor.check()
     while not wait((coming,), _PATIENCE_S).done:
@@ -217,12 +227,12 @@ class Evidence:
             return
         keys = np.concatenate([np.empty(0, np.int64), *self._keys])
         counts = np.concatenate([np.empty(0, np.int64), *self._counts])
-        merged, place = np.unique(keys, return_inverse=True)
+        merged, position = np.unique(keys, return_inverse=True)
         self._keys = [merged]
-        self._counts = [np.bincount(place, counts, merged.size).astype(np.int64)]
+        self._counts = [np.bincount(position, counts, merged.size).astype(np.int64)]
 
 
-def moved_by_errors(driven: Pass, returns: Returns) -> Floats:
+def add_trajectory_errors(driven: SimulatedPass, returns: Returns) -> Floats:
     """Places as they are delivered: off by what the trajectory is off. (n, 3) float64, m."""
     errors = [np.interp(returns.time_s, driven.time_s, one) for one in driven.errors.T]
     moved: Floats = returns.xyz + np.column_stack(errors)

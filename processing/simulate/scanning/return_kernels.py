@@ -31,7 +31,7 @@ _NEAR_M = 8.0  # nearer than this a receiver sees its own beam only in part
 
 
 @kernel
-def mixed_bits(number: int, salt: int) -> np.uint64:
+def mix_bits(number: int, salt: int) -> np.uint64:
     """64 bits that look like chance (splitmix64)."""
     bits = np.uint64(number) * np.uint64(0x9E3779B97F4A7C15) + np.uint64(salt) * np.uint64(
         0xD1B54A32D192ED03
@@ -44,13 +44,13 @@ def mixed_bits(number: int, salt: int) -> np.uint64:
 @kernel
 def share_of(number: int, salt: int) -> float:
     """A number from 0 to 1 that belongs to ``number`` and ``salt``."""
-    return float(mixed_bits(number, salt) >> np.uint64(11)) / 9007199254740992.0
+    return float(mix_bits(number, salt) >> np.uint64(11)) / 9007199254740992.0
 
 
 @kernel
 def normal_of(number: int, salt: int) -> float:
     """A normally distributed number that belongs to ``number`` and ``salt``."""
-    bits = mixed_bits(number, salt)
+    bits = mix_bits(number, salt)
     one = (float(bits >> np.uint64(40)) + 0.5) / 16777216.0
     other = float(bits & np.uint64(0xFFFFFF)) / 16777216.0
     return math.sqrt(-2.0 * math.log(one)) * math.cos(6.283185307179586 * other)
@@ -109,7 +109,7 @@ def first_returns(
     cosines, materials. ``out``: measured ranges (NaN where nothing came back), true ranges, and
     strengths.
     """
-    first, origins, ways = beams
+    first, origins, directions = beams
     reaches, cosines, materials = met
     ranges, truths, strengths = out
     for ray in range(reaches.size):
@@ -120,9 +120,9 @@ def first_returns(
         number = first + ray
         surface = surfaces[materials[ray]]
         cosine = max(cosines[ray], 0.01)
-        x = origins[ray, 0] + reach * ways[ray, 0]
-        y = origins[ray, 1] + reach * ways[ray, 1]
-        z = origins[ray, 2] + reach * ways[ray, 2]
+        x = origins[ray, 0] + reach * directions[ray, 0]
+        y = origins[ray, 1] + reach * directions[ray, 1]
+        z = origins[ray, 2] + reach * directions[ray, 2]
         u, v = x + 0.37 * z, y + 0.61 * z
         spread = relief(u / 0.35, v / 0.35, 3) + 0.5 * relief(u / 0.04, v / 0.04, 5)
         high = surface[ROUGHNESS] * 2.0 * relief(u / surface[GRAIN], v / surface[GRAIN], 7)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from processing.simulate.materials import SURFACES, Material
 from processing.simulate.mesh import Floats, Integers, Mesh
 from processing.simulate.scanning.beams import Beams
-from processing.simulate.scanning.casting import Hits, Scene
+from processing.simulate.scanning.casting import CastHits, RaycastScene
 from processing.simulate.scanning.return_kernels import MIXED, OPEN, edge_returns, first_returns
 from processing.simulate.scanning.sensors import Sensor
 
@@ -114,7 +114,7 @@ class Returns:
 
 
 @dataclass
-class Met:
+class BeamHits:
     """What beams met first, of all scenes together.
 
     Attributes
@@ -132,10 +132,10 @@ class Met:
     evidence: Integers
 
     @staticmethod
-    def of(hits: Hits, mesh: Mesh) -> Met:
+    def of(hits: CastHits, mesh: Mesh) -> BeamHits:
         """What was met of one mesh."""
         count = hits.ranges.size
-        met = Met(
+        met = BeamHits(
             np.full(count, np.inf),
             np.ones(count),
             np.zeros(count, np.uint8),
@@ -145,7 +145,7 @@ class Met:
         met.take(np.flatnonzero(hits.triangles >= 0), hits, mesh)
         return met
 
-    def take(self, rays: Integers, hits: Hits, mesh: Mesh) -> None:
+    def take(self, rays: Integers, hits: CastHits, mesh: Mesh) -> None:
         """Take over what of another mesh lies nearer: hits of all rays, or of ``rays`` alone."""
         part = rays if hits.ranges.size == self.ranges.size else np.arange(rays.size)
         nearer = hits.ranges[part] < self.ranges[rays]
@@ -180,7 +180,7 @@ def scanner_numbers(sensor: Sensor, pulses: int, weather: Weather) -> Floats:
 
 
 def returns_of(
-    beams: Beams, met: Met, scene: Scene, scanner: Floats, key: int
+    beams: Beams, met: BeamHits, scene: RaycastScene, scanner: Floats, key: int
 ) -> tuple[Returns, Floats]:
     """What comes back of beams, without the noise that a scanner adds of its own.
 
@@ -204,7 +204,7 @@ def returns_of(
     ranges, truths, strengths = np.empty(count), np.empty(count), np.empty(count)
     met.ranges[met.ranges < _FEWEST_M] = np.inf
     first_returns(
-        (beams.first, beams.origins, beams.ways),
+        (beams.first, beams.origins, beams.directions),
         (met.ranges, met.cosines, met.material),
         _SURFACES,
         scanner,
@@ -242,7 +242,7 @@ class _Echoes:
         return Returns(
             beams.first + rays,
             beams.time_s[rays],
-            beams.origins[rays] + beams.ways[rays] * self.ranges[rays, None],
+            beams.origins[rays] + beams.directions[rays] * self.ranges[rays, None],
             self.strengths[rays],
             ones,
             ones,
@@ -252,18 +252,22 @@ class _Echoes:
 
 
 def _beside(
-    beams: Beams, met: Met, seconds: Floats, others: Integers, strengths: Floats
+    beams: Beams, met: BeamHits, seconds: Floats, others: Integers, strengths: Floats
 ) -> list[Returns]:
     """Second returns at edges, where the neighbouring beam met what is beside."""
     rays = np.flatnonzero(~np.isnan(seconds))
     there = _Echoes(rays, seconds, strengths * 0.4, met.label[others], met.evidence[others])
     returns = there.of_all(beams)
-    ways = beams.ways[others[rays]]
-    return [replace(returns, xyz=beams.origins[rays] + ways * seconds[rays, None])]
+    directions = beams.directions[others[rays]]
+    return [replace(returns, xyz=beams.origins[rays] + directions * seconds[rays, None])]
 
 
 def _behind(
-    beams: Beams, met: Met, scene: Scene, measured: tuple[Floats, Floats, Floats], key: int
+    beams: Beams,
+    met: BeamHits,
+    scene: RaycastScene,
+    measured: tuple[Floats, Floats, Floats],
+    key: int,
 ) -> list[Returns]:
     """Later returns, from behind leaves and nets."""
     ranges, seconds, strengths = measured
@@ -275,9 +279,9 @@ def _behind(
         if rays.size == 0:
             break
         start = reach[rays] + _STEP_BEHIND_M
-        ways = beams.ways[rays]
-        hits = scene.cast(beams.origins[rays] + ways * start[:, None], ways)
-        behind = Met.of(hits, scene.mesh)
+        directions = beams.directions[rays]
+        hits = scene.cast(beams.origins[rays] + directions * start[:, None], directions)
+        behind = BeamHits.of(hits, scene.mesh)
         is_apart = np.isfinite(behind.ranges) & (behind.ranges > _PULSE_LENGTH_M)
         rays, start = rays[is_apart], start[is_apart]
         there = _taken(behind, is_apart)
@@ -295,8 +299,8 @@ def _behind(
     return parts
 
 
-def _taken(met: Met, rows: NDArray[np.bool_]) -> Met:
-    return Met(*(getattr(met, one.name)[rows] for one in fields(met)))
+def _taken(met: BeamHits, rows: NDArray[np.bool_]) -> BeamHits:
+    return BeamHits(*(getattr(met, one.name)[rows] for one in fields(met)))
 
 
 def shares_of(numbers: Integers, salt: int) -> Floats:
@@ -316,10 +320,10 @@ def _ordered(beams: Beams, parts: list[Returns]) -> Returns:
         joined = Returns.joined(parts)
         away = np.linalg.norm(joined.xyz - beams.origins[joined.pulse - beams.first], axis=1)
         joined = joined.chosen(np.lexsort((away, joined.pulse)))
-    return numbered(joined)
+    return number_returns(joined)
 
 
-def numbered(returns: Returns) -> Returns:
+def number_returns(returns: Returns) -> Returns:
     """The same with number and count of returns as they are now."""
     pulse = returns.pulse
     if pulse.size == 0:

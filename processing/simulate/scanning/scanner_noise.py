@@ -1,6 +1,6 @@
 """Points that no surface gave: arcs and folds of phase-based scanners, mirrors, sun, rain.
 
-Kinds and looks follow Kogure et al. 2022 (arcs about the vehicle's way, of one range each) and what
+Kinds and looks follow Kogure et al. 2022 (arcs about the vehicle's path, of one range each) and what
 recordings of phase-based profilers show.
 """
 
@@ -15,15 +15,15 @@ from numpy.typing import NDArray
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, Integers
-from processing.simulate.scanning.beams import Beams, Spin
-from processing.simulate.scanning.casting import NOWHERE, Scene
+from processing.simulate.scanning.beams import Beams, ScanPattern
+from processing.simulate.scanning.casting import NOWHERE, RaycastScene
 from processing.simulate.scanning.returns import (
     HIGH_NOISE,
     LOW_NOISE,
     NO_EVIDENCE,
-    Met,
+    BeamHits,
     Returns,
-    numbered,
+    number_returns,
     shares_of,
     weakest_of,
 )
@@ -43,7 +43,7 @@ _OWN_LIKE_M = 0.05  # noise that falls so near to the true surface is none
 
 
 @dataclass(frozen=True)
-class NoiseWish:
+class NoiseOptions:
     """How much noise a recording has, as shares of pulses.
 
     Attributes
@@ -64,23 +64,23 @@ class NoiseWish:
     drops: float
 
 
-def noise_wish(seed: int, sensor: Sensor) -> NoiseWish:
+def noise_options(seed: int, sensor: Sensor) -> NoiseOptions:
     """How noisy a recording of this seed is."""
     random = chance(seed, "noise")
     if sensor.measures_by == "phase":
-        return NoiseWish(
+        return NoiseOptions(
             float(random.uniform(0.5, 6.0)),
             float(random.uniform(0.3, 0.9)),
             float(random.uniform(0.1, 0.4)),
             float(10 ** random.uniform(-4, -2.7)),
         )
-    return NoiseWish(
+    return NoiseOptions(
         0.0, 0.0, float(random.uniform(0.0, 0.03)), float(10 ** random.uniform(-5.5, -3.5))
     )
 
 
 @dataclass(frozen=True)
-class Recorded:
+class PulseHits:
     """A stretch of pulses and what they truly met.
 
     Attributes
@@ -94,9 +94,9 @@ class Recorded:
     """
 
     beams: Beams
-    met: Met
+    met: BeamHits
     returns: Returns
-    scene: Scene
+    scene: RaycastScene
 
 
 class NoiseSource:
@@ -104,16 +104,23 @@ class NoiseSource:
 
     Parameters
     ----------
-    place : tuple of int
+    position : tuple of int
         Number of the pass, number of the head.
     """
 
-    def __init__(self, seed: int, place: tuple[int, int], sensor: Sensor, spin: Spin) -> None:
-        self._seed, self._place, self._sensor, self._spin = seed, place, sensor, spin
-        self._wish = noise_wish(seed, sensor)
-        self._key = int(chance(seed, "noise key", *place).integers(1 << 40))
+    def __init__(
+        self, seed: int, position: tuple[int, int], sensor: Sensor, scan_pattern: ScanPattern
+    ) -> None:
+        self._seed, self._position, self._sensor, self._scan_pattern = (
+            seed,
+            position,
+            sensor,
+            scan_pattern,
+        )
+        self._request = noise_options(seed, sensor)
+        self._key = int(chance(seed, "noise key", *position).integers(1 << 40))
 
-    def added(self, recorded: Recorded) -> Returns:
+    def added(self, recorded: PulseHits) -> Returns:
         """The returns with some replaced by noise, and noise where nothing came back."""
         beams, met = recorded.beams, recorded.met
         ranges = np.full(met.ranges.size, np.nan)
@@ -139,12 +146,12 @@ class NoiseSource:
 
     def _arcs(self, beams: Beams, ranges: Floats) -> None:
         """One range over a part of the turn, for some turns: begun in slots of a second."""
-        if self._wish.arcs_per_s <= 0 or beams.time_s.size == 0:
+        if self._request.arcs_per_s <= 0 or beams.time_s.size == 0:
             return
         first = int(beams.time_s[0] // _SLOT_S)
         for slot in range(max(0, first - 1), int(beams.time_s[-1] // _SLOT_S) + 1):
-            random = chance(self._seed, "arcs", *self._place, slot)
-            for _ in range(random.poisson(self._wish.arcs_per_s)):
+            random = chance(self._seed, "arcs", *self._position, slot)
+            for _ in range(random.poisson(self._request.arcs_per_s)):
                 start = (slot + random.random()) * _SLOT_S
                 long_s = float(np.exp(random.uniform(np.log(0.01), np.log(_SLOT_S))))
                 reach, drift = random.uniform(1.5, 18.0), random.normal(0, 0.3)
@@ -153,23 +160,23 @@ class NoiseSource:
                 salt = int(random.integers(1000, 1 << 30))
                 low, high = np.searchsorted(beams.time_s, [start, start + long_s])
                 rows = np.arange(low, high)
-                turned = (beams.first + rows) / self._spin.pulses - middle
+                turned = (beams.first + rows) / self._scan_pattern.pulses - middle
                 rows = rows[np.abs(turned - np.round(turned)) < half]
                 rows = self._chosen(beams, rows, share, salt)
                 spread = 0.002 + 0.02 * (salt % 7) / 7
                 there = reach + drift * (beams.time_s[rows] - start)
                 ranges[rows] = there + spread * self._normal(beams, rows, salt + 1)
 
-    def _folded(self, beams: Beams, met: Met, ranges: Floats) -> None:
+    def _folded(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
         """What lies beyond the range of unambiguity, brought nearer by it."""
-        if self._wish.folded <= 0:
+        if self._request.folded <= 0:
             return
         most = self._sensor.most_m
         rows = np.flatnonzero((met.ranges > most) & (met.ranges < 2 * most))
-        rows = self._chosen(beams, rows, self._wish.folded, 100)
+        rows = self._chosen(beams, rows, self._request.folded, 100)
         ranges[rows] = met.ranges[rows] - most + 0.01 * self._normal(beams, rows, 110)
 
-    def _jumps(self, recorded: Recorded, ranges: Floats) -> None:
+    def _jumps(self, recorded: PulseHits, ranges: Floats) -> None:
         """Weak returns of phase-based scanners whose finer wave is counted wrongly."""
         if self._sensor.measures_by != "phase":
             return
@@ -179,36 +186,36 @@ class NoiseSource:
         waves = np.round(2 * self._normal(recorded.beams, rows, 610))
         ranges[rows] = met.ranges[rows] + waves * self._sensor.most_m / _FINER_WAVES
 
-    def _streaks(self, beams: Beams, met: Met, ranges: Floats) -> None:
+    def _streaks(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
         """Ranges spread along the beam at plates that shine back too strongly."""
         rows = np.flatnonzero((met.material == Material.SIGN_FACE) & np.isfinite(met.ranges))
-        rows = self._chosen(beams, rows, self._wish.streaks, 200)
+        rows = self._chosen(beams, rows, self._request.streaks, 200)
         ranges[rows] = met.ranges[rows] + 0.5 * self._normal(beams, rows, 210)
 
-    def _drops(self, beams: Beams, met: Met, ranges: Floats) -> None:
+    def _drops(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
         """Rain, dust and insects: single points, most of them near the scanner."""
-        rows = self._chosen(beams, np.arange(met.ranges.size), self._wish.drops, 300)
+        rows = self._chosen(beams, np.arange(met.ranges.size), self._request.drops, 300)
         away = _LEAST_M - 4.0 * np.log(np.maximum(shares_of(beams.first + rows, 301), 1e-9))
         is_free = away < met.ranges[rows]
         ranges[rows[is_free]] = away[is_free]
 
-    def _mirrored(self, recorded: Recorded, ranges: Floats) -> Integers:
+    def _mirrored(self, recorded: PulseHits, ranges: Floats) -> Integers:
         """Glass and water: some beams come back from what they mirror; rows of level mirrors."""
         beams, met, scene = recorded.beams, recorded.met, recorded.scene
         rows = np.flatnonzero(np.isin(met.material, _MIRRORS) & np.isfinite(met.ranges))
         rows = self._chosen(beams, rows, _MIRRORED_SHARE, 400)
         if rows.size == 0:
             return rows
-        places = beams.origins[rows] + beams.ways[rows] * met.ranges[rows, None]
-        hits = scene.cast(beams.origins[rows], beams.ways[rows])
+        positions = beams.origins[rows] + beams.directions[rows] * met.ranges[rows, None]
+        hits = scene.cast(beams.origins[rows], beams.directions[rows])
         is_same = (np.abs(hits.ranges - met.ranges[rows]) < 1e-3) & (hits.triangles >= 0)
-        rows, places, found = rows[is_same], places[is_same], hits.triangles[is_same]
+        rows, positions, found = rows[is_same], positions[is_same], hits.triangles[is_same]
         corners = scene.mesh.vertices[scene.mesh.triangles[found]]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
         normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None]
-        ways = beams.ways[rows]
-        turned = ways - 2 * np.einsum("ij,ij->i", ways, normals)[:, None] * normals
-        beyond = scene.cast(places + 0.01 * turned, turned).ranges
+        directions = beams.directions[rows]
+        turned = directions - 2 * np.einsum("ij,ij->i", directions, normals)[:, None] * normals
+        beyond = scene.cast(positions + 0.01 * turned, turned).ranges
         away = np.where(np.isfinite(beyond), met.ranges[rows] + beyond, NOWHERE)
         lucky = 0.5 + shares_of(beams.first + rows, self._key + 401)
         is_back = _MIRRORED_POWER * (10.0 / away) ** 2 > weakest_of(self._sensor) * lucky
@@ -216,22 +223,22 @@ class NoiseSource:
         ranges[rows[is_back]] = met.ranges[rows[is_back]] + beyond[is_back]
         return rows[is_back & (np.abs(normals[:, 2]) > _LEVEL)]
 
-    def _merged(self, recorded: Recorded, ranges: Floats, is_level: Integers) -> Returns:
+    def _merged(self, recorded: PulseHits, ranges: Floats, is_level: Integers) -> Returns:
         beams, met, returns = recorded.beams, recorded.met, recorded.returns
         rows = np.flatnonzero((ranges > _LEAST_M) & (ranges < self._sensor.most_m))
         if rows.size == 0:
             return returns
         is_below = np.isin(met.label[rows], _GROUND_LABELS) & (ranges[rows] > met.ranges[rows])
         is_below |= np.isin(rows, is_level)
-        places = beams.origins[rows] + beams.ways[rows] * ranges[rows, None]
-        is_below |= _under_ground(recorded.scene, places)
+        positions = beams.origins[rows] + beams.directions[rows] * ranges[rows, None]
+        is_below |= _under_ground(recorded.scene, positions)
         label = np.where(is_below, LOW_NOISE, HIGH_NOISE).astype(np.uint8)
         weak = 10.0 ** (-3.0 + 2.5 * shares_of(beams.first + rows, self._key + 500))
         ones = np.ones(rows.size, np.uint8)
         noise = Returns(
             beams.first + rows,
             beams.time_s[rows],
-            places,
+            positions,
             weak,
             ones,
             ones,
@@ -242,12 +249,12 @@ class NoiseSource:
         is_replaced[rows] = True
         kept = returns.chosen(~is_replaced[returns.pulse - beams.first])
         joined = Returns.joined([kept, noise])
-        return numbered(joined.chosen(np.argsort(joined.pulse, kind="stable")))
+        return number_returns(joined.chosen(np.argsort(joined.pulse, kind="stable")))
 
 
-def _under_ground(scene: Scene, places: Floats) -> NDArray[np.bool_]:
+def _under_ground(scene: RaycastScene, positions: Floats) -> NDArray[np.bool_]:
     """Whether ground is the first thing above places: what panes mirror may seem to lie there."""
-    hits = scene.cast(places, np.broadcast_to([0.0, 0.0, 1.0], places.shape))
+    hits = scene.cast(positions, np.broadcast_to([0.0, 0.0, 1.0], positions.shape))
     is_hit = hits.triangles >= 0
     under: NDArray[np.bool_] = np.zeros(is_hit.size, np.bool_)
     under[is_hit] = np.isin(scene.mesh.label[hits.triangles[is_hit]], _GROUND_LABELS)

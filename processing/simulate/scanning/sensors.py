@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, cast
 
-from processing.errors import BadFile, named, told_as_user_error
+from processing.errors import BadFile, name_with_type, report_as_user_error
 from processing.text import Text
 from resources import path_of
 
@@ -58,7 +58,7 @@ class Sensor:
     turns_per_s : float
         Of the mirror.
     pulses : int
-        In one turn.
+        In one revolution.
     measures_by : str
         ``pulse``, or ``phase``: one return, folded beyond its range of unambiguity, and arcs.
     most_m : float
@@ -95,7 +95,7 @@ class Sensor:
 def _sensors_in(text: str) -> dict[str, Sensor]:
     table = tomllib.loads(text)
     mounts = {
-        name: tuple(Head(**{**head, "lever_m": _place(head["lever_m"])}) for head in heads)
+        name: tuple(Head(**{**head, "lever_m": _position(head["lever_m"])}) for head in heads)
         for name, heads in table.get("mount", {}).items()
     }
     sensors = {}
@@ -107,7 +107,7 @@ def _sensors_in(text: str) -> dict[str, Sensor]:
     return sensors
 
 
-def _place(numbers: list[float]) -> tuple[float, float, float]:
+def _position(numbers: list[float]) -> tuple[float, float, float]:
     forward, left, up = (float(one) for one in numbers)
     return forward, left, up
 
@@ -136,11 +136,11 @@ def sensor_of(name: str, kind: str, own: str = "") -> Sensor:
         return _own_sensor(Path(own), kind)
     known = {one.id: one for one in SENSORS.values() if one.kind == kind}
     nothing = Text("There is no such sensor for this.", "この用途に使えるセンサーではありません。")
-    return named(known, name, nothing)
+    return name_with_type(known, name, nothing)
 
 
 def _own_sensor(path: Path, kind: str) -> Sensor:
-    with told_as_user_error(path):
+    with report_as_user_error(path):
         content = path.read_bytes()
     try:
         sensors = _sensors_in(content.decode("utf-8"))
@@ -189,8 +189,8 @@ def _check_head(head: Head) -> None:
     _check_number("mount.source_id", head.source_id, 0, 65_535)
     for angle in (head.yaw_deg, head.pitch_deg):
         _check_number("mount.yaw_deg, pitch_deg", angle, -360, 360)
-    for place in head.lever_m:
-        _check_number("mount.lever_m", place, -20, 20)
+    for position in head.lever_m:
+        _check_number("mount.lever_m", position, -20, 20)
 
 
 def _check_number(name: str, value: object, low: float, high: float) -> None:

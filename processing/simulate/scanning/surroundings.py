@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from processing.simulate.mesh import Mesh
-from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.casting import RaycastScene
 from processing.simulate.street.street import Street
 
 
-def scene_around(street: Street, row: int, reach_m: float, check: Callable[[], None]) -> Scene:
+def scene_around(
+    street: Street, row: int, reach_m: float, check: Callable[[], None]
+) -> RaycastScene:
     """Everything within a reach of a section.
 
     Parameters
@@ -31,4 +33,4 @@ def scene_around(street: Street, row: int, reach_m: float, check: Callable[[], N
     check()
     middle = (plan.start_m + plan.end_m) / 2
     level = street.alignment.carriageway_height(middle, 0.0)
-    return Scene(mesh, street.alignment.at(middle, 0.0, level))
+    return RaycastScene(mesh, street.alignment.at(middle, 0.0, level))

@@ -6,14 +6,22 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Shape, grid, plate, tube
-from processing.simulate.sites.bodies import Body, Kind, Part, beam, block, moved, turned
+from processing.simulate.mesh import TriangleShape, grid, plate, tube
+from processing.simulate.sites.bodies import (
+    SiteBody,
+    SiteKind,
+    SitePart,
+    beam,
+    block,
+    rotate_part,
+    shift_parts,
+)
 
 _PIPE_RADIUS_M = 0.0243  # 単管パイプ 48.6 mm (JIS G 3444)
 _BAY_M = 1.8
 
 
-def fence_panel(random: Generator, long_m: float) -> Body:
+def fence_panel(random: Generator, long_m: float) -> SiteBody:
     """One panel of a fence: steel plates, or a mesh one sees through, leaning a little."""
     lean = random.normal(0, 0.02)
     if random.random() < 0.5:
@@ -28,9 +36,9 @@ def fence_panel(random: Generator, long_m: float) -> Body:
             )
             for along in (0.0, long_m)
         ]
-        return Body(Kind.FENCE, ((plates, Material.PAINTED_METAL), *posts))
+        return SiteBody(SiteKind.FENCE, ((plates, Material.PAINTED_METAL), *posts))
     high = random.choice([0.8, 1.2, 1.8])  # ガードフェンス
-    parts: list[Part] = []
+    parts: list[SitePart] = []
     bars = np.arange(0.0, long_m + 0.01, 0.15)
     parts += [
         (beam((along, 0.0, 0.05), (along, lean * high, high), 0.012, 0.012), Material.PAINTED_METAL)
@@ -41,27 +49,27 @@ def fence_panel(random: Generator, long_m: float) -> Body:
         parts.append((beam(foot, top, 0.03, 0.03), Material.PAINTED_METAL))
     for along in (0.1, long_m - 0.1):
         parts.append(block((along - 0.05, -0.25, 0.0), (along + 0.05, 0.25, 0.06), Material.RUBBER))
-    return Body(Kind.FENCE, tuple(parts))
+    return SiteBody(SiteKind.FENCE, tuple(parts))
 
 
-def cone(random: Generator) -> Body:
+def cone(random: Generator) -> SiteBody:
     """A traffic cone of 70 cm; some have fallen."""
     path = np.array([[0, 0, 0.03], [0, 0, 0.35], [0, 0, 0.7]])
     shape = tube(path, np.array([0.15, 0.09, 0.025]), 10)
-    parts: tuple[Part, ...] = (
+    parts: tuple[SitePart, ...] = (
         (shape, Material.PLASTIC),
         block((-0.19, -0.19, 0.0), (0.19, 0.19, 0.03), Material.RUBBER),
     )
     if random.random() < 0.12:
-        parts = moved([turned(one, 1, 1.38, (0, 0, 0)) for one in parts], (0, 0, 0.16))
-    return Body(Kind.CONE, parts)
+        parts = shift_parts([rotate_part(one, 1, 1.38, (0, 0, 0)) for one in parts], (0, 0, 0.16))
+    return SiteBody(SiteKind.CONE, parts)
 
 
-def scaffold(random: Generator) -> Body:
+def scaffold(random: Generator) -> SiteBody:
     """A frame of pipes in bays with decks, levels 1.7 m apart (枠組足場)."""
     bays, levels = int(random.integers(2, 6)), int(random.integers(1, 4))
     deep = random.choice([0.61, 0.9, 1.2])
-    parts: list[Part] = []
+    parts: list[SitePart] = []
     high = 1.7 * levels + 1.0
     for number in range(bays + 1):
         for side in (0.0, deep):
@@ -78,28 +86,28 @@ def scaffold(random: Generator) -> Body:
     for number in range(0, bays, 2):
         start, end = (number * _BAY_M, 0.0, 0.2), ((number + 1) * _BAY_M, 0.0, 1.7)
         parts.append((beam(start, end, 0.03, 0.03), Material.STEEL))
-    return Body(Kind.SCAFFOLD, tuple(parts))
+    return SiteBody(SiteKind.SCAFFOLD, tuple(parts))
 
 
-def net(random: Generator) -> Body:
+def net(random: Generator) -> SiteBody:
     """A net hung between posts; sagging, with folds that beams pass through."""
     long, high = random.uniform(3.0, 12.0), random.uniform(1.2, 3.0)
     along, up = np.meshgrid(np.linspace(0, long, 25), np.linspace(0, 1, 7))
     sag = 0.12 * np.abs(np.sin(along / long * np.pi * 3)) * up
     fold = 0.08 * np.sin(along * random.uniform(1.5, 4)) * (1.2 - up)
     sheet = grid(np.stack([along, fold, 0.05 + up * high - sag], axis=-1))
-    parts: list[Part] = [(sheet, Material.NET)]
+    parts: list[SitePart] = [(sheet, Material.NET)]
     for post in np.linspace(0, long, 4):
         path = np.array([[post, 0.03, -0.3], [post, 0.03, high + 0.15]])
         parts.append((tube(path, np.full(2, _PIPE_RADIUS_M), 6), Material.STEEL))
-    return Body(Kind.NET, tuple(parts))
+    return SiteBody(SiteKind.NET, tuple(parts))
 
 
-def hut(random: Generator) -> Body:
+def hut(random: Generator) -> SiteBody:
     """A prefabricated office or store; on blocks, with a window and a door."""
     long, wide = random.choice([3.6, 5.4, 7.2]), random.choice([2.3, 3.6])
     high = random.uniform(2.4, 2.8)
-    parts: list[Part] = [
+    parts: list[SitePart] = [
         block((-long / 2, -wide / 2, 0.15), (long / 2, wide / 2, high), Material.PAINTED_METAL),
         (_roof(long, wide, high), Material.ROOF),
         block((-0.9, -wide / 2 - 0.03, 1.0), (0.9, -wide / 2, 1.9), Material.GLASS),
@@ -117,10 +125,10 @@ def hut(random: Generator) -> Body:
             block((x, y, -0.25), (x + 0.4, y + 0.2, 0.15), Material.CONCRETE)
             for y in (-wide / 2, wide / 2 - 0.2)
         ]
-    return Body(Kind.HUT, tuple(parts), (0.0, 0.0))
+    return SiteBody(SiteKind.HUT, tuple(parts), (0.0, 0.0))
 
 
-def _roof(long: float, wide: float, high: float) -> Shape:
+def _roof(long: float, wide: float, high: float) -> TriangleShape:
     x = np.array([-long / 2 - 0.15, long / 2 + 0.15])
     y = np.array([-wide / 2 - 0.2, 0.0, wide / 2 + 0.2])
     columns, rows = np.meshgrid(x, y)

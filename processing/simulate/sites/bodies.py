@@ -10,12 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats, Shape, box
+from processing.simulate.mesh import Floats, TriangleShape, box
 
 OTHER = 1
 
 
-class Kind(IntEnum):
+class SiteKind(IntEnum):
     """What a point is of, as the truth's files number it."""
 
     DUST = -3
@@ -38,13 +38,13 @@ class Kind(IntEnum):
     CONE = 15
 
 
-NAMES = {kind: kind.name.lower().replace("_", " ") for kind in Kind}
+NAMES = {kind: kind.name.lower().replace("_", " ") for kind in SiteKind}
 
-Part = tuple[Shape, Material]
+SitePart = tuple[TriangleShape, Material]
 
 
 @dataclass(frozen=True)
-class Body:
+class SiteBody:
     """One thing.
 
     Attributes
@@ -55,8 +55,8 @@ class Body:
         0 for what stands upright whatever the ground does.
     """
 
-    kind: Kind
-    parts: tuple[Part, ...]
+    kind: SiteKind
+    parts: tuple[SitePart, ...]
     footing_m: tuple[float, float] = (0.0, 0.0)
 
     @property
@@ -65,12 +65,12 @@ class Body:
         return max(float(np.hypot(shape[0][:, 0], shape[0][:, 1]).max()) for shape, _ in self.parts)
 
 
-def block(low: ArrayLike, high: ArrayLike, material: Material) -> Part:
+def block(low: ArrayLike, high: ArrayLike, material: Material) -> SitePart:
     """A box as a part."""
     return box(np.asarray(low).tolist(), np.asarray(high).tolist()), material
 
 
-def turned(part: Part, axis: int, angle_rad: float, about: ArrayLike) -> Part:
+def rotate_part(part: SitePart, axis: int, angle_rad: float, about: ArrayLike) -> SitePart:
     """A part turned about an axis (0 x, 1 y, 2 z) through a place."""
     (vertices, triangles), material = part
     c, s = np.cos(angle_rad), np.sin(angle_rad)
@@ -82,7 +82,7 @@ def turned(part: Part, axis: int, angle_rad: float, about: ArrayLike) -> Part:
     return (spun + np.asarray(about, np.float64), triangles), material
 
 
-def moved(parts: Iterable[Part], by: ArrayLike) -> tuple[Part, ...]:
+def shift_parts(parts: Iterable[SitePart], by: ArrayLike) -> tuple[SitePart, ...]:
     """Parts shifted together."""
     offset = np.asarray(by, np.float64)
     return tuple(
@@ -90,7 +90,7 @@ def moved(parts: Iterable[Part], by: ArrayLike) -> tuple[Part, ...]:
     )
 
 
-def slab(outline: Floats, thick_m: float) -> Shape:
+def slab(outline: Floats, thick_m: float) -> TriangleShape:
     """A convex outline in the x-z plane, thick along y about y = 0.
 
     Parameters
@@ -114,16 +114,16 @@ def slab(outline: Floats, thick_m: float) -> Shape:
     return np.concatenate([low, high]), np.concatenate([fan, fan[:, ::-1] + count, rim])
 
 
-def beam(start: ArrayLike, end: ArrayLike, wide_m: float, high_m: float) -> Shape:
+def beam(start: ArrayLike, end: ArrayLike, wide_m: float, high_m: float) -> TriangleShape:
     """A straight bar of rectangular section between two places."""
     first, last = np.asarray(start, np.float64), np.asarray(end, np.float64)
-    way = last - first
-    span = float(np.linalg.norm(way))
-    way = way / span
-    side = np.cross([0.0, 0.0, 1.0], way)
+    direction = last - first
+    span = float(np.linalg.norm(direction))
+    direction = direction / span
+    side = np.cross([0.0, 0.0, 1.0], direction)
     if np.linalg.norm(side) < 1e-6:
         side = np.array([0.0, 1.0, 0.0])
     side /= np.linalg.norm(side)
-    up = np.cross(way, side)
+    up = np.cross(direction, side)
     vertices, triangles = box((0, -wide_m / 2, -high_m / 2), (span, wide_m / 2, high_m / 2))
-    return first + vertices @ np.stack([way, side, up]), triangles
+    return first + vertices @ np.stack([direction, side, up]), triangles

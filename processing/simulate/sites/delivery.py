@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.formats.told_writes import ToldWrites, failures_told
+from processing.formats.reported_writes import ReportedWrites, report_write_failures
 from processing.simulate.mesh import Floats
 from processing.simulate.sites.heights import HeightGrid
-from processing.simulate.sites.recording import Points
+from processing.simulate.sites.recording import SitePoints
 from processing.simulate.sites.volumes import SEEN_CELL_M
 
 CRS = "EPSG:6677"
@@ -26,7 +26,7 @@ _DAY = dt.date(2026, 1, 1)
 
 
 @dataclass(frozen=True)
-class Place:
+class SiteReference:
     """Where a site's frame lies in the reference system, and when it was recorded.
 
     Attributes
@@ -98,18 +98,24 @@ class CloudFile:
     """
 
     def __init__(
-        self, path: Path, truth: Path, place: Place, starts_s: float, *, cells: tuple[int, int]
+        self,
+        path: Path,
+        truth: Path,
+        position: SiteReference,
+        starts_s: float,
+        *,
+        cells: tuple[int, int],
     ) -> None:
         import laspy
 
-        self._place, self._starts_s = place, starts_s
+        self._position, self._starts_s = position, starts_s
         self.seen = np.zeros(cells, np.int64)
         self.of_label = np.zeros(256, np.int64)
         self._labels = GrowingArray(truth / f"labels_{path.stem}.npy", np.dtype(np.uint8))
         self._kinds = GrowingArray(truth / f"kinds_{path.stem}.npy", np.dtype(np.int8))
-        self._header = _header(place)
+        self._header = _header(position)
         self._laspy: Any = laspy  # laspy has no types
-        self._file = ToldWrites(path.open("wb"))
+        self._file = ReportedWrites(path.open("wb"))
         self._writer: Any = laspy.LasWriter(
             self._file,
             self._header,
@@ -125,31 +131,31 @@ class CloudFile:
     ) -> None:
         is_whole = error is None
         if is_whole:
-            with failures_told(self._file):
+            with report_write_failures(self._file):
                 self._writer.close()
         self._file.close()
         self._labels.close(is_whole=is_whole)
         self._kinds.close(is_whole=is_whole)
 
-    def write(self, points: Points) -> None:
+    def write(self, points: SitePoints) -> None:
         """Add points behind those that are there."""
         if points.time_s.size == 0:
             return
         laspy = self._laspy
-        shift = np.array([self._place.easting_m, self._place.northing_m, 0.0])
-        whole = np.round((points.xyz + shift - self._place.offsets) / _SCALE_M).astype(np.int32)
+        shift = np.array([self._position.easting_m, self._position.northing_m, 0.0])
+        whole = np.round((points.xyz + shift - self._position.offsets) / _SCALE_M).astype(np.int32)
         record = laspy.ScaleAwarePointRecord.zeros(points.time_s.size, header=self._header)
         record.X, record.Y, record.Z = whole.T
         record.intensity = points.intensity
         record.return_number, record.number_of_returns = points.number, points.count
         record.gps_time = self._starts_s + points.time_s
         record.point_source_id = np.full(points.time_s.size, points.station, np.uint16)
-        with failures_told(self._file):
+        with report_write_failures(self._file):
             self._writer.write_points(record)
         self._labels.add(points.label)
         self._kinds.add(points.kind)
         self.of_label += np.bincount(points.label, minlength=256)
-        self._count_ground(whole[points.label == 2] * _SCALE_M + self._place.offsets - shift)
+        self._count_ground(whole[points.label == 2] * _SCALE_M + self._position.offsets - shift)
 
     def _count_ground(self, xyz: Floats) -> None:
         rows, columns = self.seen.shape
@@ -167,13 +173,13 @@ class CloudFile:
         }
 
 
-def write_terrain(path: Path, heights: HeightGrid, place: Place) -> None:
+def write_terrain(path: Path, heights: HeightGrid, position: SiteReference) -> None:
     """The true ground of one date."""
     np.savez_compressed(
         path,
         z=heights.z,
-        x0=np.float64(place.easting_m),
-        y0=np.float64(place.northing_m),
+        x0=np.float64(position.easting_m),
+        y0=np.float64(position.northing_m),
         res=np.float64(heights.res),
     )
 
@@ -193,13 +199,13 @@ def write_site(path: Path, polygon: Floats) -> None:
     write_json(path, {"type": "FeatureCollection", "crs": crs, "features": [feature]})
 
 
-def _header(place: Place) -> Any:  # laspy has no types
+def _header(position: SiteReference) -> Any:  # laspy has no types
     import laspy
     from pyproj import CRS as System  # noqa: N811  `CRS` is this module's own name
 
     header = laspy.LasHeader(point_format=6, version="1.4")
     header.scales = np.full(3, _SCALE_M)
-    header.offsets = place.offsets
+    header.offsets = position.offsets
     header.creation_date = _DAY
     header.generating_software = "Zuka"
     header.system_identifier = "simulated"

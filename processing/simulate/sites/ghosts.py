@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, Integers
 from processing.simulate.scanning.beams import Beams
-from processing.simulate.scanning.casting import Hits, Scene
-from processing.simulate.scanning.returns import NO_EVIDENCE, Met, Returns, numbered
-from processing.simulate.sites.bodies import Kind
-from processing.simulate.sites.layout import Standing
-from processing.simulate.sites.movement import Cloud
+from processing.simulate.scanning.casting import CastHits, RaycastScene
+from processing.simulate.scanning.returns import NO_EVIDENCE, BeamHits, Returns, number_returns
+from processing.simulate.sites.bodies import SiteKind
+from processing.simulate.sites.layout import StandingObject
+from processing.simulate.sites.movement import DustCloud
 
-MACHINES = (Kind.EXCAVATOR, Kind.DUMP_TRUCK, Kind.BULLDOZER, Kind.ROLLER)
+MACHINES = (SiteKind.EXCAVATOR, SiteKind.DUMP_TRUCK, SiteKind.BULLDOZER, SiteKind.ROLLER)
 
 # How often a beam that meets a mirror-like surface is taken from what the mirror shows.
 _MIRRORS = {
@@ -38,7 +38,7 @@ _PHASE_IN_THE_SKY = 4e-4
 
 
 @dataclass(frozen=True)
-class Arc:
+class PhaseArc:
     """Ranges that a phase-based scanner gives wrongly: a piece of a ring about it.
 
     Attributes
@@ -61,7 +61,7 @@ class Arc:
 
 
 @dataclass(frozen=True)
-class Haunts:
+class GhostSources:
     """Where ghosts come from in one scan.
 
     Attributes
@@ -74,9 +74,9 @@ class Haunts:
         How many times more than usual is echoed twice or seen in the air on that day.
     """
 
-    machines: list[Standing]
-    dust: list[Cloud]
-    arcs: list[Arc]
+    machines: list[StandingObject]
+    dust: list[DustCloud]
+    arcs: list[PhaseArc]
     wetness: float
     is_phase: bool
     restless: float
@@ -92,7 +92,7 @@ class Ghosts:
         Rows of the beams, rising.
     ranges, strengths : (n,) float64
     kinds : (n,) int8
-        `Kind.GHOST` or `Kind.DUST`.
+        `SiteKind.GHOST` or `SiteKind.DUST`.
     """
 
     rays: Integers
@@ -101,13 +101,13 @@ class Ghosts:
     kinds: NDArray[np.int8]
 
 
-def arcs_of(random: Generator) -> list[Arc]:
+def arcs_of(random: Generator) -> list[PhaseArc]:
     """Arcs of one scan of a phase-based scanner; often none."""
     arcs = []
     for _ in range(int(random.integers(0, 3))):
         start, low = random.uniform(-np.pi, np.pi), np.radians(random.uniform(-35, 5))
         arcs.append(
-            Arc(
+            PhaseArc(
                 random.uniform(3, 25),
                 start,
                 start + np.radians(random.uniform(15, 120)),
@@ -120,7 +120,11 @@ def arcs_of(random: Generator) -> list[Arc]:
 
 
 def ghosts_of(
-    random: Generator, beams: Beams, met: Met, seen: tuple[Hits, Scene], haunts: Haunts
+    random: Generator,
+    beams: Beams,
+    met: BeamHits,
+    seen: tuple[CastHits, RaycastScene],
+    ghost_sources: GhostSources,
 ) -> Ghosts:
     """Ghosts of a stretch of pulses.
 
@@ -131,12 +135,12 @@ def ghosts_of(
     seen : (Hits, Scene)
         What they met of what stands, for what mirrors show.
     """
-    parts = [_dust(random, beams, met, cloud) for cloud in haunts.dust]
+    parts = [_dust(random, beams, met, cloud) for cloud in ghost_sources.dust]
     parts.append(_mirrored(random, beams, met, *seen))
-    parts.append(_twice(random, beams, met, haunts))
-    parts.append(_tails(random, beams, met, haunts))
-    parts.append(_in_the_air(random, met, haunts))
-    parts += [_arc(random, beams, arc) for arc in haunts.arcs]
+    parts.append(_twice(random, beams, met, ghost_sources))
+    parts.append(_tails(random, beams, met, ghost_sources))
+    parts.append(_in_the_air(random, met, ghost_sources))
+    parts += [_arc(random, beams, arc) for arc in ghost_sources.arcs]
     rays = np.concatenate([one.rays for one in parts])
     rays, first = np.unique(rays, return_index=True)
     return Ghosts(
@@ -147,7 +151,7 @@ def ghosts_of(
     )
 
 
-def haunted(
+def add_ghosts(
     returns: Returns, kinds: NDArray[np.int8], beams: Beams, ghosts: Ghosts
 ) -> tuple[Returns, NDArray[np.int8]]:
     """Returns with ghosts in place of what their pulses met, in the order of the pulses."""
@@ -159,39 +163,39 @@ def haunted(
     keep = ~taken[returns.pulse - beams.first]
     kept = returns.chosen(keep)
     ones = np.ones(rays.size, np.uint8)
-    places = beams.origins[rays] + beams.ways[rays] * ghosts.ranges[:, None]
+    positions = beams.origins[rays] + beams.directions[rays] * ghosts.ranges[:, None]
     pulse = np.concatenate([kept.pulse, beams.first + rays])
     order = np.argsort(pulse, kind="stable")
     joined = Returns(
         pulse,
         np.concatenate([kept.time_s, beams.time_s[rays]]),
-        np.concatenate([kept.xyz, places]),
+        np.concatenate([kept.xyz, positions]),
         np.concatenate([kept.strength, ghosts.strengths]),
         np.concatenate([kept.number, ones]),
         np.concatenate([kept.count, ones]),
         np.concatenate([kept.label, ones]),
         np.concatenate([kept.evidence, np.full(rays.size, NO_EVIDENCE)]),
     ).chosen(order)
-    return numbered(joined), np.concatenate([kinds[keep], ghosts.kinds])[order]
+    return number_returns(joined), np.concatenate([kinds[keep], ghosts.kinds])[order]
 
 
 def _ghosts(
-    rays: Integers, ranges: Floats, strength: Floats | float, kind: Kind = Kind.GHOST
+    rays: Integers, ranges: Floats, strength: Floats | float, kind: SiteKind = SiteKind.GHOST
 ) -> Ghosts:
     strengths = np.broadcast_to(np.asarray(strength, np.float64), rays.shape).copy()
     return Ghosts(rays, ranges, strengths, np.full(rays.size, int(kind), np.int8))
 
 
-def _dust(random: Generator, beams: Beams, met: Met, cloud: Cloud) -> Ghosts:
+def _dust(random: Generator, beams: Beams, met: BeamHits, cloud: DustCloud) -> Ghosts:
     """A return from somewhere on a beam's way through the cloud, seldom or often."""
     first, last = float(beams.time_s[0]), float(beams.time_s[-1])
     if last < cloud.from_s or first > cloud.to_s:
         return _ghosts(np.empty(0, np.int64), np.empty(0), 0.0)
     centre = cloud.centre + cloud.drift * (first - cloud.from_s)
     start = (beams.origins - centre) / cloud.radii
-    way = beams.ways / cloud.radii
-    a = np.einsum("ij,ij->i", way, way)
-    b = np.einsum("ij,ij->i", start, way)
+    direction = beams.directions / cloud.radii
+    a = np.einsum("ij,ij->i", direction, direction)
+    b = np.einsum("ij,ij->i", start, direction)
     inside = b * b - a * (np.einsum("ij,ij->i", start, start) - 1)
     rays = np.flatnonzero(inside > 0)
     root = np.sqrt(inside[rays])
@@ -200,10 +204,12 @@ def _dust(random: Generator, beams: Beams, met: Met, cloud: Cloud) -> Ghosts:
     long = np.maximum(far - near, 0.0)
     struck = random.random(rays.size) < 1 - np.exp(-cloud.per_m * long)
     ranges = (near + random.random(rays.size) * long)[struck]
-    return _ghosts(rays[struck], ranges, 0.02 * (10 / np.maximum(ranges, 2)) ** 2, Kind.DUST)
+    return _ghosts(rays[struck], ranges, 0.02 * (10 / np.maximum(ranges, 2)) ** 2, SiteKind.DUST)
 
 
-def _mirrored(random: Generator, beams: Beams, met: Met, hits: Hits, scene: Scene) -> Ghosts:
+def _mirrored(
+    random: Generator, beams: Beams, met: BeamHits, hits: CastHits, scene: RaycastScene
+) -> Ghosts:
     """What a mirror shows, taken for something straight behind it."""
     shares = np.zeros(len(Material))
     for material, share in _MIRRORS.items():
@@ -215,54 +221,55 @@ def _mirrored(random: Generator, beams: Beams, met: Met, hits: Hits, scene: Scen
     corners = scene.mesh.vertices[scene.mesh.triangles[hits.triangles[rays]]]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None]
-    ways = beams.ways[rays]
-    on = ways - 2 * np.einsum("ij,ij->i", ways, normals)[:, None] * normals
-    places = beams.origins[rays] + ways * met.ranges[rays, None] + 0.01 * on
-    beyond = scene.cast(places, on).ranges
+    directions = beams.directions[rays]
+    on = directions - 2 * np.einsum("ij,ij->i", directions, normals)[:, None] * normals
+    positions = beams.origins[rays] + directions * met.ranges[rays, None] + 0.01 * on
+    beyond = scene.cast(positions, on).ranges
     shown = (beyond > 0.2) & (beyond < _FARTHEST_MIRRORED_M)
     rays, beyond = rays[shown], beyond[shown]
     ranges = met.ranges[rays] + beyond + random.normal(0, 0.02, rays.size)
     return _ghosts(rays, ranges, 0.05 * (10 / ranges) ** 2)
 
 
-def _twice(random: Generator, beams: Beams, met: Met, haunts: Haunts) -> Ghosts:
+def _twice(random: Generator, beams: Beams, met: BeamHits, ghost_sources: GhostSources) -> Ghosts:
     """Beams that go to and fro between the ground and a machine or water before they return."""
     rays = np.flatnonzero(np.isfinite(met.ranges) & (met.evidence // 256 == 0))
-    rays = rays[random.random(rays.size) < _TWICE_NEAR_MACHINE * haunts.restless]
+    rays = rays[random.random(rays.size) < _TWICE_NEAR_MACHINE * ghost_sources.restless]
     x, y = (
-        beams.origins[rays, axis] + beams.ways[rays, axis] * met.ranges[rays] for axis in (0, 1)
+        beams.origins[rays, axis] + beams.directions[rays, axis] * met.ranges[rays]
+        for axis in (0, 1)
     )
     near = np.zeros(rays.size, np.bool_)
-    for one in haunts.machines:
+    for one in ghost_sources.machines:
         near |= np.hypot(x - one.x, y - one.y) < one.radius_m * 0.6 + _NEAR_MACHINE_M
-    seldom = _TWICE_ON_WET * haunts.wetness / _TWICE_NEAR_MACHINE
+    seldom = _TWICE_ON_WET * ghost_sources.wetness / _TWICE_NEAR_MACHINE
     rays = rays[near | (random.random(rays.size) < seldom)]
     longer = 0.1 + random.exponential(0.7, rays.size)
     ranges = met.ranges[rays] + longer
     return _ghosts(rays, ranges, 0.03 * (10 / ranges) ** 2)
 
 
-def _tails(random: Generator, beams: Beams, met: Met, haunts: Haunts) -> Ghosts:
+def _tails(random: Generator, beams: Beams, met: BeamHits, ghost_sources: GhostSources) -> Ghosts:
     """Ranges between an edge and what lies behind it, of beams that meet both."""
     here, beside = met.ranges[:-1], met.ranges[1:]
     rays = np.flatnonzero(np.isfinite(here) & np.isfinite(beside))
     near = np.minimum(here[rays], beside[rays])
     gap = np.abs(beside[rays] - here[rays])
-    apart = np.linalg.norm(np.cross(beams.ways[rays], beams.ways[rays + 1]), axis=1)
+    apart = np.linalg.norm(np.cross(beams.directions[rays], beams.directions[rays + 1]), axis=1)
     # On one and the same surface neighbours differ by this much, however flat the beam meets it.
     same = near * apart / np.maximum(np.minimum(met.cosines[rays], met.cosines[rays + 1]), 0.01)
-    drawn = random.random(rays.size) < _TAIL * min(haunts.restless, 3.0)
+    drawn = random.random(rays.size) < _TAIL * min(ghost_sources.restless, 3.0)
     keep = drawn & (gap > 0.08 + 3 * same) & (gap < _LONGEST_TAIL_M)
     share = random.beta(0.7, 0.7, int(keep.sum()))
     ranges = near[keep] + share * gap[keep]
     return _ghosts(rays[keep], ranges, 0.1 * (10 / np.maximum(ranges, 2)) ** 2)
 
 
-def _in_the_air(random: Generator, met: Met, haunts: Haunts) -> Ghosts:
+def _in_the_air(random: Generator, met: BeamHits, ghost_sources: GhostSources) -> Ghosts:
     """Single points of sun, rain and birds; of a phase-based scanner more where it sees the sky."""
     drawn = random.random(met.ranges.size)
-    share = np.full(drawn.size, _IN_THE_AIR * haunts.restless)
-    if haunts.is_phase:
+    share = np.full(drawn.size, _IN_THE_AIR * ghost_sources.restless)
+    if ghost_sources.is_phase:
         share[~np.isfinite(met.ranges)] = _PHASE_IN_THE_SKY
     rays = np.flatnonzero(drawn < share)
     ranges = random.uniform(2.0, 45.0, rays.size)
@@ -270,9 +277,9 @@ def _in_the_air(random: Generator, met: Met, haunts: Haunts) -> Ghosts:
     return _ghosts(rays[keep], ranges[keep], 0.01)
 
 
-def _arc(random: Generator, beams: Beams, arc: Arc) -> Ghosts:
-    elevation = np.arcsin(np.clip(beams.ways[:, 2], -1, 1))
-    azimuth = np.arctan2(beams.ways[:, 1], beams.ways[:, 0])
+def _arc(random: Generator, beams: Beams, arc: PhaseArc) -> Ghosts:
+    elevation = np.arcsin(np.clip(beams.directions[:, 2], -1, 1))
+    azimuth = np.arctan2(beams.directions[:, 1], beams.directions[:, 0])
     turned = (azimuth - arc.from_rad) % (2 * np.pi)
     inside = (turned < arc.to_rad - arc.from_rad) & (elevation > arc.low_rad)
     rays = np.flatnonzero(inside & (elevation < arc.high_rad))
@@ -280,6 +287,6 @@ def _arc(random: Generator, beams: Beams, arc: Arc) -> Ghosts:
     return _ghosts(rays, arc.reach_m + random.normal(0, 0.015, rays.size), 0.02)
 
 
-def machines_among(things: Iterable[Standing]) -> list[Standing]:
+def machines_among(things: Iterable[StandingObject]) -> list[StandingObject]:
     """The machines of what stands."""
     return [one for one in things if one.kind in MACHINES]

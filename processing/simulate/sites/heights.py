@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from processing.simulate.mesh import Floats, Shape, grid
+from processing.simulate.mesh import Floats, TriangleShape, grid
 
 
 @dataclass(frozen=True)
@@ -59,7 +59,7 @@ class HeightGrid:
         north = self.height(x, y + over_m / 2) - self.height(x, y - over_m / 2)
         return east / over_m, north / over_m
 
-    def shape(self) -> Shape:
+    def shape(self) -> TriangleShape:
         """Its triangles; number ``2 * cell`` is the lower right one of a cell."""
         x, y = self.nodes
         columns, rows = np.meshgrid(x, y)

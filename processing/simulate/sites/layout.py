@@ -13,31 +13,31 @@ from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, Integers, Mesh, MeshBuilder
 from processing.simulate.sites.barriers import cone, fence_panel, hut, net, scaffold
-from processing.simulate.sites.bodies import OTHER, Body, Kind
+from processing.simulate.sites.bodies import OTHER, SiteBody, SiteKind
 from processing.simulate.sites.machines import MACHINES
 from processing.simulate.sites.relief import wander
 from processing.simulate.sites.small_things import batter_board, bush, survey_pole, worker
 from processing.simulate.sites.stores import STORES
-from processing.simulate.sites.terrain import Check, Ground, Terrain
+from processing.simulate.sites.terrain import SiteGround, SiteTerrain, StopCheck
 
 GROUND = 2
 _PANEL_M = 1.8
-_FOLLOWS_GROUND = (Kind.FENCE, Kind.NET)
+_FOLLOWS_GROUND = (SiteKind.FENCE, SiteKind.NET)
 _TRIES = 60
 
 
 @dataclass(frozen=True)
-class Standing:
+class StandingObject:
     """A thing that stands still: its kind and place, m, the site's frame."""
 
-    kind: Kind
+    kind: SiteKind
     x: float
     y: float
     radius_m: float
 
 
 @dataclass
-class Layout:
+class SiteLayout:
     """What stands on one date's ground.
 
     Attributes
@@ -48,17 +48,17 @@ class Layout:
         The thing of instance n is number n - 1.
     """
 
-    ground: Ground
+    ground: SiteGround
     mesh: MeshBuilder = field(default_factory=MeshBuilder)
-    things: list[Standing] = field(default_factory=list)
+    things: list[StandingObject] = field(default_factory=list)
 
-    def add(self, body: Body, x: float, y: float, heading_rad: float) -> None:
+    def add(self, body: SiteBody, x: float, y: float, heading_rad: float) -> None:
         """Put a body on the ground."""
         instance = len(self.things) + 1
         for (vertices, triangles), material in body.parts:
-            stood = stood_on(body, self.ground, vertices, (x, y, heading_rad))
+            stood = stand_on_ground(body, self.ground, vertices, (x, y, heading_rad))
             self.mesh.add((stood, triangles), material, OTHER, instance)
-        self.things.append(Standing(body.kind, x, y, body.radius_m))
+        self.things.append(StandingObject(body.kind, x, y, body.radius_m))
 
     def is_free(self, x: float, y: float, radius_m: float) -> bool:
         """Whether nothing large stands there."""
@@ -68,10 +68,10 @@ class Layout:
 
     def kinds(self) -> Integers:
         """Kind of every instance: (instances + 1,) int64."""
-        return np.array([int(Kind.TERRAIN), *(int(one.kind) for one in self.things)], np.int64)
+        return np.array([int(SiteKind.TERRAIN), *(int(one.kind) for one in self.things)], np.int64)
 
 
-def layout_of(seed: int, date: str, terrain: Terrain, check: Check) -> Layout:
+def layout_of(seed: int, date: str, terrain: SiteTerrain, check: StopCheck) -> SiteLayout:
     """Everything that stands still on one date.
 
     Parameters
@@ -80,7 +80,7 @@ def layout_of(seed: int, date: str, terrain: Terrain, check: Check) -> Layout:
         Called for every few things; raises to stop.
     """
     ground = terrain.before if date == "before" else terrain.after
-    layout = Layout(ground)
+    layout = SiteLayout(ground)
     layout.mesh.add(ground.heights.shape(), ground.triangle_materials(), GROUND, 0)
     check()
     furnish = _Furnisher(layout, chance(seed, "things", date), check, *ground.heights.size_m)
@@ -91,8 +91,8 @@ def layout_of(seed: int, date: str, terrain: Terrain, check: Check) -> Layout:
     return layout
 
 
-def stood_on(
-    body: Body, ground: Ground, vertices: Floats, where: tuple[float, float, float]
+def stand_on_ground(
+    body: SiteBody, ground: SiteGround, vertices: Floats, where: tuple[float, float, float]
 ) -> Floats:
     """Vertices of a body where it stands: upright, tilted as its footing is, or along the ground.
 
@@ -129,9 +129,9 @@ def stood_on(
 
 @dataclass
 class _Furnisher:
-    layout: Layout
+    layout: SiteLayout
     random: Generator
-    check: Check
+    check: StopCheck
     east_m: float
     north_m: float
 
@@ -151,7 +151,7 @@ class _Furnisher:
     def fences(self) -> None:
         """Rows of panels, now and then with one missing."""
         for _ in range(self._count(1, 3)):
-            path = wander(self.random, self._place(), self._place(), 1.0)
+            path = wander(self.random, self._position(), self._position(), 1.0)
             self.check()
             look = int(self.random.integers(1 << 30))
             row = _along(path, _PANEL_M, most=24)
@@ -166,12 +166,12 @@ class _Furnisher:
         """Cones in rows, batter boards across slopes, poles, people who stand."""
         for _ in range(self._count(0, 3)):
             self.check()
-            path = wander(self.random, self._place(), self._place(), 2.0)
+            path = wander(self.random, self._position(), self._position(), 2.0)
             for x, y, heading in _along(path, self.random.uniform(1.5, 4), most=12):
                 if self.layout.is_free(x, y, 0.2):
                     self.layout.add(cone(self.random), x, y, heading)
         for _ in range(self._count(4, 14)):
-            x, y = self._place()
+            x, y = self._position()
             east, north = self.layout.ground.heights.slope(x, y, 2.0)
             downhill = float(np.arctan2(-north, -east)) + self.random.normal(0, 0.06)
             if np.hypot(east, north) > 0.12 and self.layout.is_free(x, y, 1.2):
@@ -180,14 +180,14 @@ class _Furnisher:
             for _ in range(count):
                 self._put(maker, 1.5)
 
-    def _put(self, make: Callable[[Generator], Body], uneven_m: float) -> None:
+    def _put(self, make: Callable[[Generator], SiteBody], uneven_m: float) -> None:
         """Put a body where there is room and the ground is even enough for it, or nowhere."""
         self.check()
         body = make(self.random)
         radius = body.radius_m
         heights = self.layout.ground.heights
         for _ in range(_TRIES):
-            x, y = self._place()
+            x, y = self._position()
             heading = self.random.uniform(-np.pi, np.pi)
             around = np.linspace(0, 2 * np.pi, 12, endpoint=False)
             reach = min(radius, 4.0)
@@ -200,7 +200,7 @@ class _Furnisher:
                 self.layout.add(body, x, y, heading)
                 return
 
-    def _place(self) -> tuple[float, float]:
+    def _position(self) -> tuple[float, float]:
         x, y = self.random.uniform(0.05, 0.95, 2)
         return float(x) * self.east_m, float(y) * self.north_m
 
@@ -219,7 +219,7 @@ def _along(path: Floats, every_m: float, *, most: int) -> list[tuple[float, floa
     return list(zip(x.tolist(), y.tolist(), np.arctan2(dy, dx).tolist(), strict=True))
 
 
-def _plants(seed: int, layout: Layout, terrain: Terrain, check: Check) -> None:
+def _plants(seed: int, layout: SiteLayout, terrain: SiteTerrain, check: StopCheck) -> None:
     """Bushes where grass grows; the same on both dates where the ground is the same."""
     random = chance(seed, "plants")
     east, north = layout.ground.heights.size_m
@@ -238,6 +238,6 @@ def _plants(seed: int, layout: Layout, terrain: Terrain, check: Check) -> None:
             layout.add(bush(chance(seed, "bush", number)), float(x), float(y), 0.0)
 
 
-def scene_mesh(layout: Layout) -> Mesh:
+def scene_mesh(layout: SiteLayout) -> Mesh:
     """All triangles of a date."""
     return layout.mesh.mesh()

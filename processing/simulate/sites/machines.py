@@ -9,13 +9,21 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Shape, grid, tube
-from processing.simulate.sites.bodies import Body, Kind, Part, beam, block, slab, turned
+from processing.simulate.mesh import TriangleShape, grid, tube
+from processing.simulate.sites.bodies import (
+    SiteBody,
+    SiteKind,
+    SitePart,
+    beam,
+    block,
+    rotate_part,
+    slab,
+)
 
 _PAINT, _GLASS, _STEEL = Material.CAR_PAINT, Material.GLASS, Material.STEEL
 
 
-def excavator(random: Generator) -> Body:
+def excavator(random: Generator) -> SiteBody:
     """On crawlers, its cab turned anywhere, its arm anywhere between reach and rest."""
     size = random.uniform(0.55, 1.15)  # 1: a machine of 20 t
     long, wide, high = 4.2 * size, 2.8 * size, 1.0 * size
@@ -32,11 +40,11 @@ def excavator(random: Generator) -> Body:
         *_arm(random, size, high),
     ]
     turn = random.uniform(-np.pi, np.pi)
-    parts += [turned(part, 2, turn, (0.0, 0.0, 0.0)) for part in upper]
-    return Body(Kind.EXCAVATOR, tuple(parts), (long / 2, wide / 2))
+    parts += [rotate_part(part, 2, turn, (0.0, 0.0, 0.0)) for part in upper]
+    return SiteBody(SiteKind.EXCAVATOR, tuple(parts), (long / 2, wide / 2))
 
 
-def _arm(random: Generator, size: float, high: float) -> list[Part]:
+def _arm(random: Generator, size: float, high: float) -> list[SitePart]:
     """Boom, stick and bucket in the plane of the machine's middle."""
     foot = np.array([0.9 * size, -0.15 * size, high + 0.6 * size])
     rise = random.uniform(0.25, 1.0)
@@ -46,7 +54,7 @@ def _arm(random: Generator, size: float, high: float) -> list[Part]:
     tip = elbow + 2.8 * size * np.array([np.cos(drop), 0.0, np.sin(drop)])
     tip[2] = max(tip[2], 0.75 * size)
     bucket = np.array([[0.0, 0.15], [0.5, 0.0], [0.75, -0.45], [0.35, -0.75], [-0.2, -0.55]])
-    parts: list[Part] = [
+    parts: list[SitePart] = [
         (beam(foot, knee, 0.42 * size, 0.55 * size), _PAINT),
         (beam(knee, elbow, 0.4 * size, 0.45 * size), _PAINT),
         (beam(elbow, tip, 0.32 * size, 0.36 * size), _PAINT),
@@ -68,7 +76,7 @@ def _arm(random: Generator, size: float, high: float) -> list[Part]:
     return parts
 
 
-def dump_truck(random: Generator) -> Body:
+def dump_truck(random: Generator) -> SiteBody:
     """Ten tonnes on the road, or smaller; its body tipped now and then, with or without a load."""
     size = random.uniform(0.62, 1.05)
     long, wide = 7.7 * size, 2.49 * min(size * 1.05, 1.0)
@@ -92,13 +100,13 @@ def dump_truck(random: Generator) -> Body:
         body.append((_load(random, back, front, (half - 0.09, low + 0.1, tall)), Material.SOIL))
     elif random.random() < 0.3:
         tip = random.uniform(0.3, 0.85)
-        body = [turned(part, 1, -tip, (back + 0.3, 0.0, low)) for part in body]
-    return Body(Kind.DUMP_TRUCK, (*parts, *body), (long / 2 * 0.8, half))
+        body = [rotate_part(part, 1, -tip, (back + 0.3, 0.0, low)) for part in body]
+    return SiteBody(SiteKind.DUMP_TRUCK, (*parts, *body), (long / 2 * 0.8, half))
 
 
 def _load(
     random: Generator, back: float, front: float, inside: tuple[float, float, float]
-) -> Shape:
+) -> TriangleShape:
     """A heap of soil between the sides."""
     half, low, tall = inside
     x, y = np.meshgrid(np.linspace(back + 0.1, front - 0.1, 12), np.linspace(-half, half, 7))
@@ -107,19 +115,19 @@ def _load(
     return grid(np.stack([x, y, z], axis=-1))
 
 
-def bulldozer(random: Generator) -> Body:
+def bulldozer(random: Generator) -> SiteBody:
     """Crawlers, cab, blade before it, a ripper behind it at times."""
     size = random.uniform(0.7, 1.2)
     long, wide = 3.2 * size, 2.6 * size
     blade = np.array([[0.0, 0.0], [0.35, 0.05], [0.12, 0.5], [0.3, 1.1], [0.1, 1.1], [-0.08, 0.5]])
     angle, lift = random.uniform(-0.35, 0.35), random.uniform(0.0, 0.5)
     vertices, triangles = slab(blade * size, 3.1 * size)
-    front: Part = (vertices + np.array([long / 2 + 0.5 * size, 0, lift]), triangles), _PAINT
+    front: SitePart = (vertices + np.array([long / 2 + 0.5 * size, 0, lift]), triangles), _PAINT
     parts = [
         *_crawlers(long, wide, 0.95 * size, 0.56 * size),
         block((-0.7 * size, -0.7 * size, 0.5), (1.6 * size, 0.7 * size, 1.75 * size), _PAINT),
         *_cab((-1.2 * size, -0.7 * size, 1.0 * size), (1.5 * size, 1.4 * size, 1.9 * size)),
-        turned(front, 2, angle, (long / 2 + 0.5 * size, 0, 0)),
+        rotate_part(front, 2, angle, (long / 2 + 0.5 * size, 0, 0)),
     ]
     for side in (-1, 1):
         start, end = (
@@ -129,15 +137,15 @@ def bulldozer(random: Generator) -> Body:
         parts.append((beam(start, end, 0.2, 0.25), _PAINT))
     if random.random() < 0.4:
         parts.append(block((-long / 2 - 0.9, -0.6, 0.4), (-long / 2 - 0.3, 0.6, 1.0), _STEEL))
-    return Body(Kind.BULLDOZER, tuple(parts), (long / 2, wide / 2))
+    return SiteBody(SiteKind.BULLDOZER, tuple(parts), (long / 2, wide / 2))
 
 
-def roller(random: Generator) -> Body:
+def roller(random: Generator) -> SiteBody:
     """A drum before, a drum or tyres behind, a canopy."""
     size = random.uniform(0.5, 1.1)
     long, wide, radius = 3.4 * size, 1.9 * size, 0.75 * size
     drum = np.array([[long / 2, -wide / 2, radius], [long / 2, wide / 2, radius]])
-    parts: list[Part] = [(tube(drum, np.full(2, radius), 20), _STEEL)]
+    parts: list[SitePart] = [(tube(drum, np.full(2, radius), 20), _STEEL)]
     for side in (-1, 1):
         parts.append(
             block(
@@ -155,27 +163,27 @@ def roller(random: Generator) -> Body:
     )
     roof = (-1.2 * size, -wide * 0.42, 2.7 * size), (0.5 * size, wide * 0.42, 2.78 * size)
     parts.append(block(*roof, _PAINT))
-    return Body(Kind.ROLLER, tuple(parts), (long / 2, wide / 2))
+    return SiteBody(SiteKind.ROLLER, tuple(parts), (long / 2, wide / 2))
 
 
 MACHINES = (excavator, dump_truck, bulldozer, roller)
 
 
-def _crawlers(long: float, wide: float, high: float, shoe: float) -> list[Part]:
+def _crawlers(long: float, wide: float, high: float, shoe: float) -> list[SitePart]:
     """Two chains with rounded ends."""
     angles = np.linspace(-np.pi / 2, np.pi / 2, 6)
     radius = high / 2
     ends = np.column_stack([np.cos(angles), np.sin(angles)]) * radius
     middle = np.array([long / 2 - radius, 0.0])
     outline = np.concatenate([ends + middle, -ends - middle]) + np.array([0.0, radius])
-    chains: list[Part] = []
+    chains: list[SitePart] = []
     for side in (-1, 1):
         vertices, triangles = slab(outline, shoe)
         chains.append(((vertices + np.array([0, side * (wide - shoe) / 2, 0]), triangles), _STEEL))
     return chains
 
 
-def _cab(low: tuple[float, float, float], size: tuple[float, float, float]) -> list[Part]:
+def _cab(low: tuple[float, float, float], size: tuple[float, float, float]) -> list[SitePart]:
     """A cab: painted below and above, glass between."""
     x, y, z = low
     dx, dy, dz = size
@@ -187,6 +195,6 @@ def _cab(low: tuple[float, float, float], size: tuple[float, float, float]) -> l
     ]
 
 
-def _wheel(along: float, aside: float, radius: float, wide: float) -> Part:
+def _wheel(along: float, aside: float, radius: float, wide: float) -> SitePart:
     path = np.array([[along, aside - wide / 2, radius], [along, aside + wide / 2, radius]])
     return tube(path, np.full(2, radius), 14), Material.RUBBER

@@ -9,10 +9,10 @@ from numpy.random import Generator
 
 from processing.simulate.mesh import Floats, Integers, Mesh, MeshBuilder
 from processing.simulate.scanning.beams import Beams
-from processing.simulate.scanning.casting import Scene
-from processing.simulate.scanning.returns import Met
-from processing.simulate.sites.bodies import OTHER, Body
-from processing.simulate.sites.layout import Layout
+from processing.simulate.scanning.casting import RaycastScene
+from processing.simulate.scanning.returns import BeamHits
+from processing.simulate.sites.bodies import OTHER, SiteBody
+from processing.simulate.sites.layout import SiteLayout
 from processing.simulate.sites.machines import bulldozer, dump_truck, roller
 from processing.simulate.sites.relief import wander
 from processing.simulate.sites.small_things import worker
@@ -21,7 +21,7 @@ _ABOUT = np.zeros(3)
 
 
 @dataclass(frozen=True)
-class Track:
+class MovementTrack:
     """A thing on its way to and fro.
 
     Attributes
@@ -34,7 +34,7 @@ class Track:
         m and radians, the site's frame; it stands where two places are the same.
     """
 
-    body: Body
+    body: SiteBody
     instance: int
     times: Floats
     x: Floats
@@ -43,7 +43,7 @@ class Track:
 
 
 @dataclass(frozen=True)
-class Cloud:
+class DustCloud:
     """Dust: an ellipsoid that drifts.
 
     Attributes
@@ -63,7 +63,7 @@ class Cloud:
     per_m: float
 
 
-def tracks_of(random: Generator, layout: Layout, seconds: float) -> list[Track]:
+def tracks_of(random: Generator, layout: SiteLayout, seconds: float) -> list[MovementTrack]:
     """People and machines that move during a recording of so many seconds."""
     east, north = layout.ground.heights.size_m
     makers = [worker] * int(random.integers(1, 4))
@@ -87,8 +87,8 @@ def tracks_of(random: Generator, layout: Layout, seconds: float) -> list[Track]:
 
 
 def _to_and_fro(
-    random: Generator, body: Body, instance: int, path: Floats, *, speed: float, seconds: float
-) -> Track:
+    random: Generator, body: SiteBody, instance: int, path: Floats, *, speed: float, seconds: float
+) -> MovementTrack:
     steps = np.hypot(*np.diff(path, axis=0).T) / speed
     legs_times, legs_rows, now = [], [], -random.uniform(0, 30)
     rows = np.arange(len(path))
@@ -103,10 +103,12 @@ def _to_and_fro(
     x, y = path[order].T
     dx, dy = np.gradient(path[:, 0]), np.gradient(path[:, 1])
     # Machines go back the way they came in reverse, so that headings belong to places.
-    return Track(body, instance, times, x, y, np.unwrap(np.arctan2(dy, dx))[order])
+    return MovementTrack(body, instance, times, x, y, np.unwrap(np.arctan2(dy, dx))[order])
 
 
-def dust_of(random: Generator, layout: Layout, scans_at: list[float], scan_s: float) -> list[Cloud]:
+def dust_of(
+    random: Generator, layout: SiteLayout, scans_at: list[float], scan_s: float
+) -> list[DustCloud]:
     """Dust that drifts over the site for some seconds or minutes.
 
     Parameters
@@ -123,7 +125,7 @@ def dust_of(random: Generator, layout: Layout, scans_at: list[float], scan_s: fl
         radii = random.uniform((1.0, 1.0, 0.5), (5.0, 5.0, 1.8))
         start = scans_at[int(random.integers(len(scans_at)))] + random.uniform(-20, 0.8 * scan_s)
         clouds.append(
-            Cloud(
+            DustCloud(
                 np.array([x, y, float(heights.height(x, y)) + 0.7 * radii[2]]),
                 radii,
                 random.normal(0, (0.12, 0.12, 0.01)),
@@ -145,12 +147,12 @@ class MovingThings:
         Whose ground they go on.
     """
 
-    def __init__(self, tracks: list[Track], layout: Layout) -> None:
+    def __init__(self, tracks: list[MovementTrack], layout: SiteLayout) -> None:
         self.tracks = tracks
         self._heights = layout.ground.heights
         self._scenes = [_scene_of(track) for track in tracks]
 
-    def meet(self, beams: Beams, met: Met) -> None:
+    def meet(self, beams: Beams, met: BeamHits) -> None:
         """Put what moves before what stands, where it is nearer."""
         for track, (scene, radius) in zip(self.tracks, self._scenes, strict=True):
             x = np.interp(beams.time_s, track.times, track.x)
@@ -163,10 +165,10 @@ class MovingThings:
             turn = np.interp(beams.time_s[rays], track.times, track.headings)
             c, s = np.cos(turn), np.sin(turn)
             off = beams.origins[rays] - np.column_stack([x, y, z])
-            origins, ways = _turned(off, c, s), _turned(beams.ways[rays], c, s)
-            met.take(rays, scene.cast(origins, ways), scene.mesh)
+            origins, directions = _turned(off, c, s), _turned(beams.directions[rays], c, s)
+            met.take(rays, scene.cast(origins, directions), scene.mesh)
 
-    def _height(self, body: Body, x: Floats, y: Floats) -> Floats:
+    def _height(self, body: SiteBody, x: Floats, y: Floats) -> Floats:
         """Of the ground under it: a machine stands on its highest wheels."""
         reach = max(body.footing_m) * 0.7
         around = [
@@ -176,20 +178,20 @@ class MovingThings:
         return np.asarray(np.max(around, axis=0), np.float64)
 
 
-def _scene_of(track: Track) -> tuple[Scene, float]:
+def _scene_of(track: MovementTrack) -> tuple[RaycastScene, float]:
     builder = MeshBuilder()
     for shape, material in track.body.parts:
         builder.add(shape, material, OTHER, track.instance)
     mesh: Mesh = builder.mesh()
-    return Scene(mesh, _ABOUT), float(np.hypot(*mesh.vertices[:, :2].T).max()) + 0.05
+    return RaycastScene(mesh, _ABOUT), float(np.hypot(*mesh.vertices[:, :2].T).max()) + 0.05
 
 
 def _near(beams: Beams, x: Floats, y: Floats, radius: float) -> Integers:
     """Beams that pass over or through an upright cylinder about a place."""
     dx, dy = x - beams.origins[:, 0], y - beams.origins[:, 1]
-    flat = np.hypot(beams.ways[:, 0], beams.ways[:, 1])
-    aside = np.abs(beams.ways[:, 0] * dy - beams.ways[:, 1] * dx)
-    ahead = beams.ways[:, 0] * dx + beams.ways[:, 1] * dy
+    flat = np.hypot(beams.directions[:, 0], beams.directions[:, 1])
+    aside = np.abs(beams.directions[:, 0] * dy - beams.directions[:, 1] * dx)
+    ahead = beams.directions[:, 0] * dx + beams.directions[:, 1] * dy
     return np.flatnonzero((aside < radius * flat) & (ahead > -radius))
 
 

@@ -12,28 +12,28 @@ from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, Integers
 from processing.simulate.scanning.beams import Beams
-from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.casting import RaycastScene
 from processing.simulate.scanning.return_kernels import intensities
 from processing.simulate.scanning.returns import (
     HIGH_NOISE,
     LOW_NOISE,
-    Met,
+    BeamHits,
     Weather,
     returns_of,
     scanner_numbers,
 )
 from processing.simulate.scanning.sensors import Sensor
-from processing.simulate.sites.bodies import OTHER, Kind
+from processing.simulate.sites.bodies import OTHER, SiteKind
 from processing.simulate.sites.ghosts import (
-    Haunts,
+    GhostSources,
+    add_ghosts,
     arcs_of,
     ghosts_of,
-    haunted,
     machines_among,
 )
 from processing.simulate.sites.heights import HeightGrid
-from processing.simulate.sites.layout import GROUND, Layout
-from processing.simulate.sites.movement import Cloud, MovingThings
+from processing.simulate.sites.layout import GROUND, SiteLayout
+from processing.simulate.sites.movement import DustCloud, MovingThings
 from processing.simulate.sites.stations import Station
 
 LOWEST_RAD = np.radians(-60.0)
@@ -46,7 +46,7 @@ _SPACING_AT_M = 10.0
 
 
 @dataclass(frozen=True)
-class Pattern:
+class TripodScanPattern:
     """How a scanner on a tripod sends its pulses.
 
     Attributes
@@ -56,7 +56,7 @@ class Pattern:
     column_s, pulse_s : float
         From column to column, and from pulse to pulse within one.
     columns : int
-        In a full turn.
+        In a full revolution.
     """
 
     step_rad: float
@@ -71,7 +71,7 @@ class Pattern:
 
 
 @dataclass(frozen=True)
-class Points:
+class SitePoints:
     """Some points as they go into the files.
 
     Attributes
@@ -98,7 +98,7 @@ class Points:
 
 
 @dataclass(frozen=True)
-class Survey:
+class SiteSurvey:
     """All that one date's recording needs.
 
     Attributes
@@ -113,27 +113,27 @@ class Survey:
     seed: int
     date: str
     sensor: Sensor
-    pattern: Pattern
+    pattern: TripodScanPattern
     weather: Weather
     stations: list[Station]
-    layout: Layout
-    scene: Scene
+    layout: SiteLayout
+    scene: RaycastScene
     moving: MovingThings
-    dust: list[Cloud]
+    dust: list[DustCloud]
     kinds: Integers
 
 
-def pattern_of(sensor: Sensor, spacing_m: float) -> Pattern:
+def pattern_of(sensor: Sensor, spacing_m: float) -> TripodScanPattern:
     """The pattern of a point spacing 10 m away.
 
     The mirror turns as fast as it can, or more slowly where the pulses would not suffice.
     """
     columns = int(np.ceil(2 * np.pi / (spacing_m / _SPACING_AT_M)))
     turn_s = max(1.0 / sensor.turns_per_s, columns / sensor.rate_hz)
-    return Pattern(2 * np.pi / columns, turn_s, turn_s / columns, columns)
+    return TripodScanPattern(2 * np.pi / columns, turn_s, turn_s / columns, columns)
 
 
-def recorded(survey: Survey) -> Iterator[tuple[float, Points]]:
+def record_points(survey: SiteSurvey) -> Iterator[tuple[float, SitePoints]]:
     """Points of all stations in time order, with the share of the work that is done."""
     total = len(survey.stations)
     for number, station in enumerate(survey.stations):
@@ -145,20 +145,20 @@ def recorded(survey: Survey) -> Iterator[tuple[float, Points]]:
             yield share, _stretch(survey, number, range(first, last), rows)
 
 
-def duration_s(pattern: Pattern, stations: int) -> float:
+def duration_s(pattern: TripodScanPattern, stations: int) -> float:
     """Of a whole recording, with the time for carrying the tripod."""
     return stations * (pattern.scan_s + _BETWEEN_STATIONS_S)
 
 
-def scans_at(pattern: Pattern, stations: int) -> list[float]:
+def scans_at(pattern: TripodScanPattern, stations: int) -> list[float]:
     """When the scans begin, s, with time for carrying the tripod between them."""
     return [number * (pattern.scan_s + _BETWEEN_STATIONS_S) for number in range(stations)]
 
 
-def _rows(survey: Survey, station: Station) -> Floats:
+def _rows(survey: SiteSurvey, station: Station) -> Floats:
     """Elevations of the rows, downwards to upwards, as far up as anything stands."""
     vertices = survey.scene.mesh.vertices
-    off = vertices - station.place
+    off = vertices - station.position
     away = np.maximum(np.hypot(off[:, 0], off[:, 1]), 0.1)
     highest = float(np.arctan2(off[:, 2], away).max())
     highest = max(highest, np.radians(35.0))  # what moves or drifts by
@@ -166,40 +166,42 @@ def _rows(survey: Survey, station: Station) -> Floats:
     return np.asarray(LOWEST_RAD + np.arange(count) * survey.pattern.step_rad, np.float64)
 
 
-def _beams(survey: Survey, number: int, columns: range, rows: Floats) -> Beams:
+def _beams(survey: SiteSurvey, number: int, columns: range, rows: Floats) -> Beams:
     pattern, station = survey.pattern, survey.stations[number]
     ids = np.arange(columns.start, columns.stop)
     azimuth = np.repeat(station.start_rad - ids * pattern.step_rad, rows.size)
     elevation = np.tile(rows, ids.size)
     flat = np.cos(elevation)
-    ways = np.column_stack([flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation)])
+    directions = np.column_stack(
+        [flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation)]
+    )
     start = scans_at(pattern, number + 1)[-1]
     row_s = np.arange(rows.size) * pattern.pulse_s
     time_s = start + (ids[:, None] * pattern.column_s + row_s).ravel()
     first = (number * pattern.columns + columns.start) * rows.size
-    return Beams(first, time_s, np.broadcast_to(station.place, ways.shape), ways)
+    return Beams(first, time_s, np.broadcast_to(station.position, directions.shape), directions)
 
 
-def _stretch(survey: Survey, number: int, columns: range, rows: Floats) -> Points:
+def _stretch(survey: SiteSurvey, number: int, columns: range, rows: Floats) -> SitePoints:
     beams = _beams(survey, number, columns, rows)
-    hits = survey.scene.cast(beams.origins, beams.ways)
-    met = Met.of(hits, survey.scene.mesh)
+    hits = survey.scene.cast(beams.origins, beams.directions)
+    met = BeamHits.of(hits, survey.scene.mesh)
     survey.moving.meet(beams, met)
     random = chance(survey.seed, "scan", survey.date, number, columns.start)
-    ghosts = ghosts_of(random, beams, met, (hits, survey.scene), _haunts(survey, number))
+    ghosts = ghosts_of(random, beams, met, (hits, survey.scene), _ghost_sources(survey, number))
     key = int(chance(survey.seed, "key", survey.date, number).integers(1, 1 << 31))
     scanner = scanner_numbers(survey.sensor, survey.pattern.columns, survey.weather)
     returns, _ = returns_of(beams, met, survey.scene, scanner, key)
     is_noise = returns.evidence < 0
-    found = np.where(is_noise, int(Kind.GHOST), survey.kinds[returns.instance]).astype(np.int8)
-    returns, kind = haunted(returns, found, beams, ghosts)
+    found = np.where(is_noise, int(SiteKind.GHOST), survey.kinds[returns.instance]).astype(np.int8)
+    returns, kind = add_ghosts(returns, found, beams, ghosts)
     heights = survey.layout.ground.heights
     near = _is_on(heights, returns.xyz)
     returns, kind = returns.chosen(near), kind[near]
     kind, label = labels_of(returns.xyz, kind, survey.layout)
     intensity = np.empty(kind.size, np.uint16)
     intensities(returns.strength, survey.weather.damping, intensity)
-    return Points(
+    return SitePoints(
         _registered(returns.xyz, survey.stations[number]),
         returns.time_s,
         intensity,
@@ -211,16 +213,16 @@ def _stretch(survey: Survey, number: int, columns: range, rows: Floats) -> Point
     )
 
 
-def _haunts(survey: Survey, number: int) -> Haunts:
+def _ghost_sources(survey: SiteSurvey, number: int) -> GhostSources:
     is_phase = survey.sensor.measures_by == "phase"
     arcs = arcs_of(chance(survey.seed, "arcs", survey.date, number)) if is_phase else []
     machines = machines_among(survey.layout.things)
     restless = float(np.exp(chance(survey.seed, "restless", survey.date).uniform(-0.7, 2.0)))
-    return Haunts(machines, survey.dust, arcs, survey.weather.wetness, is_phase, restless)
+    return GhostSources(machines, survey.dust, arcs, survey.weather.wetness, is_phase, restless)
 
 
 def labels_of(
-    xyz: Floats, kind: NDArray[np.int8], layout: Layout
+    xyz: Floats, kind: NDArray[np.int8], layout: SiteLayout
 ) -> tuple[NDArray[np.int8], NDArray[np.uint8]]:
     """Kinds, blades of grass told from their ground, and class codes: 2, 1, 7 or 18.
 
@@ -237,12 +239,12 @@ def labels_of(
     j = np.clip(xyz[:, 1] / heights.res, 0, last_row - 1).astype(np.int64)
     i = np.clip(xyz[:, 0] / heights.res, 0, last_column - 1).astype(np.int64)
     grows = layout.ground.material[j, i] == int(Material.GRASS)
-    is_blade = (kind == int(Kind.TERRAIN)) & grows & (above > NEAR_GROUND_M)
-    kind = np.where(is_blade, int(Kind.GRASS), kind).astype(np.int8)
+    is_blade = (kind == int(SiteKind.TERRAIN)) & grows & (above > NEAR_GROUND_M)
+    kind = np.where(is_blade, int(SiteKind.GRASS), kind).astype(np.int8)
     label = np.full(kind.size, OTHER, np.uint8)
-    label[kind == int(Kind.TERRAIN)] = GROUND
-    is_ghost = kind == int(Kind.GHOST)
-    label[kind == int(Kind.DUST)] = HIGH_NOISE
+    label[kind == int(SiteKind.TERRAIN)] = GROUND
+    is_ghost = kind == int(SiteKind.GHOST)
+    label[kind == int(SiteKind.DUST)] = HIGH_NOISE
     label[is_ghost] = HIGH_NOISE
     label[is_ghost & (above < -NEAR_GROUND_M)] = LOW_NOISE
     label[is_ghost & (np.abs(above) <= NEAR_GROUND_M)] = GROUND
@@ -258,5 +260,5 @@ def _is_on(heights: HeightGrid, xyz: Floats) -> NDArray[np.bool_]:
 
 def _registered(xyz: Floats, station: Station) -> Floats:
     """Points as the registration places them: turned a little about the station, and shifted."""
-    off = xyz - station.place
+    off = xyz - station.position
     return np.asarray(xyz + np.cross(station.turn, off) + station.shift, np.float64)

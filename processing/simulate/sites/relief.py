@@ -38,10 +38,10 @@ def undulation(random: Generator, x: Floats, y: Floats, wave_m: float) -> Floats
     return smooth / _SPREAD
 
 
-def _spline(places: Floats) -> tuple[NDArray[np.int64], Floats]:
+def _spline(positions: Floats) -> tuple[NDArray[np.int64], Floats]:
     """First of four lattice points about each place, and the weights of a cubic B-spline."""
-    whole = np.floor(places).astype(np.int64)
-    t = places - whole
+    whole = np.floor(positions).astype(np.int64)
+    t = positions - whole
     weights = [(1 - t) ** 3, 3 * t**3 - 6 * t**2 + 4, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3]
     return whole - 1, np.stack(weights) / 6
 
@@ -63,20 +63,20 @@ def distance_to_path(x: Floats, y: Floats, path: Floats) -> tuple[Floats, Floats
     signed, along = np.full(x.shape, np.inf), np.zeros(x.shape)
     run = 0.0
     for start, end in pairwise(path):
-        way = end - start
-        span = float(np.hypot(*way))
+        direction = end - start
+        span = float(np.hypot(*direction))
         if span == 0:
             continue
-        way = way / span
+        direction = direction / span
         low, high = np.minimum(start, end) - _NEAR_M, np.maximum(start, end) + _NEAR_M
         columns = slice(*np.searchsorted(x[0], [low[0], high[0]]))
         rows = slice(*np.searchsorted(y[:, 0], [low[1], high[1]]))
         dx, dy = x[rows, columns] - start[0], y[rows, columns] - start[1]
-        share = np.clip(dx * way[0] + dy * way[1], 0, span)
-        away = np.hypot(dx - share * way[0], dy - share * way[1])
+        share = np.clip(dx * direction[0] + dy * direction[1], 0, span)
+        away = np.hypot(dx - share * direction[0], dy - share * direction[1])
         best = np.abs(signed[rows, columns])
         nearer = (away < best) & (away < _NEAR_M)
-        side = np.where(way[0] * dy - way[1] * dx >= 0, 1.0, -1.0)
+        side = np.where(direction[0] * dy - direction[1] * dx >= 0, 1.0, -1.0)
         signed[rows, columns] = np.where(nearer, side * away, signed[rows, columns])
         along[rows, columns] = np.where(nearer, run + share, along[rows, columns])
         run += span
@@ -93,15 +93,15 @@ def _near_path(x: Floats, y: Floats, path: Floats) -> tuple[Mask, Floats, Floats
 def wander(random: Generator, start: ArrayLike, end: ArrayLike, sway: float) -> Floats:
     """A path between two places that swings from side to side: (n, 2) float64."""
     first, last = np.asarray(start, np.float64), np.asarray(end, np.float64)
-    way = last - first
-    span = max(float(np.hypot(*way)), 1e-6)
+    direction = last - first
+    span = max(float(np.hypot(*direction)), 1e-6)
     count = int(np.clip(span / 1.2, 16, 60))
     shares = np.linspace(0, 1, count)
-    side = np.array([-way[1], way[0]]) / span
+    side = np.array([-direction[1], direction[0]]) / span
     swing = (
         sway * np.sin(shares * random.uniform(2, 7) + random.uniform(0, 6)) * np.sin(np.pi * shares)
     )
-    return np.asarray(first + shares[:, None] * way + swing[:, None] * side, np.float64)
+    return np.asarray(first + shares[:, None] * direction + swing[:, None] * side, np.float64)
 
 
 def ruts(random: Generator, z: Floats, x: Floats, y: Floats, path: Floats) -> Mask:
@@ -121,7 +121,7 @@ def ruts(random: Generator, z: Floats, x: Floats, y: Floats, path: Floats) -> Ma
     return track
 
 
-def crawled(random: Generator, z: Floats, x: Floats, y: Floats, path: Floats) -> None:
+def add_crawler_prints(random: Generator, z: Floats, x: Floats, y: Floats, path: Floats) -> None:
     """The prints of a crawler's two chains: shallow with ribs square to the way."""
     gauge, wide = random.uniform(1.8, 2.6), random.uniform(0.5, 0.7)
     deep, rib = random.uniform(0.01, 0.04), random.uniform(0.3, 0.45)

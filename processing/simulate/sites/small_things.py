@@ -7,19 +7,19 @@ from numpy.random import Generator
 
 from processing.simulate.materials import Material
 from processing.simulate.mesh import tube
-from processing.simulate.sites.bodies import Body, Kind, Part, beam, block, turned
+from processing.simulate.sites.bodies import SiteBody, SiteKind, SitePart, beam, block, rotate_part
 
 
-def worker(random: Generator) -> Body:
+def worker(random: Generator) -> SiteBody:
     """A person with helmet and vest: standing, stooping or stretching out an arm."""
     tall = random.normal(1.69, 0.08)
     hip, shoulder = 0.5 * tall, 0.82 * tall
     stride = random.uniform(0.0, 0.3)
-    parts: list[Part] = []
+    parts: list[SitePart] = []
     for side in (-1, 1):
         leg = np.array([[side * stride, side * 0.11, 0.0], [0.0, side * 0.1, hip]])
         parts.append((tube(leg, np.array([0.07, 0.09]), 8), Material.CLOTH))
-    upper: list[Part] = [
+    upper: list[SitePart] = [
         (
             tube(
                 np.array([[0, 0, hip - 0.05], [0, 0, 0.68 * tall], [0.0, 0, shoulder]]),
@@ -47,15 +47,15 @@ def worker(random: Generator) -> Body:
         end = start + 0.58 * np.array([np.sin(reach), side * 0.1, -np.cos(reach)])
         upper.append((tube(np.array([start, end]), np.array([0.06, 0.045]), 6), Material.CLOTH))
     stoop = random.uniform(0.6, 1.3) if random.random() < 0.25 else random.uniform(0, 0.12)
-    parts += [turned(one, 1, stoop, (0.0, 0.0, hip)) for one in upper]
-    return Body(Kind.WORKER, tuple(parts))
+    parts += [rotate_part(one, 1, stoop, (0.0, 0.0, hip)) for one in upper]
+    return SiteBody(SiteKind.WORKER, tuple(parts))
 
 
-def batter_board(random: Generator) -> Body:
+def batter_board(random: Generator) -> SiteBody:
     """A slope's gauge (丁張): two or three stakes, a level board and one at the slope's grade."""
     long, high = random.uniform(0.8, 2.6), random.uniform(0.6, 1.3)
     grade = 1 / random.choice([0.5, 1.0, 1.2, 1.5, 1.8, 2.0])
-    parts: list[Part] = []
+    parts: list[SitePart] = []
     for along in (0.0, long):
         lean = random.normal(0, 0.03, 2)
         top = (along + lean[0], lean[1], high + random.uniform(0, 0.15))
@@ -65,15 +65,15 @@ def batter_board(random: Generator) -> Body:
     run = min(long, (high - 0.15) / grade)
     slant = (-0.15, -0.03, high + 0.15 * grade), (run, -0.03, high - run * grade)
     parts.append((beam(*slant, 0.012, 0.09), Material.WOOD))
-    return Body(Kind.BATTER_BOARD, tuple(parts))
+    return SiteBody(SiteKind.BATTER_BOARD, tuple(parts))
 
 
-def survey_pole(random: Generator) -> Body:
+def survey_pole(random: Generator) -> SiteBody:
     """A pole with a prism, a staff, or a stake with a ribbon that marks a point."""
     which = random.integers(0, 3)
     if which == 0:
         high, lean = random.uniform(1.3, 2.2), random.normal(0, 0.02)
-        legs: list[Part] = [
+        legs: list[SitePart] = [
             (tube(np.array([[0, 0, 0], [lean, 0, high]]), np.full(2, 0.016), 6), Material.STEEL)
         ]
         legs.append(
@@ -87,18 +87,20 @@ def survey_pole(random: Generator) -> Body:
                     Material.STEEL,
                 )
             )
-        return Body(Kind.SURVEY_POLE, tuple(legs))
+        return SiteBody(SiteKind.SURVEY_POLE, tuple(legs))
     if which == 1:
         staff = block(
             (-0.01, -0.04, 0.0), (0.02, 0.04, random.uniform(3, 5)), Material.PAINTED_METAL
         )
-        return Body(Kind.SURVEY_POLE, (turned(staff, 1, random.normal(0, 0.03), (0, 0, 0)),))
+        return SiteBody(
+            SiteKind.SURVEY_POLE, (rotate_part(staff, 1, random.normal(0, 0.03), (0, 0, 0)),)
+        )
     high = random.uniform(0.15, 1.0)
     stake = beam((0, 0, -0.2), (random.normal(0, 0.03), random.normal(0, 0.03), high), 0.05, 0.05)
-    return Body(Kind.SURVEY_POLE, ((stake, Material.WOOD),))
+    return SiteBody(SiteKind.SURVEY_POLE, ((stake, Material.WOOD),))
 
 
-def bush(random: Generator) -> Body:
+def bush(random: Generator) -> SiteBody:
     """A shrub or a tuft of reeds: leaves that beams pass between, and a few stems."""
     high, wide = random.uniform(0.3, 2.2), random.uniform(0.3, 1.4)
     count = int(np.clip(420 * wide * wide * high, 60, 1500))
@@ -108,20 +110,22 @@ def bush(random: Generator) -> Body:
     centre = np.column_stack([out * np.cos(around), out * np.sin(around), level + 0.03])
     is_reed = random.random() < 0.35
     long = random.uniform(0.25, 0.7) if is_reed else random.uniform(0.06, 0.14)
-    way = random.normal(size=(count, 3))
+    direction = random.normal(size=(count, 3))
     if is_reed:
-        way = way * 0.25 + [0, 0, 1]
-    way *= (long * random.uniform(0.5, 1.2, count) / np.linalg.norm(way, axis=1))[:, None]
-    side = np.cross(way, random.normal(size=(count, 3)))
+        direction = direction * 0.25 + [0, 0, 1]
+    direction *= (long * random.uniform(0.5, 1.2, count) / np.linalg.norm(direction, axis=1))[
+        :, None
+    ]
+    side = np.cross(direction, random.normal(size=(count, 3)))
     broad = (0.012 if is_reed else 0.45 * long) / np.linalg.norm(side, axis=1)
     side *= broad[:, None]
-    corners = np.stack([centre - side, centre + side, centre + way], axis=1)
+    corners = np.stack([centre - side, centre + side, centre + direction], axis=1)
     leaves = corners.reshape(-1, 3), np.arange(3 * count).reshape(-1, 3)
-    parts: list[Part] = [(leaves, Material.LEAVES)]
+    parts: list[SitePart] = [(leaves, Material.LEAVES)]
     if not is_reed:
         for _ in range(int(random.integers(2, 6))):
             turn, lean = random.uniform(0, 6.3), random.uniform(0, 0.5) * wide
             top = (lean * np.cos(turn), lean * np.sin(turn), 0.7 * high)
             stem = tube(np.array([(0.0, 0.0, -0.05), top]), np.array([0.02, 0.008]), 5)
             parts.append((stem, Material.BARK))
-    return Body(Kind.BRUSH, tuple(parts))
+    return SiteBody(SiteKind.BRUSH, tuple(parts))

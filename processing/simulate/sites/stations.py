@@ -9,9 +9,9 @@ from numpy.random import Generator
 
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats
-from processing.simulate.scanning.casting import Scene
-from processing.simulate.sites.layout import Layout
-from processing.simulate.sites.terrain import Check
+from processing.simulate.scanning.casting import RaycastScene
+from processing.simulate.sites.layout import SiteLayout
+from processing.simulate.sites.terrain import StopCheck
 
 _CANDIDATES, _TARGETS = 48, 700
 _CLEAR_M = 2.2
@@ -25,7 +25,7 @@ class Station:
 
     Attributes
     ----------
-    place : (3,) float64
+    position : (3,) float64
         Of its centre, m, the site's frame.
     start_rad : float
         Where its first column points, anticlockwise from east.
@@ -35,7 +35,7 @@ class Station:
         Error of the registration, m.
     """
 
-    place: Floats
+    position: Floats
     start_rad: float
     turn: Floats
     shift: Floats
@@ -47,7 +47,7 @@ def count_for(length_m: float, wanted: int) -> int:
 
 
 def stations_of(
-    random: Generator, layout: Layout, scene: Scene, count: int, check: Check
+    random: Generator, layout: SiteLayout, scene: RaycastScene, count: int, check: StopCheck
 ) -> list[Station]:
     """Stations one after the other, each where it adds most to what is seen.
 
@@ -60,23 +60,23 @@ def stations_of(
     """
     heights = layout.ground.heights
     east, north = heights.size_m
-    places = _candidates(random, layout)
+    positions = _candidates(random, layout)
     x, y = random.uniform((0, 0), (east, north), (_TARGETS, 2)).T
     targets = np.column_stack([x, y, heights.height(x, y) + 0.05])
-    seen = np.zeros((len(places), _TARGETS))
-    for row, place in enumerate(places):
+    seen = np.zeros((len(positions), _TARGETS))
+    for row, position in enumerate(positions):
         check()
-        seen[row] = _seen_from(scene, place, targets)
+        seen[row] = _seen_from(scene, position, targets)
     chosen: list[int] = []
     best = np.zeros(_TARGETS)
-    for _ in range(min(count, len(places))):
+    for _ in range(min(count, len(positions))):
         gains = np.maximum(seen - best, 0).sum(axis=1)
         gains[chosen] = -1
         chosen.append(int(np.argmax(gains)))
         best = np.maximum(best, seen[chosen[-1]])
     return [
         Station(
-            places[one],
+            positions[one],
             random.uniform(-np.pi, np.pi),
             random.normal(0, 2e-5, 3),
             random.normal(0, 0.0012, 3),
@@ -85,7 +85,7 @@ def stations_of(
     ]
 
 
-def _candidates(random: Generator, layout: Layout) -> Floats:
+def _candidates(random: Generator, layout: SiteLayout) -> Floats:
     """Places where a tripod can stand: dry, not steep, away from things."""
     heights = layout.ground.heights
     east, north = heights.size_m
@@ -108,9 +108,9 @@ def _candidates(random: Generator, layout: Layout) -> Floats:
     return np.array(found)
 
 
-def _seen_from(scene: Scene, place: Floats, targets: Floats) -> Floats:
+def _seen_from(scene: RaycastScene, position: Floats, targets: Floats) -> Floats:
     """How well each target is seen: 1 near by, less far away, 0 where something is between."""
-    ways = targets - place
-    away = np.linalg.norm(ways, axis=1)
-    hits = scene.cast(np.broadcast_to(place, ways.shape), ways / away[:, None])
+    directions = targets - position
+    away = np.linalg.norm(directions, axis=1)
+    hits = scene.cast(np.broadcast_to(position, directions.shape), directions / away[:, None])
     return np.where(hits.ranges > away - 0.1, 1 / (1 + (away / _GOOD_M) ** 2), 0.0)

@@ -16,7 +16,7 @@ from processing.simulate.mesh import Floats
 from processing.simulate.sites.heights import HeightGrid, nodes_apart
 from processing.simulate.sites.relief import (
     Mask,
-    crawled,
+    add_crawler_prints,
     ditch,
     heap,
     puddle,
@@ -25,15 +25,21 @@ from processing.simulate.sites.relief import (
     undulation,
     wander,
 )
-from processing.simulate.sites.works import PLANS, Lie, Plan, lie_of, progress_of
+from processing.simulate.sites.works import (
+    PLANS,
+    Plan,
+    WorkPlacement,
+    progress_of,
+    work_placement_of,
+)
 
-Check = Callable[[], None]
+StopCheck = Callable[[], None]
 Bytes = NDArray[np.uint8]
-Place = tuple[float, float]
+PlanPoint = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Ground:
+class SiteGround:
     """The ground of one date.
 
     Attributes
@@ -52,7 +58,7 @@ class Ground:
 
 
 @dataclass(frozen=True)
-class Terrain:
+class SiteTerrain:
     """The ground on both dates.
 
     Attributes
@@ -61,12 +67,12 @@ class Terrain:
         Nodes that are the same on both, to the last bit.
     """
 
-    before: Ground
-    after: Ground
+    before: SiteGround
+    after: SiteGround
     unchanged: Mask
 
 
-def terrain_of(seed: int, style: str, length_m: float, check: Check) -> Terrain:
+def terrain_of(seed: int, style: str, length_m: float, check: StopCheck) -> SiteTerrain:
     """The ground of a seed.
 
     Parameters
@@ -82,7 +88,7 @@ def terrain_of(seed: int, style: str, length_m: float, check: Check) -> Terrain:
     wide = length_m * random.uniform(0.58, 0.86)
     columns, rows = round(length_m / res) + 1, round(wide / res) + 1
     x, y = np.meshgrid(np.arange(columns) * res, np.arange(rows) * res)
-    lie = lie_of(random, x, y)
+    lie = work_placement_of(random, x, y)
     check()
     plan = PLANS[style](random, lie)
     lowest = random.uniform(1.0, 60.0) - min(float(plan.natural.min()), float(plan.design.min()))
@@ -106,14 +112,14 @@ def terrain_of(seed: int, style: str, length_m: float, check: Check) -> Terrain:
     active = _active(random, lie)
     after = before + active * (after - before)
     later = np.where(active > 0, later, material).astype(np.uint8)
-    return Terrain(
-        Ground(HeightGrid(before.astype(np.float32), res), material),
-        Ground(HeightGrid(after.astype(np.float32), res), later),
+    return SiteTerrain(
+        SiteGround(HeightGrid(before.astype(np.float32), res), material),
+        SiteGround(HeightGrid(after.astype(np.float32), res), later),
         np.asarray(active == 0, np.bool_),
     )
 
 
-def _active(random: Generator, lie: Lie) -> Floats:
+def _active(random: Generator, lie: WorkPlacement) -> Floats:
     """1 where work goes on between the dates, 0 where nothing changes at all."""
     span = float(np.ptp(lie.u))
     start = lie.u.min() + random.uniform(0.1, 0.32) * span
@@ -127,8 +133,8 @@ class _Field:
     """Marks of a date on the ground."""
 
     seed: int
-    lie: Lie
-    check: Check
+    lie: WorkPlacement
+    check: StopCheck
 
     def weathered(self, date: str, built: Floats, plan: Plan, grown: Mask) -> tuple[Floats, Bytes]:
         """Heights with the marks of machines and rain, and what the ground is made of."""
@@ -141,9 +147,9 @@ class _Field:
         if random.random() < 0.3:
             material[worked & (np.abs(built - plan.design) < 0.01)] = int(Material.GRAVEL)
         for number in range(self._count(random, 1, 5)):
-            path = wander(random, self._place(random), self._place(random), 3.0)
+            path = wander(random, self._position(random), self._position(random), 3.0)
             if number % 2:
-                crawled(random, z, x, y, path)
+                add_crawler_prints(random, z, x, y, path)
             else:
                 track = ruts(random, z, x, y, path)
                 is_paved = random.random() < 0.3
@@ -151,7 +157,7 @@ class _Field:
             self.check()
         self._dug(random, z, material)
         for _ in range(self._count(random, 2, 10)):
-            where = self._place(random)
+            where = self._position(random)
             self._local(z, where, 4.0, partial(_wet, random), material)
             self.check()
         return z, material
@@ -159,26 +165,26 @@ class _Field:
     def _dug(self, random: Generator, z: Floats, material: Bytes) -> None:
         soil = int(Material.SOIL)
         for _ in range(self._count(random, 1, 6)):
-            where = self._place(random)
+            where = self._position(random)
             self._local(z, where, 9.0, partial(_tip, random), material)
             self.check()
         for _ in range(self._count(random, 0, 3)):
-            start = self._place(random)
+            start = self._position(random)
             end = np.asarray(start) + random.uniform(-14, 14, 2)
             path = wander(random, start, end, 0.6)
             material[ditch(random, z, self.lie.x, self.lie.y, path)] = soil
             self.check()
         for _ in range(self._count(random, 0, 4)):
-            where = self._place(random)
+            where = self._position(random)
             self._local(z, where, 6.5, partial(_dig, random), material)
             self.check()
 
     def _local(
         self,
         z: Floats,
-        where: Place,
+        where: PlanPoint,
         reach: float,
-        change: Callable[[Floats, tuple[Floats, Floats, Bytes], Place], None],
+        change: Callable[[Floats, tuple[Floats, Floats, Bytes], PlanPoint], None],
         material: Bytes,
     ) -> None:
         """Change a window of the ground only: what is small costs little."""
@@ -188,28 +194,34 @@ class _Field:
         rows = slice(max(0, j - half), j + half + 1)
         columns = slice(max(0, i - half), i + half + 1)
         window = z[rows, columns]
-        places = self.lie.x[rows, columns], self.lie.y[rows, columns], material[rows, columns]
-        change(window, places, where)
+        positions = self.lie.x[rows, columns], self.lie.y[rows, columns], material[rows, columns]
+        change(window, positions, where)
 
     def _count(self, random: Generator, low: int, high: int) -> int:
         """How many: more on a larger site, but not in proportion."""
         scale = float(np.clip(np.sqrt(np.ptp(self.lie.x) * np.ptp(self.lie.y) / 2600), 0.4, 4))
         return round(int(random.integers(low, high + 1)) * scale)
 
-    def _place(self, random: Generator) -> tuple[float, float]:
+    def _position(self, random: Generator) -> tuple[float, float]:
         east, north = float(self.lie.x[0, -1]), float(self.lie.y[-1, 0])
         return random.uniform(0.06, 0.94) * east, random.uniform(0.08, 0.92) * north
 
 
-def _tip(random: Generator, z: Floats, places: tuple[Floats, Floats, Bytes], where: Place) -> None:
-    x, y, material = places
+def _tip(
+    random: Generator, z: Floats, positions: tuple[Floats, Floats, Bytes], where: PlanPoint
+) -> None:
+    x, y, material = positions
     material[heap(random, z, x, y, where)] = int(Material.SOIL)
 
 
-def _dig(random: Generator, z: Floats, places: tuple[Floats, Floats, Bytes], where: Place) -> None:
-    step(random, z, places[0], places[1], where)
+def _dig(
+    random: Generator, z: Floats, positions: tuple[Floats, Floats, Bytes], where: PlanPoint
+) -> None:
+    step(random, z, positions[0], positions[1], where)
 
 
-def _wet(random: Generator, z: Floats, places: tuple[Floats, Floats, Bytes], where: Place) -> None:
-    x, y, material = places
+def _wet(
+    random: Generator, z: Floats, positions: tuple[Floats, Floats, Bytes], where: PlanPoint
+) -> None:
+    x, y, material = positions
     material[puddle(random, z, x, y, where)] = int(Material.WATER)

@@ -25,7 +25,7 @@ _BENCH_EVERY_M = (5.0, 7.0)
 
 
 @dataclass(frozen=True)
-class Lie:
+class WorkPlacement:
     """Where the work lies on the site.
 
     Attributes
@@ -61,7 +61,7 @@ class Plan:
         return np.where(self.design < self.natural, cut, fill)
 
 
-def lie_of(random: Generator, x: Floats, y: Floats) -> Lie:
+def work_placement_of(random: Generator, x: Floats, y: Floats) -> WorkPlacement:
     """Where the work lies: along the site, but bent, turned and not quite in its middle."""
     wide, high = float(np.ptp(x)), float(np.ptp(y))
     turn = random.uniform(-0.14, 0.14)
@@ -74,10 +74,10 @@ def lie_of(random: Generator, x: Floats, y: Floats) -> Lie:
     wobble = 0.25 * np.sin(along / random.uniform(4, 11) + random.uniform(0, 6))
     if random.random() < 0.5:
         across = -across
-    return Lie(x, y, along, across + bend * along**2 + wobble * 0.4)
+    return WorkPlacement(x, y, along, across + bend * along**2 + wobble * 0.4)
 
 
-def levee(random: Generator, lie: Lie) -> Plan:
+def levee(random: Generator, lie: WorkPlacement) -> Plan:
     """A levee that is raised and widened on its land side (左右どちらか)."""
     high = float(np.clip(random.uniform(0.08, 0.15) * lie.wide_m, 0.7, 6.5))
     crest = float(np.clip(random.uniform(0.08, 0.16) * lie.wide_m, 1.5, 7.0))
@@ -94,7 +94,7 @@ def levee(random: Generator, lie: Lie) -> Plan:
     return Plan(before, np.maximum(before + trimmed, np.where(new > natural, new, -np.inf)))
 
 
-def cutting(random: Generator, lie: Lie) -> Plan:
+def cutting(random: Generator, lie: WorkPlacement) -> Plan:
     """A road in a hillside: cut on its upper side in benches, filled on its lower side."""
     scale = lie.wide_m
     fall = random.uniform(0.14, 0.42)
@@ -111,7 +111,7 @@ def cutting(random: Generator, lie: Lie) -> Plan:
     return Plan(natural, np.clip(natural, road - lower, road + upper + ditch))
 
 
-def pad(random: Generator, lie: Lie) -> Plan:
+def pad(random: Generator, lie: WorkPlacement) -> Plan:
     """Building land: terraces with slopes or walls between them, cut and filled."""
     scale = lie.wide_m
     fall = random.uniform(0.04, 0.2)
@@ -132,7 +132,7 @@ def pad(random: Generator, lie: Lie) -> Plan:
     return Plan(natural, np.clip(terraces, natural - reach, natural + reach))
 
 
-PLANS: dict[str, Callable[[Generator, Lie], Plan]] = {
+PLANS: dict[str, Callable[[Generator, WorkPlacement], Plan]] = {
     "levee": levee,
     "cutting": cutting,
     "pad": pad,
@@ -147,7 +147,7 @@ class Progress:
     up_to: Floats
 
 
-def progress_of(random: Generator, lie: Lie, plan: Plan) -> tuple[Progress, Progress]:
+def progress_of(random: Generator, lie: WorkPlacement, plan: Plan) -> tuple[Progress, Progress]:
     """How far the work has come on both dates, stretch by stretch; never back."""
     length = float(np.ptp(lie.u))
     count = max(2, int(length / random.uniform(7, 22)))
@@ -180,7 +180,7 @@ def _stepped(u: Floats, levels: Floats, edges: Floats, ramps: Floats) -> Floats:
     return heights
 
 
-def _uneven(random: Generator, lie: Lie, most_m: float) -> Floats:
+def _uneven(random: Generator, lie: WorkPlacement, most_m: float) -> Floats:
     """Natural ground: bumps of several sizes."""
     heights = np.zeros(lie.x.shape)
     for wave, share in ((23.0, 1.0), (8.0, 0.35), (2.7, 0.1), (0.9, 0.025)):

@@ -28,7 +28,7 @@ class Alignment:
     ----------
     chainages : (n,) float64
         m, rising by a quarter of a metre; 0 where the drive begins.
-    places : (n, 3) float64
+    positions : (n, 3) float64
     headings : (n,) float64
         Radians anticlockwise from east.
     curvatures : (n,) float64
@@ -42,7 +42,7 @@ class Alignment:
     """
 
     chainages: Floats
-    places: Floats
+    positions: Floats
     headings: Floats
     curvatures: Floats
     tilts: Floats
@@ -68,8 +68,8 @@ class Alignment:
             np.asarray(chainage, np.float64), np.asarray(offset, np.float64), height
         )
         heading = self.heading(s)
-        x = np.interp(s, self.chainages, self.places[:, 0]) - np.sin(heading) * o
-        y = np.interp(s, self.chainages, self.places[:, 1]) + np.cos(heading) * o
+        x = np.interp(s, self.chainages, self.positions[:, 0]) - np.sin(heading) * o
+        y = np.interp(s, self.chainages, self.positions[:, 1]) + np.cos(heading) * o
         return np.stack([x, y, z], axis=-1)
 
     def heading(self, chainage: ArrayLike) -> Floats:
@@ -79,7 +79,7 @@ class Alignment:
     def carriageway_height(self, chainage: ArrayLike, offset: ArrayLike) -> Floats:
         """Height of the road's surface, z in m, with camber and super-elevation."""
         s, o = np.asarray(chainage, np.float64), np.asarray(offset, np.float64)
-        centre = np.interp(s, self.chainages, self.places[:, 2])
+        centre = np.interp(s, self.chainages, self.positions[:, 2])
         tilt = np.interp(s, self.chainages, self.tilts)
         crowned = np.maximum(0.0, 1.0 - np.abs(tilt) / self.camber)
         return centre + tilt * o - self.camber * crowned * np.abs(o)
@@ -104,7 +104,7 @@ def alignment_of(seed: int, style: Style, length_m: float) -> Alignment:
     slopes: Floats = np.interp(chainages, knots, grades * hilliness)
     zero = -first
     headings: Floats = heading + _summed(curvatures, zero)
-    places = np.column_stack(
+    positions = np.column_stack(
         [
             _summed(np.cos(headings), zero),
             _summed(np.sin(headings), zero),
@@ -117,15 +117,15 @@ def alignment_of(seed: int, style: Style, length_m: float) -> Alignment:
     padded: Floats = np.pad(tilts, per_knot, mode="edge")
     spread: Floats = np.convolve(padded, np.ones(per_knot) / per_knot, "same")
     spread = spread[per_knot:-per_knot]
-    return Alignment(chainages, places, headings, curvatures, spread, slopes, camber)
+    return Alignment(chainages, positions, headings, curvatures, spread, slopes, camber)
 
 
-def _knots(seed: int, way: int, style: Style, count: int) -> tuple[Floats, Floats]:
+def _knots(seed: int, direction: int, style: Style, count: int) -> tuple[Floats, Floats]:
     """Curvature and grade every 20 m, from the beginning outwards, one stream per knot."""
     curves, grades = np.zeros(count), np.zeros(count)
     turned, left, curve, grade = 0.0, 0, 0.0, 0.0
     for knot in range(count):
-        random = chance(seed, "knot", way, knot)
+        random = chance(seed, "knot", direction, knot)
         if left == 0:
             left = int(random.integers(2, 7))
             curve = 0.0
@@ -136,11 +136,11 @@ def _knots(seed: int, way: int, style: Style, count: int) -> tuple[Floats, Float
                     side = -float(np.sign(turned))
                 curve = side / radius
             grade = float(np.clip(random.normal(0, 0.6), -1, 1)) * style.most_grade
-        if abs(turned + way * curve * _KNOT_M) > _MOST_TURNED_RAD:
+        if abs(turned + direction * curve * _KNOT_M) > _MOST_TURNED_RAD:
             curve = 0.0
         left -= 1
         curves[knot], grades[knot] = curve, grade
-        turned += way * curve * _KNOT_M
+        turned += direction * curve * _KNOT_M
     return curves, grades
 
 

@@ -10,10 +10,10 @@ from numpy.random import Generator
 from processing.simulate.mesh import Floats
 from processing.simulate.street.dropped_curbs import Drop, lowering
 from processing.simulate.street.junction_shape import Corner, Mouth
-from processing.simulate.street.measures import Looks, measures_along
+from processing.simulate.street.measures import BandSurfaces, measures_along
 from processing.simulate.street.plan import SidePlan
 from processing.simulate.street.profile import Course
-from processing.simulate.street.stones import Laid, laid, plain
+from processing.simulate.street.stones import StoneNodes, lay_stones, place_nodes_evenly
 from processing.simulate.street.unevenness import Waves
 
 _ARC_STEP_M = 0.2
@@ -100,21 +100,21 @@ def corner_drops(random: Generator, side: SidePlan, corner: Corner) -> tuple[Dro
 
 
 def corner_nodes(
-    random: Generator, corner: Corner, looks: Looks, deep_m: float, drops: tuple[Drop, ...]
-) -> tuple[Laid, int, int]:
+    random: Generator, corner: Corner, looks: BandSurfaces, deep_m: float, drops: tuple[Drop, ...]
+) -> tuple[StoneNodes, int, int]:
     """Nodes round a corner, and those at which its arc begins and ends."""
     start = corner.turn_m - corner.radius_m
     end = start + corner.radius_m * np.pi / 2
     arc = np.linspace(start, end, max(6, int((end - start) / _ARC_STEP_M)) + 1)
-    breaks = np.array([place for drop in drops for place in drop.breaks()])
+    breaks = np.array([position for drop in drops for position in drop.breaks()])
     clear = np.array([np.abs(breaks - one).min() > 0.01 for one in arc]) if breaks.size else None
     kept = arc if clear is None else arc[clear | np.isin(arc, arc[[0, -1]])]
     ends = np.array([0.0, end + deep_m - corner.radius_m])
     every = np.concatenate([kept, breaks])
     if looks.sloppiness_m > 0:
-        nodes = laid(random, ends, looks.stone_m, looks.sloppiness_m, every)
+        nodes = lay_stones(random, ends, looks.stone_m, looks.sloppiness_m, every)
     else:
-        nodes = plain(ends, 0.5, every)
+        nodes = place_nodes_evenly(ends, 0.5, every)
     first = int(np.abs(nodes.along - start).argmin())
     return nodes, first, int(np.abs(nodes.along - end).argmin())
 
@@ -123,9 +123,9 @@ def corner_course(
     seed: int,
     plans: tuple[SidePlan | None, SidePlan, SidePlan | None],
     track: CornerTrack,
-    nodes: Laid,
+    nodes: StoneNodes,
     *,
-    looks: Looks,
+    looks: BandSurfaces,
     drops: tuple[Drop, ...],
     wander: Waves,
 ) -> Course:

@@ -18,17 +18,17 @@ from processing.simulate.street.corner_track import (
     corner_nodes,
 )
 from processing.simulate.street.dropped_curbs import drops_of, lowering
-from processing.simulate.street.ground import Ground, Strip
+from processing.simulate.street.ground import StreetGround, Strip
 from processing.simulate.street.junction_shape import DEEP_M, Mouth, mouth_of
-from processing.simulate.street.layout import CornerLayout, Layout, Outline, SideLayout
-from processing.simulate.street.measures import Looks, looks_of, measures_along
+from processing.simulate.street.layout import CornerLayout, Outline, SectionSurfaces, SideLayout
+from processing.simulate.street.measures import BandSurfaces, band_surfaces_of, measures_along
 from processing.simulate.street.median import median_nodes, median_of, opening_of
 from processing.simulate.street.plan import LEFT, RIGHT, SIDES, SectionPlan, SidePlan
-from processing.simulate.street.profile import GROUND, ROAD, Course, Profile, profile_of
-from processing.simulate.street.section import Section
-from processing.simulate.street.stones import Laid, laid, plain
+from processing.simulate.street.profile import GROUND, ROAD, Course, RoadProfile, profile_of
+from processing.simulate.street.section import StreetSection
+from processing.simulate.street.stones import StoneNodes, lay_stones, place_nodes_evenly
 from processing.simulate.street.sweep import Straight, Sweep
-from processing.simulate.street.terrain import Terrain
+from processing.simulate.street.terrain import SectionTerrain
 from processing.simulate.street.unevenness import unevenness_of
 
 _ROAD_STEP_M = 0.75
@@ -41,13 +41,15 @@ _FOLD_SHARE = 0.8
 """On the inside of a bend the land ends before its lines cross: this share of the radius."""
 
 
-def section_of(seed: int, plans: Sequence[SectionPlan], row: int, alignment: Alignment) -> Section:
+def section_of(
+    seed: int, plans: Sequence[SectionPlan], row: int, alignment: Alignment
+) -> StreetSection:
     """A section with its lines; depends on its own plan and those of its neighbours alone."""
     plan = plans[row]
     before = plans[row - 1] if row > 0 else None
     after = plans[row + 1] if row + 1 < len(plans) else None
     mouths = {side: mouth_of(seed, plan, side) for side in plan.junctions}
-    terrain = Terrain(
+    terrain = SectionTerrain(
         plan, alignment, unevenness_of(seed), tuple(one.grade for one in mouths.values())
     )
     sides = {}
@@ -68,7 +70,7 @@ def section_of(seed: int, plans: Sequence[SectionPlan], row: int, alignment: Ali
         nodes = median_nodes(plan, opening)
     median = median_of(seed, plan, terrain, nodes, opening)
     layout = _layout(terrain, nodes, sides, median)
-    return Section(seed, plan, alignment, layout)
+    return StreetSection(seed, plan, alignment, layout)
 
 
 def outline(
@@ -82,11 +84,11 @@ def outline(
     along = np.array([plan.end_m if is_end else plan.start_m])
     none = np.zeros(1)
     course = Course(
-        covered(own) if side in plan.junctions else own,
+        cover_gutter(own) if side in plan.junctions else own,
         measures_along(seed, (before, own, after), along, np.array([plan.start_m, plan.end_m])),
-        looks_of(seed, own),
+        band_surfaces_of(seed, own),
         own.edge_m + unevenness_of(seed).wander[side].at(along),
-        Laid(along, none, none, none),
+        StoneNodes(along, none, none, none),
         lowering((), along),
     )
     profile = profile_of(course)
@@ -95,7 +97,7 @@ def outline(
     return Outline(away[0], above[0], tuple(profile.strips))
 
 
-def far_m(terrain: Terrain, side: int, chainage: Floats, least_m: Floats) -> Floats:
+def far_m(terrain: SectionTerrain, side: int, chainage: Floats, least_m: Floats) -> Floats:
     """How far from the centre the land reaches there: (n,) float64, m."""
     outer = next(one.outer_m for one in terrain.plan.side(side).bands() if one.name == "outside")
     alignment = terrain.alignment
@@ -113,7 +115,7 @@ def land_of(seed: int, side: SidePlan) -> Strip:
     return Strip("land", materials.get(side.outside, Material.SOIL), GROUND)
 
 
-def covered(side: SidePlan) -> SidePlan:
+def cover_gutter(side: SidePlan) -> SidePlan:
     """A side whose gutter runs below the side street's asphalt."""
     return side if side.drain in ("none", "apron") else replace(side, drain="apron")
 
@@ -126,21 +128,21 @@ def _widest(mouths: dict[int, Mouth]) -> tuple[float, float] | None:
 
 def _side_layout(
     seed: int,
-    terrain: Terrain,
+    terrain: SectionTerrain,
     side: int,
     plans: tuple[SidePlan | None, SidePlan, SidePlan | None],
     mouth: Mouth | None,
 ) -> SideLayout:
     plan, own = terrain.plan, plans[1]
-    looks = looks_of(seed, own)
+    looks = band_surfaces_of(seed, own)
     ends = np.array([plan.start_m, plan.end_m])
     drops = drops_of(seed, plan, side)
-    breaks = np.array([place for drop in drops for place in drop.breaks()])
+    breaks = np.array([position for drop in drops for position in drop.breaks()])
     random = chance(seed, "stones", plan.index, side)
     if own.curb in ("none", "asphalt") or mouth is not None:
-        nodes = plain(ends, _PLAIN_STEP_M, breaks)
+        nodes = place_nodes_evenly(ends, _PLAIN_STEP_M, breaks)
     else:
-        nodes = laid(random, ends, looks.stone_m, looks.sloppiness_m, breaks)
+        nodes = lay_stones(random, ends, looks.stone_m, looks.sloppiness_m, breaks)
     wander = terrain.unevenness.wander[side].at(nodes.along)
     if mouth is not None:
         wander = wander * mouth.calm(nodes.along)
@@ -153,7 +155,7 @@ def _side_layout(
         lowering(drops, nodes.along),
     )
     if mouth is not None:
-        profile = _mouth_profile(mouth, replace(course, side=covered(own)))
+        profile = _mouth_profile(mouth, replace(course, side=cover_gutter(own)))
         corners = tuple(_corners(seed, terrain, plans, mouth, looks))
     else:
         profile, corners = profile_of(course), ()
@@ -163,13 +165,13 @@ def _side_layout(
     return SideLayout(sweep, drops, looks, mouth, corners, None)
 
 
-def _mouth_profile(mouth: Mouth, course: Course) -> Profile:
+def _mouth_profile(mouth: Mouth, course: Course) -> RoadProfile:
     """Lines beside a mouth that know its heights alone: the corners have the surfaces."""
     nodes = course.laid.along
     away, above = profile_of(course).stacked()
     inwards, levels = away.mean(axis=0) - course.side.edge_m, above.mean(axis=0)
     inwards = inwards + 1e-6 * np.arange(inwards.size)
-    profile = Profile()
+    profile = RoadProfile()
     profile.line(course.edge, 0.0)
     bare = Strip("mouth", Material.ASPHALT, ROAD, has_surface=False)
     near = np.arange(1, int(_MOUTH_NEAR_M / _MOUTH_LINE_M)) * _MOUTH_LINE_M
@@ -184,10 +186,10 @@ def _mouth_profile(mouth: Mouth, course: Course) -> Profile:
 
 def _corners(
     seed: int,
-    terrain: Terrain,
+    terrain: SectionTerrain,
     plans: tuple[SidePlan | None, SidePlan, SidePlan | None],
     mouth: Mouth,
-    looks: Looks,
+    looks: BandSurfaces,
 ) -> Iterator[CornerLayout]:
     own = plans[1]
     for number, corner in enumerate(mouth.corners):
@@ -197,14 +199,14 @@ def _corners(
         track = CornerTrack(mouth, corner, own.edge_m, nodes.along, first, last)
         wander = terrain.unevenness.wander[mouth.side]
         course = corner_course(seed, plans, track, nodes, looks=looks, drops=drops, wander=wander)
-        profile = profile_of(replace(course, side=covered(own)))
+        profile = profile_of(replace(course, side=cover_gutter(own)))
         sweep = Sweep.along(track, profile, terrain, mouth.side)
         yield CornerLayout(track, sweep, drops, land_of(seed, own))
 
 
 def _layout(
-    terrain: Terrain, nodes: Floats, sides: dict[int, SideLayout], median: tuple[Sweep, ...]
-) -> Layout:
+    terrain: SectionTerrain, nodes: Floats, sides: dict[int, SideLayout], median: tuple[Sweep, ...]
+) -> SectionSurfaces:
     plan = terrain.plan
     halves = {side: _road_lines(plan, side) for side in SIDES}
     middle = np.array([] if median else [0.0])
@@ -230,13 +232,13 @@ def _layout(
             strips += [road] * (halves[side].size - 1)
     parts.append(_resampled(left, common, is_mirrored=False))
     strips += [road, *left.profile.strips]
-    ground = Ground(
+    ground = StreetGround(
         common,
         np.hstack([one[0] for one in parts]),
         np.hstack([one[1] for one in parts]),
         tuple(strips),
     )
-    return Layout(terrain, ground, nodes, lines, sides, median)
+    return SectionSurfaces(terrain, ground, nodes, lines, sides, median)
 
 
 def _apart(nodes: Floats) -> Floats:
@@ -250,7 +252,7 @@ def _add_middle(
     parts: list[tuple[Floats, Floats]],
     strips: list[Strip],
     median: tuple[Sweep, ...],
-    where: tuple[Floats, Floats, Terrain],
+    where: tuple[Floats, Floats, SectionTerrain],
 ) -> None:
     common, nodes, terrain = where
     road = Strip("road", Material.ASPHALT, ROAD)

@@ -31,7 +31,7 @@ class Strip:
 
 
 @dataclass(frozen=True)
-class Ground:
+class StreetGround:
     """Lines along the road, from right to left, and the strips between them.
 
     Attributes
@@ -70,11 +70,11 @@ class Ground:
         share = (at - self.nodes[row]) / (self.nodes[row + 1] - self.nodes[row])
         lines = self.offsets[row] + share[:, None] * (self.offsets[row + 1] - self.offsets[row])
         levels = self.heights[row] + share[:, None] * (self.heights[row + 1] - self.heights[row])
-        place = np.clip((lines <= flat_o[:, None]).sum(axis=1) - 1, 0, lines.shape[1] - 2)
+        position = np.clip((lines <= flat_o[:, None]).sum(axis=1) - 1, 0, lines.shape[1] - 2)
         each = np.arange(flat_s.size)
-        low, high = lines[each, place], lines[each, place + 1]
+        low, high = lines[each, position], lines[each, position + 1]
         wide = np.maximum(high - low, 1e-9)
         across = np.clip((flat_o - low) / wide, 0.0, 1.0)
-        first, second = levels[each, place], levels[each, place + 1]
+        first, second = levels[each, position], levels[each, position + 1]
         levels_there: Floats = first + across * (second - first)
         return levels_there.reshape(s.shape)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from processing.simulate.mesh import Floats
 from processing.simulate.street.corner_track import CornerTrack
 from processing.simulate.street.dropped_curbs import Drop
-from processing.simulate.street.ground import Ground, Strip
+from processing.simulate.street.ground import StreetGround, Strip
 from processing.simulate.street.junction_shape import Mouth
-from processing.simulate.street.measures import Looks
+from processing.simulate.street.measures import BandSurfaces
 from processing.simulate.street.sweep import Sweep
-from processing.simulate.street.terrain import Terrain
+from processing.simulate.street.terrain import SectionTerrain
 
 
 @dataclass(frozen=True)
@@ -72,14 +72,14 @@ class SideLayout:
 
     sweep: Sweep
     drops: tuple[Drop, ...]
-    looks: Looks
+    looks: BandSurfaces
     mouth: Mouth | None
     corners: tuple[CornerLayout, ...]
     end: tuple[Outline, Outline] | None
 
 
 @dataclass(frozen=True)
-class Layout:
+class SectionSurfaces:
     """The surfaces of a section.
 
     Attributes
@@ -97,8 +97,8 @@ class Layout:
         Both halves of the raised strip in the middle; empty where there is none.
     """
 
-    terrain: Terrain
-    ground: Ground
+    terrain: SectionTerrain
+    ground: StreetGround
     road_nodes: Floats
     road_lines: Floats
     sides: Mapping[int, SideLayout]

@@ -74,7 +74,7 @@ class Measures:
 
 
 @dataclass(frozen=True)
-class Looks:
+class BandSurfaces:
     """What the bands of a side are made of.
 
     Attributes
@@ -126,12 +126,12 @@ def measures_of(seed: int, side: SidePlan) -> Measures:
     return Measures(*(np.asarray(one, np.float64) for one in values))
 
 
-def looks_of(seed: int, side: SidePlan) -> Looks:
+def band_surfaces_of(seed: int, side: SidePlan) -> BandSurfaces:
     """Materials of a side; the same for all sections that share its plan."""
     random = chance(seed, "looks", int(side.verge_m * 1e7), int(side.drain_m * 1e7))
     concretes = (Material.CONCRETE, Material.OLD_CONCRETE)
     walks = (Material.PAVING, Material.PAVING, Material.ASPHALT, Material.WORN_ASPHALT)
-    return Looks(
+    return BandSurfaces(
         concretes[int(random.integers(2))],
         Material.WORN_ASPHALT if side.curb == "asphalt" else concretes[int(random.integers(2))],
         walks[int(random.integers(4))],

@@ -9,9 +9,9 @@ from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats
 from processing.simulate.street.ground import Strip
 from processing.simulate.street.plan import SIDES, SectionPlan
-from processing.simulate.street.profile import CURB, GRASS, GROUND, STONE_TOP_M, Edge, Profile
+from processing.simulate.street.profile import CURB, GRASS, GROUND, STONE_TOP_M, Edge, RoadProfile
 from processing.simulate.street.sweep import Straight, Sweep
-from processing.simulate.street.terrain import Terrain
+from processing.simulate.street.terrain import SectionTerrain
 
 _TIP_M = 0.001
 
@@ -37,7 +37,11 @@ def median_nodes(plan: SectionPlan, opening: tuple[float, float]) -> Floats:
 
 
 def median_of(
-    seed: int, plan: SectionPlan, terrain: Terrain, nodes: Floats, opening: tuple[float, float]
+    seed: int,
+    plan: SectionPlan,
+    terrain: SectionTerrain,
+    nodes: Floats,
+    opening: tuple[float, float],
 ) -> tuple[Sweep, ...]:
     """Both halves of the median on these nodes; none where the street has none."""
     if plan.median_m <= 0:
@@ -59,7 +63,7 @@ def median_of(
     if opening[1] <= opening[0]:
         half, is_there = np.full(nodes.size, plan.median_m / 2), np.ones(nodes.size, np.bool_)
     rise = np.where(is_there, high, 0.0)
-    profile = Profile()
+    profile = RoadProfile()
     surface = Strip("median", top, label)
     stone = Strip("curb", Material.CONCRETE, CURB)
     lean = batter * rise

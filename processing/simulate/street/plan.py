@@ -27,7 +27,7 @@ _FARTHEST_M = 60.0
 
 
 @dataclass(frozen=True)
-class Band:
+class RoadBand:
     """A band of a side, by its distances from the road's centre, m."""
 
     name: BandName
@@ -79,7 +79,7 @@ class SidePlan:
     outside: Outside
     outside_high_m: float
 
-    def bands(self) -> Iterator[Band]:
+    def bands(self) -> Iterator[RoadBand]:
         """The bands there are, from the asphalt outwards."""
         curb = 0.0 if self.curb == "none" else self.curb_wide_m
         wide: tuple[tuple[BandName, float], ...] = (
@@ -92,11 +92,11 @@ class SidePlan:
         at = self.edge_m
         for name, width in wide:
             if width > 0:
-                yield Band(name, at, at + width)
+                yield RoadBand(name, at, at + width)
                 at += width
-        yield Band("outside", at, max(_FARTHEST_M, at + 1))
+        yield RoadBand("outside", at, max(_FARTHEST_M, at + 1))
 
-    def band(self, name: BandName) -> Band | None:
+    def band(self, name: BandName) -> RoadBand | None:
         """The band of a name, or None."""
         return next((one for one in self.bands() if one.name == name), None)
 
@@ -166,11 +166,11 @@ class _Street:
         self.first_m = -float(random.uniform(0, style.section_m[0]))
         self.sides = {side: self._side(chance(seed, "side", side), side) for side in SIDES}
 
-    def outwards(self, way: int, until_m: float) -> Iterator[SectionPlan]:
+    def outwards(self, direction: int, until_m: float) -> Iterator[SectionPlan]:
         """Sections from the beginning on, or (−1) from it backwards."""
-        index, at = (0, self.first_m) if way > 0 else (-1, self.first_m)
+        index, at = (0, self.first_m) if direction > 0 else (-1, self.first_m)
         sides, was_junction = dict(self.sides), True
-        while way * at < until_m:
+        while direction * at < until_m:
             random = chance(self.seed, "section", index)
             is_junction = not was_junction and random.random() < self.style.junction_share
             long = float(random.uniform(*self.style.section_m))
@@ -182,7 +182,7 @@ class _Street:
                 fresh = chance(self.seed, "side", side, index)
                 if not is_junction and fresh.random() > _KEPT_SHARE:
                     sides[side] = self._side(fresh, side)
-            start, end = (at, at + long) if way > 0 else (at - long, at)
+            start, end = (at, at + long) if direction > 0 else (at - long, at)
             yield SectionPlan(
                 index,
                 start,
@@ -195,7 +195,7 @@ class _Street:
                 sides[RIGHT],
                 junctions,
             )
-            was_junction, at, index = is_junction, at + way * long, index + way
+            was_junction, at, index = is_junction, at + direction * long, index + direction
 
     def _side(self, random: Generator, side: int) -> SidePlan:
         edge = self.median_m / 2 + self.lanes * self.lane_m + self.shoulders_m[side]

@@ -12,9 +12,9 @@ from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats
 from processing.simulate.street.dropped_curbs import Lowering
 from processing.simulate.street.ground import Strip
-from processing.simulate.street.measures import Looks, Measures
+from processing.simulate.street.measures import BandSurfaces, Measures
 from processing.simulate.street.plan import SidePlan
-from processing.simulate.street.stones import Laid
+from processing.simulate.street.stones import StoneNodes
 
 OTHER, GROUND, GRASS, ROAD, CURB = 1, 2, 3, 11, 67
 Role = Literal["road", "rear", "edging", "median", "island", "pit"]
@@ -51,7 +51,7 @@ class Edge:
 
 
 @dataclass
-class Profile:
+class RoadProfile:
     """Lines outwards: distance from the road's centre and height over the asphalt's edge.
 
     Attributes
@@ -99,15 +99,15 @@ class Course:
 
     side: SidePlan
     measures: Measures
-    looks: Looks
+    looks: BandSurfaces
     edge: Floats
-    laid: Laid
+    laid: StoneNodes
     lowering: Lowering
 
 
-def profile_of(course: Course) -> Profile:
+def profile_of(course: Course) -> RoadProfile:
     """The lines of a side without the land's far end."""
-    profile = Profile()
+    profile = RoadProfile()
     profile.line(course.edge, 0.0)
     _add_drain(profile, course)
     if course.side.curb != "none":
@@ -128,7 +128,7 @@ def profile_of(course: Course) -> Profile:
     return profile
 
 
-def _add_drain(profile: Profile, course: Course) -> None:
+def _add_drain(profile: RoadProfile, course: Course) -> None:
     measures, edge = course.measures, course.edge
     wide, drain = measures.drain, course.side.drain
     gutter = course.looks.gutter
@@ -155,7 +155,7 @@ def curb_high(course: Course) -> Floats:
     return np.maximum(normal + course.laid.upwards, 0.0)
 
 
-def _add_curb(profile: Profile, course: Course) -> None:
+def _add_curb(profile: RoadProfile, course: Course) -> None:
     measures, laid, kind = course.measures, course.laid, course.side.curb
     strip = Strip("curb", course.looks.stone, CURB)
     foot, level = profile.away[-1] + 0.0, profile.above[-1]
@@ -208,7 +208,7 @@ def _walk_level(course: Course, level: Floats) -> Floats:
     return level + missing * (1 - near)
 
 
-def _add_strip(profile: Profile, course: Course) -> None:
+def _add_strip(profile: RoadProfile, course: Course) -> None:
     measures, share = course.measures, course.lowering.share
     start, level = profile.away[-1], profile.above[-1] - _laid_high(course)
     walk = _walk_level(course, level)
@@ -227,7 +227,7 @@ def _add_strip(profile: Profile, course: Course) -> None:
         profile.edges.append(edge)
 
 
-def _add_walk(profile: Profile, course: Course) -> None:
+def _add_walk(profile: RoadProfile, course: Course) -> None:
     measures, share = course.measures, course.lowering.share
     start, level = profile.away[-1], profile.above[-1]
     if course.side.strip_m <= 0:

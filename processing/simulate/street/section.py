@@ -11,13 +11,13 @@ from numpy.typing import ArrayLike
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats
 from processing.simulate.street.alignment import Alignment
-from processing.simulate.street.ground import Ground
-from processing.simulate.street.layout import Layout
+from processing.simulate.street.ground import StreetGround
+from processing.simulate.street.layout import SectionSurfaces
 from processing.simulate.street.plan import SectionPlan
 
 
 @dataclass(frozen=True)
-class Section:
+class StreetSection:
     """Plan, alignment and ground of one section.
 
     Attributes
@@ -31,10 +31,10 @@ class Section:
     seed: int
     plan: SectionPlan
     alignment: Alignment
-    layout: Layout
+    layout: SectionSurfaces
 
     @property
-    def ground(self) -> Ground:
+    def ground(self) -> StreetGround:
         """Its surfaces, by lines along the road."""
         return self.layout.ground
 
@@ -42,7 +42,7 @@ class Section:
         """A stream of its own for what a maker draws here."""
         return chance(self.seed, what, self.plan.index, number)
 
-    def place(self, chainage: ArrayLike, offset: ArrayLike, above_m: ArrayLike = 0.0) -> Floats:
+    def position(self, chainage: ArrayLike, offset: ArrayLike, above_m: ArrayLike = 0.0) -> Floats:
         """Places on the ground, or above it: (..., 3) float64, m, the street's frame."""
         height = self.ground.height(chainage, offset) + np.asarray(above_m, np.float64)
         return self.alignment.at(chainage, offset, height)

@@ -15,7 +15,7 @@ _LEAST_STEP_M = 0.002
 
 
 @dataclass(frozen=True)
-class Laid:
+class StoneNodes:
     """Nodes of a row of stones.
 
     Attributes
@@ -34,9 +34,9 @@ class Laid:
     chipped: Floats
 
 
-def laid(
+def lay_stones(
     random: Generator, ends: Floats, stone_m: float, sloppiness_m: float, breaks: Floats
-) -> Laid:
+) -> StoneNodes:
     """Lay stones between two ends.
 
     Parameters
@@ -68,16 +68,16 @@ def laid(
     chipped = np.where(random.random(along.size) < 0.02, random.uniform(0, 0.02, along.size), 0.0)
     for one in (outwards, upwards, chipped):
         one[[0, -1]] = 0.0
-    return Laid(along, outwards, upwards, chipped)
+    return StoneNodes(along, outwards, upwards, chipped)
 
 
-def plain(ends: Floats, step_m: float, breaks: Floats) -> Laid:
+def place_nodes_evenly(ends: Floats, step_m: float, breaks: Floats) -> StoneNodes:
     """Nodes of a row without joints."""
     low, high = float(ends[0]), float(ends[1])
     count = max(2, int(np.ceil((high - low) / step_m)) + 1)
     along = np.unique(np.concatenate([np.linspace(low, high, count), breaks]))
     none = np.zeros(along.size)
-    return Laid(along, none, none, none)
+    return StoneNodes(along, none, none, none)
 
 
 def _refined(nodes: Floats) -> Floats:

@@ -23,14 +23,14 @@ from processing.simulate.roadway.pavement import add_pavement
 from processing.simulate.street.alignment import Alignment, alignment_of
 from processing.simulate.street.cross_section import section_of
 from processing.simulate.street.plan import SectionPlan, plans_of
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.styles import Style
 from processing.simulate.street.surfaces import add_ground
-from processing.simulate.things import THINGS_PER_SECTION, Built, Thing, TrueFeature
-from processing.simulate.traffic.parked import add_parked
+from processing.simulate.things import THINGS_PER_SECTION, SectionBuilder, Thing, TrueFeature
+from processing.simulate.traffic.parked_vehicles import add_parked
 
-Maker = Callable[[Section, Built], None]
-MAKERS: tuple[Maker, ...] = (
+SectionMaker = Callable[[StreetSection, SectionBuilder], None]
+MAKERS: tuple[SectionMaker, ...] = (
     add_ground,
     add_junctions,
     add_islands,
@@ -78,7 +78,7 @@ class Street:
         self.plans = tuple(plans_of(seed, style, length_m))
         self._starts = np.array([one.start_m for one in self.plans])
         self._built: OrderedDict[int, BuiltSection] = OrderedDict()
-        self._bare: OrderedDict[int, Section] = OrderedDict()
+        self._bare: OrderedDict[int, StreetSection] = OrderedDict()
         self._lock = threading.RLock()
 
     def within(self, from_m: float, to_m: float) -> range:
@@ -97,7 +97,7 @@ class Street:
                 self._built.popitem(last=False)
             return self._built[row]
 
-    def bare_section(self, row: int) -> Section:
+    def bare_section(self, row: int) -> StreetSection:
         """Plan and ground of a section, without building what stands on it; a few are kept."""
         with self._lock:
             if row not in self._bare:
@@ -120,7 +120,7 @@ class Street:
     def _build(self, row: int) -> BuiltSection:
         section = self.bare_section(row)
         plan = section.plan
-        built = Built((plan.index - _LOWEST_INDEX) * THINGS_PER_SECTION + 1)
+        built = SectionBuilder((plan.index - _LOWEST_INDEX) * THINGS_PER_SECTION + 1)
         for add in MAKERS:
             add(section, built)
         return BuiltSection(plan, built.mesh.mesh(), tuple(built.things), tuple(built.truth))

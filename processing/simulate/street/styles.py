@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from processing.errors import named
+from processing.errors import name_with_type
 from processing.text import Text
 
 Range = tuple[float, float]
@@ -110,6 +110,6 @@ def style_of(name: str) -> Style:
     OutOfRange
         There is none; names those there are.
     """
-    return named(
+    return name_with_type(
         STYLES, name, Text("There is no such style of street.", "この道路種別はありません。")
     )

@@ -9,9 +9,9 @@ from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, grid
 from processing.simulate.street.plan import LEFT, RIGHT, SIDES
 from processing.simulate.street.profile import ROAD
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.sweep import Sweep, add_runs, add_surfaces
-from processing.simulate.things import NO_THING, Built
+from processing.simulate.things import NO_THING, SectionBuilder
 
 _UNDER_M = 0.04
 """How far a side's bed reaches under the asphalt, so that no beam passes between them."""
@@ -19,7 +19,7 @@ _UNDER_M = 0.04
 _BELOW_M = 0.006
 
 
-def add_ground(section: Section, built: Built) -> None:
+def add_ground(section: StreetSection, built: SectionBuilder) -> None:
     """Add the surfaces of the ground; each run of a curb is a thing of its own."""
     _add_road(section, built)
     layout = section.layout
@@ -39,7 +39,7 @@ def asphalt_of(seed: int) -> Material:
     return kinds[int(chance(seed, "asphalt").random() < 0.45)]
 
 
-def _add_road(section: Section, built: Built) -> None:
+def _add_road(section: StreetSection, built: SectionBuilder) -> None:
     layout, plan = section.layout, section.plan
     nodes = layout.road_nodes
     material = asphalt_of(section.seed)
@@ -66,12 +66,12 @@ def _add_road(section: Section, built: Built) -> None:
         built.mesh.add(grid(rows), material, ROAD, NO_THING)
 
 
-def _rows(section: Section, chainages: Floats, offsets: Floats) -> Floats:
+def _rows(section: StreetSection, chainages: Floats, offsets: Floats) -> Floats:
     heights = section.layout.terrain.height(chainages, offsets)
     return section.alignment.at(chainages, offsets, heights)
 
 
-def _add_bed(section: Section, sweep: Sweep, built: Built) -> None:
+def _add_bed(section: StreetSection, sweep: Sweep, built: SectionBuilder) -> None:
     chainages = sweep.chainages[:, :1]
     edge, height = sweep.offsets[:, :1], sweep.heights[:, :1]
     under = edge - sweep.side * _UNDER_M

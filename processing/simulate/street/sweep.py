@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, grid
 from processing.simulate.street.alignment import Alignment
-from processing.simulate.street.profile import CURB, Edge, Profile
-from processing.simulate.street.terrain import Terrain
-from processing.simulate.things import NO_THING, Built, TrueFeature
+from processing.simulate.street.profile import CURB, Edge, RoadProfile
+from processing.simulate.street.terrain import SectionTerrain
+from processing.simulate.things import NO_THING, SectionBuilder, TrueFeature
 
 PIECE_M = 0.5
 FACE_PIECE = 128
@@ -37,7 +37,7 @@ SKIRT_M = 0.4
 _CURB, _DROPPED, _NOTHING = 0, 1, 2
 
 
-class Track(Protocol):
+class SweepTrack(Protocol):
     """Where a profile is led."""
 
     def coordinates(self, away: Floats) -> tuple[Floats, Floats]:
@@ -72,14 +72,14 @@ class Sweep:
         Of every line's nodes; z in m.
     """
 
-    profile: Profile
+    profile: RoadProfile
     chainages: Floats
     offsets: Floats
     heights: Floats
     side: int
 
     @staticmethod
-    def along(track: Track, profile: Profile, terrain: Terrain, side: int) -> Sweep:
+    def along(track: SweepTrack, profile: RoadProfile, terrain: SectionTerrain, side: int) -> Sweep:
         """Lead a profile along a track."""
         pairs = [track.coordinates(one) for one in profile.away]
         chainages = np.column_stack([one[0] for one in pairs])
@@ -87,7 +87,7 @@ class Sweep:
         heights = terrain.height(chainages, offsets) + np.column_stack(profile.above)
         return Sweep(profile, chainages, offsets, heights, side)
 
-    def edge_places(self, alignment: Alignment, edge: Edge) -> Floats:
+    def edge_positions(self, alignment: Alignment, edge: Edge) -> Floats:
         """The upper edge: (n, 3) float64, on the planes of its face and top."""
         start = edge.foot
         low, high = self.profile.above[start], self.profile.above[edge.top]
@@ -108,7 +108,7 @@ class Sweep:
         return between
 
 
-def add_surfaces(sweep: Sweep, alignment: Alignment, built: Built, walk: Material) -> None:
+def add_surfaces(sweep: Sweep, alignment: Alignment, built: SectionBuilder, walk: Material) -> None:
     """Add every strip that has a surface, but for the faces that belong to runs of curbs."""
     taken = {number for edge in sweep.profile.edges for number in _strips_of(edge)}
     lowered = sweep.profile.edges[0].lowered if sweep.profile.edges else None
@@ -130,10 +130,10 @@ def add_surfaces(sweep: Sweep, alignment: Alignment, built: Built, walk: Materia
         built.mesh.add(shape, material, strip.label, NO_THING)
 
 
-def add_runs(sweep: Sweep, alignment: Alignment, built: Built) -> None:
+def add_runs(sweep: Sweep, alignment: Alignment, built: SectionBuilder) -> None:
     """Add the curbs' faces, each run a thing of its own, and their truth."""
     for edge in sweep.profile.edges:
-        upper = sweep.edge_places(alignment, edge)
+        upper = sweep.edge_positions(alignment, edge)
         lower = alignment.at(
             sweep.chainages[:, edge.foot], sweep.offsets[:, edge.foot], sweep.heights[:, edge.foot]
         )

@@ -47,7 +47,7 @@ class Grade:
 
 
 @dataclass(frozen=True)
-class Terrain:
+class SectionTerrain:
     """The height over which the lines of a section's profiles stand.
 
     On the carriageway that of the road, settled and worn; beside it that of the asphalt's edge.

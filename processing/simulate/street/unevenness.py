@@ -41,10 +41,10 @@ class Waves:
     def drawn(random: Generator, shortest_m: float, longest_m: float, amplitude: float) -> Waves:
         """Waves of random lengths and ways whose sum has about this amplitude."""
         lengths = random.uniform(shortest_m, longest_m, _WAVES)
-        ways = random.uniform(-0.9, 0.9, _WAVES)
+        directions = random.uniform(-0.9, 0.9, _WAVES)
         return Waves(
-            2 * np.pi / lengths * np.cos(ways),
-            2 * np.pi / lengths * np.sin(ways),
+            2 * np.pi / lengths * np.cos(directions),
+            2 * np.pi / lengths * np.sin(directions),
             random.uniform(0, 2 * np.pi, _WAVES),
             random.dirichlet(np.full(_WAVES, 2.0)) * amplitude * 1.5,
         )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from processing.simulate.mesh import Floats
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.sweep import Sweep
 
 
@@ -40,7 +40,7 @@ def first_of_walk(sweep: Sweep) -> int | None:
     return walks[0] if walks else None
 
 
-def walk_lines(section: Section, side: int) -> WalkLines | None:
+def walk_lines(section: StreetSection, side: int) -> WalkLines | None:
     """The lines of a side's walk; None where there is none."""
     sweep = section.layout.sides[side].sweep
     first = first_of_walk(sweep)

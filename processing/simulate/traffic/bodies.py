@@ -9,18 +9,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats, Mesh, MeshBuilder, Shape, box, placed, tube
+from processing.simulate.mesh import (
+    Floats,
+    Mesh,
+    MeshBuilder,
+    TriangleShape,
+    box,
+    place_shape,
+    tube,
+)
 
 MOVING_OBJECT = 64
 """Class code of vehicles, bicycles and people."""
 
-Part = tuple[Shape, Material | NDArray[np.uint8]]
+TrafficPart = tuple[TriangleShape, Material | NDArray[np.uint8]]
 
 _WHEEL_SIDES = 14
 
 
 @dataclass(frozen=True)
-class Body:
+class TrafficBody:
     """What stands on the ground, before it has a place.
 
     Attributes
@@ -35,7 +43,7 @@ class Body:
     """
 
     kind: str
-    parts: tuple[Part, ...]
+    parts: tuple[TrafficPart, ...]
     length_m: float
     width_m: float
     height_m: float
@@ -48,7 +56,7 @@ class Body:
         return builder.mesh()
 
 
-def wheel(where: tuple[float, float], radius_m: float, wide_m: float) -> list[Part]:
+def wheel(where: tuple[float, float], radius_m: float, wide_m: float) -> list[TrafficPart]:
     """A tyre with its disc that stands on the ground.
 
     Parameters
@@ -64,7 +72,7 @@ def wheel(where: tuple[float, float], radius_m: float, wide_m: float) -> list[Pa
     return [(tyre, Material.RUBBER), (disc, Material.STEEL)]
 
 
-def lofted(rings: Floats) -> Shape:
+def loft_body(rings: Floats) -> TriangleShape:
     """A body through closed rings of places, its ends shut: (stations, places, 3) float64.
 
     The triangles are in the order of stations, then of places; two each; then both ends.
@@ -83,32 +91,32 @@ def lofted(rings: Floats) -> Shape:
     return np.concatenate([rings.reshape(-1, 3), middles]), np.concatenate([sides, back, front])
 
 
-def stretched(shape: Shape, factors: tuple[float, float, float]) -> Shape:
+def scale_shape(shape: TriangleShape, factors: tuple[float, float, float]) -> TriangleShape:
     """A shape with its three axes scaled about its origin."""
     return shape[0] * np.array(factors), shape[1]
 
 
-def shifted(shape: Shape, where: tuple[float, float, float]) -> Shape:
+def shift_shape(shape: TriangleShape, where: tuple[float, float, float]) -> TriangleShape:
     """A shape at another place."""
-    return placed(shape, where, 0.0)
+    return place_shape(shape, where, 0.0)
 
 
-def block(middle: tuple[float, float, float], size: tuple[float, float, float]) -> Shape:
+def block(middle: tuple[float, float, float], size: tuple[float, float, float]) -> TriangleShape:
     """A box about its middle."""
     low = [m - s / 2 for m, s in zip(middle, size, strict=True)]
     high = [m + s / 2 for m, s in zip(middle, size, strict=True)]
     return box(low, high)
 
 
-def ball(middle: tuple[float, float, float], radii: tuple[float, float, float]) -> Shape:
+def ball(middle: tuple[float, float, float], radii: tuple[float, float, float]) -> TriangleShape:
     """A rounded lump about its middle: five rings of eight places."""
     at = np.linspace(-0.96, 0.96, 5)
     path = np.column_stack([np.zeros(5), np.zeros(5), at])
     shape = tube(path, np.sqrt(1 - at**2) + 0.05, 8)
-    return shifted(stretched(shape, radii), middle)
+    return shift_shape(scale_shape(shape, radii), middle)
 
 
-def rod(path: Iterable[Iterable[float]], radius_m: float, sides: int = 6) -> Shape:
+def rod(path: Iterable[Iterable[float]], radius_m: float, sides: int = 6) -> TriangleShape:
     """A round rod through places."""
-    places = np.array([list(one) for one in path], np.float64)
-    return tube(places, np.full(len(places), radius_m), sides)
+    positions = np.array([list(one) for one in path], np.float64)
+    return tube(positions, np.full(len(positions), radius_m), sides)

@@ -12,8 +12,8 @@ from processing.simulate.street.plan import LEFT, RIGHT, SectionPlan
 from processing.simulate.street.styles import URBAN
 from processing.simulate.things import Mover
 from processing.simulate.traffic.lanes import REACH_M
-from processing.simulate.traffic.parking import parking_places
-from processing.simulate.traffic.recorded import BODIES, Order, Recorded
+from processing.simulate.traffic.parking import parking_positions
+from processing.simulate.traffic.recorded_pass import BODIES, PlannedMover, RecordedPass
 
 _SLOT_S = 16.0
 _FILL = 0.8
@@ -25,7 +25,7 @@ _OWN_CLEAR_M = 9.0
 _HURRY = 1.4  # of the recording vehicle above its usual speed, at most
 
 
-def crossers_of(recorded: Recorded, vehicles: Sequence[Mover]) -> list[Order]:
+def crossers_of(recorded: RecordedPass, vehicles: Sequence[Mover]) -> list[PlannedMover]:
     """Those who cross, one slot of time after the other at each junction.
 
     Parameters
@@ -51,18 +51,20 @@ def crossers_of(recorded: Recorded, vehicles: Sequence[Mover]) -> list[Order]:
                     numbers = range(len(group))
                     name = f"crossing {plan.index}"
                     orders += [
-                        Order(max(0.0, start), name, 10 * slot + number, group[number])
+                        PlannedMover(max(0.0, start), name, 10 * slot + number, group[number])
                         for number in numbers
                     ]
     return orders
 
 
-def _group(recorded: Recorded, plan: SectionPlan, random: Generator, start_s: float) -> list[Mover]:
+def _group(
+    recorded: RecordedPass, plan: SectionPlan, random: Generator, start_s: float
+) -> list[Mover]:
     """One to three who cross side by side."""
-    way = 1.0 if random.random() < 0.5 else -1.0
+    direction = 1.0 if random.random() < 0.5 else -1.0
     reach = {LEFT: plan.left.edge_m - _INSIDE_M, RIGHT: plan.right.edge_m - _INSIDE_M}
-    first = -reach[RIGHT] if way > 0 else reach[LEFT]
-    speed = way * float(random.uniform(0.9, 1.7))
+    first = -reach[RIGHT] if direction > 0 else reach[LEFT]
+    speed = direction * float(random.uniform(0.9, 1.7))
     lasts = (reach[LEFT] + reach[RIGHT]) / abs(speed)
     group = []
     for number in range(1 + int(random.integers(3))):
@@ -75,7 +77,7 @@ def _group(recorded: Recorded, plan: SectionPlan, random: Generator, start_s: fl
                 0.0,
                 start_s,
                 start_s + lasts,
-                turn_rad=way * np.pi / 2,
+                turn_rad=direction * np.pi / 2,
                 aside_m_s=speed,
                 kind=body.kind,
             )
@@ -83,12 +85,12 @@ def _group(recorded: Recorded, plan: SectionPlan, random: Generator, start_s: fl
     return group
 
 
-def _is_clear(recorded: Recorded, vehicles: Sequence[Mover], group: list[Mover]) -> bool:
+def _is_clear(recorded: RecordedPass, vehicles: Sequence[Mover], group: list[Mover]) -> bool:
     """Whether no vehicle comes while they cross, the recording vehicle neither."""
     start, end = group[0].from_s, group[0].to_s
     at = group[0].chainage_m, group[-1].chainage_m
     own = float(np.interp(start, recorded.course[:, 0], recorded.course[:, 1]))
-    ahead = recorded.way * (np.array(at) - own)
+    ahead = recorded.direction * (np.array(at) - own)
     driven = _HURRY * recorded.style.speed_m_s[1] * (end - start)
     if not ((ahead < -_OWN_CLEAR_M).all() or (ahead > driven + _OWN_CLEAR_M).all()):
         return False
@@ -96,9 +98,9 @@ def _is_clear(recorded: Recorded, vehicles: Sequence[Mover], group: list[Mover])
     for one in vehicles:
         if one.from_s > end or one.to_s < start:
             continue
-        places, _ = one.way_at(times)
+        positions, _ = one.direction_at(times)
         room = _CLEAR_M + float(one.mesh.vertices[:, 0].max()) + abs(one.speed_m_s) * 0.25
-        if ((places > at[0] - room) & (places < at[1] + room)).any():
+        if ((positions > at[0] - room) & (positions < at[1] + room)).any():
             return False
     return True
 
@@ -108,5 +110,5 @@ def _is_parked_on(seed: int, plan: SectionPlan, at: float) -> bool:
     last = at + 2 * _APART_M
     return any(
         one.chainage_m - one.along_m < last and one.chainage_m + one.along_m > at
-        for one in parking_places(seed, plan)
+        for one in parking_positions(seed, plan)
     )

@@ -30,14 +30,14 @@ class Footprint:
         """Whether two rectangles share a place: no line of their sides' ways parts them."""
         dx, dy = other.x - self.x, other.y - self.y
         for heading in (self.heading_rad, other.heading_rad):
-            for way in ((cos(heading), sin(heading)), (-sin(heading), cos(heading))):
-                apart = abs(dx * way[0] + dy * way[1])
-                if apart > self._reach(way) + other._reach(way):
+            for direction in ((cos(heading), sin(heading)), (-sin(heading), cos(heading))):
+                apart = abs(dx * direction[0] + dy * direction[1])
+                if apart > self._reach(direction) + other._reach(direction):
                     return False
         return True
 
-    def _reach(self, way: tuple[float, float]) -> float:
+    def _reach(self, direction: tuple[float, float]) -> float:
         """How far it reaches from its middle along a way."""
         c, s = cos(self.heading_rad), sin(self.heading_rad)
-        along = abs(way[0] * c + way[1] * s) * self.half_length
-        return along + abs(way[1] * c - way[0] * s) * self.half_width
+        along = abs(direction[0] * c + direction[1] * s) * self.half_length
+        return along + abs(direction[1] * c - direction[0] * s) * self.half_width

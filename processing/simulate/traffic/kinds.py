@@ -8,7 +8,7 @@ from functools import partial
 
 from numpy.random import Generator
 
-from processing.simulate.traffic.bodies import Body
+from processing.simulate.traffic.bodies import TrafficBody
 from processing.simulate.traffic.people_shapes import bicycle, motorcycle, person
 from processing.simulate.traffic.vehicle_shapes import (
     bus,
@@ -21,7 +21,7 @@ from processing.simulate.traffic.vehicle_shapes import (
 
 
 @dataclass(frozen=True)
-class Kind:
+class MoverKind:
     """Something that drives, walks or stands.
 
     Attributes
@@ -35,14 +35,16 @@ class Kind:
     """
 
     name: str
-    drawn: Callable[[Generator], Body]
-    drawn_at_rest: Callable[[Generator], Body]
+    drawn: Callable[[Generator], TrafficBody]
+    drawn_at_rest: Callable[[Generator], TrafficBody]
     length_m: float
     width_m: float
 
 
-def _alike(name: str, drawn: Callable[[Generator], Body], size: tuple[float, float]) -> Kind:
-    return Kind(name, drawn, drawn, *size)
+def _alike(
+    name: str, drawn: Callable[[Generator], TrafficBody], size: tuple[float, float]
+) -> MoverKind:
+    return MoverKind(name, drawn, drawn, *size)
 
 
 KINDS = {
@@ -54,9 +56,9 @@ KINDS = {
         _alike("small_truck", small_truck, (6.34, 2.0)),
         _alike("truck", truck, (12.03, 2.49)),
         _alike("bus", bus, (11.94, 2.49)),
-        Kind("motorcycle", motorcycle, partial(motorcycle, is_ridden=False), 2.2, 0.74),
-        Kind("bicycle", bicycle, partial(bicycle, is_ridden=False), 2.0, 0.6),
-        Kind("person", person, partial(person, is_walking=False), 2.6, 1.2),
+        MoverKind("motorcycle", motorcycle, partial(motorcycle, is_ridden=False), 2.2, 0.74),
+        MoverKind("bicycle", bicycle, partial(bicycle, is_ridden=False), 2.0, 0.6),
+        MoverKind("person", person, partial(person, is_walking=False), 2.6, 1.2),
     )
 }
 """By name."""

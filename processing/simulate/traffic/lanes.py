@@ -26,7 +26,7 @@ _SURGE_SHARE = 0.2  # of the lane's speed
 
 
 @dataclass(frozen=True)
-class Lane:
+class TrafficLane:
     """A stream of movers along the road.
 
     Attributes
@@ -89,7 +89,7 @@ class Swing:
     phase_rad: float
 
 
-def slots_near(lane: Lane, course: Floats) -> Iterator[Slot]:
+def slots_near(lane: TrafficLane, course: Floats) -> Iterator[Slot]:
     """All slots of a lane that come near the recording vehicle.
 
     Parameters
@@ -98,22 +98,22 @@ def slots_near(lane: Lane, course: Floats) -> Iterator[Slot]:
         Times from 0, rising, and the recording vehicle's chainages.
     """
     times, own = course[:, 0], course[:, 1]
-    way = 1.0 if own[-1] >= own[0] else -1.0
+    direction = 1.0 if own[-1] >= own[0] else -1.0
     relative = own - lane.speed_m_s * times
     if relative[-1] < relative[0]:
-        way = -1.0
-    ahead = np.maximum.accumulate(way * relative)
-    behind = np.minimum.accumulate((way * relative)[::-1])[::-1]
+        direction = -1.0
+    ahead = np.maximum.accumulate(direction * relative)
+    behind = np.minimum.accumulate((direction * relative)[::-1])[::-1]
     first = int(np.floor((relative.min() - REACH_M) / lane.slot_m))
     last = int(np.ceil((relative.max() + REACH_M) / lane.slot_m))
     middles = (np.arange(first, last + 1) + 0.5) * lane.slot_m
-    starts = np.searchsorted(ahead, way * middles - REACH_M)
-    ends = np.searchsorted(behind, way * middles + REACH_M, "right") - 1
+    starts = np.searchsorted(ahead, direction * middles - REACH_M)
+    ends = np.searchsorted(behind, direction * middles + REACH_M, "right") - 1
     for row in np.flatnonzero((starts <= ends) & (starts < times.size)).tolist():
         yield Slot(first + row, float(middles[row]), int(starts[row]), int(ends[row]))
 
 
-def slot_chance(seed: int, number: int, lane: Lane, slot: Slot) -> Generator | None:
+def slot_chance(seed: int, number: int, lane: TrafficLane, slot: Slot) -> Generator | None:
     """The chance of what a slot holds, or None for an empty slot; ``number`` is the pass."""
     random = chance(seed, lane.name, number, lane.number, slot.number)
     return random if random.random() < lane.fill else None
@@ -125,7 +125,7 @@ def kind_drawn(random: Generator, kinds: dict[str, float]) -> str:
     return list(kinds)[int(random.choice(len(kinds), p=shares / shares.sum()))]
 
 
-def swing_of(random: Generator, lane: Lane, length_m: float) -> Swing:
+def swing_of(random: Generator, lane: TrafficLane, length_m: float) -> Swing:
     """How a mover of a length stands and swings in its slot."""
     room = max(0.0, (lane.slot_m - length_m) / 2 - _GAP_M)
     period = float(random.uniform(*_SURGE_S))

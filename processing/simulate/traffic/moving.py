@@ -10,11 +10,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from processing.simulate.scanning.passes import Pass
+from processing.simulate.scanning.simulated_passes import SimulatedPass
 from processing.simulate.street.street import Street
 from processing.simulate.things import Mover
 from processing.simulate.traffic.crossing import crossers_of
-from processing.simulate.traffic.recorded import recorded_by
+from processing.simulate.traffic.recorded_pass import record_pass
 from processing.simulate.traffic.vehicles import companions_of, vehicle_lanes, vehicles_of
 from processing.simulate.traffic.walking import Walks, walkers_of, walking_lanes
 
@@ -22,13 +22,13 @@ MOST_INSTANCES = 4500
 """Numbers that each pass has for its movers; beyond them its first ones come again."""
 
 
-def movers_of(street: Street, driven: Pass) -> list[Mover]:
+def movers_of(street: Street, driven: SimulatedPass) -> list[Mover]:
     """All that moves, or waits, around the recording vehicle during a pass.
 
     Each has an instance of its own in the order in which they come near; those of pass ``n``
     begin behind ``n * MOST_INSTANCES``.
     """
-    recorded = recorded_by(street, driven)
+    recorded = record_pass(street, driven)
     orders = companions_of(recorded)
     for lane in vehicle_lanes(recorded):
         orders += vehicles_of(recorded, lane)

@@ -24,7 +24,7 @@ _YARDS = {"urban": 1.6, "rural": 0.5}  # vehicles per side and section
 
 
 @dataclass(frozen=True)
-class ParkingPlace:
+class ParkingPosition:
     """Where something may stand.
 
     Attributes
@@ -57,24 +57,24 @@ def has_parking(seed: int, style: Style, side: int) -> bool:
     return bool(chance(seed, "parking", side).random() < _STREETS_WITH[style.id])
 
 
-def parking_places(seed: int, plan: SectionPlan) -> list[ParkingPlace]:
+def parking_positions(seed: int, plan: SectionPlan) -> list[ParkingPosition]:
     """All places of a section, whether something hinders them or not."""
-    places: list[ParkingPlace] = []
+    positions: list[ParkingPosition] = []
     for side in SIDES:
         if side in plan.junctions:
             continue
         random = chance(seed, "parking places", plan.index, side)
         if has_parking(seed, plan.style, side):
-            _add_at_the_edge(places, random, plan, side)
+            _add_at_the_edge(positions, random, plan, side)
         if plan.style is not HIGHWAY and plan.side(side).outside == "lots":
-            _add_in_yards(places, random, plan, side)
+            _add_in_yards(positions, random, plan, side)
         if plan.style is URBAN:
-            _add_bicycles(places, random, plan, side)
-    return places
+            _add_bicycles(positions, random, plan, side)
+    return positions
 
 
 def _add_at_the_edge(
-    places: list[ParkingPlace], random: Generator, plan: SectionPlan, side: int
+    positions: list[ParkingPosition], random: Generator, plan: SectionPlan, side: int
 ) -> None:
     """A row along the road, partly on the walk where the road is narrow."""
     plan_of_side = plan.side(side)
@@ -98,16 +98,16 @@ def _add_at_the_edge(
             continue
         away = inner + aside * min(spare, 0.6) + kind.width_m / 2
         faces_back = (side != LEFT) != is_contrary
-        places.append(
-            ParkingPlace(
-                len(places), kind.name, side, middle, side * away,
+        positions.append(
+            ParkingPosition(
+                len(positions), kind.name, side, middle, side * away,
                 turn + (np.pi if faces_back else 0.0), long, kind.width_m,
             )
         )  # fmt: skip
 
 
 def _add_in_yards(
-    places: list[ParkingPlace], random: Generator, plan: SectionPlan, side: int
+    positions: list[ParkingPosition], random: Generator, plan: SectionPlan, side: int
 ) -> None:
     """Square to the road or along it, on the land beside it."""
     inner = max(band.inner_m for band in plan.side(side).bands())
@@ -124,15 +124,15 @@ def _add_in_yards(
         turn += float(random.normal(0, 0.06))
         away = inner + 0.5 + deep / 2 + float(random.exponential(1.5))
         middle = float(random.uniform(plan.start_m + 4, plan.end_m - 4))
-        places.append(
-            ParkingPlace(
-                len(places), kind.name, side, middle, side * away, turn, wide + 0.4, deep + 0.4
+        positions.append(
+            ParkingPosition(
+                len(positions), kind.name, side, middle, side * away, turn, wide + 0.4, deep + 0.4
             )
         )
 
 
 def _add_bicycles(
-    places: list[ParkingPlace], random: Generator, plan: SectionPlan, side: int
+    positions: list[ParkingPosition], random: Generator, plan: SectionPlan, side: int
 ) -> None:
     """A row of bicycles, or a motorcycle, at the far edge of the walk."""
     walk = plan.side(side).band("walk")
@@ -147,6 +147,8 @@ def _add_bicycles(
             return
         turn = side * np.pi / 2 + lean + float(random.normal(0, 0.06))
         away = walk.outer_m - 0.15 - kind.length_m / 2 * float(np.cos(lean))
-        places.append(
-            ParkingPlace(len(places), kind.name, side, at, side * away, turn, 1.0, kind.length_m)
+        positions.append(
+            ParkingPosition(
+                len(positions), kind.name, side, at, side * away, turn, 1.0, kind.length_m
+            )
         )

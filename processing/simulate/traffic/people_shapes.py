@@ -11,12 +11,20 @@ from numpy.random import Generator
 
 from processing.simulate.materials import Material
 from processing.simulate.mesh import tube
-from processing.simulate.traffic.bodies import Body, Part, ball, block, rod, shifted, stretched
+from processing.simulate.traffic.bodies import (
+    TrafficBody,
+    TrafficPart,
+    ball,
+    block,
+    rod,
+    scale_shape,
+    shift_shape,
+)
 
 _WHEEL_SIDES = 16
 
 
-def person(random: Generator, *, is_walking: bool = True) -> Body:
+def person(random: Generator, *, is_walking: bool = True) -> TrafficBody:
     """A person, sometimes with an umbrella, a pram, a dog, a bag or a child."""
     tall = float(np.clip(random.normal(1.64, 0.1), 1.1, 1.85))
     stride = float(random.uniform(0.12, 0.3)) if is_walking else 0.0
@@ -35,24 +43,24 @@ def person(random: Generator, *, is_walking: bool = True) -> Body:
         length, width = 2.6, 0.9
     elif extra < 0.4:
         child = _figure(random, float(random.uniform(0.95, 1.25)), stride * 0.6)
-        parts = [(shifted(shape, (0, 0.24, 0)), m) for shape, m in parts]
-        parts += [(shifted(shape, (0.05, -0.24, 0)), m) for shape, m in child]
+        parts = [(shift_shape(shape, (0, 0.24, 0)), m) for shape, m in parts]
+        parts += [(shift_shape(shape, (0.05, -0.24, 0)), m) for shape, m in child]
         width = 0.95
     elif extra < 0.6:
         where = (-0.02, 0.3, tall * 0.42)
         parts.append((block(where, (0.32, 0.1, float(random.uniform(0.2, 0.4)))), Material.CLOTH))
         width = 0.75
-    return Body("person", tuple(parts), length, width, height)
+    return TrafficBody("person", tuple(parts), length, width, height)
 
 
-def bicycle(random: Generator, *, is_ridden: bool = True) -> Body:
+def bicycle(random: Generator, *, is_ridden: bool = True) -> TrafficBody:
     """A bicycle, ridden or on its stand."""
     radius = float(random.choice([0.255, 0.33, 0.35]))
     base = float(random.uniform(0.98, 1.12)) * radius / 0.33
     metal = Material.PAINTED_METAL if random.random() < 0.6 else Material.STEEL
     rear, front = -base / 2, base / 2
     saddle, bar = float(random.uniform(0.78, 0.95)), float(random.uniform(0.92, 1.08))
-    parts: list[Part] = [*_thin_wheel(rear, radius), *_thin_wheel(front, radius)]
+    parts: list[TrafficPart] = [*_thin_wheel(rear, radius), *_thin_wheel(front, radius)]
     crank, neck = (-0.05, 0.0, 0.28), (front - 0.2, 0.0, bar - 0.16)
     seat = (-0.22, 0.0, saddle)
     tubes = (
@@ -70,16 +78,16 @@ def bicycle(random: Generator, *, is_ridden: bool = True) -> Body:
     if is_ridden:
         parts += _rider(random, seat, (front - 0.24, bar), 0.2)
         height = saddle + 0.95
-    return Body("bicycle", tuple(parts), base + 2 * radius + 0.05, 0.58, height)
+    return TrafficBody("bicycle", tuple(parts), base + 2 * radius + 0.05, 0.58, height)
 
 
-def motorcycle(random: Generator, *, is_ridden: bool = True) -> Body:
+def motorcycle(random: Generator, *, is_ridden: bool = True) -> TrafficBody:
     """A scooter or motorcycle."""
     radius = float(random.uniform(0.2, 0.31))
     base = float(random.uniform(1.15, 1.45))
     rear, front = -base / 2, base / 2
     paint = (Material.CAR_PAINT, Material.PAINTED_METAL, Material.RUBBER)[int(random.integers(3))]
-    parts: list[Part] = []
+    parts: list[TrafficPart] = []
     for x in (rear, front):
         across = np.array([[x, -0.06, radius], [x, 0.06, radius]])
         parts.append((tube(across, np.full(2, radius), _WHEEL_SIDES), Material.RUBBER))
@@ -98,14 +106,14 @@ def motorcycle(random: Generator, *, is_ridden: bool = True) -> Body:
     if is_ridden:
         parts += _rider(random, (-0.28, 0.0, 0.78), (front - 0.28, 1.0), 0.24)
         height = 1.75
-    return Body("motorcycle", tuple(parts), base + 2 * radius + 0.1, 0.74, height)
+    return TrafficBody("motorcycle", tuple(parts), base + 2 * radius + 0.1, 0.74, height)
 
 
-def _figure(random: Generator, tall: float, stride: float) -> list[Part]:
+def _figure(random: Generator, tall: float, stride: float) -> list[TrafficPart]:
     """Legs, trunk, arms and head, in proportion to the stature."""
     stout = float(random.uniform(0.85, 1.25))
     hip, shoulder, neck = 0.5 * tall, 0.81 * tall, 0.86 * tall
-    parts: list[Part] = []
+    parts: list[TrafficPart] = []
     for side in (-1, 1):
         y, foot = side * 0.055 * tall, side * stride
         leg = np.array([[foot, y, 0.03], [foot * 0.35, y, 0.27 * tall], [0, y * 0.9, hip]])
@@ -123,7 +131,7 @@ def _figure(random: Generator, tall: float, stride: float) -> list[Part]:
         np.array([0.098, 0.092, 0.108, 0.1, 0.03]) * tall * stout,
         9,
     )
-    parts.append((stretched(trunk, (0.68, 1.05, 1.0)), Material.CLOTH))
+    parts.append((scale_shape(trunk, (0.68, 1.05, 1.0)), Material.CLOTH))
     head = (0.02, 0.0, 0.932 * tall)
     parts.append((ball(head, (0.058 * tall, 0.048 * tall, 0.07 * tall)), Material.WOOD))
     hair = (-0.005, 0.0, 0.962 * tall)
@@ -131,7 +139,7 @@ def _figure(random: Generator, tall: float, stride: float) -> list[Part]:
     return parts
 
 
-def _umbrella(random: Generator, tall: float, radius: float) -> list[Part]:
+def _umbrella(random: Generator, tall: float, radius: float) -> list[TrafficPart]:
     lean = float(random.uniform(-0.05, 0.15))
     rise = np.array([0.0, 0.06, 0.13, 0.2, 0.23])
     at = np.column_stack([0.08 + lean * rise, np.zeros(5), tall - 0.02 + rise])
@@ -141,9 +149,9 @@ def _umbrella(random: Generator, tall: float, radius: float) -> list[Part]:
     return [(tube(at, radii, 8, is_closed=False), material), (rod(stick, 0.008, 4), Material.STEEL)]
 
 
-def _pram(stride: float) -> list[Part]:
+def _pram(stride: float) -> list[TrafficPart]:
     ahead = 0.75 + stride * 0.2
-    parts: list[Part] = [
+    parts: list[TrafficPart] = [
         (ball((ahead, 0, 0.62), (0.4, 0.23, 0.24)), Material.CLOTH),
         (
             rod([(0.3, -0.2, 1.0), (ahead, -0.2, 0.5), (ahead + 0.3, -0.2, 0.1)], 0.014),
@@ -160,11 +168,11 @@ def _pram(stride: float) -> list[Part]:
     return parts
 
 
-def _dog(random: Generator) -> list[Part]:
+def _dog(random: Generator) -> list[TrafficPart]:
     high = float(random.uniform(0.25, 0.6))
     x, y, long = 0.9, -0.3, high * 1.1
     coat = Material.CLOTH if random.random() < 0.5 else Material.WOOD
-    parts: list[Part] = [
+    parts: list[TrafficPart] = [
         (ball((x, y, high * 0.8), (long / 2, high * 0.2, high * 0.23)), coat),
         (ball((x + long * 0.6, y, high * 1.08), (high * 0.24, high * 0.14, high * 0.16)), coat),
         (rod([(x + long * 0.5, y, high), (0.1, -0.22, 0.85)], 0.006, 4), Material.CABLE),
@@ -177,7 +185,7 @@ def _dog(random: Generator) -> list[Part]:
     return parts
 
 
-def _thin_wheel(x: float, radius: float) -> list[Part]:
+def _thin_wheel(x: float, radius: float) -> list[TrafficPart]:
     """A tyre, with a hub and spokes thin enough to look through."""
     angles = np.linspace(0, 2 * np.pi, _WHEEL_SIDES + 1)
     rim = np.column_stack(
@@ -187,25 +195,25 @@ def _thin_wheel(x: float, radius: float) -> list[Part]:
             radius + (radius - 0.018) * np.sin(angles),
         ]
     )
-    parts: list[Part] = [
+    parts: list[TrafficPart] = [
         (tube(rim, np.full(angles.size, 0.018), 5, is_closed=False), Material.RUBBER)
     ]
     for angle in angles[:-1:4]:
-        way = np.array([np.cos(angle), 0.0, np.sin(angle)]) * (radius - 0.02)
+        direction = np.array([np.cos(angle), 0.0, np.sin(angle)]) * (radius - 0.02)
         middle = np.array([x, 0.0, radius])
-        parts.append((rod([middle, middle + way], 0.004, 3), Material.STEEL))
+        parts.append((rod([middle, middle + direction], 0.004, 3), Material.STEEL))
     parts.append((rod([(x, -0.05, radius), (x, 0.05, radius)], 0.02), Material.STEEL))
     return parts
 
 
 def _rider(
     random: Generator, seat: tuple[float, float, float], bar: tuple[float, float], apart: float
-) -> list[Part]:
+) -> list[TrafficPart]:
     """Who sits on a saddle and holds the bar."""
     tall = float(np.clip(random.normal(1.64, 0.09), 1.3, 1.82))
     x, _, z = seat
     chest = (x + 0.16, 0.0, z + 0.3 * tall)
-    parts: list[Part] = []
+    parts: list[TrafficPart] = []
     for side in (-1, 1):
         y = side * apart / 2
         foot = (float(random.uniform(-0.15, 0.1)), y, 0.18 + 0.08 * (1 + side * 0.9))

@@ -15,8 +15,8 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from processing.simulate.materials import Material
-from processing.simulate.mesh import Floats, Shape, plate
-from processing.simulate.traffic.bodies import Body, Part, block, lofted, wheel
+from processing.simulate.mesh import Floats, TriangleShape, plate
+from processing.simulate.traffic.bodies import TrafficBody, TrafficPart, block, loft_body, wheel
 
 _PLATE_M = (0.33, 0.165)  # 中板; lorries and buses have the large one
 _LARGE_PLATE_M = (0.44, 0.22)
@@ -61,7 +61,7 @@ class _Outline:
     is_closed: bool = False
 
 
-def kei_car(random: Generator) -> Body:
+def kei_car(random: Generator) -> TrafficBody:
     """A kei car or kei wagon."""
     length, width = float(random.uniform(3.28, 3.395)), float(random.uniform(1.46, 1.475))
     height = float(random.uniform(1.48, 1.9))
@@ -76,7 +76,7 @@ def kei_car(random: Generator) -> Body:
     return _car("car", outline, random)
 
 
-def saloon(random: Generator) -> Body:
+def saloon(random: Generator) -> TrafficBody:
     """A saloon, hatchback or sport utility vehicle."""
     length, width = float(random.uniform(3.9, 4.95)), float(random.uniform(1.66, 1.88))
     height = float(random.uniform(1.42, 1.72))
@@ -94,7 +94,7 @@ def saloon(random: Generator) -> Body:
     return _car("car", outline, random)
 
 
-def van(random: Generator) -> Body:
+def van(random: Generator) -> TrafficBody:
     """A van or minibus-like wagon; some without windows behind the driver."""
     length, width = float(random.uniform(3.39, 5.3)), float(random.uniform(1.475, 1.88))
     width = 1.475 if length < 3.6 else width
@@ -112,7 +112,7 @@ def van(random: Generator) -> Body:
     return _car("van", outline, random)
 
 
-def small_truck(random: Generator) -> Body:
+def small_truck(random: Generator) -> TrafficBody:
     """A light lorry with an open bed or a box, kei ones among them."""
     is_kei = random.random() < 0.4
     length = 3.395 if is_kei else float(random.uniform(4.6, 6.3))
@@ -122,7 +122,7 @@ def small_truck(random: Generator) -> Body:
     return _lorry(random, (length, width, height), cab, has_box=bool(random.random() < 0.4))
 
 
-def truck(random: Generator) -> Body:
+def truck(random: Generator) -> TrafficBody:
     """A lorry of medium or full size."""
     length = float(random.uniform(7.5, 11.99))
     size = (length, float(random.uniform(2.2, 2.49)), float(random.uniform(2.5, 2.95)))
@@ -130,7 +130,7 @@ def truck(random: Generator) -> Body:
     return _lorry(random, size, cab, has_box=bool(random.random() < 0.65))
 
 
-def bus(random: Generator) -> Body:
+def bus(random: Generator) -> TrafficBody:
     """A city bus or coach."""
     length, width = float(random.uniform(6.9, 11.9)), float(random.uniform(2.28, 2.49))
     height, floor = float(random.uniform(2.85, 3.4)), float(random.uniform(0.28, 0.4))
@@ -148,12 +148,12 @@ def bus(random: Generator) -> Body:
         half=np.column_stack([np.full(stations.size, width / 2), np.full(stations.size, width / 2)])
         * (0.97 + 0.03 * ends[:, None]),
     )
-    shape = lofted(rings)
+    shape = loft_body(rings)
     material = np.full(len(shape[1]), paint, np.uint8)
     middle = (stations[1:] + stations[:-1]) / 2
     glass = (np.abs(middle) < length / 2 - 0.2) & (np.diff(stations) > 0.3)
     _paint(material, glass, _SIDE_WINDOWS)
-    parts: list[Part] = [(shape, material)]
+    parts: list[TrafficPart] = [(shape, material)]
     screen = length / 2 + 0.004
     parts.append((_upright((screen, 0, 1.95), (width * 0.84, 1.5)), Material.GLASS))
     parts.append((_upright((-screen, 0, 2.2), (width * 0.7, 0.8)), Material.GLASS))
@@ -161,10 +161,10 @@ def bus(random: Generator) -> Body:
         parts += _axle(at, width, radius, 0.28)
     parts += _ends(length, width, 0.75, _LARGE_PLATE_M)
     parts += _mirrors(length / 2 + 0.1, width / 2 + 0.05, height * 0.78, 0.16)
-    return Body("bus", tuple(parts), length, width, height)
+    return TrafficBody("bus", tuple(parts), length, width, height)
 
 
-def _car(kind: str, o: _Outline, random: Generator) -> Body:
+def _car(kind: str, o: _Outline, random: Generator) -> TrafficBody:
     """A car of an outline."""
     back = -o.length / 2
     axles = (back + o.rear_axle * o.length, back + o.front_axle * o.length)
@@ -189,7 +189,7 @@ def _car(kind: str, o: _Outline, random: Generator) -> Body:
         stations, low=low, belt=np.maximum(belt, low + 0.08), top=np.maximum(roof, low + 0.1),
         half=np.column_stack([half, half * (1 - 0.17 * lean - 0.03)]),
     )  # fmt: skip
-    shape = lofted(rings)
+    shape = loft_body(rings)
     paint = PAINTS[int(random.integers(len(PAINTS)))]
     material = np.full(len(shape[1]), paint, np.uint8)
     middle = (stations[1:] + stations[:-1]) / 2
@@ -203,17 +203,17 @@ def _car(kind: str, o: _Outline, random: Generator) -> Body:
     )
     _paint(material, screens, _SCREENS)
     _paint(material, np.ones(middle.size, np.bool_), (_RING - 1,), Material.RUBBER)
-    parts: list[Part] = [(shape, material)]
+    parts: list[TrafficPart] = [(shape, material)]
     for at in axles:
         parts += _axle(at, o.width, o.wheel, float(random.uniform(0.16, 0.22)))
     parts += _ends(o.length - 0.04, o.width, o.belt - 0.2, _PLATE_M)
     parts += _mirrors(posts[3] - 0.25, o.width / 2, o.belt + 0.07, 0.09)
-    return Body(kind, tuple(parts), o.length, o.width, o.height)
+    return TrafficBody(kind, tuple(parts), o.length, o.width, o.height)
 
 
 def _lorry(
     random: Generator, size: tuple[float, float, float], cab: float, *, has_box: bool
-) -> Body:
+) -> TrafficBody:
     """A cab, a frame and a bed or box on wheels."""
     length, width, height = size
     radius = float(np.interp(length, [3.4, 6, 12], [0.27, 0.36, 0.5]))
@@ -238,12 +238,12 @@ def _lorry(
         parts += _axle(at, width, radius, 0.3 if length > 7 else 0.2)
     parts += _ends(length, width, floor - 0.15, _LARGE_PLATE_M if length > 7 else _PLATE_M)
     parts += _mirrors(front - 0.1, width / 2 + 0.08, height * 0.75, 0.13)
-    return Body("truck", tuple(parts), length, width, top)
+    return TrafficBody("truck", tuple(parts), length, width, top)
 
 
 def _cab(
     size: tuple[float, float, float], cab: float, axle: tuple[float, float], paint: Material
-) -> list[Part]:
+) -> list[TrafficPart]:
     front, width, height = size
     at, radius = axle
     stations = _stations(
@@ -258,7 +258,7 @@ def _cab(
         stations, low=low, belt=np.minimum(belt, roof), top=roof,
         half=np.column_stack([half, half * 0.94]),
     )  # fmt: skip
-    shape = lofted(rings)
+    shape = loft_body(rings)
     material = np.full(len(shape[1]), paint, np.uint8)
     middle = (stations[1:] + stations[:-1]) / 2
     _paint(material, (middle > front - cab * 0.75) & (middle < front - 0.1), _SIDE_WINDOWS)
@@ -266,12 +266,14 @@ def _cab(
     return [(shape, material)]
 
 
-def _bed(random: Generator, reach: tuple[float, float], width: float, floor: float) -> list[Part]:
+def _bed(
+    random: Generator, reach: tuple[float, float], width: float, floor: float
+) -> list[TrafficPart]:
     """A bed with its boards, and maybe a load."""
     back, front = reach
     high = float(random.uniform(0.28, 0.5))
     middle, long = (back + front) / 2, front - back
-    parts: list[Part] = [
+    parts: list[TrafficPart] = [
         (block((middle, 0, floor - 0.01), (long, width, 0.05)), Material.STEEL),
         (block((front - 0.03, 0, floor + high), (0.05, width, 2 * high)), Material.STEEL),
     ]
@@ -317,13 +319,13 @@ def _ring(stations: Floats, *, low: Floats, belt: Floats, top: Floats, half: Flo
 def _paint(
     material: NDArray[np.uint8],
     stations: NDArray[np.bool_],
-    places: tuple[int, ...],
+    positions: tuple[int, ...],
     paint: Material = Material.GLASS,
 ) -> None:
     """Give the squares after some stations and places of the rings another material."""
     rows = np.flatnonzero(stations)
-    for place in places:
-        first = (rows * _RING + place) * 2
+    for position in positions:
+        first = (rows * _RING + position) * 2
         material[first] = paint
         material[first + 1] = paint
 
@@ -351,16 +353,16 @@ def _windows(length: float) -> list[float]:
     return [*at.tolist(), *(at + 0.12).tolist()]
 
 
-def _stations(places: list[float]) -> Floats:
-    return np.unique(np.round(np.array(places), 4))
+def _stations(positions: list[float]) -> Floats:
+    return np.unique(np.round(np.array(positions), 4))
 
 
-def _axle(at: float, width: float, radius: float, wide: float) -> list[Part]:
+def _axle(at: float, width: float, radius: float, wide: float) -> list[TrafficPart]:
     aside = width / 2 - wide / 2 - 0.01
     return [*wheel((at, -aside), radius, wide), *wheel((at, aside), radius, wide)]
 
 
-def _upright(middle: tuple[float, float, float], size: tuple[float, float]) -> Shape:
+def _upright(middle: tuple[float, float, float], size: tuple[float, float]) -> TriangleShape:
     """A pane square to the way, about its middle."""
     x, y, z = middle
     wide, high = size[0] / 2, size[1] / 2
@@ -369,9 +371,11 @@ def _upright(middle: tuple[float, float, float], size: tuple[float, float]) -> S
     return plate(np.array(corners))
 
 
-def _ends(length: float, width: float, lamp_z: float, size: tuple[float, float]) -> list[Part]:
+def _ends(
+    length: float, width: float, lamp_z: float, size: tuple[float, float]
+) -> list[TrafficPart]:
     """Lamps and number plates of both ends."""
-    parts: list[Part] = []
+    parts: list[TrafficPart] = []
     for end, lamp in ((1, Material.MIRROR), (-1, Material.PLASTIC)):
         x = end * (length / 2 + 0.005)
         where = (x + end * 0.035, 0.0, max(0.35, lamp_z - 0.25))
@@ -382,8 +386,8 @@ def _ends(length: float, width: float, lamp_z: float, size: tuple[float, float])
     return parts
 
 
-def _mirrors(x: float, y: float, z: float, half: float) -> list[Part]:
-    parts: list[Part] = []
+def _mirrors(x: float, y: float, z: float, half: float) -> list[TrafficPart]:
+    parts: list[TrafficPart] = []
     for side in (-1, 1):
         where = (x, side * (y + 0.06), z)
         parts.append((block(where, (0.08, 0.18, 2 * half)), Material.RUBBER))

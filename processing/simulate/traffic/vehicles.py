@@ -11,11 +11,11 @@ from processing.simulate.chance import chance
 from processing.simulate.street.plan import LEFT
 from processing.simulate.street.styles import HIGHWAY, RURAL
 from processing.simulate.things import Mover
-from processing.simulate.traffic.bodies import Body
+from processing.simulate.traffic.bodies import TrafficBody
 from processing.simulate.traffic.kinds import KINDS
-from processing.simulate.traffic.lanes import Lane, kind_drawn, swing_of
+from processing.simulate.traffic.lanes import TrafficLane, kind_drawn, swing_of
 from processing.simulate.traffic.parking import has_parking
-from processing.simulate.traffic.recorded import BODIES, Order, Recorded, filled_slots
+from processing.simulate.traffic.recorded_pass import BODIES, PlannedMover, RecordedPass, fill_slots
 
 _VEHICLES = {
     "kei_car": 0.3, "saloon": 0.33, "van": 0.12, "small_truck": 0.1, "truck": 0.07, "bus": 0.03,
@@ -26,10 +26,10 @@ _OVERTAKING = 1.2  # how much faster the inner lanes are
 _PARKED_ROOM_M = 0.95  # half the width of what passes where vehicles are parked
 
 
-def companions_of(recorded: Recorded) -> list[Order]:
+def companions_of(recorded: RecordedPass) -> list[PlannedMover]:
     """Those that drive ahead of the recording vehicle and behind it, whatever it does."""
-    way, plan, orders = recorded.way, recorded.plan, []
-    kinds = _fitting(plan.lane_m, is_narrow=has_parking(recorded.seed, plan.style, way))
+    direction, plan, orders = recorded.direction, recorded.plan, []
+    kinds = _fitting(plan.lane_m, is_narrow=has_parking(recorded.seed, plan.style, direction))
     for row, side in enumerate((1, -1)):
         random = chance(recorded.seed, "companions", recorded.number, side)
         if random.random() > 0.6:
@@ -42,38 +42,38 @@ def companions_of(recorded: Recorded) -> list[Order]:
             reach = body.length_m / 2 + surge
             mover = Mover(
                 mesh,
-                way * side * (edge + reach),
-                way * plan.lane_offset_m(0) + _beside(random, plan.lane_m, body),
+                direction * side * (edge + reach),
+                direction * plan.lane_offset_m(0) + _beside(random, plan.lane_m, body),
                 0.0,
                 -np.inf,
                 np.inf,
-                turn_rad=0.0 if way > 0 else np.pi,
+                turn_rad=0.0 if direction > 0 else np.pi,
                 surge_m=surge,
                 surge_s=float(random.uniform(15, 50)),
                 phase_rad=float(random.uniform(0, 2 * np.pi)),
                 course=recorded.course,
                 kind=body.kind,
             )
-            orders.append(Order(0.0, "companions", 10 * row + number, mover))
+            orders.append(PlannedMover(0.0, "companions", 10 * row + number, mover))
             edge += 2 * reach + float(random.uniform(2.5, 18))
     return orders
 
 
-def vehicle_lanes(recorded: Recorded) -> list[Lane]:
+def vehicle_lanes(recorded: RecordedPass) -> list[TrafficLane]:
     """All lanes but the recording vehicle's."""
     seed, style, plan = recorded.seed, recorded.style, recorded.plan
-    way, lanes = recorded.way, []
-    for side in (way, -way):
+    direction, lanes = recorded.direction, []
+    for side in (direction, -direction):
         is_narrow = has_parking(seed, style, side)
         for number in range(plan.lanes):
-            if side == way and number == 0:
+            if side == direction and number == 0:
                 continue
             random = chance(seed, "lane", recorded.number, side, number)
             usual = float(random.uniform(*style.speed_m_s)) * float(random.uniform(0.9, 1.3))
             kinds = _fitting(plan.lane_m, is_narrow=is_narrow and number == 0)
             state, dense = float(random.random()), float(random.uniform(1.8, 7.0))
             speed, fill = usual, float(random.uniform(0.25, 0.85))
-            if side == way:
+            if side == direction:
                 speed *= _OVERTAKING
             if style is RURAL:
                 fill *= 0.4
@@ -83,7 +83,7 @@ def vehicle_lanes(recorded: Recorded) -> list[Lane]:
             longest = max(KINDS[kind].length_m for kind in kinds)
             slot = max(longest + 3.5, speed * dense)
             lanes.append(
-                Lane(
+                TrafficLane(
                     "vehicles", 10 * (side == LEFT) + number, side * plan.lane_offset_m(number),
                     side * speed, 0.0 if side == LEFT else np.pi, slot, fill, kinds, plan.lane_m,
                 )
@@ -91,10 +91,10 @@ def vehicle_lanes(recorded: Recorded) -> list[Lane]:
     return lanes
 
 
-def vehicles_of(recorded: Recorded, lane: Lane) -> list[Order]:
+def vehicles_of(recorded: RecordedPass, lane: TrafficLane) -> list[PlannedMover]:
     """The vehicles of a lane."""
     orders = []
-    for slot, random, body, mesh in filled_slots(recorded, lane):
+    for slot, random, body, mesh in fill_slots(recorded, lane):
         swing = swing_of(random, lane, body.length_m)
         mover = Mover(
             mesh,
@@ -108,7 +108,9 @@ def vehicles_of(recorded: Recorded, lane: Lane) -> list[Order]:
             phase_rad=swing.phase_rad,
             kind=body.kind,
         )
-        orders.append(Order(max(0.0, mover.from_s), f"vehicles {lane.number}", slot.number, mover))
+        orders.append(
+            PlannedMover(max(0.0, mover.from_s), f"vehicles {lane.number}", slot.number, mover)
+        )
     return orders
 
 
@@ -119,7 +121,7 @@ def _fitting(lane_m: float, *, is_narrow: bool) -> dict[str, float]:
     return {kind: share for kind, share in _VEHICLES.items() if KINDS[kind].width_m <= most}
 
 
-def _beside(random: np.random.Generator, lane_m: float, body: Body) -> float:
+def _beside(random: np.random.Generator, lane_m: float, body: TrafficBody) -> float:
     """How far a vehicle drives beside the lane's middle, within the lane."""
     room = min(0.25, max(0.0, (lane_m - body.width_m) / 2 - _SIDE_ROOM_M))
     return float(random.uniform(-room, room))

@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Floats
-from processing.simulate.roadside.places import free_from_m
+from processing.simulate.roadside.free_positions import free_from_m
 from processing.simulate.street.plan import LEFT, SIDES, SectionPlan, SidePlan
 from processing.simulate.street.styles import HIGHWAY, URBAN
 from processing.simulate.things import Mover
 from processing.simulate.traffic.kinds import KINDS
 from processing.simulate.traffic.lanes import (
-    Lane,
+    TrafficLane,
     stretches_of,
     swing_of,
 )
-from processing.simulate.traffic.parking import ParkingPlace, parking_places
-from processing.simulate.traffic.recorded import Order, Recorded, filled_slots
+from processing.simulate.traffic.parking import ParkingPosition, parking_positions
+from processing.simulate.traffic.recorded_pass import PlannedMover, RecordedPass, fill_slots
 
 _FILLS = {"person": 1.0, "bicycle": 0.3}
 _SWAY_M = {"person": 0.04, "bicycle": 0.08}
@@ -46,9 +46,9 @@ class Walks:
     def __init__(self, seed: int, plans: Sequence[SectionPlan]) -> None:
         self._seed, self._plans = seed, plans
         self._starts = np.array([one.start_m for one in plans])
-        self._places: dict[int, list[ParkingPlace]] = {}
+        self._positions: dict[int, list[ParkingPosition]] = {}
 
-    def has_room(self, lane: Lane, chainages: Floats) -> NDArray[np.bool_]:
+    def has_room(self, lane: TrafficLane, chainages: Floats) -> NDArray[np.bool_]:
         """Whether the walk carries a lane at chainages, and nothing may be parked on it."""
         rows = np.searchsorted(self._starts, chainages, "right") - 1
         free = np.zeros(chainages.size, np.bool_)
@@ -57,7 +57,7 @@ class Walks:
             free[here] = self._is_free(row, lane, chainages[here])
         return free
 
-    def _is_free(self, row: int, lane: Lane, chainages: Floats) -> NDArray[np.bool_]:
+    def _is_free(self, row: int, lane: TrafficLane, chainages: Floats) -> NDArray[np.bool_]:
         plan = self._plans[row]
         side = LEFT if lane.offset_m > 0 else -LEFT
         away = abs(lane.offset_m)
@@ -71,9 +71,9 @@ class Walks:
 
     def _taken(self, row: int, side: int, away: float) -> Iterator[tuple[float, float]]:
         """Chainages between which something may be parked in the way."""
-        if row not in self._places:
-            self._places[row] = parking_places(self._seed, self._plans[row])
-        for one in self._places[row]:
+        if row not in self._positions:
+            self._positions[row] = parking_positions(self._seed, self._plans[row])
+        for one in self._positions[row]:
             reach = one.across_m / 2 + 2 * _HALF_M
             if one.side == side and abs(abs(one.offset_m) - away) <= reach:
                 half = one.along_m / 2 + _ROOM_M
@@ -96,7 +96,7 @@ def _walked(side: SidePlan) -> tuple[float, float]:
     return behind_posts, before_back if before_back - behind_posts >= _FREE_M else far
 
 
-def walking_lanes(recorded: Recorded) -> list[Lane]:
+def walking_lanes(recorded: RecordedPass) -> list[TrafficLane]:
     """Lanes beside the road on which people walk, stand and cycle in a pass."""
     seed, style, number = recorded.seed, recorded.style, recorded.number
     if style is HIGHWAY:
@@ -107,30 +107,30 @@ def walking_lanes(recorded: Recorded) -> list[Lane]:
         inner = recorded.plan.side(side).edge_m + float(
             chance(seed, "walks", side).uniform(0.6, 1.6)
         )
-        for place in range(_LANES):
-            random = chance(seed, "walkers' lane", number, side, place)
-            way = 1.0 if random.random() < 0.5 else -1.0
+        for position in range(_LANES):
+            random = chance(seed, "walkers' lane", number, side, position)
+            direction = 1.0 if random.random() < 0.5 else -1.0
             kind = "bicycle" if style is URBAN and random.random() < 0.25 else "person"
-            speed = way * float(
+            speed = direction * float(
                 random.uniform(2.5, 4.5) if kind == "bicycle" else random.uniform(0.7, 1.7)
             )
             if kind == "person" and random.random() < 0.12:
                 speed = 0.0
             slot = KINDS[kind].length_m + 2.6 + float(random.exponential(6.0))
             lanes.append(
-                Lane(
-                    "walkers", 10 * (side == LEFT) + place, side * (inner + place * _APART_M),
-                    speed, 0.0 if way > 0 else np.pi, slot, busy * _FILLS[kind], {kind: 1.0},
+                TrafficLane(
+                    "walkers", 10 * (side == LEFT) + position, side * (inner + position * _APART_M),
+                    speed, 0.0 if direction > 0 else np.pi, slot, busy * _FILLS[kind], {kind: 1.0},
                     _APART_M,
                 )
             )  # fmt: skip
     return lanes
 
 
-def walkers_of(recorded: Recorded, lane: Lane, walks: Walks) -> list[Order]:
+def walkers_of(recorded: RecordedPass, lane: TrafficLane, walks: Walks) -> list[PlannedMover]:
     """Those who walk or cycle along, wherever the walk has their lane."""
     orders = []
-    for slot, random, body, mesh in filled_slots(recorded, lane):
+    for slot, random, body, mesh in fill_slots(recorded, lane):
         swing = swing_of(random, lane, body.length_m)
         mover = Mover(
             mesh,
@@ -150,10 +150,12 @@ def walkers_of(recorded: Recorded, lane: Lane, walks: Walks) -> list[Order]:
             kind=body.kind,
         )
         times = recorded.course[slot.first : slot.last + 1, 0]
-        at, _ = mover.way_at(times)
+        at, _ = mover.direction_at(times)
         inside = walks.has_room(lane, at)
         for first, last in stretches_of(inside):
             start, end = recorded.span(slot.first + first, slot.first + last)
             one = replace(mover, from_s=start, to_s=end)
-            orders.append(Order(max(0.0, one.from_s), f"walkers {lane.number}", slot.number, one))
+            orders.append(
+                PlannedMover(max(0.0, one.from_s), f"walkers {lane.number}", slot.number, one)
+            )
     return orders

@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from processing.bench.case import BenchWish, Measurement
+from processing.bench.case import BenchmarkOptions, Measurement
 from processing.bench.ground_cases import measure_ground
 from processing.bench.growth import exponent_of, measure_growth
 from processing.bench.image_cases import measure_image, measure_switch
@@ -22,7 +22,7 @@ from processing.bench.volume_cases import measure_volume, measure_volume_tin, me
 from processing.bench.volume_site import true_volumes
 from processing.text import Text
 
-LITTLE = BenchWish(most_points=20_000, share=0.2)
+LITTLE = BenchmarkOptions(most_points=20_000, share=0.2)
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_curbs_and_gutters_have_times_by_stage_and_length() -> None:
 
 
 def test_a_volume_has_times_by_stage_and_comes_near_what_was_moved() -> None:
-    (row,) = measure_volume(BenchWish(most_points=200_000, share=0.2))
+    (row,) = measure_volume(BenchmarkOptions(most_points=200_000, share=0.2))
     assert row.value is not None
     assert row.target == 3.0
     assert row.figures["Summing"] > 0
@@ -116,7 +116,7 @@ def test_memory_of_an_import_is_some_of_it_in_no_file() -> None:
 
 
 def test_growth_gives_an_exponent_and_the_time_of_each_size() -> None:
-    rows = measure_growth(BenchWish(most_points=45_000, share=0.2))
+    rows = measure_growth(BenchmarkOptions(most_points=45_000, share=0.2))
     assert len(rows) == 9
     for row in rows:
         assert row.value is not None

@@ -40,8 +40,8 @@ def test_files_of_two_scanners_become_two_drives_with_unbroken_turns(tmp_path: P
     assert [drive.info.scanner for drive in drives] == [1, 2]
     assert sum(drive.count for drive in drives) == points
     for drive in drives:
-        assert drive.turns is not None
-        assert round(drive.turns.turn_rate_hz) == 100
+        assert drive.revolutions is not None
+        assert round(drive.revolutions.revolution_rate_hz) == 100
 
 
 def test_a_cloud_without_times_has_a_picture_from_above(tmp_path: Path) -> None:

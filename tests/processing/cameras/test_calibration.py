@@ -12,11 +12,11 @@ from processing.cameras.calibration import (
     CameraOffset,
     PixelPair,
     angles_of,
+    apply_offset,
+    apply_offsets,
     camera_of,
-    estimated_from,
+    estimate_offset,
     residuals_px,
-    with_offset,
-    with_offsets,
 )
 from processing.cameras.camera import Camera
 from processing.cameras.image_list import CameraImage, ImageList
@@ -46,19 +46,19 @@ MIDDLE = np.array([IMAGE.cx_px, IMAGE.cy_px])
 def test_what_the_camera_does_the_picture_does_the_other_way(
     offset: CameraOffset, moved: tuple[float, float]
 ) -> None:
-    pixel = Camera(with_offset(IMAGE, offset, None)).pixels_of(AHEAD)[0] - MIDDLE
+    pixel = Camera(apply_offset(IMAGE, offset, None)).pixels_of(AHEAD)[0] - MIDDLE
     assert np.linalg.norm(pixel) > 4
     np.testing.assert_allclose(pixel / np.linalg.norm(pixel), moved, atol=1e-6)
 
 
 def test_a_camera_whose_right_side_goes_down_turns_the_picture_anticlockwise() -> None:
     above = AHEAD + np.array([0.0, 0.0, 1.0])
-    pixel = Camera(with_offset(IMAGE, CameraOffset(roll_deg=5.0), None)).pixels_of(above)[0]
+    pixel = Camera(apply_offset(IMAGE, CameraOffset(roll_deg=5.0), None)).pixels_of(above)[0]
     assert pixel[0] < MIDDLE[0] - 1
 
 
 def test_going_forward_makes_things_nearer() -> None:
-    moved = with_offset(IMAGE, CameraOffset(forward_m=4.0), None)
+    moved = apply_offset(IMAGE, CameraOffset(forward_m=4.0), None)
     assert Camera(moved).distances_to(AHEAD)[0] == pytest.approx(6.0)
     np.testing.assert_allclose(Camera(moved).pixels_of(AHEAD)[0], MIDDLE, atol=1e-6)
 
@@ -81,7 +81,7 @@ def curve() -> Trajectory:
 
 def test_time_moves_and_turns_the_camera_with_the_vehicle() -> None:
     road = curve()
-    moved = with_offset(IMAGE, CameraOffset(time_s=2.0), road)
+    moved = apply_offset(IMAGE, CameraOffset(time_s=2.0), road)
     assert moved.time_s == 12.0
     times = np.array([10.0, 12.0])
     turns, positions = road.rotations_at(times), road.positions_at(times)
@@ -95,7 +95,7 @@ def test_time_moves_and_turns_the_camera_with_the_vehicle() -> None:
 
 def test_time_has_no_effect_where_the_trajectory_has_ended() -> None:
     late = replace(IMAGE, time_s=19.5)
-    found = with_offset(late, CameraOffset(time_s=2.0), curve())
+    found = apply_offset(late, CameraOffset(time_s=2.0), curve())
     assert (found.time_s, found.xyz) == (late.time_s, late.xyz)
     np.testing.assert_allclose(Camera(found).rotation, Camera(late).rotation, atol=1e-12)
 
@@ -113,20 +113,20 @@ def test_cameras_are_told_apart_by_their_names_without_numbers() -> None:
 
 def test_an_offset_touches_its_own_camera_only() -> None:
     left = replace(IMAGE, path=Path("left_0001.jpg"))
-    found = with_offsets(ImageList((IMAGE, left)), {"left": CameraOffset(yaw_deg=1.0)}, None)
+    found = apply_offsets(ImageList((IMAGE, left)), {"left": CameraOffset(yaw_deg=1.0)}, None)
     assert found[0] is IMAGE
     assert found[1].kappa_deg != left.kappa_deg
 
 
 def pairs(true: CameraOffset, count: int, noise_px: float = 0.0) -> list[PixelPair]:
     random = np.random.default_rng(4)
-    image = with_offset(IMAGE, true, None)
+    image = apply_offset(IMAGE, true, None)
     pixels = random.uniform((20, 20), (380, 280), (count, 2))
     rays = Camera(image).rays_of(pixels)
     xyz = np.array(image.xyz) + random.uniform(4, 30, (count, 1)) * rays
     return [
-        PixelPair(IMAGE, tuple(pixel), tuple(place))
-        for pixel, place in zip(
+        PixelPair(IMAGE, tuple(pixel), tuple(position))
+        for pixel, position in zip(
             (pixels + random.normal(0, noise_px, pixels.shape)).tolist(), xyz.tolist(), strict=True
         )
     ]
@@ -134,7 +134,7 @@ def pairs(true: CameraOffset, count: int, noise_px: float = 0.0) -> list[PixelPa
 
 def test_rotation_is_found_from_few_pairs() -> None:
     true = CameraOffset(roll_deg=0.8, pitch_deg=-1.5, yaw_deg=2.0)
-    found = estimated_from(pairs(true, 3))
+    found = estimate_offset(pairs(true, 3))
     assert not found.has_shift
     assert found.rms_px < 1e-4
     assert found.offset.roll_deg == pytest.approx(0.8, abs=1e-4)
@@ -145,7 +145,7 @@ def test_rotation_is_found_from_few_pairs() -> None:
 def test_rotation_and_shift_are_found_from_more_and_residuals_are_the_noise() -> None:
     true = CameraOffset(0.8, -1.5, 2.0, right_m=0.12, up_m=-0.05, forward_m=0.3)
     noisy = pairs(true, 40, noise_px=0.5)
-    found = estimated_from(noisy)
+    found = estimate_offset(noisy)
     assert found.has_shift
     assert found.rms_px == pytest.approx(0.5 * np.sqrt(2), rel=0.25)
     assert found.offset.right_m == pytest.approx(0.12, abs=0.05)
@@ -155,9 +155,9 @@ def test_rotation_and_shift_are_found_from_more_and_residuals_are_the_noise() ->
 def test_one_pair_is_too_few_and_one_place_determines_nothing() -> None:
     (pair,) = pairs(CameraOffset(), 1)
     with pytest.raises(Unsuitable, match="too few"):
-        estimated_from([pair])
+        estimate_offset([pair])
     with pytest.raises(Unsuitable, match="too close"):
-        estimated_from([pair] * 3)
+        estimate_offset([pair] * 3)
 
 
 def test_offsets_are_kept_beside_the_drive_and_count_everywhere(tmp_path: Path) -> None:
@@ -191,4 +191,4 @@ def test_damaged_offsets_say_what_to_do(tmp_path: Path, text: str) -> None:
 
 
 def test_an_image_is_a_plain_value(tmp_path: Path) -> None:
-    assert isinstance(with_offset(IMAGE, CameraOffset(roll_deg=1.0), None), CameraImage)
+    assert isinstance(apply_offset(IMAGE, CameraOffset(roll_deg=1.0), None), CameraImage)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from processing.cameras.camera import Camera
-from processing.cameras.image_list import CameraImage, ImageList, Projection
+from processing.cameras.image_list import CameraImage, ImageList, ProjectionName
 
 _IMAGE = CameraImage(
     path=Path("a.jpg"),
@@ -71,7 +71,9 @@ def test_a_panorama_shows_all_directions() -> None:
 
 @pytest.mark.parametrize("image", [_IMAGE, _DISTORTED])
 @pytest.mark.parametrize("projection", ["perspective", "equirectangular"])
-def test_rays_lead_back_to_the_ground_points(image: CameraImage, projection: Projection) -> None:
+def test_rays_lead_back_to_the_ground_points(
+    image: CameraImage, projection: ProjectionName
+) -> None:
     turned = replace(image, omega_deg=80.0, phi_deg=30.0, kappa_deg=-170.0, projection=projection)
     camera = Camera(turned)
     columns, rows = np.meshgrid(np.linspace(20, 780, 20), np.linspace(20, 580, 20))

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import shapely
 
-from processing.cameras.choice import ImageChoice, field_of_view
+from processing.cameras.choice import ImageFinder, field_of_view
 from processing.cameras.image_list import CameraImage
 from tests.builders import START
 from tests.camera_scene import looking
@@ -26,34 +26,34 @@ def at(east: float, north: float, up: float = 2.0) -> np.ndarray:
     return START + np.array([east, north, up])
 
 
-def names(choice: ImageChoice, place: np.ndarray) -> list[str]:
-    return [sighting.image.path.stem for sighting in choice.seeing(place)]
+def names(choice: ImageFinder, position: np.ndarray) -> list[str]:
+    return [sighting.image.path.stem for sighting in choice.seeing(position)]
 
 
 def test_nearer_images_come_first_and_those_behind_not_at_all() -> None:
-    choice = ImageChoice([front(0), front(10), front(20), front(30)])
+    choice = ImageFinder([front(0), front(10), front(20), front(30)])
     assert names(choice, at(0, 25)) == ["front_0020", "front_0010", "front_0000"]
 
 
 def test_an_image_is_better_where_its_pixels_are_smaller() -> None:
     tele = front(0, focal_px=2500.0)
-    choice = ImageChoice([front(9), tele])
+    choice = ImageFinder([front(9), tele])
     assert names(choice, at(0, 20))[0] == "front_0000"
 
 
 def test_the_middle_of_an_image_is_better_than_its_edge() -> None:
-    choice = ImageChoice([front(10.0), looking(Path("left.jpg"), (0.0, 10.0, 2.0), (0.7, 1, 0))])
+    choice = ImageFinder([front(10.0), looking(Path("left.jpg"), (0.0, 10.0, 2.0), (0.7, 1, 0))])
     assert names(choice, at(7.0, 20.0))[0] == "left"
 
 
 def test_a_place_at_the_very_edge_is_not_seen() -> None:
     image = front(0)
     edge = at(10 * (image.width_px / 2) / image.focal_px, 10)
-    assert not names(ImageChoice([image]), edge)
+    assert not names(ImageFinder([image]), edge)
 
 
 def test_what_is_known_to_be_hidden_comes_last() -> None:
-    choice = ImageChoice([front(0), front(10)])
+    choice = ImageFinder([front(0), front(10)])
     found = choice.seeing(at(0, 20), lambda number, _: True if number == 1 else None)
     assert [(one.image.path.stem, one.is_hidden) for one in found] == [
         ("front_0000", None),
@@ -62,20 +62,20 @@ def test_what_is_known_to_be_hidden_comes_last() -> None:
 
 
 def test_a_place_far_from_every_image_has_a_nearest_one() -> None:
-    choice = ImageChoice([front(0), front(10)])
+    choice = ImageFinder([front(0), front(10)])
     assert choice.seeing(at(0, 500)) == ()
     number, distance = choice.nearest_m(at(0, 500))
     assert (number, distance) == (1, pytest.approx(490.0))
 
 
 def test_without_images_there_is_nothing_near() -> None:
-    choice = ImageChoice([])
+    choice = ImageFinder([])
     assert choice.seeing(at(0, 0)) == ()
     assert choice.nearest_m(at(0, 0)) == (-1, np.inf)
 
 
 def test_a_place_that_is_no_number_is_seen_by_none() -> None:
-    assert ImageChoice([front(0)]).seeing(np.full(3, np.nan)) == ()
+    assert ImageFinder([front(0)]).seeing(np.full(3, np.nan)) == ()
 
 
 @pytest.mark.parametrize("ahead", [NORTH, EAST, SOUTH, (-1.0, -0.1, -0.3)])
@@ -83,12 +83,12 @@ def test_the_field_of_view_holds_what_the_image_shows(ahead: tuple[float, float,
     image = looking(Path("a.jpg"), (0.0, 0.0, 2.0), ahead)
     field = shapely.Polygon(field_of_view(image, 30.0))
     random = np.random.default_rng(1)
-    places = START + random.uniform(-25, 25, (400, 3)) * (1, 1, 0.05) + (0, 0, 2)
-    near = np.hypot(*(places - image.xyz)[:, :2].T) < 29
-    choice = ImageChoice([image])
-    for place in places[near]:
-        is_seen = bool(choice.seeing(place))
-        is_held = field.buffer(0.5).contains(shapely.Point(place[:2]))
+    positions = START + random.uniform(-25, 25, (400, 3)) * (1, 1, 0.05) + (0, 0, 2)
+    near = np.hypot(*(positions - image.xyz)[:, :2].T) < 29
+    choice = ImageFinder([image])
+    for position in positions[near]:
+        is_seen = bool(choice.seeing(position))
+        is_held = field.buffer(0.5).contains(shapely.Point(position[:2]))
         assert is_held or not is_seen
 
 

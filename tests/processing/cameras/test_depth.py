@@ -9,7 +9,7 @@ import pytest
 
 from processing.cameras.camera import Camera
 from processing.cameras.depth import DepthPicture
-from processing.cameras.image_list import CameraImage, Projection
+from processing.cameras.image_list import CameraImage, ProjectionName
 from processing.errors import Cancelled
 from processing.points.drive import Drive
 from tests.builders import START
@@ -22,12 +22,12 @@ LEFT_POLE = START + np.array([-POLE_AT_M, 2.0, 0.0])
 
 @pytest.fixture(scope="module")
 def drive(tmp_path_factory: pytest.TempPathFactory) -> Drive:
-    street = simulated_drive(3, pulses_per_turn=1000.0)
+    street = simulated_drive(3, pulses_per_revolution=1000.0)
     return drive_of(street, tmp_path_factory.mktemp("depth") / "d")
 
 
 def camera_at(
-    ahead: tuple[float, float, float], projection: Projection = "perspective"
+    ahead: tuple[float, float, float], projection: ProjectionName = "perspective"
 ) -> CameraImage:
     return looking(Path("a.jpg"), (-0.5, 2.0, 2.0), ahead, projection=projection)
 
@@ -84,19 +84,19 @@ def test_a_road_seen_at_a_flat_angle_doesnt_hide_itself(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("projection", ["perspective", "equirectangular"])
 def test_a_click_goes_to_the_surface_that_the_pixel_shows(
-    drive: Drive, projection: Projection
+    drive: Drive, projection: ProjectionName
 ) -> None:
     image = camera_at((-1.0, -0.1, -0.1), projection)
     picture = DepthPicture(image, [drive])
     on_pole = LEFT_POLE + np.array([POLE_RADIUS_M, 0.0, 1.8])
     beside = START + np.array([-WALL_AT_M, 0.5, 1.8])
-    for place, off_m in ((on_pole, 0.12), (beside, 0.25)):
-        pixel = Camera(image).pixels_of(place[None])[0]
+    for position, off_m in ((on_pole, 0.12), (beside, 0.25)):
+        pixel = Camera(image).pixels_of(position[None])[0]
         found = picture.point_at((float(pixel[0]), float(pixel[1])))
         assert found is not None
         assert found.drive == drive.id
         np.testing.assert_array_equal(drive.xyz(np.array([found.point]))[0], found.xyz)
-        assert np.linalg.norm(np.array(found.xyz) - place) < off_m
+        assert np.linalg.norm(np.array(found.xyz) - position) < off_m
 
 
 def test_a_quick_look_finds_the_same_surface(drive: Drive) -> None:

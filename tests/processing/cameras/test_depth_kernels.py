@@ -46,11 +46,11 @@ def test_the_nearest_point_covers_the_cells_it_reaches(form: Form) -> None:
     rows, columns = np.indices((4, 4)) + 0.5
     rays = np.stack([columns - 2, rows - 2, np.full((4, 4), 20.0)], axis=2)
     rays /= np.linalg.norm(rays, axis=2, keepdims=True)
-    places = np.array([[1.5, 1.5], [1.6, 1.4], [np.nan, 0.0], [9.0, 9.0]])
+    positions = np.array([[1.5, 1.5], [1.6, 1.4], [np.nan, 0.0], [9.0, 9.0]])
     away = np.array([[-0.125, -0.125, 5.0], [0, 0, 3.0], [0, 0, 1.0], [0, 0, 1.0]])
     normals = np.array([[0, 0, 1.0], [0, 0, 0], [0, 0, 0], [0, 0, 0]])
     radii = np.array([0.3, 0.01, 0.3, 0.01])
-    form(depth_kernels.front_kernel)(places, (away, normals, radii), 20.0, rays, front, number)
+    form(depth_kernels.front_kernel)(positions, (away, normals, radii), 20.0, rays, front, number)
     assert number.tolist() == [[-1, 0, -1, -1], [0, 1, 0, -1], [-1, 0, -1, -1], [-1] * 4]
     assert front[1, 1] == 3.0
     # The disc is flat: its cells are as far away as its plane is there.

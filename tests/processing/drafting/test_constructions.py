@@ -12,11 +12,11 @@ from processing.drafting.constructions import (
     spline_through,
 )
 from processing.errors import OutOfRange
-from tests.processing.drafting.places import distances_to, local, places
+from tests.processing.drafting.positions import distances_to, local, positions
 
 
 def test_an_arc_lies_on_the_circle_of_its_three_places() -> None:
-    first, second, third = places((10, 0, 1), (0, 10, 2), (-10, 0, 4))
+    first, second, third = positions((10, 0, 1), (0, 10, 2), (-10, 0, 4))
     arc = arc_through(first, second, third, tolerance_m=0.01)
     assert arc[0] == first
     assert arc[-1] == third
@@ -30,16 +30,16 @@ def test_an_arc_lies_on_the_circle_of_its_three_places() -> None:
 
 
 def test_an_arc_turns_the_way_its_second_place_says() -> None:
-    first, second, third = places((10, 0), (0, -10), (-10, 0))
+    first, second, third = positions((10, 0), (0, -10), (-10, 0))
     assert local(arc_through(first, second, third))[:, 1].max() <= 1e-9
-    long_way = arc_through(*places((10, 0), (-10, 0), (0, -10)))
+    long_way = arc_through(*positions((10, 0), (-10, 0), (0, -10)))
     assert local(long_way)[:, 1].max() == pytest.approx(10, abs=0.02)
 
 
 def test_an_arc_of_places_in_a_row_is_straight() -> None:
-    row = places((0, 0, 0), (5, 0.001, 1), (10, 0, 3))
+    row = positions((0, 0, 0), (5, 0.001, 1), (10, 0, 3))
     assert arc_through(*row) == row
-    back = places((0, 0, 0), (10, 0, 1), (5, 0, 3))
+    back = positions((0, 0, 0), (10, 0, 1), (5, 0, 3))
     assert arc_through(*back) == back
     assert arc_through(row[0], row[0], row[2]) == (row[0], row[2])
     assert arc_through(row[0], row[1], row[0]) == (row[0], row[1], row[0])
@@ -50,7 +50,7 @@ def test_a_circle_lies_on_the_tilted_plane_of_its_places() -> None:
     one = np.cross(normal, [1.0, 0, 0])
     one /= np.linalg.norm(one)
     other = np.cross(normal, one)
-    given = places(*(0.3 * (np.cos(a) * one + np.sin(a) * other) for a in (0.1, 2.0, 3.5)))
+    given = positions(*(0.3 * (np.cos(a) * one + np.sin(a) * other) for a in (0.1, 2.0, 3.5)))
     ring = circle_through(*given, tolerance_m=0.001)
     assert ring[0] == given[0]
     assert set(given) <= set(ring)
@@ -63,7 +63,7 @@ def test_a_circle_lies_on_the_tilted_plane_of_its_places() -> None:
 
 
 def test_figures_of_places_in_a_row_are_refused_in_both_languages() -> None:
-    row = places((0, 0, 0), (1, 1, 1), (3, 3, 3))
+    row = positions((0, 0, 0), (1, 1, 1), (3, 3, 3))
     for figure in (circle_through, rectangle_from):
         with pytest.raises(OutOfRange) as refusal:
             figure(*row)
@@ -76,14 +76,14 @@ def test_figures_of_places_in_a_row_are_refused_in_both_languages() -> None:
 
 
 def test_a_rectangle_reaches_to_the_third_place_with_right_angles() -> None:
-    corners = rectangle_from(*places((0, 0, 0), (2, 0, 0), (1.5, 0.5, 0.1)))
+    corners = rectangle_from(*positions((0, 0, 0), (2, 0, 0), (1.5, 0.5, 0.1)))
     expected = [(0, 0, 0), (2, 0, 0), (2, 0.5, 0.1), (0, 0.5, 0.1)]
     assert np.allclose(local(corners), expected, atol=1e-9)
 
 
 def test_a_spline_goes_through_all_places_and_stays_smooth() -> None:
     angles = np.linspace(0, np.pi, 9)
-    given = places(*((20 * np.cos(a), 20 * np.sin(a), a) for a in angles))
+    given = positions(*((20 * np.cos(a), 20 * np.sin(a), a) for a in angles))
     curve = spline_through(given, tolerance_m=0.005)
     assert set(given) <= set(curve)
     found = local(curve)
@@ -97,14 +97,14 @@ def test_a_spline_goes_through_all_places_and_stays_smooth() -> None:
 
 
 def test_finer_chords_stay_within_the_tolerance_of_the_curve() -> None:
-    given = places((0, 0), (10, 0), (10, 10), (30, 12), (31, 0))
+    given = positions((0, 0), (10, 0), (10, 10), (30, 12), (31, 0))
     coarse, fine = (spline_through(given, tolerance) for tolerance in (0.02, 0.0005))
     assert len(coarse) < len(fine)
     assert distances_to(coarse, fine).max() <= 0.021
 
 
 def test_a_spline_of_one_or_two_places_is_what_it_was() -> None:
-    two = places((0, 0), (1, 1))
+    two = positions((0, 0), (1, 1))
     assert spline_through(two) == two
     assert spline_through((two[0], two[0], two[1])) == two
     assert spline_through(two[:1]) == two[:1]
@@ -112,14 +112,14 @@ def test_a_spline_of_one_or_two_places_is_what_it_was() -> None:
 
 
 def test_a_spline_keeps_places_above_one_another() -> None:
-    given = places((0, 0, 0), (5, 1, 0), (5, 1, 0.15), (10, 0, 0.15))
+    given = positions((0, 0, 0), (5, 1, 0), (5, 1, 0.15), (10, 0, 0.15))
     curve = spline_through(given)
     assert set(given) <= set(curve)
     assert set(np.round(local(curve)[:, 2], 6)) == {0.0, 0.15}
-    plumb = places((0, 0, 0), (0, 0, 1), (0, 0, 2))
+    plumb = positions((0, 0, 0), (0, 0, 1), (0, 0, 2))
     assert spline_through(plumb) == plumb
 
 
 def test_ten_thousand_places_make_a_spline() -> None:
-    given = places(*((n * 0.5, np.sin(n / 9), 0.0) for n in range(10_000)))
+    given = positions(*((n * 0.5, np.sin(n / 9), 0.0) for n in range(10_000)))
     assert set(given) <= set(spline_through(given))

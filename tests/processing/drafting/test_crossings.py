@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.drafting.crossings import crosses_itself, line_places
-from tests.processing.drafting.places import CORNER, local, places
+from processing.drafting.crossings import crosses_itself, line_positions
+from tests.processing.drafting.positions import CORNER, local, positions
 
 
 def _crossing(*given: tuple[float, float], is_closed: bool) -> tuple[float, float] | None:
-    found = crosses_itself(places(*given), is_closed=is_closed)
+    found = crosses_itself(positions(*given), is_closed=is_closed)
     return None if found is None else tuple(np.round(np.array(found) - CORNER[:2], 6).tolist())
 
 
@@ -58,16 +58,16 @@ def test_ten_thousand_vertices_that_cross_once_are_found() -> None:
 
 def test_lines_that_cross_everywhere_answer_with_the_first() -> None:
     random = np.random.default_rng(0)
-    scribble = [tuple(place) for place in random.uniform(0, 10, (3000, 2))]
+    scribble = [tuple(position) for position in random.uniform(0, 10, (3000, 2))]
     found = _crossing(*scribble, is_closed=False)
     assert found is not None
     assert 0 <= found[0] <= 10
 
 
 def _found(near, lines, reach=0.5, from_=None) -> list[tuple[str, tuple[float, ...], float]]:
-    (cursor,) = places(near)
-    start = None if from_ is None else places(from_)[0]
-    given = line_places(cursor, [places(*line) for line in lines], reach, from_=start)
+    (cursor,) = positions(near)
+    start = None if from_ is None else positions(from_)[0]
+    given = line_positions(cursor, [positions(*line) for line in lines], reach, from_=start)
     return [
         (one.what, tuple(local([one.xyz])[0].round(6).tolist()), round(one.distance_m, 6))
         for one in given
@@ -82,7 +82,7 @@ def test_a_vertex_stands_for_the_line_that_it_ends() -> None:
     found = _found((9.9, 0.1, 0), [((0, 0, 0), (10, 0, 0))])
     assert ("vertex", (10, 0, 0), 0.141421) in found
     assert found[0] == ("line", (9.9, 0, 0), 0.1)
-    assert [what for what, place, _ in found if place == (10, 0, 0)] == ["vertex"]
+    assert [what for what, position, _ in found if position == (10, 0, 0)] == ["vertex"]
 
 
 def test_two_lines_cross_at_the_height_nearer_to_the_cursor() -> None:

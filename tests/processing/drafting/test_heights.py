@@ -9,18 +9,18 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.drafting.height_kernels import near_points_kernel, warm_up
-from processing.drafting.heights import grounded
+from processing.drafting.heights import set_on_ground
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
 from processing.points.drive_info import DriveInfo, write_drive_info
-from tests.processing.drafting.places import CORNER, local, places
+from tests.processing.drafting.positions import CORNER, local, positions
 from tests.processing.image.recordings import small_drive
 
 SCALE, CELLS = 0.001, 64
 
 
 def surface(folder: Path, xyz: NDArray[np.float64]) -> Drive:
-    """A drive without turns of points about the far corner, as a top view holds them."""
+    """A drive without revolutions of points about the far corner, as a top view holds them."""
     integers = np.rint(xyz / SCALE).astype(np.int32)
     cells = np.floor((xyz[:, :2] - xyz[:, :2].min(axis=0)) / 0.25).astype(np.int64)
     pulse = cells[:, 1] * CELLS + np.minimum(cells[:, 0], CELLS - 1)
@@ -79,11 +79,11 @@ def heights_of(vertices) -> NDArray[np.float64]:
 
 def test_a_line_on_a_plane_gets_the_planes_heights(tmp_path: Path) -> None:
     drive = surface(tmp_path / "a", plane(1))
-    given = places(*((x, 3.0, 0.2) for x in np.linspace(1, 11, 200)))
-    vertices = grounded(given, [drive])
+    given = positions(*((x, 3.0, 0.2) for x in np.linspace(1, 11, 200)))
+    vertices = set_on_ground(given, [drive])
     truth = local(given)[:, :2] @ (0.03, -0.02)
     assert np.abs(heights_of(vertices) - truth).max() < 0.002
-    assert [vertex.xyz[:2] for vertex in vertices] == [place[:2] for place in given]
+    assert [vertex.xyz[:2] for vertex in vertices] == [position[:2] for position in given]
     assert not any(vertex.is_occluded for vertex in vertices)
 
 
@@ -91,8 +91,8 @@ def test_two_drives_count_together(tmp_path: Path) -> None:
     cloud = plane(2)
     west = surface(tmp_path / "w", cloud[cloud[:, 0] < 6])
     east = surface(tmp_path / "e", cloud[cloud[:, 0] >= 6])
-    given = places(*((x, 3.0, 0.0) for x in np.linspace(1, 11, 41)))
-    vertices = grounded(given, [west, east])
+    given = positions(*((x, 3.0, 0.0) for x in np.linspace(1, 11, 41)))
+    vertices = set_on_ground(given, [west, east])
     assert not any(vertex.is_occluded for vertex in vertices)
     assert np.abs(heights_of(vertices) - local(given)[:, :2] @ (0.03, -0.02)).max() < 0.003
 
@@ -101,8 +101,8 @@ def test_beside_a_curb_the_surface_of_most_points_is_met_and_no_mean(tmp_path: P
     cloud = plane(3, slope=(0.0, 0.0))
     cloud[cloud[:, 1] > 3.0, 2] += 0.15
     drive = surface(tmp_path / "a", cloud)
-    road = grounded(places(*((x, 2.95, 0.075) for x in range(1, 11))), [drive])
-    walk = grounded(places(*((x, 3.05, 0.075) for x in range(1, 11))), [drive])
+    road = set_on_ground(positions(*((x, 2.95, 0.075) for x in range(1, 11))), [drive])
+    walk = set_on_ground(positions(*((x, 3.05, 0.075) for x in range(1, 11))), [drive])
     assert np.abs(heights_of(road)).max() < 0.003
     assert np.abs(heights_of(walk) - 0.15).max() < 0.003
 
@@ -114,17 +114,17 @@ def test_on_a_curbs_edge_the_given_height_decides(tmp_path: Path) -> None:
     face = np.column_stack([random.uniform(0, 12, 3000), np.full(3000, 3.0), np.zeros(3000)])
     face[:, 2] = random.uniform(0, 0.15, 3000)
     drive = surface(tmp_path / "a", np.concatenate([cloud, face]))
-    lower = grounded(places(*((x, 3.0, 0.0) for x in range(1, 11))), [drive])
-    upper = grounded(places(*((x, 3.0, 0.15) for x in range(1, 11))), [drive])
+    lower = set_on_ground(positions(*((x, 3.0, 0.0) for x in range(1, 11))), [drive])
+    upper = set_on_ground(positions(*((x, 3.0, 0.15) for x in range(1, 11))), [drive])
     assert np.abs(heights_of(lower)).max() < 0.02
     assert np.abs(heights_of(upper) - 0.15).max() < 0.02
 
 
 def test_an_embankment_is_followed_up_its_slope(tmp_path: Path) -> None:
     drive = surface(tmp_path / "a", plane(13, slope=(0.0, 0.6)))
-    given = places(*((5.0, y, 0.6 * y + 0.1) for y in np.linspace(1, 5, 60)))
+    given = positions(*((5.0, y, 0.6 * y + 0.1) for y in np.linspace(1, 5, 60)))
     truth = 0.6 * local(given)[:, 1]
-    assert np.abs(heights_of(grounded(given, [drive])) - truth).max() < 0.015
+    assert np.abs(heights_of(set_on_ground(given, [drive])) - truth).max() < 0.015
 
 
 def test_leaves_above_the_road_dont_lift_the_line(tmp_path: Path) -> None:
@@ -133,8 +133,8 @@ def test_leaves_above_the_road_dont_lift_the_line(tmp_path: Path) -> None:
     leaves = cloud[random.random(len(cloud)) < 0.3] + (0, 0, 0.3)
     leaves[:, 2] += random.uniform(-0.1, 0.1, len(leaves))
     drive = surface(tmp_path / "a", np.concatenate([cloud, leaves]))
-    given = places(*((x, 3.0, 0.1 + 0.05 * x) for x in range(1, 11)))
-    assert np.abs(heights_of(grounded(given, [drive])) - 0.05 * np.arange(1, 11)).max() < 0.004
+    given = positions(*((x, 3.0, 0.1 + 0.05 * x) for x in range(1, 11)))
+    assert np.abs(heights_of(set_on_ground(given, [drive])) - 0.05 * np.arange(1, 11)).max() < 0.004
 
 
 def test_where_points_are_missing_heights_come_from_the_neighbours(tmp_path: Path) -> None:
@@ -143,8 +143,8 @@ def test_where_points_are_missing_heights_come_from_the_neighbours(tmp_path: Pat
     cloud = cloud[cloud[:, 0] < 10]
     drive = surface(tmp_path / "a", cloud)
     eastings = np.array([1, 3, 4.5, 5.5, 6.5, 8, 9, 11, 11.5])
-    given = places(*((x, 3.0, 0.03 * x + 0.04) for x in eastings))
-    vertices = grounded(given, [drive])
+    given = positions(*((x, 3.0, 0.03 * x + 0.04) for x in eastings))
+    vertices = set_on_ground(given, [drive])
     assert [vertex.is_occluded for vertex in vertices] == [
         x in (4.5, 5.5, 6.5, 11, 11.5) for x in eastings
     ]
@@ -153,31 +153,31 @@ def test_where_points_are_missing_heights_come_from_the_neighbours(tmp_path: Pat
 
 def test_points_on_another_level_dont_count(tmp_path: Path) -> None:
     drive = surface(tmp_path / "a", plane(9, slope=(0.0, 0.0)))
-    given = places((5, 3, 2.0), (6, 3, 2.1))
-    assert [(vertex.xyz, vertex.is_occluded) for vertex in grounded(given, [drive])] == [
-        (place, True) for place in given
+    given = positions((5, 3, 2.0), (6, 3, 2.1))
+    assert [(vertex.xyz, vertex.is_occluded) for vertex in set_on_ground(given, [drive])] == [
+        (position, True) for position in given
     ]
-    (vertex,) = grounded(places((5, 3, 0.45)), [drive])
+    (vertex,) = set_on_ground(positions((5, 3, 0.45)), [drive])
     assert heights_of([vertex])[0] == pytest.approx(0, abs=0.003)
 
 
 def test_one_or_two_points_give_the_height_of_the_nearest(tmp_path: Path) -> None:
     alone = np.array([[1, 1, 0.1], [1.1, 1, 0.3], [5, 5, 0.2]])
     drive = surface(tmp_path / "a", alone)
-    vertices = grounded(places((1.01, 1, 0), (5, 5.1, 0)), [drive])
+    vertices = set_on_ground(positions((1.01, 1, 0), (5, 5.1, 0)), [drive])
     assert heights_of(vertices) == pytest.approx([0.1, 0.2], abs=1e-6)
 
 
 def test_no_drive_no_line_and_one_place(tmp_path: Path) -> None:
-    given = places((1, 1, 0), (2, 2, 0))
-    assert [vertex.xyz for vertex in grounded(given, [])] == list(given)
-    assert all(vertex.is_occluded for vertex in grounded(given, []))
-    assert grounded((), []) == ()
+    given = positions((1, 1, 0), (2, 2, 0))
+    assert [vertex.xyz for vertex in set_on_ground(given, [])] == list(given)
+    assert all(vertex.is_occluded for vertex in set_on_ground(given, []))
+    assert set_on_ground((), []) == ()
     drive = surface(tmp_path / "a", plane(10, slope=(0.0, 0.0)))
-    assert len(grounded(given[:1], [drive])) == 1
-    assert len(grounded((given[0], given[0]), [drive])) == 2
-    far = places((1e5, 1e5, 0))
-    assert grounded(far, [drive])[0].is_occluded
+    assert len(set_on_ground(given[:1], [drive])) == 1
+    assert len(set_on_ground((given[0], given[0]), [drive])) == 2
+    far = positions((1e5, 1e5, 0))
+    assert set_on_ground(far, [drive])[0].is_occluded
 
 
 def test_a_recording_with_turns_gives_the_road_below_its_vehicle(tmp_path: Path) -> None:
@@ -185,7 +185,7 @@ def test_a_recording_with_turns_gives_the_road_below_its_vehicle(tmp_path: Path)
     road = simulated.xyz[simulated.surface == 0]
     chosen = road[:: len(road) // 50]
     given = [(x, y, z + 0.1) for x, y, z in chosen.tolist()]
-    vertices = grounded(given, [drive])
+    vertices = set_on_ground(given, [drive])
     found = np.array([vertex.xyz[2] for vertex in vertices])
     assert np.median(np.abs(found - chosen[:, 2])) < 0.005
     assert not any(vertex.is_occluded for vertex in vertices)
@@ -193,8 +193,8 @@ def test_a_recording_with_turns_gives_the_road_below_its_vehicle(tmp_path: Path)
 
 def test_ten_thousand_places_over_a_long_line_are_found(tmp_path: Path) -> None:
     drive = surface(tmp_path / "a", plane(11, slope=(0.0, 0.0)))
-    given = places(*((x, 3.0, 0.1) for x in np.linspace(-500, 500, 10_000)))
-    vertices = grounded(given, [drive])
+    given = positions(*((x, 3.0, 0.1) for x in np.linspace(-500, 500, 10_000)))
+    vertices = set_on_ground(given, [drive])
     found = np.array([not vertex.is_occluded for vertex in vertices])
     eastings = local(given)[:, 0]
     assert found[(eastings > 0.2) & (eastings < 11.8)].all()

@@ -41,14 +41,14 @@ def scan_of(
         for part in np.array_split(xyz, 3):
             yield GroundBlock(part, 0)
 
-    places = np.empty((0, 3)) if stands is None else stands + ORIGIN
+    positions = np.empty((0, 3)) if stands is None else stands + ORIGIN
     return EpochGround(
         name,
         blocks,
         xyz.min(axis=0),
         xyz.max(axis=0),
-        places,
-        stations=tuple(range(len(places)))[:1],
+        positions,
+        stations=tuple(range(len(positions)))[:1],
         measured=blocks,
         crs=crs,
         measured_on=date(2026, 4, 1),

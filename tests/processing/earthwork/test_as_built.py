@@ -8,8 +8,13 @@ import pytest
 import shapely
 from numpy.typing import NDArray
 
-from processing.earthwork.as_built import AsBuiltResult, AsBuiltRules, Item, judge_as_built
-from processing.earthwork.limits import AsBuiltLimits, Face
+from processing.earthwork.as_built import (
+    AsBuiltResult,
+    AsBuiltRules,
+    FaceMeasure,
+    evaluate_as_built,
+)
+from processing.earthwork.limits import AsBuiltLimits, FaceKind
 from processing.earthwork.limits_file import as_built_limits
 from processing.earthwork.sides import GroundBlock
 from processing.earthwork.triangle_surface import TriangleSurface
@@ -40,7 +45,7 @@ def judged(
 ) -> AsBuiltResult:
     design = design or embankment()
     off = deviation if callable(deviation) else constant(deviation)
-    return judge_as_built(
+    return evaluate_as_built(
         measured_on(design, off, per_m2=per_m2),
         design,
         (table or as_built_limits(), work_type),
@@ -57,10 +62,10 @@ def in_cells(cells: list[tuple[int, int]], value: float, elsewhere: float) -> De
     """A deviation in cells (metres east of the western toe, north of the end)."""
 
     def deviation(xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        place = np.floor(xy - [WEST, SOUTH]).astype(np.int64)
+        position = np.floor(xy - [WEST, SOUTH]).astype(np.int64)
         hit = np.zeros(len(xy), bool)
         for cell in cells:
-            hit |= (place == cell).all(axis=1)
+            hit |= (position == cell).all(axis=1)
         return np.where(hit, value, elsewhere)
 
     return deviation
@@ -68,7 +73,7 @@ def in_cells(cells: list[tuple[int, int]], value: float, elsewhere: float) -> De
 
 def test_a_known_deviation_is_found_on_both_faces() -> None:
     result = judged(0.012)
-    assert [one.limits.face for one in result.faces] == [Face.FLAT, Face.SLOPE]
+    assert [one.limits.face for one in result.faces] == [FaceKind.FLAT, FaceKind.SLOPE]
     for face in result.faces:
         assert face.mean_m == pytest.approx(0.012, abs=1e-6)
         assert face.largest_m == pytest.approx(0.012, abs=1e-6)
@@ -90,8 +95,8 @@ def test_numbers_are_those_of_numpy_over_the_cells() -> None:
     noise = np.random.default_rng(3).normal(0.01, 0.03, (70, 60))
 
     def bumpy(xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        place = np.floor(xy - [WEST, SOUTH]).astype(np.int64).clip(-5, 50)
-        return noise[place[:, 1] + 5, place[:, 0] + 5]
+        position = np.floor(xy - [WEST, SOUTH]).astype(np.int64).clip(-5, 50)
+        return noise[position[:, 1] + 5, position[:, 0] + 5]
 
     top = judged(bumpy).faces[0]
     # Cells that the top has a part of: from the shoulder 5.33 m on to 5.33 + 20 m.
@@ -113,20 +118,20 @@ def test_three_rejected_values_are_counted_and_left_out_of_mean_and_extremes() -
     assert top.largest_m == pytest.approx(0.012, abs=1e-6)
     assert top.largest_of_all_m == pytest.approx(0.4, abs=1e-6)
     assert top.count == 1000
-    assert top.verdicts[Item.REJECTED]  # 0.3 % are allowed
+    assert top.verdicts[FaceMeasure.REJECTED]  # 0.3 % are allowed
 
 
 def test_one_rejected_value_more_than_the_share_allows_fails() -> None:
     spots = [(10, 10), (12, 20), (15, 30), (16, 30)]
-    assert not judged(in_cells(spots, 0.4, 0.012)).faces[0].verdicts[Item.REJECTED]
+    assert not judged(in_cells(spots, 0.4, 0.012)).faces[0].verdicts[FaceMeasure.REJECTED]
 
 
 def test_more_rejected_values_than_allowed_fail() -> None:
     spots = [(10 + number, 10) for number in range(5)]
     top, slope = judged(in_cells(spots, -0.4, 0.0)).faces
     assert top.rejected == 5
-    assert not top.verdicts[Item.REJECTED]
-    assert top.verdicts[Item.MEAN]
+    assert not top.verdicts[FaceMeasure.REJECTED]
+    assert top.verdicts[FaceMeasure.MEAN]
     assert not top.passes
     assert slope.passes
 
@@ -135,7 +140,7 @@ def test_more_rejected_values_than_allowed_fail() -> None:
     ("value", "passes"), [(0.0499, True), (0.0501, False), (-0.0499, True), (-0.0501, False)]
 )
 def test_the_mean_is_judged_on_each_side_of_its_limit(value: float, passes: bool) -> None:
-    assert judged(value).faces[0].verdicts[Item.MEAN] is passes
+    assert judged(value).faces[0].verdicts[FaceMeasure.MEAN] is passes
 
 
 @pytest.mark.parametrize(
@@ -154,8 +159,8 @@ def test_a_one_sided_limit_lets_the_ground_be_too_high() -> None:
 
 def test_a_stone_in_a_cell_moves_its_value_by_nothing() -> None:
     def stones(xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        place = (xy - [WEST, SOUTH]) % 1.0
-        return np.where((place < 0.45).all(axis=1), 0.3, 0.0)
+        position = (xy - [WEST, SOUTH]) % 1.0
+        return np.where((position < 0.45).all(axis=1), 0.3, 0.0)
 
     top = judged(stones, per_m2=60.0).faces[0]
     assert top.rejected == 0
@@ -200,8 +205,8 @@ def test_faces_are_the_same_where_each_triangle_has_corners_of_its_own() -> None
 
 
 def test_areas_are_right_where_a_corner_lies_on_another_triangle_s_side() -> None:
-    places = np.array([[0, 0], [10, 0], [10, 10], [0, 10], [5, 5], [5, 0]], np.float64)
-    xyz = np.column_stack([places + np.array([WEST, SOUTH]), np.full(6, 20.0)])
+    positions = np.array([[0, 0], [10, 0], [10, 10], [0, 10], [5, 5], [5, 0]], np.float64)
+    xyz = np.column_stack([positions + np.array([WEST, SOUTH]), np.full(6, 20.0)])
     # Beside the corner in the middle of the diagonal lies a triangle that has it on its side.
     corners = np.array([[0, 5, 4], [5, 1, 4], [1, 2, 4], [0, 2, 3]])
     (flat,) = judged(0.0, TriangleSurface(xyz, corners, "")).faces
@@ -229,11 +234,11 @@ def test_cells_without_points_lower_the_density_and_are_told() -> None:
         ]
 
     ground = replace(whole, blocks=half)
-    result = judge_as_built(ground, design, (as_built_limits(), ROAD), SilentMonitor())
+    result = evaluate_as_built(ground, design, (as_built_limits(), ROAD), SilentMonitor())
     top = result.faces[0]
     assert top.density_per_m2 == pytest.approx(0.5, abs=0.05)
     assert top.unmeasured_area_m2 == pytest.approx(top.area_m2 / 2, abs=1.0)
-    assert not top.verdicts[Item.DENSITY]
+    assert not top.verdicts[FaceMeasure.DENSITY]
     assert np.isnan(result.percent[result.grid.rows // 2 + 1 :]).all()
     assert result.is_judged[result.grid.rows // 2 + 1 :].any()
 
@@ -249,7 +254,7 @@ def test_a_face_without_a_value_fails_without_numbers() -> None:
         ]
 
     ground = replace(whole, blocks=top_only)
-    result = judge_as_built(ground, design, (as_built_limits(), ROAD), SilentMonitor())
+    result = evaluate_as_built(ground, design, (as_built_limits(), ROAD), SilentMonitor())
     top, slope = result.faces
     assert top.passes
     assert (slope.count, slope.rejected) == (0, 0)
@@ -281,7 +286,7 @@ def test_no_point_on_the_design_is_told_with_where_it_lies() -> None:
     far = TriangleSurface(design.xyz + np.array([1000.0, 0.0, 0.0]), design.corners, "far.xml")
     ground = measured_on(design, constant(0.0))
     with pytest.raises(Unsuitable, match="No measured ground point") as told:
-        judge_as_built(ground, far, (as_built_limits(), ROAD), SilentMonitor())
+        evaluate_as_built(ground, far, (as_built_limits(), ROAD), SilentMonitor())
     assert "far.xml" in told.value.where.en
 
 
@@ -289,7 +294,7 @@ def test_a_design_without_triangles_is_told() -> None:
     design = TriangleSurface(np.zeros((0, 3)), np.zeros((0, 3), np.int64), "empty.xml")
     ground = measured_on(embankment(), constant(0.0))
     with pytest.raises(Unsuitable, match="no area to judge"):
-        judge_as_built(ground, design, (as_built_limits(), ROAD), SilentMonitor())
+        evaluate_as_built(ground, design, (as_built_limits(), ROAD), SilentMonitor())
 
 
 def test_a_boundary_beside_the_design_is_told() -> None:
@@ -300,7 +305,7 @@ def test_a_boundary_beside_the_design_is_told() -> None:
 def test_a_design_without_a_face_of_the_work_type_is_told() -> None:
     table = as_built_limits()
     road = table[ROAD]
-    slopes = replace(road, faces=tuple(one for one in road.faces if one.face is Face.SLOPE))
+    slopes = replace(road, faces=tuple(one for one in road.faces if one.face is FaceKind.SLOPE))
     flat = TriangleSurface(
         np.array([[WEST, SOUTH, 5.0], [WEST + 9, SOUTH, 5.0], [WEST, SOUTH + 9, 5.0]]),
         np.array([[0, 1, 2]]),
@@ -323,7 +328,7 @@ def test_points_that_are_nowhere_are_passed_over() -> None:
 
     limits = (as_built_limits(), ROAD)
     ground = replace(whole, blocks=broken)
-    result = judge_as_built(ground, design, limits, SilentMonitor())
+    result = evaluate_as_built(ground, design, limits, SilentMonitor())
     assert result.faces[0].mean_m == pytest.approx(0.01, abs=1e-6)
 
 
@@ -331,7 +336,7 @@ def test_points_that_are_nowhere_are_passed_over() -> None:
 def test_cells_larger_than_the_rule_allows_are_refused(cell_m: float) -> None:
     design = embankment()
     with pytest.raises(OutOfRange, match="at most 1 m"):
-        judge_as_built(
+        evaluate_as_built(
             measured_on(design, constant(0.0)),
             design,
             (as_built_limits(), ROAD),
@@ -347,6 +352,6 @@ def test_a_cancel_stops_between_blocks() -> None:
 
     design = embankment()
     with pytest.raises(Cancelled):
-        judge_as_built(
+        evaluate_as_built(
             measured_on(design, constant(0.0)), design, (as_built_limits(), ROAD), Stopping()
         )

@@ -13,7 +13,7 @@ from processing.earthwork.comparison import compare
 from processing.earthwork.sides import EpochGround, Level, Side
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.earthwork.volume_parameters import VolumeParameters
-from processing.earthwork.within import Within
+from processing.earthwork.volume_scope import VolumeScope
 from processing.errors import OutOfRange, Unsuitable, UserError
 from processing.monitor import SilentMonitor
 from processing.text import Text
@@ -24,7 +24,7 @@ GRID = VolumeParameters()
 
 
 def volume(before: Side, after: Side, parameters: VolumeParameters = GRID, **within: object):
-    return compare(before, after, parameters, SilentMonitor(), Within(**within))  # type: ignore[arg-type]
+    return compare(before, after, parameters, SilentMonitor(), VolumeScope(**within))  # type: ignore[arg-type]
 
 
 def box(west: float, south: float, east: float, north: float) -> shapely.Polygon:

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from processing.earthwork.change_grid import ChangeGrid
-from processing.earthwork.contours import LineWish, change_lines, chosen_interval, contour_lines
+from processing.earthwork.contours import (
+    ContourOptions,
+    change_lines,
+    choose_interval,
+    contour_lines,
+)
 from processing.errors import Cancelled, OutOfRange
 from processing.ground.cells import CellGrid
 from processing.monitor import SilentMonitor
@@ -23,7 +28,7 @@ def middles() -> tuple[np.ndarray, np.ndarray]:
 def test_contours_of_a_plane_are_straight_and_where_the_plane_has_that_height() -> None:
     east, north = middles()
     heights = (0.2 * east + 0.1 * north).astype(np.float32)
-    lines = contour_lines(GRID, heights, LineWish(0.5), QUIET)
+    lines = contour_lines(GRID, heights, ContourOptions(0.5), QUIET)
     assert [line.level_m for line in lines] == pytest.approx(np.arange(41.5, 49.1, 0.5))
     for line in lines:
         local = line.xyz - GRID.origin
@@ -37,7 +42,7 @@ def test_contours_of_a_plane_are_straight_and_where_the_plane_has_that_height() 
 def test_contours_of_a_cone_are_circles() -> None:
     east, north = middles()
     heights = (8.0 - np.hypot(east - 15.0, north - 10.0)).astype(np.float32)
-    lines = contour_lines(GRID, heights, LineWish(1.0), QUIET)
+    lines = contour_lines(GRID, heights, ContourOptions(1.0), QUIET)
     closed = [line for line in lines if line.is_closed]
     assert closed
     for line in closed:
@@ -49,7 +54,7 @@ def test_lines_end_at_ground_that_is_not_there() -> None:
     _, north = middles()
     heights = (0.2 * north).astype(np.float32)
     heights[:, 40:60] = np.nan
-    lines = contour_lines(GRID, heights, LineWish(1.0), QUIET)
+    lines = contour_lines(GRID, heights, ContourOptions(1.0), QUIET)
     assert len(lines) == 2 * 4
     for line in lines:
         local = line.xyz[:, 0] - GRID.origin[0]
@@ -59,16 +64,16 @@ def test_lines_end_at_ground_that_is_not_there() -> None:
 def test_simplified_lines_stay_near_and_short_ones_are_left_out() -> None:
     east, north = middles()
     heights = (8.0 - np.hypot(east - 15.0, north - 10.0)).astype(np.float32)
-    whole = contour_lines(GRID, heights, LineWish(1.0), QUIET)
-    simple = contour_lines(GRID, heights, LineWish(1.0, simplify_m=0.05), QUIET)
+    whole = contour_lines(GRID, heights, ContourOptions(1.0), QUIET)
+    simple = contour_lines(GRID, heights, ContourOptions(1.0, simplify_m=0.05), QUIET)
     assert sum(len(line.xyz) for line in simple) < sum(len(line.xyz) for line in whole) / 3
     for line in simple:
         radius = np.hypot(*(line.xyz[:, :2] - GRID.origin[:2] - [15.0, 10.0]).T)
         assert np.allclose(radius, 8.0 - (line.level_m - 41.3), atol=0.1)
-    long = contour_lines(GRID, heights, LineWish(1.0, shortest_m=20.0), QUIET)
+    long = contour_lines(GRID, heights, ContourOptions(1.0, shortest_m=20.0), QUIET)
     assert 0 < len(long) < len(whole)
-    assert contour_lines(GRID, heights, LineWish(1.0, shortest_m=1e4), QUIET) == ()
-    coarse = contour_lines(GRID, heights, LineWish(1.0, simplify_m=50.0), QUIET)
+    assert contour_lines(GRID, heights, ContourOptions(1.0, shortest_m=1e4), QUIET) == ()
+    coarse = contour_lines(GRID, heights, ContourOptions(1.0, simplify_m=50.0), QUIET)
     assert not any(line.is_closed for line in coarse)
 
 
@@ -78,7 +83,7 @@ def test_lines_of_change_have_no_zero_and_stay_within_the_boundary() -> None:
     after = (0.1 * (east - 15.0)).astype(np.float32)
     inside = (north < 10.0).astype(np.float32)
     change = ChangeGrid(GRID, before, after, np.ones(east.shape, bool), inside)
-    lines = change_lines(change, LineWish(0.25), QUIET)
+    lines = change_lines(change, ContourOptions(0.25), QUIET)
     assert [line.level_m for line in lines] == pytest.approx(
         [-1.25, -1.0, -0.75, -0.5, -0.25, 0.25, 0.5, 0.75, 1.0, 1.25]
     )
@@ -104,28 +109,30 @@ def test_lines_of_change_have_no_zero_and_stay_within_the_boundary() -> None:
     ],
 )
 def test_the_interval_goes_in_steps_of_one_two_and_five(high: float, expected: float) -> None:
-    assert chosen_interval(0.0, high) == expected
+    assert choose_interval(0.0, high) == expected
     assert high / expected <= 40.0 + 1e-9
 
 
 @pytest.mark.parametrize("interval", [0.0, -1.0, np.nan, np.inf])
 def test_an_interval_that_is_none_is_refused(interval: float) -> None:
     with pytest.raises(OutOfRange, match="no positive length"):
-        contour_lines(GRID, np.zeros((80, 120), np.float32), LineWish(interval), QUIET)
+        contour_lines(GRID, np.zeros((80, 120), np.float32), ContourOptions(interval), QUIET)
 
 
 def test_too_many_levels_are_refused_with_an_interval_that_will_do() -> None:
     heights = np.linspace(0, 100, 9600, dtype=np.float32).reshape(80, 120)
     with pytest.raises(OutOfRange, match=r"Take 0\.1 m or more"):
-        contour_lines(GRID, heights, LineWish(0.01), QUIET)
-    assert contour_lines(GRID, heights, LineWish(1.0), QUIET)
+        contour_lines(GRID, heights, ContourOptions(0.01), QUIET)
+    assert contour_lines(GRID, heights, ContourOptions(1.0), QUIET)
 
 
 def test_no_ground_and_a_grid_of_one_row_give_no_line() -> None:
     nothing = np.full((80, 120), np.nan, np.float32)
-    assert contour_lines(GRID, nothing, LineWish(0.5), QUIET) == ()
+    assert contour_lines(GRID, nothing, ContourOptions(0.5), QUIET) == ()
     row = CellGrid(GRID.origin, 0.25, rows=1, columns=5)
-    assert contour_lines(row, np.arange(5, dtype=np.float32)[None], LineWish(0.5), QUIET) == ()
+    assert (
+        contour_lines(row, np.arange(5, dtype=np.float32)[None], ContourOptions(0.5), QUIET) == ()
+    )
 
 
 def test_the_work_stops_when_it_is_asked_to() -> None:
@@ -135,4 +142,4 @@ def test_the_work_stops_when_it_is_asked_to() -> None:
 
     east, _ = middles()
     with pytest.raises(Cancelled):
-        contour_lines(GRID, east.astype(np.float32), LineWish(0.5), Impatient())
+        contour_lines(GRID, east.astype(np.float32), ContourOptions(0.5), Impatient())

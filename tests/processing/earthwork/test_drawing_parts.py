@@ -11,7 +11,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from processing.earthwork.drawing_parts import DrawnSection, moved_parts, parts_with_ground
+from processing.earthwork.drawing_parts import DrawnSection, earth_moved, parts_with_ground
 
 NO = np.nan
 heights = st.lists(
@@ -25,7 +25,7 @@ def section(before: list[float], after: list[float]) -> DrawnSection:
 
 
 def test_lines_that_cross_enclose_cut_and_fill() -> None:
-    parts = moved_parts(section([0.0] * 7, [1.0, 1.0, 1.0, -1.0, -1.0, 0.0, 0.0]))
+    parts = earth_moved(section([0.0] * 7, [1.0, 1.0, 1.0, -1.0, -1.0, 0.0, 0.0]))
     areas = [(is_cut, shapely.Polygon(outline).area) for is_cut, outline in parts]
     # 3 m of a metre and half a triangle; then a triangle, half a metre and a longer triangle.
     assert areas == [(False, pytest.approx(3.25)), (True, pytest.approx(0.25 + 0.5 + 1.25))]
@@ -45,7 +45,7 @@ def test_cut_and_fill_are_the_integral_of_the_change_where_both_are_known(
             for at, part in enumerate((np.minimum(fine, 0.0), np.maximum(fine, 0.0))):
                 expected[at] += abs(float(np.mean((part[1:] + part[:-1]) / 2))) * (x2 - x1)
     found = [0.0, 0.0]
-    for is_cut, outline in moved_parts(one):
+    for is_cut, outline in earth_moved(one):
         found[0 if is_cut else 1] += float(shapely.Polygon(outline).area)
     assert found == pytest.approx(expected, abs=1e-4)
 
@@ -62,13 +62,13 @@ def test_stretches_with_ground_hold_every_known_place_beside_another(values: lis
 
 
 def test_without_ground_there_is_nothing() -> None:
-    assert moved_parts(section([NO] * 7, [0.0] * 7)) == []
-    assert moved_parts(section([0.0] * 7, [0.0] * 7)) == []
+    assert earth_moved(section([NO] * 7, [0.0] * 7)) == []
+    assert earth_moved(section([0.0] * 7, [0.0] * 7)) == []
     assert parts_with_ground(OFFSETS, np.full(7, NO)) == []
 
 
 def test_what_the_boundary_leaves_out_is_not_filled() -> None:
     is_inside = np.array([False, True, True, False, True, True])
     one = replace(section([0.0] * 7, [1.0] * 7), is_inside=is_inside)
-    areas = [shapely.Polygon(outline).area for _, outline in moved_parts(one)]
+    areas = [shapely.Polygon(outline).area for _, outline in earth_moved(one)]
     assert areas == pytest.approx([2.0, 6.5])

@@ -19,7 +19,7 @@ from processing.earthwork.end_areas import end_area_volume, prismoidal_volume
 from processing.earthwork.height_surfaces import GridSurface, LevelSurface
 from processing.earthwork.tin_volume import volume_between
 from processing.earthwork.triangle_surface import TriangleSurface
-from processing.earthwork.triangulation import triangulated_ground
+from processing.earthwork.triangulation import triangulate_ground
 from processing.errors import Cancelled, OutOfRange, Unsuitable
 from processing.ground.cells import CellGrid
 from processing.monitor import SilentMonitor
@@ -39,7 +39,7 @@ LEVEL = LevelSurface(0.0)
 EAST = np.array([[0.0, 0.0], [60.0, 0.0]])
 
 
-class Shape:
+class FormulaGround:
     """A ground given by a formula."""
 
     def __init__(self, height):
@@ -59,8 +59,8 @@ def embankment() -> tuple[TriangleSurface, TriangleSurface]:
         for at in (0, 1)
     ]
     return (
-        triangulated_ground(around, (), QUIET),
-        triangulated_ground(around, [*lines, *ends], QUIET),
+        triangulate_ground(around, (), QUIET),
+        triangulate_ground(around, [*lines, *ends], QUIET),
     )
 
 
@@ -91,10 +91,10 @@ def test_stations_end_at_the_end_of_the_line() -> None:
 
 
 def test_the_profiles_of_a_section_and_its_sides() -> None:
-    before = Shape(lambda x, y: 0.1 * y)
+    before = FormulaGround(lambda x, y: 0.1 * y)
     line = SectionLayout(EAST, 5.0, 30.0, 1.0)
     section = cross_sections(line, np.array([30.0]), (before, LEVEL), QUIET)[0]
-    assert section.place == pytest.approx([30.0, 0.0])
+    assert section.position == pytest.approx([30.0, 0.0])
     assert section.offsets_m == pytest.approx(np.arange(-5.0, 6.0))
     assert section.before == pytest.approx(-0.1 * np.arange(-5.0, 6.0))  # left is north
     assert section.cut_m2 == pytest.approx(1.25)
@@ -107,18 +107,18 @@ def test_the_profiles_of_a_section_and_its_sides() -> None:
 def test_a_change_of_sign_within_a_step_is_split_exactly(
     height: float, slope: float, step: float
 ) -> None:
-    after = Shape(lambda x, y: height + slope * y)
+    after = FormulaGround(lambda x, y: height + slope * y)
     section = cross_sections(
         SectionLayout(EAST, 6.0, 60.0, step), np.array([7.0]), (LEVEL, after), QUIET
     )[0]
-    places = np.linspace(-6.0, 6.0, 20_001)
-    change = height - slope * places
+    positions = np.linspace(-6.0, 6.0, 20_001)
+    change = height - slope * positions
     for found, moment, part in (
         (section.fill_m2, section.moments.fill, np.maximum(change, 0)),
         (section.cut_m2, section.moments.cut, np.maximum(-change, 0)),
     ):
-        assert found == pytest.approx(np.trapezoid(part, places), abs=1e-6)
-        assert moment == pytest.approx(np.trapezoid(part * places, places), abs=1e-5)
+        assert found == pytest.approx(np.trapezoid(part, positions), abs=1e-6)
+        assert moment == pytest.approx(np.trapezoid(part * positions, positions), abs=1e-5)
 
 
 def test_on_a_curve_areas_count_with_the_way_of_their_centroid() -> None:
@@ -131,7 +131,7 @@ def test_on_a_curve_areas_count_with_the_way_of_their_centroid() -> None:
     for turned in (1, -1):
         xy = 30.0 * np.column_stack([np.cos(ways), np.sin(ways)])[::turned]
         line = SectionLayout(xy + SURVEYED[:2], 8.0, 5.0, 0.01)
-        after = Shape(lambda x, y: ring(x - SURVEYED[0], y - SURVEYED[1]))
+        after = FormulaGround(lambda x, y: ring(x - SURVEYED[0], y - SURVEYED[1]))
         found = end_area_volume(line, (LEVEL, after), QUIET)
         assert found.fill_m3 == pytest.approx(expected, rel=2e-3)
         prisms = prismoidal_volume(line, (LEVEL, after), QUIET)
@@ -197,7 +197,7 @@ def test_there_and_back_cut_and_fill_are_exchanged() -> None:
 
 
 def test_width_without_ground_is_told_where_it_is_most() -> None:
-    holed = Shape(lambda x, y: np.where((np.abs(y) < 2.0) & (x > 35.0), np.nan, 1.0))
+    holed = FormulaGround(lambda x, y: np.where((np.abs(y) < 2.0) & (x > 35.0), np.nan, 1.0))
     found = end_area_volume(SectionLayout(EAST, 6.0, 20.0, 0.1), (LEVEL, holed), QUIET)
     widths = [section.missing_m for section in found.sections]
     assert widths == pytest.approx([0.0, 0.0, 4.0, 4.0], abs=0.21)
@@ -262,14 +262,14 @@ def test_grounds_of_cells_are_cut_as_well_and_holes_are_no_larger_than_their_cel
     heights = (0.1 * (column + 0.5) * 0.5).astype(np.float32)
     heights[10:14, 20:30] = np.nan
     ground = GridSurface(grid, heights)
-    places = np.random.default_rng(0).uniform(-2, 32, (3000, 2))
-    found = ground.heights_at(places + SURVEYED[:2])
-    cell = np.floor(places / 0.5).astype(int)
-    inside = np.all((places >= 0) & (places < [30.0, 20.0]), axis=1)
+    positions = np.random.default_rng(0).uniform(-2, 32, (3000, 2))
+    found = ground.heights_at(positions + SURVEYED[:2])
+    cell = np.floor(positions / 0.5).astype(int)
+    inside = np.all((positions >= 0) & (positions < [30.0, 20.0]), axis=1)
     hole = (cell[:, 1] >= 10) & (cell[:, 1] < 14) & (cell[:, 0] >= 20) & (cell[:, 0] < 30)
     assert np.array_equal(np.isfinite(found), inside & ~hole)
     known = np.isfinite(found)
-    assert np.allclose(found[known], 12.0 + 0.1 * places[known, 0], atol=0.1 * 0.25 + 1e-6)
+    assert np.allclose(found[known], 12.0 + 0.1 * positions[known, 0], atol=0.1 * 0.25 + 1e-6)
     line = SectionLayout(np.array([[2.0, 10.0], [8.0, 10.0]]) + SURVEYED[:2], 5.0, 1.0, 0.05)
     filled = end_area_volume(line, (ground, LevelSurface(14.0)), QUIET)
     assert filled.fill_m3 == pytest.approx(6.0 * 10.0 * (2.0 - 0.5), rel=1e-6)

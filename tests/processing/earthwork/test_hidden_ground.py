@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.earthwork.filling import filled_smoothly
-from processing.earthwork.hidden_ground import FARTHEST_M, filled_ground
+from processing.earthwork.filling import fill_smoothly
+from processing.earthwork.hidden_ground import FARTHEST_M, fill_ground
 from processing.earthwork.sight_lines import SightLines
 from processing.monitor import SilentMonitor
 
@@ -31,8 +31,8 @@ def seen_from(stand: Floats, heights: Floats) -> tuple[Floats, SightLines]:
                 seen[row, column] = heights[row, column]
     known = np.argwhere(np.isfinite(seen))
     for share in np.ndindex(5, 5):
-        places = (known[:, ::-1] + 0.1 + np.array(share) / 5) * CELL_M
-        lines.add(0, np.column_stack([places, seen[tuple(known.T)]]), np.zeros(3))
+        positions = (known[:, ::-1] + 0.1 + np.array(share) / 5) * CELL_M
+        lines.add(0, np.column_stack([positions, seen[tuple(known.T)]]), np.zeros(3))
     return seen, lines.finished()
 
 
@@ -50,8 +50,8 @@ def test_ground_behind_a_crest_is_found_lower_than_the_beam_over_it() -> None:
     assert hidden.sum() > 100
 
     everywhere = np.ones(seen.shape, np.bool_)
-    smooth = filled_smoothly(seen, ~hidden, everywhere)
-    filled = filled_ground(seen, everywhere, lines, CELL_M, SilentMonitor())
+    smooth = fill_smoothly(seen, ~hidden, everywhere)
+    filled = fill_ground(seen, everywhere, lines, CELL_M, SilentMonitor())
     off_smooth = (smooth - true)[hidden].sum() * CELL_M**2
     off = (filled.heights - true)[hidden].sum() * CELL_M**2
 
@@ -65,7 +65,7 @@ def test_a_hole_in_a_plane_is_filled_by_the_plane() -> None:
     rows, columns = np.mgrid[:30, :40]
     plane = 0.1 * columns + 0.05 * rows
     known = np.hypot(rows - 15, columns - 20) > 6
-    filled = filled_smoothly(np.where(known, plane, 99.0), known, np.ones_like(known))
+    filled = fill_smoothly(np.where(known, plane, 99.0), known, np.ones_like(known))
 
     np.testing.assert_allclose(filled, plane, atol=0.02)
 
@@ -74,7 +74,7 @@ def test_ground_far_from_all_that_was_measured_stays_unknown() -> None:
     heights = np.full((20, 100), np.nan)
     heights[:, :10] = 1.0
     none = SightLines.without_beams(np.empty((0, 3)))
-    filled = filled_ground(heights, np.ones(heights.shape, np.bool_), none, 0.5, SilentMonitor())
+    filled = fill_ground(heights, np.ones(heights.shape, np.bool_), none, 0.5, SilentMonitor())
 
     assert np.isfinite(filled.heights[:, : 10 + int(FARTHEST_M / 0.5)]).all()
     assert np.isnan(filled.heights[:, 12 + int(FARTHEST_M / 0.5) :]).all()
@@ -82,7 +82,7 @@ def test_ground_far_from_all_that_was_measured_stays_unknown() -> None:
 
 def test_nothing_measured_gives_nothing() -> None:
     none = SightLines.without_beams(np.empty((0, 3)))
-    filled = filled_ground(
+    filled = fill_ground(
         np.full((4, 4), np.nan), np.ones((4, 4), np.bool_), none, 0.5, SilentMonitor()
     )
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from processing.earthwork.limits import Allowed, Face
+from processing.earthwork.limits import AllowedRange, FaceKind
 from processing.earthwork.limits_file import as_built_limits, read_limits
 from processing.errors import BadFile, MissingInput, OutOfRange
 from resources import path_of
@@ -40,15 +40,15 @@ def test_the_table_that_comes_with_the_program_has_the_rule_s_numbers() -> None:
     table = as_built_limits()
     road = {one.face: one for one in table["road_embankment"].faces}
     cutting = {one.face: one for one in table["cutting"].faces}
-    assert (road[Face.FLAT].mean, road[Face.FLAT].single) == (
-        Allowed(-0.05, 0.05),
-        Allowed(-0.15, 0.15),
+    assert (road[FaceKind.FLAT].mean, road[FaceKind.FLAT].single) == (
+        AllowedRange(-0.05, 0.05),
+        AllowedRange(-0.15, 0.15),
     )
-    assert (road[Face.SLOPE].mean, road[Face.SLOPE].single) == (
-        Allowed(-0.08, 0.08),
-        Allowed(-0.19, 0.19),
+    assert (road[FaceKind.SLOPE].mean, road[FaceKind.SLOPE].single) == (
+        AllowedRange(-0.08, 0.08),
+        AllowedRange(-0.19, 0.19),
     )
-    assert cutting[Face.SLOPE].single == Allowed(-0.16, 0.16)
+    assert cutting[FaceKind.SLOPE].single == AllowedRange(-0.16, 0.16)
     assert (table.rejected_share, table.margin_m, table.density_per_m2) == (0.003, 0.05, 1.0)
 
 
@@ -57,8 +57,8 @@ def test_an_office_may_have_a_table_of_its_own(tmp_path: Path) -> None:
     (face,) = table["bank"].faces
     assert table.standard.ja == "事務所"
     assert table.rejected_share == 0.005
-    assert face.mean == Allowed(-0.04, 0.0605)
-    assert face.single == Allowed(-0.1, math.inf)
+    assert face.mean == AllowedRange(-0.04, 0.0605)
+    assert face.single == AllowedRange(-0.1, math.inf)
 
 
 def test_windows_line_ends_and_a_mark_are_read(tmp_path: Path) -> None:
@@ -133,32 +133,32 @@ def test_a_work_type_that_the_table_lacks_is_told_with_those_it_has() -> None:
 
 
 def test_a_limit_is_met_by_its_own_value_and_not_by_more() -> None:
-    limit = Allowed(-0.05, 0.05)
+    limit = AllowedRange(-0.05, 0.05)
     assert limit.holds(0.05)
     assert limit.holds(-0.05)
     assert not limit.holds(0.0501)
     assert not limit.holds(-0.0501)
     assert not limit.holds(math.nan)
-    assert Allowed(-0.05, math.inf).holds(9.0)
+    assert AllowedRange(-0.05, math.inf).holds(9.0)
 
 
 def test_a_share_of_the_limit_is_taken_on_the_deviation_s_own_side() -> None:
-    share = Allowed(-0.1, 0.2).percent(np.array([-0.05, 0.05, 0.0]))
+    share = AllowedRange(-0.1, 0.2).percent(np.array([-0.05, 0.05, 0.0]))
     assert share == pytest.approx([-50.0, 25.0, 0.0])
-    one_sided = Allowed(-0.1, math.inf).percent(np.array([-0.05, 0.15]))
+    one_sided = AllowedRange(-0.1, math.inf).percent(np.array([-0.05, 0.15]))
     assert one_sided == pytest.approx([-50.0, 150.0])
 
 
 def test_what_meets_the_limit_is_not_shown_beyond_it() -> None:
     values = np.array([0.15 + 1e-12, -0.15 - 1e-12])
-    assert Allowed(-0.15, 0.15).percent(values).tolist() == [100.0, -100.0]
+    assert AllowedRange(-0.15, 0.15).percent(values).tolist() == [100.0, -100.0]
 
 
 def test_limits_are_worded_as_a_form_has_them() -> None:
-    assert Allowed(-0.05, 0.05).words().ja == "±50 mm"
-    assert Allowed(-0.04, 0.0605).words().en == "−40 … +60.5 mm"
-    assert Allowed(-0.06, math.inf).words().ja == "−60 mm 以上"
-    assert Allowed(-math.inf, 0.06).words().en == "+60 mm or less"
+    assert AllowedRange(-0.05, 0.05).words().ja == "±50 mm"
+    assert AllowedRange(-0.04, 0.0605).words().en == "−40 … +60.5 mm"
+    assert AllowedRange(-0.06, math.inf).words().ja == "−60 mm 以上"
+    assert AllowedRange(-math.inf, 0.06).words().en == "+60 mm or less"
 
 
 def test_the_table_is_bundled() -> None:
@@ -171,4 +171,4 @@ def test_the_table_that_the_manual_shows_can_be_read(tmp_path: Path, language: s
     shown = next(part for part in page.split("<pre><code>")[1:] if part.startswith("[standard]"))
     table = read_limits(written(tmp_path, shown.partition("</code>")[0]))
     (face,) = table["levelling"].faces
-    assert face.single == Allowed(-0.15, math.inf)
+    assert face.single == AllowedRange(-0.15, math.inf)

@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from processing.earthwork.overlay_kernels import overlap_kernel
-from processing.earthwork.plan_buckets import bucketed, buckets_of_triangles
+from processing.earthwork.plan_buckets import buckets_of_triangles, sort_into_buckets
 from processing.earthwork.surface_check import check_surface, holes_of, outline
 from processing.earthwork.triangle_surface import TriangleSurface
 from processing.errors import Unsuitable
@@ -104,7 +104,7 @@ def test_holes_are_found_and_the_largest_comes_first() -> None:
     holes = holes_of(surface)
     assert [hole.area for hole in holes] == pytest.approx([2.0, 1.0])
     expected = shapely.box(3, 3, 5, 4)
-    moved = shapely.transform(holes[0], lambda places: places - SURVEYED[:2])
+    moved = shapely.transform(holes[0], lambda positions: positions - SURVEYED[:2])
     assert moved.equals(expected)
     assert outline(surface).area == pytest.approx(33.0)
 
@@ -124,7 +124,7 @@ def test_the_overlap_kernel_gives_what_shapely_gives_compiled_or_not() -> None:
     plan = random.uniform(0.0, 10.0, (12, 3, 2))
     surface = surface_of(np.concatenate([plan, np.zeros((12, 3, 1))], axis=2))
     figures = surface.plan_triangles(np.zeros(3))
-    buckets = bucketed(figures)
+    buckets = sort_into_buckets(figures)
     polygons = shapely.polygons(plan)
     pairs = [
         shapely.intersection(polygons[i], polygons[j]).area for i in range(12) for j in range(i)

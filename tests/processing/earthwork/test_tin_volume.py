@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from processing.earthwork import overlay_kernels
-from processing.earthwork.plan_buckets import bucketed
-from processing.earthwork.plan_clip import clipped
+from processing.earthwork.plan_buckets import sort_into_buckets
+from processing.earthwork.plan_clip import clip_triangles
 from processing.earthwork.tin_volume import TinVolume, volume_between, volume_to_level
 from processing.earthwork.triangle_surface import TriangleSurface, twice_areas
 from processing.errors import Cancelled, Unsuitable
@@ -123,7 +123,7 @@ def test_a_wedge_within_a_boundary_with_a_hole() -> None:
     local = shapely.Polygon(
         [[2, 2], [18, 2], [18, 18], [2, 18]], [[[8, 4], [12, 4], [12, 8], [8, 8]]]
     )
-    boundary = shapely.transform(local, lambda places: places + SURVEYED[:2])
+    boundary = shapely.transform(local, lambda positions: positions + SURVEYED[:2])
     found = volume_between(flat, wedge, QUIET, boundary)
     assert found.fill_m3 == pytest.approx(0.1 * 10.0 * 256.0 - 0.1 * 6.0 * 16.0, rel=1e-10)
     assert found.area_m2 == pytest.approx(240.0)
@@ -173,10 +173,10 @@ def test_the_way_back_is_the_way_there_with_cut_and_fill_exchanged(seed: int) ->
 def test_where_the_site_lies_changes_nothing(seed: int, east: float, north: float) -> None:
     before, after = hills(seed), hills(seed + 1)
     ring = shapely.Polygon([[1, 2], [19, 5], [14, 19], [7, 9]])
-    place = np.array([*SURVEYED[:2], 0.0])
+    position = np.array([*SURVEYED[:2], 0.0])
     shift = np.round(np.array([east, north, 700.0]), 3)
-    there = volume_between(before, after, QUIET, moved(ring, place))
-    far = [TriangleSurface(s.xyz - place + shift, s.corners) for s in (before, after)]
+    there = volume_between(before, after, QUIET, moved(ring, position))
+    far = [TriangleSurface(s.xyz - position + shift, s.corners) for s in (before, after)]
     here = volume_between(far[0], far[1], QUIET, moved(ring, shift))
     assert alike(there, here, rel=1e-6)
 
@@ -195,7 +195,7 @@ def test_two_parts_of_the_boundary_add_up_to_it(seed: int, low: float, high: flo
 
 
 def moved(area: shapely.Geometry, shift: np.ndarray) -> shapely.Geometry:
-    return shapely.transform(area, lambda places: places + shift[:2])
+    return shapely.transform(area, lambda positions: positions + shift[:2])
 
 
 def alike(one: TinVolume, other: TinVolume, rel: float = 1e-8) -> bool:
@@ -267,7 +267,7 @@ def test_what_is_clipped_lies_on_the_planes_of_its_triangles() -> None:
     origin = np.array([*SURVEYED[:2], 0.0])
     triangles = surface.plan_triangles(origin)
     ring = shapely.Polygon([[1, 1], [18, 3], [9, 9], [15, 18], [2, 15]], [[[4, 4], [6, 4], [5, 7]]])
-    pieces = clipped(triangles, ring, QUIET)
+    pieces = clip_triangles(triangles, ring, QUIET)
     area = twice_areas(pieces) / 2
     assert (area > 0).all()
     assert area.sum() == pytest.approx(ring.area)
@@ -275,12 +275,12 @@ def test_what_is_clipped_lies_on_the_planes_of_its_triangles() -> None:
     heights = surface.heights_at(middles[:, :2] + origin[:2])
     assert np.allclose(heights, middles[:, 2], atol=1e-7)
     assert shapely.contains_xy(ring, middles[:, 0], middles[:, 1]).all()
-    assert clipped(triangles[:0], ring, QUIET).shape == (0, 3, 3)
+    assert clip_triangles(triangles[:0], ring, QUIET).shape == (0, 3, 3)
 
 
 def test_kernels_give_the_same_without_being_compiled() -> None:
     before, after = (s.plan_triangles(SURVEYED) for s in (hills(1, 8), hills(2, 8)))
-    buckets = bucketed(after)
+    buckets = sort_into_buckets(after)
     frame = (buckets.west, buckets.south, buckets.size_m, buckets.rows, buckets.columns)
     held = (buckets.starts, buckets.triangles)
     plain, compiled = np.zeros(3), np.zeros(3)

@@ -9,17 +9,17 @@ from hypothesis import strategies as st
 from scipy.spatial import Delaunay
 
 from processing.earthwork import plan_buckets, triangle_surface
-from processing.earthwork.plan_buckets import bucketed
+from processing.earthwork.plan_buckets import sort_into_buckets
 from processing.earthwork.triangle_surface import TriangleSurface
 from tests.processing.earthwork.bodies import SURVEYED, scattered_surface, surface_of
 
 
 def test_heights_on_a_plane_are_those_of_the_plane_and_nan_outside() -> None:
     plane = scattered_surface(400, seed=1, height=lambda x, y: 0.3 * x - 0.2 * y + 5.0)
-    places = np.random.default_rng(2).uniform(-5.0, 25.0, (5000, 2)) + SURVEYED[:2]
-    heights = plane.heights_at(places)
-    inside = np.all((places >= SURVEYED[:2]) & (places <= SURVEYED[:2] + 20.0), axis=1)
-    local = places - SURVEYED[:2]
+    positions = np.random.default_rng(2).uniform(-5.0, 25.0, (5000, 2)) + SURVEYED[:2]
+    heights = plane.heights_at(positions)
+    inside = np.all((positions >= SURVEYED[:2]) & (positions <= SURVEYED[:2] + 20.0), axis=1)
+    local = positions - SURVEYED[:2]
     expected = 0.3 * local[:, 0] - 0.2 * local[:, 1] + 5.0 + SURVEYED[2]
     assert np.array_equal(np.isfinite(heights), inside)
     assert np.allclose(heights[inside], expected[inside], atol=1e-9)
@@ -47,15 +47,17 @@ def test_of_two_triangles_at_an_edge_the_first_has_the_place() -> None:
 def test_the_sense_of_the_corners_changes_nothing() -> None:
     surface = scattered_surface(50, seed=3, height=lambda x, y: x * y)
     turned = TriangleSurface(surface.xyz, surface.corners[:, ::-1].copy())
-    places = np.random.default_rng(0).uniform(0.0, 20.0, (500, 2)) + SURVEYED[:2]
-    assert np.allclose(surface.heights_at(places), turned.heights_at(places), atol=1e-9)
+    positions = np.random.default_rng(0).uniform(0.0, 20.0, (500, 2)) + SURVEYED[:2]
+    assert np.allclose(surface.heights_at(positions), turned.heights_at(positions), atol=1e-9)
     assert surface.plan_area_m2() == pytest.approx(turned.plan_area_m2())
 
 
 def test_places_that_are_no_numbers_and_far_ones_have_no_height() -> None:
     surface = scattered_surface(50, seed=3, height=lambda x, y: x)
-    places = np.array([[np.nan, 0.0], [0.0, np.inf], [-np.inf, 3.0], [1e300, -1e300], [0.0, 0.0]])
-    assert np.isnan(surface.heights_at(places)).all()
+    positions = np.array(
+        [[np.nan, 0.0], [0.0, np.inf], [-np.inf, 3.0], [1e300, -1e300], [0.0, 0.0]]
+    )
+    assert np.isnan(surface.heights_at(positions)).all()
     assert surface.heights_at(np.empty((0, 2))).shape == (0,)
 
 
@@ -72,8 +74,8 @@ def test_a_triangle_whose_corner_is_no_number_holds_no_place() -> None:
     good, bad = [[0, 0, 1], [4, 0, 1], [0, 4, 1]], [[4, 4, 1], [4, 0, 1], [0, np.nan, 1]]
     low = [[0, 0, 1], [0, 4, 1], [-4, 4, np.nan]]
     surface = surface_of([good, bad, low], origin=SURVEYED)
-    places = np.array([[1.0, 1.0], [3.0, 3.0], [-1.0, 3.0]]) + SURVEYED[:2]
-    assert surface.heights_at(places) == pytest.approx(
+    positions = np.array([[1.0, 1.0], [3.0, 3.0], [-1.0, 3.0]]) + SURVEYED[:2]
+    assert surface.heights_at(positions) == pytest.approx(
         [SURVEYED[2] + 1, np.nan, np.nan], nan_ok=True
     )
     assert surface.plan_area_m2() == pytest.approx(8.0)
@@ -111,18 +113,18 @@ def test_thin_triangles_across_the_plan_are_found_from_everywhere_on_them() -> N
     surface = surface_of(fan)
     assert surface._buckets.size_m < 20.0
     shares = np.random.default_rng(0).dirichlet([1, 1, 1], 400)
-    places = np.einsum("nk,nkd->nd", shares, np.asarray(fan))
-    assert np.allclose(surface.heights_at(places[:, :2]), 1.0)
+    positions = np.einsum("nk,nkd->nd", shares, np.asarray(fan))
+    assert np.allclose(surface.heights_at(positions[:, :2]), 1.0)
 
 
 def test_buckets_hold_each_triangle_wherever_it_reaches() -> None:
     random = np.random.default_rng(5)
     triangles = random.uniform(0.0, 10.0, (40, 3, 3))
-    buckets = bucketed(triangles)
+    buckets = sort_into_buckets(triangles)
     shares = random.dirichlet([1, 1, 1], (40, 200))
-    places = np.einsum("tnk,tkd->tnd", shares, triangles)
-    column = np.floor((places[..., 0] - buckets.west) / buckets.size_m).astype(int)
-    row = np.floor((places[..., 1] - buckets.south) / buckets.size_m).astype(int)
+    positions = np.einsum("tnk,tkd->tnd", shares, triangles)
+    column = np.floor((positions[..., 0] - buckets.west) / buckets.size_m).astype(int)
+    row = np.floor((positions[..., 1] - buckets.south) / buckets.size_m).astype(int)
     for triangle in range(40):
         for bucket in np.unique(row[triangle] * buckets.columns + column[triangle]):
             held = buckets.triangles[buckets.starts[bucket] : buckets.starts[bucket + 1]]
@@ -135,7 +137,7 @@ def test_kernels_give_the_same_without_being_compiled() -> None:
     xyz = np.column_stack([triangles.points, triangles.points[:, 0]])
     surface = TriangleSurface(xyz, triangles.simplices.astype(np.int64))
     figures = surface.plan_triangles(np.zeros(3))
-    buckets = bucketed(figures)
+    buckets = sort_into_buckets(figures)
     frame = (buckets.west, buckets.south, buckets.size_m)
     counts = np.zeros(buckets.rows * buckets.columns + 1, np.int64)
     plan_buckets._count_kernel.py_func(figures, frame, buckets.columns, counts)
@@ -144,12 +146,12 @@ def test_kernels_give_the_same_without_being_compiled() -> None:
     following = buckets.starts[:-1].copy()
     plan_buckets._fill_kernel.py_func(figures, frame, buckets.columns, (following, held))
     assert np.array_equal(held, buckets.triangles)
-    places = np.random.default_rng(2).uniform(-1, 10, (300, 2))
+    positions = np.random.default_rng(2).uniform(-1, 10, (300, 2))
     heights = np.full(300, np.nan)
     whole = (*frame, buckets.rows, buckets.columns)
     triangle_surface._heights_kernel.py_func(
-        places, figures, whole, (buckets.starts, buckets.triangles), heights
+        positions, figures, whole, (buckets.starts, buckets.triangles), heights
     )
-    inside = triangles.find_simplex(places) >= 0
+    inside = triangles.find_simplex(positions) >= 0
     assert np.array_equal(np.isfinite(heights), inside)
-    assert np.allclose(heights[inside], places[inside, 0])
+    assert np.allclose(heights[inside], positions[inside, 0])

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from processing.earthwork.break_lines import break_net
 from processing.earthwork.surface_check import check_surface, outline
 from processing.earthwork.triangle_surface import TriangleSurface
-from processing.earthwork.triangulation import clipped_surface, triangulated_ground
+from processing.earthwork.triangulation import clip_surface, triangulate_ground
 from processing.errors import Unsuitable
 from processing.monitor import SilentMonitor
 from tests.processing.earthwork.bodies import SURVEYED
@@ -29,11 +29,11 @@ def scattered(count: int, seed: int = 0, size_m: float = 20.0) -> np.ndarray:
 
 
 def made(xyz: np.ndarray, lines: Sequence[np.ndarray] = (), **options: Any) -> TriangleSurface:
-    return triangulated_ground(xyz, lines, SilentMonitor(), **options)
+    return triangulate_ground(xyz, lines, SilentMonitor(), **options)
 
 
-def line(*places: tuple[float, float, float]) -> np.ndarray:
-    return np.array(places) + SURVEYED
+def line(*positions: tuple[float, float, float]) -> np.ndarray:
+    return np.array(positions) + SURVEYED
 
 
 def is_chain_of_edges(surface: TriangleSurface, drawn: np.ndarray) -> bool:
@@ -89,9 +89,9 @@ def test_a_crest_between_points_is_kept_sharp() -> None:
     crest = line((9.0, 0.0, 0.0), (9.0, 20.0, 0.0))
     surface = made(xyz, [crest])
     assert is_chain_of_edges(surface, crest)
-    places = np.random.default_rng(1).uniform(0.5, 19.5, (4000, 2))
-    expected = np.maximum(0.0, places[:, 0] - 9.0) + SURVEYED[2]
-    found = surface.heights_at(places + SURVEYED[:2])
+    positions = np.random.default_rng(1).uniform(0.5, 19.5, (4000, 2))
+    expected = np.maximum(0.0, positions[:, 0] - 9.0) + SURVEYED[2]
+    found = surface.heights_at(positions + SURVEYED[:2])
     assert np.allclose(found, expected, atol=1e-9)
 
 
@@ -114,8 +114,8 @@ def test_heights_along_a_sloping_line_are_on_the_line() -> None:
     assert is_chain_of_edges(surface, drawn)
     share = np.linspace(0, 1, 200)[:, None]
     for start, end in pairwise(drawn):
-        places = start + share * (end - start)
-        assert np.allclose(surface.heights_at(places[:, :2]), places[:, 2], atol=1e-8)
+        positions = start + share * (end - start)
+        assert np.allclose(surface.heights_at(positions[:, :2]), positions[:, 2], atol=1e-8)
 
 
 @settings(max_examples=40, deadline=None)
@@ -221,7 +221,7 @@ def test_unmeasured_ground_stays_unmeasured() -> None:
 def test_the_surface_ends_at_the_boundary() -> None:
     boundary = shapely.transform(
         shapely.Polygon([[2, 2], [17, 4], [11, 10], [15, 18], [3, 15]]),
-        lambda places: places + SURVEYED[:2],
+        lambda positions: positions + SURVEYED[:2],
     )
     xyz = scattered(400, seed=7)
     xyz[:, 2] += 0.2 * (xyz[:, 0] - SURVEYED[0])
@@ -230,9 +230,7 @@ def test_the_surface_ends_at_the_boundary() -> None:
     assert shapely.symmetric_difference(outline(surface), boundary).area < 1e-6
     middles = surface.xyz[surface.corners].mean(axis=1)
     assert np.allclose(middles[:, 2], SURVEYED[2] + 0.2 * (middles[:, 0] - SURVEYED[0]), atol=1e-8)
-    assert (
-        check_surface(clipped_surface(surface, boundary.buffer(-0.5), SilentMonitor())).notes == ()
-    )
+    assert check_surface(clip_surface(surface, boundary.buffer(-0.5), SilentMonitor())).notes == ()
 
 
 @pytest.mark.parametrize(

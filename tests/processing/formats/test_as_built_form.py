@@ -12,7 +12,7 @@ import openpyxl
 import pytest
 from numpy.typing import NDArray
 
-from processing.earthwork.as_built import AsBuiltResult, judge_as_built
+from processing.earthwork.as_built import AsBuiltResult, evaluate_as_built
 from processing.earthwork.heat_map import SHARE_CLASSES
 from processing.earthwork.limits_file import as_built_limits
 from processing.errors import Cancelled, InUse, NoSpace, OutOfRange
@@ -47,9 +47,9 @@ FACTS = AsBuiltFacts(
 
 def spotted(xy: NDArray[np.float64]) -> NDArray[np.float64]:
     """12 mm too high, and three cells of the top half a metre too low."""
-    place = np.floor(xy - [WEST, SOUTH])
+    position = np.floor(xy - [WEST, SOUTH])
     spots = [(10.0, 10.0), (12.0, 20.0), (15.0, 30.0)]
-    is_spot = np.any([(place == spot).all(axis=1) for spot in spots], axis=0)
+    is_spot = np.any([(position == spot).all(axis=1) for spot in spots], axis=0)
     return np.where(is_spot, -0.5, 0.012)
 
 
@@ -57,7 +57,7 @@ def spotted(xy: NDArray[np.float64]) -> NDArray[np.float64]:
 def result() -> AsBuiltResult:
     design = embankment()
     limits = (as_built_limits(), "road_embankment")
-    return judge_as_built(measured_on(design, spotted), design, limits, SilentMonitor())
+    return evaluate_as_built(measured_on(design, spotted), design, limits, SilentMonitor())
 
 
 def without_slope() -> AsBuiltResult:
@@ -135,7 +135,7 @@ def test_the_map_shows_the_colours_of_what_was_found(tmp_path: Path) -> None:
 @pytest.mark.parametrize("language", ["ja", "en"])
 def test_long_names_stay_within_the_sheet(tmp_path: Path, language: Language) -> None:
     facts = AsBuiltFacts(
-        replace(FACTS.work, work=LONG_WORK, contractor=LONG_WORK, place=LONG_WORK),
+        replace(FACTS.work, work=LONG_WORK, contractor=LONG_WORK, position=LONG_WORK),
         replace(FACTS.design, source=LONG_FILE),
         replace(FACTS.ground, source=LONG_FILE),
     )
@@ -163,7 +163,7 @@ def test_a_face_without_data_fails_with_words_in_place_of_numbers(tmp_path: Path
 def test_a_one_sided_limit_is_worded_and_noted(tmp_path: Path) -> None:
     design = embankment()
     limits = (as_built_limits(), "river_embankment")
-    river = judge_as_built(measured_on(design, spotted), design, limits, SilentMonitor())
+    river = evaluate_as_built(measured_on(design, spotted), design, limits, SilentMonitor())
     path = tmp_path / "form.pdf"
     write_as_built_form(path, river, FACTS, "ja")
     page = words_of(path)[0]
@@ -213,7 +213,7 @@ def test_a_character_that_cp932_lacks_is_told(tmp_path: Path) -> None:
 
 def test_the_workbook_has_the_numbers_as_numbers_and_the_map(tmp_path: Path) -> None:
     path = tmp_path / "form.xlsx"
-    facts = replace(FACTS, work=replace(FACTS.work, work="=1+1", place="a\x07b"))
+    facts = replace(FACTS, work=replace(FACTS.work, work="=1+1", position="a\x07b"))
     write_as_built_xlsx(path, result(), facts, "ja")
     sheet = openpyxl.load_workbook(path)["様式-31-2"]
     rows = [[cell.value for cell in row[:6]] for row in sheet.iter_rows()]

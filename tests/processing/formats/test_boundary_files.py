@@ -166,10 +166,10 @@ def test_without_a_reference_system_the_numbers_are_believed(tmp_path: Path) -> 
 
 @pytest.mark.parametrize("kind", ["Point", "LineString"])
 def test_points_and_lines_alone_are_no_boundary(tmp_path: Path, kind: str) -> None:
-    places: Any = [list(place) for place in box(0, 10)]
+    positions: Any = [list(position) for position in box(0, 10)]
     path = tmp_path / "a.geojson"
     path.write_text(
-        json.dumps({"type": kind, "coordinates": places[0] if kind == "Point" else places})
+        json.dumps({"type": kind, "coordinates": positions[0] if kind == "Point" else positions})
     )
     with pytest.raises(Unsuitable, match="no closed polygon"):
         read_boundary(path)

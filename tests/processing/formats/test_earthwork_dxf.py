@@ -28,7 +28,7 @@ from processing.formats.earthwork_dxf import (
     TITLE_LAYER,
     UNMEASURED_LAYER,
     EarthworkPlan,
-    PlanLook,
+    PlanStyle,
     write_earthwork_dxf,
 )
 from processing.ground.cells import CellGrid
@@ -83,7 +83,7 @@ PLAN = EarthworkPlan(
 )
 
 
-def drawn(path: Path, plan: EarthworkPlan = PLAN, look: PlanLook | None = None) -> Any:
+def drawn(path: Path, plan: EarthworkPlan = PLAN, look: PlanStyle | None = None) -> Any:
     write_earthwork_dxf(path, plan, look)
     doc = ezdxf.filemanagement.readfile(path)
     audit = doc.audit()
@@ -108,7 +108,7 @@ def filled_areas(doc: Any) -> dict[str, float]:
 def test_each_class_is_filled_on_a_layer_that_says_its_limits(
     tmp_path: Path, version: DxfVersion
 ) -> None:
-    doc = drawn(tmp_path / "a.dxf", look=PlanLook(version=version))
+    doc = drawn(tmp_path / "a.dxf", look=PlanStyle(version=version))
     assert filled_areas(doc) == pytest.approx(
         {
             f"{CHANGE_LAYER}2_-0.500～-0.250m": (80 * 30 - 200) * 0.25,
@@ -135,14 +135,14 @@ def test_contours_lie_at_their_heights_on_layers_of_the_drafting_standard(tmp_pa
     assert [one.dxf.elevation for one in (thin, circle, straight)] == [51.0, 52.5, 50.0]
     assert (thin.closed, circle.closed, straight.closed) == (True, True, False)
     assert len(thin) == 40
-    found = np.array([place[:2] for place in straight.get_points()])
+    found = np.array([position[:2] for position in straight.get_points()])
     assert found == pytest.approx(PLAN.contours[2].xyz[:, :2])
 
 
 def test_index_contours_are_labelled_along_them_and_upright(tmp_path: Path) -> None:
     plain = EarthworkPlan(contours=contours())
     for plan in (PLAN, plain):
-        space = drawn(tmp_path / "a.dxf", plan, PlanLook(scale=200)).modelspace()
+        space = drawn(tmp_path / "a.dxf", plan, PlanStyle(scale=200)).modelspace()
         labels = {one.dxf.text: one for one in space.query(f'TEXT[layer=="{LABEL_LAYER}"]')}
         assert set(labels) == {"52.5", "50.0"}
         x, y, height = labels["50.0"].dxf.align_point
@@ -156,7 +156,7 @@ def test_index_contours_are_labelled_along_them_and_upright(tmp_path: Path) -> N
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_the_boundary_is_read_back_as_one(tmp_path: Path, version: DxfVersion) -> None:
-    drawn(tmp_path / "a.dxf", look=PlanLook(version=version))
+    drawn(tmp_path / "a.dxf", look=PlanStyle(version=version))
     read = read_boundary(tmp_path / "a.dxf", crs="EPSG:6677", layer=BOUNDARY_LAYER)
     assert read.crs == "EPSG:6677"
     assert sorted(map(tuple, read.rings[0].tolist())) == sorted(map(tuple, ring().tolist()))
@@ -167,7 +167,7 @@ def test_the_boundary_is_read_back_as_one(tmp_path: Path, version: DxfVersion) -
 def test_texts_say_what_the_colours_mean_and_where_it_is(
     tmp_path: Path, version: DxfVersion, language: Any
 ) -> None:
-    doc = drawn(tmp_path / "a.dxf", look=PlanLook(version=version, language=language))
+    doc = drawn(tmp_path / "a.dxf", look=PlanStyle(version=version, language=language))
     texts = {
         layer: [one.dxf.text for one in doc.modelspace().query(f'TEXT[layer=="{layer}"]')]
         for layer in (TITLE_LAYER, LEGEND_LAYER)
@@ -185,7 +185,7 @@ def test_texts_say_what_the_colours_mean_and_where_it_is(
 
 def test_texts_keep_their_size_on_paper_and_overlap_nothing(tmp_path: Path) -> None:
     for scale in (100, 500):
-        space = drawn(tmp_path / "a.dxf", look=PlanLook(scale=scale)).modelspace()
+        space = drawn(tmp_path / "a.dxf", look=PlanStyle(scale=scale)).modelspace()
         title = list(space.query(f'TEXT[layer=="{TITLE_LAYER}"]'))
         assert {one.dxf.height for one in title} == {0.0025 * scale}
         heights = sorted(one.dxf.insert.y for one in title)
@@ -211,7 +211,7 @@ def test_parts_may_be_missing_but_not_all(tmp_path: Path) -> None:
         write_earthwork_dxf(
             tmp_path / "b.dxf", EarthworkPlan(change=nothing, classes=change_classes(0.5))
         )
-    look = PlanLook(version="R12")  # type: ignore[arg-type]
+    look = PlanStyle(version="R12")  # type: ignore[arg-type]
     with pytest.raises(OutOfRange):
         write_earthwork_dxf(tmp_path / "b.dxf", only, look)
     assert [one.name for one in tmp_path.iterdir()] == ["a.dxf"]

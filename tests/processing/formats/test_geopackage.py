@@ -140,9 +140,9 @@ _TEXTS = st.characters(exclude_categories=["Cs"])
 
 
 @settings(max_examples=25)
-@example(place=(0.0, 0.0, 0.0), name="kind", value="")
+@example(position=(0.0, 0.0, 0.0), name="kind", value="")
 @given(
-    place=st.tuples(_METRES, _METRES, _METRES),
+    position=st.tuples(_METRES, _METRES, _METRES),
     name=st.text(_TEXTS, max_size=8),
     value=st.one_of(
         st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0")),
@@ -151,13 +151,13 @@ _TEXTS = st.characters(exclude_categories=["Cs"])
     ),
 )
 def test_any_place_and_any_value_is_kept(
-    tmp_path_factory: pytest.TempPathFactory, place: Position, name: str, value: str | float
+    tmp_path_factory: pytest.TempPathFactory, position: Position, name: str, value: str | float
 ) -> None:
     path = tmp_path_factory.getbasetemp() / "any.gpkg"
-    feature = _placed("a", "post", Geometry.POINT, (place,), **{name: value})
+    feature = _placed("a", "post", Geometry.POINT, (position,), **{name: value})
     write_geopackage(path, [feature], Catalogue(()), crs="EPSG:6677")
     (point,), columns = _layer(path, "post")
-    assert [tuple(one) for one in shapely.get_coordinates(point, include_z=True)] == [place]
+    assert [tuple(one) for one in shapely.get_coordinates(point, include_z=True)] == [position]
     assert list(columns.values())[5] == [value]
 
 

@@ -65,8 +65,8 @@ def test_cells_come_back_and_empty_tiles_take_no_room(tmp_path: Path) -> None:
     found = np.full((2, 2 * TILE, 3 * TILE), np.nan, np.float32)
     for number, (at, size) in enumerate(zip(offsets, sizes, strict=True)):
         if size:
-            band, place = divmod(number, 6)
-            row, column = divmod(place, 3)
+            band, position = divmod(number, 6)
+            row, column = divmod(position, 3)
             cells = np.frombuffer(zlib.decompress(content[at : at + size]), "<f4")
             rows, columns = slice(row * TILE, (row + 1) * TILE), slice(column * TILE, None)
             found[band, rows, columns][:, :TILE] = cells.reshape(TILE, TILE)

@@ -7,14 +7,14 @@ from pathlib import Path
 import pytest
 
 from processing.errors import BadFile
-from processing.formats.japanese_text import decoded, read_lines
+from processing.formats.japanese_text import decode_text, read_lines
 
 _WORDS = "縁石①，12.5ｍ～表"
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "cp932", "utf-16"])
 def test_every_usual_encoding_gives_the_same_words(encoding: str) -> None:
-    assert decoded(_WORDS.encode(encoding), Path("a.csv")) == _WORDS
+    assert decode_text(_WORDS.encode(encoding), Path("a.csv")) == _WORDS
 
 
 def test_lines_end_in_any_way_and_keep_rare_marks(tmp_path: Path) -> None:
@@ -28,6 +28,6 @@ def test_lines_end_in_any_way_and_keep_rare_marks(tmp_path: Path) -> None:
 )
 def test_what_is_no_text_is_told_with_its_byte(data: bytes) -> None:
     with pytest.raises(BadFile) as refusal:
-        decoded(data, Path("図面.csv"))
+        decode_text(data, Path("図面.csv"))
     assert "図面.csv" in refusal.value.where.ja
     assert "byte" in refusal.value.where.en

@@ -239,9 +239,9 @@ coordinate = st.floats(-200_000, 200_000, allow_nan=False, width=64)
     st.integers(0, 6),
 )
 def test_a_round_trip_is_exact_to_the_digits_written(
-    tmp_path_factory: pytest.TempPathFactory, places: list[tuple[float, ...]], decimals: int
+    tmp_path_factory: pytest.TempPathFactory, positions: list[tuple[float, ...]], decimals: int
 ) -> None:
-    xyz = np.array(places)
+    xyz = np.array(positions)
     xyz[:, :2] += [[0, 0], [1_000_000, 0], [0, 1_000_000]]  # so that it has an area
     surface = TriangleSurface(xyz, np.array([[2, 0, 1]]), "a")
     path = tmp_path_factory.mktemp("trip") / "a.xml"

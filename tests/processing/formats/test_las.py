@@ -105,8 +105,8 @@ def test_a_time_that_no_clock_can_say_is_nan(tmp_path: Path, time: float) -> Non
     path = tmp_path / "a.las"
     make_las(path, point_format=1, count=3)
     data = bytearray(path.read_bytes())
-    place = read_header(path).points_at + 28 + 20
-    data[place : place + 8] = struct.pack("<d", time)
+    position = read_header(path).points_at + 28 + 20
+    data[position : position + 8] = struct.pack("<d", time)
     path.write_bytes(data)
     times = next(read_chunks(path)).columns["time"]
     np.testing.assert_array_equal(np.isnan(times), [False, True, False])

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from processing.errors import OutOfRange
-from processing.formats.ledger_columns import TableStyle, guarded
+from processing.formats.ledger_columns import TableStyle, guard_text
 from processing.formats.ledger_csv import write_features, write_ledger, write_vertices
 from processing.project.catalogue import Catalogue, Geometry
 from processing.project.catalogue_file import read_catalogue
@@ -149,9 +149,9 @@ def test_every_header_of_the_catalogue_can_be_written(
     style = TableStyle(language, encoding, crs="EPSG:6677")  # type: ignore[arg-type]
     shapes = {Geometry.POINT: 1, Geometry.LINE: 2, Geometry.AREA: 3}
     for kind in catalogue:
-        places = [_FOOT] * shapes[kind.geometry]
+        positions = [_FOOT] * shapes[kind.geometry]
         path = tmp_path / f"{kind.id}.csv"
-        write_ledger(path, [_feature("f", kind.id, kind.geometry, *places)], kind, style)
+        write_ledger(path, [_feature("f", kind.id, kind.geometry, *positions)], kind, style)
         assert len(_rows(path, "cp932" if encoding == "cp932" else "utf-8-sig")) == 1
 
 
@@ -217,8 +217,8 @@ def test_a_delivered_millimetre_comes_back_as_the_same_number(n: int) -> None:
 
 
 def test_a_guard_is_taken_off_by_removing_one_apostrophe() -> None:
-    assert guarded("plain") == "plain"
-    assert guarded("=x")[1:] == "=x"
+    assert guard_text("plain") == "plain"
+    assert guard_text("=x")[1:] == "=x"
 
 
 def _plain(cell: str) -> str:

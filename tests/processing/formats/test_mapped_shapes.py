@@ -17,16 +17,16 @@ from processing.project.catalogue import Catalogue, Geometry
 from processing.project.feature import Feature, Vertex
 from processing.score.mapped_features import IN_DEGREES
 
-PLACES = (
+POSITIONS = (
     (-11_000.25, -35_000.5, 120.125),
     (-10_999.0, -35_000.0, 121.0),
     (-11_000.0, -34_999.0, 122.0),
 )
 LINE = Feature(
-    "a", "curb", Geometry.LINE, tuple(map(Vertex, PLACES)), {"edge": "upper", "height_m": 0.15}
+    "a", "curb", Geometry.LINE, tuple(map(Vertex, POSITIONS)), {"edge": "upper", "height_m": 0.15}
 )
-AREA = Feature("b", "gutter", Geometry.AREA, tuple(map(Vertex, PLACES)), {"type": "lid"})
-POINT = Feature("c", "tree", Geometry.POINT, (Vertex(PLACES[0]),), {"stems": 2, "dbh_m": None})
+AREA = Feature("b", "gutter", Geometry.AREA, tuple(map(Vertex, POSITIONS)), {"type": "lid"})
+POINT = Feature("c", "tree", Geometry.POINT, (Vertex(POSITIONS[0]),), {"stems": 2, "dbh_m": None})
 
 
 def write_json(path: Path, value: object) -> Path:
@@ -56,8 +56,8 @@ def test_what_the_program_writes_is_read_back(tmp_path: Path, name: str) -> None
     assert (line.shape, area.shape, point.shape) == ("line", "area", "point")
     for one in (line, area):
         # A ring's sense of rotation is the format's own matter.
-        assert sorted(map(tuple, one.xyz.tolist())) == sorted(PLACES)
-    assert point.xyz.tolist() == [list(PLACES[0])]
+        assert sorted(map(tuple, one.xyz.tolist())) == sorted(POSITIONS)
+    assert point.xyz.tolist() == [list(POSITIONS[0])]
     assert (line.facts["kind"], line.facts["edge"], line.facts["height_m"]) == (
         "curb",
         "upper",

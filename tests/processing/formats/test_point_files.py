@@ -153,8 +153,8 @@ def test_an_e57_gives_its_scans_where_they_stood(tmp_path: Path) -> None:
             "colorGreen": np.array([0, 255], dtype=np.uint8),
             "colorBlue": np.array([0, 0], dtype=np.uint8),
         }
-        turn, place = np.array([half, 0, 0, half]), np.array([shift, 0.0, 5.0])
-        file.write_scan_raw(data, rotation=turn, translation=place)
+        turn, position = np.array([half, 0, 0, half]), np.array([shift, 0.0, 5.0])
+        file.write_scan_raw(data, rotation=turn, translation=position)
     file.close()
     info = read_info(path)
     chunks = list(read_chunks(path))

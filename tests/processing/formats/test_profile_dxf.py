@@ -16,18 +16,18 @@ from processing.formats.profile_dxf import (
     POINT_LAYER,
     TEXT_LAYER,
     TITLE_LAYER,
-    ProfileLook,
+    ProfileStyle,
     write_profile_dxf,
 )
 from processing.section.cut import Cut
-from processing.section.profile import Crossing, Profile
+from processing.section.profile import Crossing, SectionProfile
 from processing.text import Text
 
 DATUM = 99.0
 """The lowest height is 99.9 m: half a metre below it, rounded down to a line of the grid."""
 
 GROUND = np.array([[-4.0, 100.15], [-2.01, 100.15], [-1.99, 100.0], [6.3, 99.9]])
-PROFILE = Profile(
+PROFILE = SectionProfile(
     cut=Cut((-11_394.608, -35_139.915, 102.0), (0.0, 1.0), 1.0, 15.0),
     ground=(GROUND, np.array([[7.0, 100.0], [7.4, 100.1]])),
     points=np.array([[0.0, 100.01], [1.0, 150.0]]),
@@ -37,7 +37,7 @@ PROFILE = Profile(
 )
 
 
-def drawn(path: Path, look: ProfileLook | None = None, profile: Profile = PROFILE) -> Any:
+def drawn(path: Path, look: ProfileStyle | None = None, profile: SectionProfile = PROFILE) -> Any:
     write_profile_dxf(path, profile, look)
     doc = ezdxf.filemanagement.readfile(path)
     audit = doc.audit()
@@ -51,18 +51,18 @@ def texts(doc: Any, layer: str) -> list[str]:
 
 @pytest.mark.parametrize("exaggeration", [1.0, 2.0, 10.0])
 def test_the_ground_line_is_in_metres_above_the_datum(tmp_path: Path, exaggeration: float) -> None:
-    doc = drawn(tmp_path / "profile.dxf", ProfileLook(exaggeration=exaggeration))
+    doc = drawn(tmp_path / "profile.dxf", ProfileStyle(exaggeration=exaggeration))
     first, second = doc.modelspace().query(f'LWPOLYLINE[layer=="{GROUND_LAYER}"]')
     datum = next(float(one[3:]) for one in texts(doc, TEXT_LAYER) if one.startswith("DL="))
-    places = np.array([place[:2] for place in first.get_points()])
-    assert places[:, 0] == pytest.approx(GROUND[:, 0])
-    assert places[:, 1] / exaggeration + datum == pytest.approx(GROUND[:, 1])
+    positions = np.array([position[:2] for position in first.get_points()])
+    assert positions[:, 0] == pytest.approx(GROUND[:, 0])
+    assert positions[:, 1] / exaggeration + datum == pytest.approx(GROUND[:, 1])
     assert len(second) == 2
     assert doc.units == 6  # metres
 
 
 def test_heights_are_written_at_the_lines_of_the_grid(tmp_path: Path) -> None:
-    doc = drawn(tmp_path / "profile.dxf", ProfileLook(scale=100))
+    doc = drawn(tmp_path / "profile.dxf", ProfileStyle(scale=100))
     found = {
         (round(text.dxf.align_point.x, 6), text.dxf.text)
         for text in doc.modelspace().query(f'TEXT[layer=="{TEXT_LAYER}"]')
@@ -89,13 +89,13 @@ def test_points_are_drawn_within_the_frame_or_not_at_all(tmp_path: Path) -> None
     query = f'POINT[layer=="{POINT_LAYER}"]'
     (point,) = drawn(tmp_path / "with.dxf").modelspace().query(query)
     assert point.dxf.location.y + DATUM == pytest.approx(100.01)
-    without = drawn(tmp_path / "without.dxf", ProfileLook(has_points=False))
+    without = drawn(tmp_path / "without.dxf", ProfileStyle(has_points=False))
     assert not without.modelspace().query(query)
 
 
 @pytest.mark.parametrize("version", ["R2000", "R2018"])
 def test_the_title_says_where_and_how_in_both_versions(tmp_path: Path, version: Any) -> None:
-    doc = drawn(tmp_path / "profile.dxf", ProfileLook(exaggeration=2.0, version=version))
+    doc = drawn(tmp_path / "profile.dxf", ProfileStyle(exaggeration=2.0, version=version))
     title = " ".join(texts(doc, TITLE_LAYER))
     assert "走行軌跡の横断" in title
     assert "測点 45.250 m" in title
@@ -106,13 +106,13 @@ def test_the_title_says_where_and_how_in_both_versions(tmp_path: Path, version: 
 
 
 def test_it_speaks_english_too(tmp_path: Path) -> None:
-    doc = drawn(tmp_path / "profile.dxf", ProfileLook(language="en"))
+    doc = drawn(tmp_path / "profile.dxf", ProfileStyle(language="en"))
     assert "Across the trajectory" in texts(doc, TITLE_LAYER)
     assert texts(doc, "2101_縁石") == ["Curb 100.150"]
 
 
 def test_a_section_without_ground_is_refused_and_nothing_is_written(tmp_path: Path) -> None:
-    empty = Profile(PROFILE.cut, (), np.empty((0, 2)))
+    empty = SectionProfile(PROFILE.cut, (), np.empty((0, 2)))
     with pytest.raises(Unsuitable):
         write_profile_dxf(tmp_path / "profile.dxf", empty)
     assert list(tmp_path.iterdir()) == []
@@ -122,15 +122,15 @@ def test_a_section_without_ground_is_refused_and_nothing_is_written(tmp_path: Pa
 def test_a_scale_that_cannot_be_is_refused(tmp_path: Path, scale: int, exaggeration: float) -> None:
     with pytest.raises(OutOfRange):
         write_profile_dxf(
-            tmp_path / "p.dxf", PROFILE, ProfileLook(scale=scale, exaggeration=exaggeration)
+            tmp_path / "p.dxf", PROFILE, ProfileStyle(scale=scale, exaggeration=exaggeration)
         )
 
 
 def test_a_layer_that_cp932_lacks_is_refused_for_r2000(tmp_path: Path) -> None:
     foreign = Crossing(Text.same("x"), "层", 7, 0.0, 100.0)
-    profile = Profile(PROFILE.cut, PROFILE.ground, PROFILE.points, (foreign,))
+    profile = SectionProfile(PROFILE.cut, PROFILE.ground, PROFILE.points, (foreign,))
     with pytest.raises(Unsuitable):
-        write_profile_dxf(tmp_path / "p.dxf", profile, ProfileLook(version="R2000"))
+        write_profile_dxf(tmp_path / "p.dxf", profile, ProfileStyle(version="R2000"))
 
 
 def test_an_input_is_never_overwritten(tmp_path: Path) -> None:

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 
 from processing.errors import Cancelled, InUse, UserError
-from processing.formats.safe_write import written_safely
+from processing.formats.safe_write import write_safely
 
 
 def test_the_result_appears_only_when_it_is_whole(tmp_path: Path) -> None:
     path = tmp_path / "新しい" / "結果.csv"
-    with written_safely(path) as temporary:
+    with write_safely(path) as temporary:
         temporary.write_text("half")
         assert not path.exists()
         assert temporary.parent == path.parent
@@ -29,7 +29,7 @@ def test_after_any_error_the_old_file_is_there_and_no_other(
     path.write_text("old")
 
     def write_half() -> None:
-        with written_safely(path) as temporary:
+        with write_safely(path) as temporary:
             temporary.write_text("half")
             raise error
 
@@ -44,7 +44,7 @@ def test_an_input_is_not_overwritten_by_whatever_name(tmp_path: Path) -> None:
     source.write_text("points")
     link.hardlink_to(source)
     for path in (source, tmp_path / "sub" / ".." / "a.las", link):
-        with pytest.raises(InUse) as refusal, written_safely(path, never=[source]):
+        with pytest.raises(InUse) as refusal, write_safely(path, never=[source]):
             pytest.fail("the body was entered")
         assert refusal.value.remedy.ja
     assert source.read_text() == "points"
@@ -54,6 +54,6 @@ def test_a_folder_that_is_a_file_is_told_in_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "folder").write_text("")
     with (
         pytest.raises(UserError, match="folder"),
-        written_safely(tmp_path / "folder" / "a.csv") as temporary,
+        write_safely(tmp_path / "folder" / "a.csv") as temporary,
     ):
         temporary.write_text("x")

@@ -20,7 +20,7 @@ from processing.formats.section_sheet_dxf import (
     FILL_LAYER,
     TEXT_LAYER,
     TITLE_LAYER,
-    SectionLook,
+    SectionStyle,
     write_section_sheet_dxf,
 )
 from processing.text import Text
@@ -40,7 +40,7 @@ def section(number: int, base: float = 100.0) -> DrawnSection:
 SECTIONS = [section(number) for number in range(5)]
 
 
-def drawn(path: Path, sections: list[DrawnSection], look: SectionLook | None = None) -> Any:
+def drawn(path: Path, sections: list[DrawnSection], look: SectionStyle | None = None) -> Any:
     write_section_sheet_dxf(path, sections, TITLE, look)
     doc = ezdxf.filemanagement.readfile(path)
     audit = doc.audit()
@@ -50,25 +50,25 @@ def drawn(path: Path, sections: list[DrawnSection], look: SectionLook | None = N
 
 def lines(doc: Any, layer: str) -> list[np.ndarray]:
     found = doc.modelspace().query(f'LWPOLYLINE[layer=="{layer}"]')
-    return [np.array([place[:2] for place in one.get_points()]) for one in found]
+    return [np.array([position[:2] for position in one.get_points()]) for one in found]
 
 
 def texts(doc: Any, layer: str) -> list[Any]:
     return list(doc.modelspace().query(f'TEXT[layer=="{layer}"]'))
 
 
-def place_of(text: Any) -> np.ndarray:
-    _, place, _ = text.get_placement()
-    return np.array([place.x, place.y])
+def position_of(text: Any) -> np.ndarray:
+    _, position, _ = text.get_placement()
+    return np.array([position.x, position.y])
 
 
 @pytest.mark.parametrize("exaggeration", [1.0, 5.0])
 def test_both_grounds_stand_where_grid_and_datum_say(tmp_path: Path, exaggeration: float) -> None:
-    look = SectionLook(scale=100, exaggeration=exaggeration)
+    look = SectionStyle(scale=100, exaggeration=exaggeration)
     doc = drawn(tmp_path / "a.dxf", [section(3)], look)
     (datum,) = [one for one in texts(doc, TEXT_LAYER) if one.dxf.text.startswith("DL=")]
     (zero,) = [one for one in texts(doc, TEXT_LAYER) if one.dxf.text == "0"]
-    origin = np.array([place_of(zero)[0], place_of(datum)[1]])
+    origin = np.array([position_of(zero)[0], position_of(datum)[1]])
     for layer, heights in ((BEFORE_LAYER, section(3).before), (AFTER_LAYER, section(3).after)):
         (line,) = lines(doc, layer)
         offset, height = (line - origin).T
@@ -89,7 +89,7 @@ def test_cut_and_fill_are_filled_to_their_areas(tmp_path: Path) -> None:
 
 def test_each_section_is_named_with_its_areas(tmp_path: Path) -> None:
     for version in ("R2000", "R2018"):
-        doc = drawn(tmp_path / "a.dxf", SECTIONS, SectionLook(version=version))
+        doc = drawn(tmp_path / "a.dxf", SECTIONS, SectionStyle(version=version))
         words = [one.dxf.text for one in texts(doc, TEXT_LAYER)]
         assert "No.3 （測点 60.00 m）" in words
         square = "m2" if version == "R2000" else "m²"
@@ -101,7 +101,7 @@ def test_each_section_is_named_with_its_areas(tmp_path: Path) -> None:
 def test_the_sheet_says_title_scales_and_lines(
     tmp_path: Path, version: DxfVersion, language: Any
 ) -> None:
-    look = SectionLook(scale=200, exaggeration=2.0, version=version, language=language)
+    look = SectionStyle(scale=200, exaggeration=2.0, version=version, language=language)
     doc = drawn(tmp_path / "a.dxf", SECTIONS, look)
     words = [one.dxf.text for one in texts(doc, TITLE_LAYER)]
     if language == "en":
@@ -116,8 +116,8 @@ def test_the_sheet_says_title_scales_and_lines(
 def test_sections_share_no_room_and_go_up_the_columns(tmp_path: Path, count: int) -> None:
     doc = drawn(tmp_path / "a.dxf", [section(number) for number in range(count)])
     names = [one for one in texts(doc, TEXT_LAYER) if one.dxf.text.startswith("No.")]
-    places = np.array([place_of(one) for one in names])
-    assert np.lexsort((places[:, 1], places[:, 0])).tolist() == list(range(count))
+    positions = np.array([position_of(one) for one in names])
+    assert np.lexsort((positions[:, 1], positions[:, 0])).tolist() == list(range(count))
     boxes = [
         shapely.box(
             *np.min([before.min(0), after.min(0)], 0), *np.max([before.max(0), after.max(0)], 0)
@@ -146,9 +146,9 @@ def test_a_section_without_ground_is_left_out_and_none_at_all_refused(tmp_path: 
             write_section_sheet_dxf(tmp_path / "b.dxf", sections, TITLE)
 
 
-@pytest.mark.parametrize("look", [SectionLook(scale=-1), SectionLook(exaggeration=0.0),
-                                  SectionLook(exaggeration=float("nan"))])  # fmt: skip
-def test_a_scale_that_is_none_is_refused(tmp_path: Path, look: SectionLook) -> None:
+@pytest.mark.parametrize("look", [SectionStyle(scale=-1), SectionStyle(exaggeration=0.0),
+                                  SectionStyle(exaggeration=float("nan"))])  # fmt: skip
+def test_a_scale_that_is_none_is_refused(tmp_path: Path, look: SectionStyle) -> None:
     with pytest.raises(OutOfRange):
         write_section_sheet_dxf(tmp_path / "a.dxf", SECTIONS, TITLE, look)
     assert not list(tmp_path.iterdir())

@@ -29,17 +29,17 @@ def test_points_of_a_ptx_know_their_cells_and_where_the_scanner_stood(tmp_path):
     path.write_text(ptx_text(scan))
     info, columns = _read(path, chunk_points=100)
     assert _is_scan(columns, scan)
-    assert info.scanner_places == ((1, tuple(scan.place)),)
+    assert info.scanner_positions == ((1, tuple(scan.position)),)
     assert not columns["scanner"].any()
 
 
 def test_scans_of_one_ptx_have_numbers_and_places_of_their_own(tmp_path):
-    scans = [sphere_scan(9 + k, 8, place=(10.0 * k, 0.0, 1.0)) for k in range(40)]
+    scans = [sphere_scan(9 + k, 8, position=(10.0 * k, 0.0, 1.0)) for k in range(40)]
     path = tmp_path / "rooms.ptx"
     path.write_text(ptx_text(*scans))
     info, columns = _read(path)
-    assert [number for number, _ in info.scanner_places] == list(range(1, 41))
-    assert info.scanner_places[17][1] == (170.0, 0.0, 1.0)
+    assert [number for number, _ in info.scanner_positions] == list(range(1, 41))
+    assert info.scanner_positions[17][1] == (170.0, 0.0, 1.0)
     for number in (1, 18, 40):
         own = columns["scanner"] == number
         assert _is_scan({name: values[own] for name, values in columns.items()}, scans[number - 1])
@@ -57,10 +57,13 @@ def test_a_line_of_a_late_scan_is_named_by_its_number_in_the_file(tmp_path):
 
 @pytest.mark.parametrize("by", ["columnIndex", "rowIndex"])
 def test_points_of_an_e57_know_their_cells_whichever_index_numbers_the_sweeps(tmp_path, by):
-    scans, path = (sphere_scan(), sphere_scan(21, 11, place=(3.0, 4.0, 5.0))), tmp_path / "room.e57"
+    scans, path = (
+        (sphere_scan(), sphere_scan(21, 11, position=(3.0, 4.0, 5.0))),
+        tmp_path / "room.e57",
+    )
     write_e57(path, *scans, by=by)
     info, columns = _read(path)
-    assert info.scanner_places == ((1, (100.0, 200.0, 10.0)), (2, (3.0, 4.0, 5.0)))
+    assert info.scanner_positions == ((1, (100.0, 200.0, 10.0)), (2, (3.0, 4.0, 5.0)))
     for number, scan in enumerate(scans, start=1):
         own = columns["scanner"] == number
         assert _is_scan({name: values[own] for name, values in columns.items()}, scan)
@@ -97,7 +100,7 @@ def test_fields_of_a_ply_and_dimensions_of_a_las_that_name_row_and_column_are_th
     assert _is_scan(_read(ply)[1], scan)
 
     las = laspy.LasData(laspy.LasHeader(point_format=6, version="1.4"))
-    las.header.scales, las.header.offsets = [1e-4] * 3, scan.place
+    las.header.scales, las.header.offsets = [1e-4] * 3, scan.position
     las.add_extra_dims(
         [laspy.ExtraBytesParams("Row", "u2"), laspy.ExtraBytesParams("Column", "u4")]
     )

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from processing.errors import OutOfRange
-from processing.ground.adaptive import GroundHabits, GroundSurface, find_ground
-from processing.ground.published import PublishedSteps, published_surface
+from processing.ground.adaptive import GroundAssumptions, GroundSurface, find_ground
+from processing.ground.published_method import PublishedSteps, published_surface
 from processing.monitor import SilentMonitor
 
 
@@ -30,7 +30,7 @@ def _box(low: tuple[float, float, float], high: tuple[float, float, float]) -> n
 
 
 def _found(xyz: np.ndarray) -> GroundSurface:
-    return find_ground(lambda: [xyz], GroundHabits(), SilentMonitor())
+    return find_ground(lambda: [xyz], GroundAssumptions(), SilentMonitor())
 
 
 def _without(xyz: np.ndarray, low: tuple[float, float], high: tuple[float, float]) -> np.ndarray:
@@ -77,10 +77,10 @@ def test_points_under_the_ground_are_rejected_and_do_not_pull_it_down() -> None:
 
 def test_a_hole_behind_a_machine_is_filled_and_said_to_be_filled() -> None:
     surface = _found(_without(_plane(30.0, 0.12, slope=0.2), (10.0, 10.0), (15.0, 15.0)))
-    places = np.array([[12.5, 12.5], [5.0, 5.0], [-9.0, 5.0]])
-    assert surface.is_filled_at(places).tolist() == [True, False, True]
-    assert surface.heights_at(places)[:2] == pytest.approx([2.5, 1.0], abs=0.1)
-    assert np.isnan(surface.heights_at(places)[2])
+    positions = np.array([[12.5, 12.5], [5.0, 5.0], [-9.0, 5.0]])
+    assert surface.is_filled_at(positions).tolist() == [True, False, True]
+    assert surface.heights_at(positions)[:2] == pytest.approx([2.5, 1.0], abs=0.1)
+    assert np.isnan(surface.heights_at(positions)[2])
 
 
 def test_blocks_in_another_order_give_the_same_ground() -> None:
@@ -88,7 +88,7 @@ def test_blocks_in_another_order_give_the_same_ground() -> None:
     shuffled = np.random.default_rng(5).permutation(len(xyz))
     parts = np.array_split(xyz[shuffled], 7)
     whole = _found(xyz).is_ground(xyz)
-    cut = find_ground(lambda: iter(parts), GroundHabits(), SilentMonitor())
+    cut = find_ground(lambda: iter(parts), GroundAssumptions(), SilentMonitor())
     assert np.array_equal(cut.is_ground(xyz), whole)
 
 
@@ -127,7 +127,7 @@ def test_a_cloud_without_extent_is_refused_in_a_sentence(xyz: np.ndarray) -> Non
 
 
 @pytest.mark.parametrize(
-    ("xyz", "places"),
+    ("xyz", "positions"),
     [
         (np.ones((500, 3)), 1),
         (np.column_stack([np.ones((500, 2)), np.arange(500.0)]), 1),
@@ -136,14 +136,14 @@ def test_a_cloud_without_extent_is_refused_in_a_sentence(xyz: np.ndarray) -> Non
     ids=["copies", "one above the other", "copies at two places"],
 )
 def test_a_refused_cloud_is_told_how_many_places_it_has_not_how_many_points(
-    xyz: np.ndarray, places: int
+    xyz: np.ndarray, positions: int
 ) -> None:
     blocks = [xyz[:100], xyz[100:]]
     for method in (
-        lambda: find_ground(lambda: blocks, GroundHabits(), SilentMonitor()),
+        lambda: find_ground(lambda: blocks, GroundAssumptions(), SilentMonitor()),
         lambda: published_surface(lambda: blocks, PublishedSteps(), SilentMonitor()),
     ):
-        with pytest.raises(OutOfRange, match=f"the cloud has {places}\\."):
+        with pytest.raises(OutOfRange, match=f"the cloud has {positions}\\."):
             method()
 
 

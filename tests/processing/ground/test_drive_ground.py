@@ -57,8 +57,8 @@ def drive_at(
                 "pulse": np.arange(count),
             }
         )
-    places = integers * 0.001 + np.array(_ORIGIN)
-    low, high = (places.min(axis=0), places.max(axis=0)) if count else (np.zeros(3),) * 2
+    positions = integers * 0.001 + np.array(_ORIGIN)
+    low, high = (positions.min(axis=0), positions.max(axis=0)) if count else (np.zeros(3),) * 2
     source = SourceFile(str(folder.parent / file), 1, 1, "", count)
     info = DriveInfo(
         id=folder.name,
@@ -193,9 +193,9 @@ def test_a_plan_in_tiles_has_the_ground_of_the_whole(
     assert len(StoredSurface(cut.kept[0]).extents) >= 4
     assert (classes(whole) == classes(cut)).mean() > 0.9995
     surfaces = [StoredSurface(result.kept[0]) for result in (whole, cut)]
-    places = drive.xyz(slice(0, None, 7))[:, :2]
-    heights = [surface.heights_at(places) for surface in surfaces]
-    is_measured = ~surfaces[0].is_filled_at(places)
+    positions = drive.xyz(slice(0, None, 7))[:, :2]
+    heights = [surface.heights_at(positions) for surface in surfaces]
+    is_measured = ~surfaces[0].is_filled_at(positions)
     apart = np.abs(heights[0] - heights[1])[is_measured]
     assert (apart < 0.01).mean() > 0.97
     assert apart.max() < 0.2
@@ -299,11 +299,11 @@ def test_a_kept_surface_serves_all_its_drives_until_it_is_deleted(tmp_path: Path
         surface = ground_surface_of(drive)
         assert surface is not None
         assert surface.crs == "EPSG:6677"
-        place = np.array([[10.0, 10.0], [-50.0, 0.0], [np.nan, 1.0]]) + np.array(_ORIGIN[:2])
-        heights = surface.heights_at(place)
+        position = np.array([[10.0, 10.0], [-50.0, 0.0], [np.nan, 1.0]]) + np.array(_ORIGIN[:2])
+        heights = surface.heights_at(position)
         assert heights[0] == pytest.approx(51.0, abs=0.03)
         assert np.isnan(heights[1:]).all()
-        assert surface.is_filled_at(place).tolist() == [False, True, True]
+        assert surface.is_filled_at(position).tolist() == [False, True, True]
         (drive.folder / FILE_NAME).unlink()
         assert ground_surface_of(drive) is None
 

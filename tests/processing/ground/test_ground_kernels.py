@@ -24,7 +24,7 @@ def test_an_opening_takes_away_what_is_narrower_and_leaves_a_slope() -> None:
     surface = np.tile(np.arange(30, dtype=np.float32), (30, 1))
     peak = surface.copy()
     peak[15, 15] += 5.0
-    opened = openings.opened(peak, 3)
+    opened = openings.open_heights(peak, 3)
     np.testing.assert_allclose(opened[5:25, 5:25], surface[5:25, 5:25])
 
 
@@ -32,7 +32,7 @@ def test_a_filled_hole_is_between_its_borders_and_known_cells_stay() -> None:
     heights = np.tile(np.arange(16, dtype=np.float32), (16, 1))
     known = np.ones((16, 16), np.bool_)
     known[5:11, 5:11] = False
-    filled = morphology.filled(heights, known)
+    filled = morphology.fill_heights(heights, known)
     np.testing.assert_array_equal(filled[known], heights[known])
     np.testing.assert_allclose(filled, heights, atol=0.05)
 
@@ -73,7 +73,7 @@ def test_an_opening_is_what_octagons_under_the_surface_reach(
     least = ndimage.minimum_filter(padded, footprint=octagon, mode="nearest")
     expected = ndimage.maximum_filter(least, footprint=octagon, mode="nearest")
     inside = slice(2 * radius, -2 * radius)
-    np.testing.assert_array_equal(openings.opened(heights, radius), expected[inside, inside])
+    np.testing.assert_array_equal(openings.open_heights(heights, radius), expected[inside, inside])
 
 
 def test_the_least_along_a_diagonal_uncompiled_is_what_the_kernel_gives() -> None:
@@ -101,9 +101,9 @@ def test_the_height_at_a_place_is_bilinear_and_goes_on_beyond_the_last_centres()
     y, x = np.mgrid[:4, :5].astype(np.float32)
     surface = (2.0 * x + 3.0 * y).astype(np.float32)
     grid = cells.CellGrid(np.array([10.0, 20.0, 100.0]), 1.0, 4, 5)
-    places = np.array([[10.5, 20.5], [12.0, 21.25], [10.1, 20.1], [9.0, 20.0]])
+    positions = np.array([[10.5, 20.5], [12.0, 21.25], [10.1, 20.1], [9.0, 20.0]])
     expected = [100.0, 100 + 2 * 1.5 + 3 * 0.75, 100 - 0.8 - 1.2, np.nan]
-    np.testing.assert_allclose(band.heights_at(places, grid, surface), expected, rtol=1e-6)
+    np.testing.assert_allclose(band.heights_at(positions, grid, surface), expected, rtol=1e-6)
 
 
 def test_a_column_ends_where_four_tenths_of_a_metre_are_empty() -> None:

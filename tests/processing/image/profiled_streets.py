@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
 from processing.points.drive_info import DriveInfo, write_drive_info
-from processing.points.turns_file import write_turns
-from tests.processing.image.recordings import turns_of
+from processing.points.revolutions_file import write_revolutions
+from tests.processing.image.recordings import revolutions_of
 
 Floats = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ LOWER, UPPER = np.array(CURB[1]), np.array(CURB[2])
 
 
 @dataclass(frozen=True)
-class Street:
+class ProfiledStreet:
     """How a street is recorded.
 
     Attributes
@@ -56,7 +56,7 @@ class Street:
     grade: float = 0.03
     heading_rad: float = 0.7
 
-    def places(self, along: Floats, across: Floats, up: Floats) -> Floats:
+    def positions(self, along: Floats, across: Floats, up: Floats) -> Floats:
         """(n, 3) m: along the street, to its left, and above it."""
         turned = self.heading_rad + self.curvature * along
         if self.curvature:
@@ -71,11 +71,15 @@ class Street:
     def edge(self, corner: NDArray[np.float64], step_m: float = 0.01) -> Floats:
         """(n, 3) a line along the street, densely."""
         along = np.arange(0.0, self.length_m, step_m)
-        return self.places(along, np.full_like(along, corner[0]), np.full_like(along, corner[1]))
+        return self.positions(along, np.full_like(along, corner[0]), np.full_like(along, corner[1]))
 
 
 def recorded(
-    folder: Path, street: Street, *, seed: int = 0, hidden: tuple[float, float] | None = None
+    folder: Path,
+    street: ProfiledStreet,
+    *,
+    seed: int = 0,
+    hidden: tuple[float, float] | None = None,
 ) -> Drive:
     """The drive of a street; between two distances along it nothing was seen if so wished.
 
@@ -95,7 +99,7 @@ def recorded(
     if hidden is not None:
         kept = (along < hidden[0]) | (along > hidden[1])
     intensity = np.where(np.abs(u + 1.0) < 0.075, 50_000, 9_000) + random.uniform(0, 2_000, u.size)
-    xyz = street.places(along, u, v)[kept]
+    xyz = street.positions(along, u, v)[kept]
     return _written(folder, xyz, (row * PULSES + column)[kept], intensity[kept], rows)
 
 
@@ -104,11 +108,11 @@ def off_line(xyz: Floats, line: Floats) -> Floats:
     return np.asarray(np.linalg.norm(xyz[:, None] - line[None], axis=2).min(axis=1))
 
 
-def _length(street: Street) -> float:
+def _length(street: ProfiledStreet) -> float:
     return float(np.linalg.norm(np.diff(np.array(street.profile), axis=0), axis=1).sum())
 
 
-def _on_profile(street: Street, s: Floats) -> tuple[Floats, Floats, Floats]:
+def _on_profile(street: ProfiledStreet, s: Floats) -> tuple[Floats, Floats, Floats]:
     """Places at some ways along the profile, and normals there."""
     corners = np.array(street.profile)
     spans = np.diff(corners, axis=0)
@@ -140,7 +144,7 @@ def _written(
             }
         )
     folds = np.arange(rows + 1, dtype=np.int64) * PULSES
-    write_turns(folder, turns_of(folds, pulse_rate_hz=100_000.0))
+    write_revolutions(folder, revolutions_of(folds, pulse_rate_hz=100_000.0))
     lowest, highest = xyz.min(axis=0), xyz.max(axis=0)
     write_drive_info(
         folder,

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
 from processing.points.drive_info import DriveInfo, read_drive_info, write_drive_info
-from processing.points.turns import Turns
-from processing.points.turns_file import write_turns
+from processing.points.revolutions import Revolutions
+from processing.points.revolutions_file import write_revolutions
 from processing.text import Text
 from tests.builders import SimulatedDrive, simulated_drive
 
@@ -26,23 +26,23 @@ class PulsedRecording:
     """Pulses of points, and the turns they were fired in."""
 
     pulses: Integers
-    turns: Turns
+    revolutions: Revolutions
 
 
-def turns_of(
+def revolutions_of(
     folds: Integers,
     *,
     row_ends: Integers | None = None,
     segments: NDArray[np.int32] | None = None,
     pulse_rate_hz: float = 1000.0,
-) -> Turns:
+) -> Revolutions:
     """Turns that begin at given pulses."""
     rows = folds.size - 1
-    return Turns(
+    return Revolutions(
         method="trajectory",
-        turn_rate_hz=pulse_rate_hz / float(np.median(np.diff(folds))),
+        revolution_rate_hz=pulse_rate_hz / float(np.median(np.diff(folds))),
         pulse_rate_hz=pulse_rate_hz,
-        pulses_per_turn=float(np.median(np.diff(folds))),
+        pulses_per_revolution=float(np.median(np.diff(folds))),
         reference_times=folds / pulse_rate_hz,
         fold_pulses=folds,
         segments=np.zeros(rows, np.int32) if segments is None else segments,
@@ -54,8 +54,8 @@ def turns_of(
 def random_recording(
     seed: int,
     *,
-    pulses_per_turn: int,
-    turns: int,
+    pulses_per_revolution: int,
+    revolutions: int,
     lost_share: float = 0.2,
     double_share: float = 0.1,
     stop_pulses: int = 0,
@@ -65,16 +65,16 @@ def random_recording(
     Some pulses come before the first fold and some after the last, as in a real recording.
     """
     random = np.random.default_rng(seed)
-    wander = min(2, pulses_per_turn - 1)
-    lengths = pulses_per_turn + random.integers(-wander, wander + 1, turns)
-    first = int(random.integers(0, 3 * pulses_per_turn))
+    wander = min(2, pulses_per_revolution - 1)
+    lengths = pulses_per_revolution + random.integers(-wander, wander + 1, revolutions)
+    first = int(random.integers(0, 3 * pulses_per_revolution))
     folds = first + np.concatenate([[0], np.cumsum(lengths)])
-    last = int(folds[-1] + random.integers(0, 2 * pulses_per_turn))
-    pulses = np.arange(max(0, first - int(random.integers(0, 2 * pulses_per_turn))), last + 1)
-    row_ends, segments = folds[1:].copy(), np.zeros(turns, np.int32)
-    if stop_pulses and turns > 1:
-        row = int(random.integers(1, turns))
-        stop = int(folds[row] - random.integers(1, pulses_per_turn - wander))
+    last = int(folds[-1] + random.integers(0, 2 * pulses_per_revolution))
+    pulses = np.arange(max(0, first - int(random.integers(0, 2 * pulses_per_revolution))), last + 1)
+    row_ends, segments = folds[1:].copy(), np.zeros(revolutions, np.int32)
+    if stop_pulses and revolutions > 1:
+        row = int(random.integers(1, revolutions))
+        stop = int(folds[row] - random.integers(1, pulses_per_revolution - wander))
         row_ends[row - 1] = stop
         segments[row:] = 1
         folds[row:] += stop_pulses
@@ -85,7 +85,7 @@ def random_recording(
     times = 1 + (random.random(kept.size) < double_share)
     return PulsedRecording(
         np.repeat(kept, times).astype(np.int64),
-        turns_of(folds, row_ends=row_ends, segments=segments),
+        revolutions_of(folds, row_ends=row_ends, segments=segments),
     )
 
 
@@ -110,18 +110,18 @@ def drive_of(simulated: SimulatedDrive, folder: Path, **more: NDArray[Any]) -> D
                 "source_file": np.zeros(count),
             }
         )
-    write_turns(folder, true_turns(simulated))
+    write_revolutions(folder, true_revolutions(simulated))
     lowest, highest = simulated.xyz.min(axis=0), simulated.xyz.max(axis=0)
     write_drive_info(folder, info_of(folder.name, count, simulated, (lowest, highest)))
     return Drive(folder)
 
 
-def true_turns(simulated: SimulatedDrive) -> Turns:
+def true_revolutions(simulated: SimulatedDrive) -> Revolutions:
     """Turns of a simulated recording without a stop, from its fold times."""
     times = simulated.fold_times[~np.isnan(simulated.fold_times)]
     start = float(simulated.columns["time"][0]) - simulated.pulse[0] / simulated.pulse_rate_hz
     folds = np.rint((times - start) * simulated.pulse_rate_hz).astype(np.int64)
-    return turns_of(folds, pulse_rate_hz=simulated.pulse_rate_hz)
+    return revolutions_of(folds, pulse_rate_hz=simulated.pulse_rate_hz)
 
 
 def info_of(
@@ -154,9 +154,9 @@ def small_drive(folder: Path, seed: int = 0, **changes: Any) -> tuple[Drive, Sim
     return drive_of(simulated, folder), simulated
 
 
-def without_turns(drive: Drive) -> Drive:
+def without_revolutions(drive: Drive) -> Drive:
     """The same folder as a top view of one cell per pulse."""
-    (drive.folder / "turns.npz").unlink()
+    (drive.folder / "revolutions.npz").unlink()
     info = dataclasses.replace(
         read_drive_info(drive.folder),
         rows_by="top-view",

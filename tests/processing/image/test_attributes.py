@@ -12,7 +12,7 @@ from processing.cameras.colouring import colours_from_images
 from processing.cameras.image_list import CameraImage, ImageList
 from processing.cameras.image_store import write_images
 from processing.errors import BadFile, MissingInput, Unsuitable
-from processing.image.attributes import ATTRIBUTES, available, colours, telling_attribute
+from processing.image.attributes import ATTRIBUTES, available, colours, most_telling_attribute
 from processing.image.colour_maps import (
     EMPTY_COLOUR,
     UNKNOWN_COLOUR,
@@ -21,7 +21,7 @@ from processing.image.colour_maps import (
     height_ramp,
     normal_ramp,
     segment_colours,
-    stretched,
+    stretch_values,
 )
 from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
@@ -88,16 +88,16 @@ def test_what_tells_something_is_shown_first(
     varied = np.arange(drive.count) % 200
     drive.columns.add("intensity", varied if intensity == "varied" else np.zeros(drive.count))
     drive.columns.add("color", np.zeros((drive.count, 3)) + (varied[:, None], 0)[color == "same"])
-    assert telling_attribute(drive, "intensity") == shown
-    assert telling_attribute(drive, "normal") == "normal"
+    assert most_telling_attribute(drive, "intensity") == shown
+    assert most_telling_attribute(drive, "normal") == "normal"
 
 
 def test_a_drive_without_classes_is_not_shown_by_class(drive: Drive) -> None:
     assert "class" not in available(drive)
-    assert telling_attribute(drive, "class") == "intensity"
+    assert most_telling_attribute(drive, "class") == "intensity"
     drive.columns.add("label", np.full(drive.count, 2, np.uint8))
     assert "class" in available(drive)
-    assert telling_attribute(drive, "class") == "class"
+    assert most_telling_attribute(drive, "class") == "class"
 
 
 @pytest.mark.parametrize(("code", "shown"), [(0, "intensity"), (1, "intensity"), (2, "class")])
@@ -106,7 +106,7 @@ def test_delivered_classes_above_1_are_classes(tmp_path: Path, code: int, shown:
     classes = np.zeros(drive.count, np.uint8)
     classes[-1] = code
     drive.columns.add("classification", classes)
-    assert telling_attribute(drive, "class") == shown
+    assert most_telling_attribute(drive, "class") == shown
 
 
 def test_walls_are_blue_and_the_road_is_red_by_normal(tmp_path: Path) -> None:
@@ -265,8 +265,8 @@ def test_ramps_rise_evenly_in_lightness_and_height_goes_in_steps() -> None:
 
 def test_numbers_are_stretched_and_clipped() -> None:
     values = np.array([-5.0, 0.0, 5.0, 10.0, 99.0])
-    assert stretched(values, 0.0, 10.0).tolist() == [0, 0, 128, 255, 255]
-    assert stretched(np.array([2.0, 3.0, 4.0]), 3.0, 3.0).tolist() == [0, 128, 255]
+    assert stretch_values(values, 0.0, 10.0).tolist() == [0, 0, 128, 255, 255]
+    assert stretch_values(np.array([2.0, 3.0, 4.0]), 3.0, 3.0).tolist() == [0, 128, 255]
 
 
 def test_segments_keep_their_colours_and_neighbours_differ() -> None:

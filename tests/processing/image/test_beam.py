@@ -47,7 +47,7 @@ def test_the_beam_starts_at_the_scanner_and_passes_the_measured_point(
         assert np.linalg.norm(origin - street.origin[point]) < 0.02
         seen = drive.xyz(np.array([point]))[0] - origin
         off = np.degrees(np.arccos(seen @ direction / np.linalg.norm(seen)))
-        assert off < 360 / street.pulses_per_turn
+        assert off < 360 / street.pulses_per_revolution
 
 
 def test_without_a_trajectory_the_row_itself_tells_where_the_scanner_was(

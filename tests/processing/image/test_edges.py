@@ -22,7 +22,7 @@ from tests.processing.image.profiled_streets import (
     LOWER,
     START,
     UPPER,
-    Street,
+    ProfiledStreet,
     off_line,
     recorded,
 )
@@ -32,13 +32,13 @@ Floats = NDArray[np.float64]
 DROPPED = ((-2.5, 0.05), (0.0, 0.0), (0.01, 0.02), (1.5, 0.08))
 
 
-def clicks(drive: Drive, street: Street, corner: Floats, aside_px: int) -> list[int]:
+def clicks(drive: Drive, street: ProfiledStreet, corner: Floats, aside_px: int) -> list[int]:
     """Points so many pixels beside an edge, along the middle of the street."""
     xyz, pulses = drive.xyz(slice(0, drive.count)), np.asarray(drive.columns["pulse"])
     line = street.edge(corner)
     chosen = []
-    for place in line[150:-150:40]:
-        nearest = int(np.linalg.norm(xyz - place, axis=1).argmin())
+    for position in line[150:-150:40]:
+        nearest = int(np.linalg.norm(xyz - position, axis=1).argmin())
         beside = np.flatnonzero(pulses == pulses[nearest] + aside_px)
         chosen += [int(point) for point in beside]
     assert chosen
@@ -46,7 +46,9 @@ def clicks(drive: Drive, street: Street, corner: Floats, aside_px: int) -> list[
 
 
 def snapped(drive: Drive, points: list[int]) -> Floats:
-    found = [place.xyz for point in points if (place := edge_beside(drive, point)) is not None]
+    found = [
+        position.xyz for point in points if (position := edge_beside(drive, point)) is not None
+    ]
     assert len(found) == len(points)
     return np.array(found)
 
@@ -55,17 +57,17 @@ def snapped(drive: Drive, points: list[int]) -> Floats:
 @pytest.mark.parametrize(
     "street",
     [
-        Street(),
-        Street(noise_m=0.005, length_m=14.0),
-        Street(row_m=0.17, spacing_m=0.05),
-        Street(row_m=0.05, spacing_m=0.006),
-        Street(curvature=0.15),
-        Street(grade=-0.09, heading_rad=3.0),
+        ProfiledStreet(),
+        ProfiledStreet(noise_m=0.005, length_m=14.0),
+        ProfiledStreet(row_m=0.17, spacing_m=0.05),
+        ProfiledStreet(row_m=0.05, spacing_m=0.006),
+        ProfiledStreet(curvature=0.15),
+        ProfiledStreet(grade=-0.09, heading_rad=3.0),
     ],
     ids=["plain", "noisy", "60 km/h", "dense", "bend of 7 m radius", "steep"],
 )
 def test_a_click_on_a_curb_edge_goes_to_that_edge(
-    tmp_path: Path, street: Street, corner: Floats
+    tmp_path: Path, street: ProfiledStreet, corner: Floats
 ) -> None:
     drive = recorded(tmp_path / "drive", street)
     found = snapped(drive, clicks(drive, street, corner, 0))
@@ -78,7 +80,7 @@ def test_a_click_on_a_curb_edge_goes_to_that_edge(
 def test_a_click_up_to_eight_pixels_beside_a_curb_goes_to_an_edge_of_it(
     tmp_path: Path, aside_px: int
 ) -> None:
-    street = Street()
+    street = ProfiledStreet()
     drive = recorded(tmp_path / "drive", street)
     corner = LOWER if aside_px < 0 else UPPER
     found = snapped(drive, clicks(drive, street, corner, aside_px))
@@ -89,19 +91,23 @@ def test_a_click_up_to_eight_pixels_beside_a_curb_goes_to_an_edge_of_it(
 @pytest.mark.parametrize(
     "street",
     [
-        Street(profile=DROPPED, length_m=14.0),
-        Street(profile=DROPPED, length_m=14.0, noise_m=0.004),
-        Street(profile=DROPPED, length_m=14.0, row_m=0.17, spacing_m=0.05),
-        Street(profile=DROPPED, length_m=14.0, curvature=0.08, grade=-0.06),
-        Street(profile=((-2.5, 0.05), (0.0, 0.0), (0.03, 0.03), (1.5, 0.08)), length_m=14.0),
+        ProfiledStreet(profile=DROPPED, length_m=14.0),
+        ProfiledStreet(profile=DROPPED, length_m=14.0, noise_m=0.004),
+        ProfiledStreet(profile=DROPPED, length_m=14.0, row_m=0.17, spacing_m=0.05),
+        ProfiledStreet(profile=DROPPED, length_m=14.0, curvature=0.08, grade=-0.06),
+        ProfiledStreet(
+            profile=((-2.5, 0.05), (0.0, 0.0), (0.03, 0.03), (1.5, 0.08)), length_m=14.0
+        ),
     ],
     ids=["plain", "noisy", "60 km/h", "steep bend", "platform of 3 cm"],
 )
-def test_a_dropped_curb_is_an_edge(tmp_path: Path, street: Street, aside_px: int) -> None:
+def test_a_dropped_curb_is_an_edge(tmp_path: Path, street: ProfiledStreet, aside_px: int) -> None:
     drive = recorded(tmp_path / "drive", street)
-    both = np.vstack([street.edge(np.array(place)) for place in street.profile[1:3]])
+    both = np.vstack([street.edge(np.array(position)) for position in street.profile[1:3]])
     points = clicks(drive, street, LOWER, aside_px)
-    found = [place.xyz for click in points if (place := edge_beside(drive, click)) is not None]
+    found = [
+        position.xyz for click in points if (position := edge_beside(drive, click)) is not None
+    ]
     assert len(found) >= 0.9 * len(points)
     assert (off_line(np.array(found), both) < 0.02).mean() >= 0.9
 
@@ -119,7 +125,7 @@ def test_a_dropped_curb_is_an_edge(tmp_path: Path, street: Street, aside_px: int
 def test_both_edges_of_every_form_of_curb_are_met(
     tmp_path: Path, profile: tuple[tuple[float, float], ...]
 ) -> None:
-    street = Street(profile=profile, noise_m=0.005)
+    street = ProfiledStreet(profile=profile, noise_m=0.005)
     drive = recorded(tmp_path / "drive", street)
     for corner in (np.array(profile[1]), np.array(profile[2])):
         found = snapped(drive, clicks(drive, street, corner, 0))
@@ -129,7 +135,9 @@ def test_both_edges_of_every_form_of_curb_are_met(
 def test_a_rounded_edge_is_where_its_two_surfaces_would_meet(tmp_path: Path) -> None:
     angles = np.radians(np.linspace(180, 90, 8))
     rounding = [(0.03 + 0.03 * np.cos(a), 0.12 + 0.03 * np.sin(a)) for a in angles]
-    street = Street(profile=((-2.5, 0.05), (0.0, 0.0), *rounding, (1.5, 0.15)), spacing_m=0.02)
+    street = ProfiledStreet(
+        profile=((-2.5, 0.05), (0.0, 0.0), *rounding, (1.5, 0.15)), spacing_m=0.02
+    )
     drive = recorded(tmp_path / "drive", street)
     corner = np.array([0.0, 0.15])
     found = snapped(drive, clicks(drive, street, corner, 0))
@@ -138,7 +146,7 @@ def test_a_rounded_edge_is_where_its_two_surfaces_would_meet(tmp_path: Path) -> 
 
 
 def test_the_foot_and_the_top_of_a_wall_are_edges(tmp_path: Path) -> None:
-    street = Street(profile=((-2.5, 0.0), (0.0, 0.0), (0.0, 0.8), (0.3, 0.8), (1.5, 0.8)))
+    street = ProfiledStreet(profile=((-2.5, 0.0), (0.0, 0.0), (0.0, 0.8), (0.3, 0.8), (1.5, 0.8)))
     drive = recorded(tmp_path / "drive", street)
     for corner in (np.array([0.0, 0.0]), np.array([0.0, 0.8])):
         found = snapped(drive, clicks(drive, street, corner, 2))
@@ -146,7 +154,7 @@ def test_the_foot_and_the_top_of_a_wall_are_edges(tmp_path: Path) -> None:
 
 
 def test_a_ditch_of_twenty_degrees_has_an_edge_at_its_bottom(tmp_path: Path) -> None:
-    street = Street(profile=((-1.5, 0.273), (0.0, 0.0), (1.5, 0.273)))
+    street = ProfiledStreet(profile=((-1.5, 0.273), (0.0, 0.0), (1.5, 0.273)))
     drive = recorded(tmp_path / "drive", street)
     found = snapped(drive, clicks(drive, street, LOWER, 3))
     assert (off_line(found, street.edge(LOWER)) < 0.02).mean() >= 0.9
@@ -166,28 +174,28 @@ def test_a_ditch_of_twenty_degrees_has_an_edge_at_its_bottom(tmp_path: Path) -> 
 def test_a_flat_road_has_no_edge(
     tmp_path: Path, noise_m: float, profile: tuple[tuple[float, float], ...]
 ) -> None:
-    street = Street(profile=profile, noise_m=noise_m, length_m=14.0)
+    street = ProfiledStreet(profile=profile, noise_m=noise_m, length_m=14.0)
     drive = recorded(tmp_path / "drive", street)
     points = [point for aside in (-25, 0, 20) for point in clicks(drive, street, LOWER, aside)]
     assert np.mean([strongest_bend(drive, point) == -1 for point in points]) >= 0.98
 
 
 def test_leaves_have_no_edge(tmp_path: Path) -> None:
-    street = Street(profile=((-1.0, 0.5), (1.0, 0.5)), noise_m=0.08)
+    street = ProfiledStreet(profile=((-1.0, 0.5), (1.0, 0.5)), noise_m=0.08)
     drive = recorded(tmp_path / "drive", street)
     points = clicks(drive, street, np.array([0.0, 0.5]), 0)
     assert np.mean([strongest_bend(drive, point) == -1 for point in points]) >= 0.8
 
 
 def test_a_lonely_point_has_no_edge_and_is_its_own_lowest(tmp_path: Path) -> None:
-    drive = recorded(tmp_path / "drive", Street(row_m=3.0, spacing_m=1.0))
+    drive = recorded(tmp_path / "drive", ProfiledStreet(row_m=3.0, spacing_m=1.0))
     assert strongest_bend(drive, 0) == -1
     assert lowest_point(drive, 0, 0.2) == 0
 
 
 def test_the_lowest_point_is_the_bottom_of_the_gutter_not_a_point_below_it(tmp_path: Path) -> None:
     gutter = ((-1.5, 0.0), (-0.2, 0.0), (-0.15, -0.1), (0.15, -0.1), (0.2, 0.0), (1.5, 0.0))
-    street = Street(profile=gutter, noise_m=0.001, grade=0.0, spacing_m=0.02)
+    street = ProfiledStreet(profile=gutter, noise_m=0.001, grade=0.0, spacing_m=0.02)
     drive = recorded(tmp_path / "drive", street)
     xyz = np.array(drive.columns["xyz"])
     click = clicks(drive, street, np.array([-0.2, 0.0]), 0)[2]
@@ -201,7 +209,7 @@ def test_the_lowest_point_is_the_bottom_of_the_gutter_not_a_point_below_it(tmp_p
 
 
 def test_the_highest_point_is_the_top_of_the_wall(tmp_path: Path) -> None:
-    street = Street(
+    street = ProfiledStreet(
         profile=((-2.5, 0.0), (0.0, 0.0), (0.0, 0.3), (0.2, 0.3), (1.5, 0.2)), grade=0.0
     )
     drive = recorded(tmp_path / "drive", street)

@@ -12,10 +12,10 @@ from processing.image import image_rows as module
 from processing.image.image_rows import ImageRows, image_rows
 from processing.image.kinds import ImageKind
 from processing.points.columns import ColumnWriter
-from processing.points.turns import Turns
+from processing.points.revolutions import Revolutions
 from tests.processing.image.recordings import PulsedRecording, random_recording
 
-WITH_TURNS = [kind for kind in ImageKind if kind.follows_way]
+WITH_REVOLUTIONS = [kind for kind in ImageKind if kind.follows_path]
 
 
 @pytest.fixture
@@ -23,7 +23,7 @@ def street(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> PulsedRecording:
     """A recording whose pulses are in the folder, and which is worth keeping rows of."""
     monkeypatch.setattr(module, "_FEW_POINTS", 0)
     monkeypatch.setattr(module, "_POINTS_AT_ONCE", 97)
-    street = random_recording(4, pulses_per_turn=40, turns=60)
+    street = random_recording(4, pulses_per_revolution=40, revolutions=60)
     with ColumnWriter(tmp_path) as writer:
         writer.append({"pulse": street.pulses})
     return street
@@ -37,26 +37,26 @@ def kept_files(folder: Path) -> list[Path]:
     return sorted(folder.glob("image_rows_*"))
 
 
-@pytest.mark.parametrize("kind", WITH_TURNS)
+@pytest.mark.parametrize("kind", WITH_REVOLUTIONS)
 def test_rows_found_in_pieces_and_rows_read_again_are_those_of_the_whole(
     street: PulsedRecording, tmp_path: Path, kind: ImageKind
 ) -> None:
-    pulses, turns = street.pulses, street.turns
-    whole = image_rows(kind, pulses, turns)
+    pulses, revolutions = street.pulses, street.revolutions
+    whole = image_rows(kind, pulses, revolutions)
     assert not kept_files(tmp_path)
     np.testing.assert_array_equal(whole.row_starts[[0, -1]], [0, pulses.size])
-    assert same(image_rows(kind, pulses, turns, tmp_path), whole)
+    assert same(image_rows(kind, pulses, revolutions, tmp_path), whole)
     assert [path.name for path in kept_files(tmp_path)] == [f"image_rows_{kind.value}.npz"]
     # The next time nothing but the rows is read; a column written since would be.
     column = tmp_path / "pulse.bin"
     written_ns = column.stat().st_mtime_ns
     column.write_bytes(b"")
     os.utime(column, ns=(written_ns, written_ns))
-    assert same(image_rows(kind, pulses, turns, tmp_path), whole)
+    assert same(image_rows(kind, pulses, revolutions, tmp_path), whole)
 
 
 def test_a_row_begins_at_the_first_point_of_its_pulses(street: PulsedRecording) -> None:
-    rows = image_rows(ImageKind.FEATURE_CENTER, street.pulses, street.turns)
+    rows = image_rows(ImageKind.FEATURE_CENTER, street.pulses, street.revolutions)
     for row in range(rows.origins.size):
         own = street.pulses[rows.row_starts[row] : rows.row_starts[row + 1]]
         assert (2 * own >= rows.origins[row]).all()
@@ -77,14 +77,14 @@ def test_rows_of_other_turns_or_a_damaged_file_are_found_anew(
     street: PulsedRecording, tmp_path: Path
 ) -> None:
     kind = ImageKind.TRAJECTORY_REVERSIBLE
-    pulses, turns = street.pulses, street.turns
-    first = image_rows(kind, pulses, turns, tmp_path)
+    pulses, revolutions = street.pulses, street.revolutions
+    first = image_rows(kind, pulses, revolutions, tmp_path)
     (path,) = kept_files(tmp_path)
     for damage in (b"", b"nonsense", path.read_bytes()[:300]):
         path.write_bytes(damage)
-        assert same(image_rows(kind, pulses, turns, tmp_path), first)
+        assert same(image_rows(kind, pulses, revolutions, tmp_path), first)
         assert len(path.read_bytes()) > 300
-    moved = Turns(**{**vars(turns), "fold_pulses": turns.fold_pulses + 3})
+    moved = Revolutions(**{**vars(revolutions), "fold_pulses": revolutions.fold_pulses + 3})
     assert not same(image_rows(kind, pulses, moved, tmp_path), first)
     assert kept_files(tmp_path) == [path]
 

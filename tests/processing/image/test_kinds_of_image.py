@@ -15,13 +15,13 @@ from processing.image.point_image_kernels import (
     raster_kernel,
 )
 from tests.builders import simulated_drive
-from tests.processing.image.recordings import true_turns, turns_of
+from tests.processing.image.recordings import revolutions_of, true_revolutions
 
 FOLDS = np.array([100, 210, 320, 428, 540])
 
 
 def image_of(kind: ImageKind, pulses: np.ndarray) -> PointCloudImage:
-    return PointCloudImage(kind, pulses.astype(np.int64), turns_of(FOLDS))
+    return PointCloudImage(kind, pulses.astype(np.int64), revolutions_of(FOLDS))
 
 
 def test_feature_centre_follows_equations_3_5_and_3_6() -> None:
@@ -59,12 +59,12 @@ def test_the_trajectory_is_the_middle_column_of_the_trajectory_centre_kind() -> 
 def test_reversible_rows_have_one_length_and_begin_anew_after_a_stop() -> None:
     pulses = np.concatenate([np.arange(100, 265), np.arange(9000, 9200)])
     folds = np.array([100, 210, 9000, 9110])
-    turns = turns_of(
+    revolutions = revolutions_of(
         folds,
         row_ends=np.array([210, 265, 9110]),
         segments=np.array([0, 0, 1], np.int32),
     )
-    image = PointCloudImage(ImageKind.REVERSIBLE, pulses, turns)
+    image = PointCloudImage(ImageKind.REVERSIBLE, pulses, revolutions)
     rows, columns = image.pixel_of(np.arange(pulses.size))
     assert image.width == 110
     assert image.segments.tolist() == [0, 0, 1, 1]
@@ -92,7 +92,7 @@ def test_pulses_outside_all_folds_get_rows_of_their_own() -> None:
 def test_missing_returns_of_less_than_a_second_leave_empty_rows() -> None:
     folds = np.arange(0, 3001, 100)
     pulses = np.concatenate([np.arange(0, 250), np.arange(1200, 1300)])
-    image = PointCloudImage(ImageKind.TRAJECTORY_REVERSIBLE, pulses, turns_of(folds))
+    image = PointCloudImage(ImageKind.TRAJECTORY_REVERSIBLE, pulses, revolutions_of(folds))
     assert image.rows == 13
     assert image.segments.tolist() == [0] * 13
     assert np.diff(image.row_starts).tolist() == [100, 100, 50] + [0] * 9 + [100]
@@ -101,7 +101,7 @@ def test_missing_returns_of_less_than_a_second_leave_empty_rows() -> None:
 def test_a_longer_gap_is_closed_up_and_known_as_a_split() -> None:
     folds = np.arange(0, 3001, 100)
     pulses = np.concatenate([np.arange(0, 250), np.arange(2200, 2300)])
-    image = PointCloudImage(ImageKind.TRAJECTORY_REVERSIBLE, pulses, turns_of(folds))
+    image = PointCloudImage(ImageKind.TRAJECTORY_REVERSIBLE, pulses, revolutions_of(folds))
     assert image.rows == 4
     assert image.segments.tolist() == [0, 0, 0, 1]
     assert image.split_rows.tolist() == [3]
@@ -109,8 +109,8 @@ def test_a_longer_gap_is_closed_up_and_known_as_a_split() -> None:
 
 
 def test_of_several_points_in_a_pixel_the_one_nearest_its_centre_is_shown() -> None:
-    turns = turns_of(np.array([0, 1000, 2000]))
-    image = PointCloudImage(ImageKind.FEATURE_CENTER, np.arange(2000), turns)
+    revolutions = revolutions_of(np.array([0, 1000, 2000]))
+    image = PointCloudImage(ImageKind.FEATURE_CENTER, np.arange(2000), revolutions)
     rows, columns = image.pixel_of(np.arange(2000))
     exact = (np.arange(2000) % 1000) / 1000 * image.width
     for row, column in [(0, 0), (0, 57), (1, 500), (1, 989)]:
@@ -123,7 +123,7 @@ def test_of_several_points_in_a_pixel_the_one_nearest_its_centre_is_shown() -> N
 
 def test_a_click_beside_a_point_finds_it_within_three_pixels_of_its_row() -> None:
     pulses = np.array([105, 130, 131, 215])
-    image = PointCloudImage(ImageKind.TRAJECTORY_REVERSIBLE, pulses, turns_of(FOLDS))
+    image = PointCloudImage(ImageKind.TRAJECTORY_REVERSIBLE, pulses, revolutions_of(FOLDS))
     assert image.nearest_filled(0, 5) == 0
     assert image.nearest_filled(0, 2) == 0
     assert image.nearest_filled(0, 8) == 0
@@ -148,7 +148,7 @@ def test_asking_outside_the_image_gives_no_points_and_no_wrong_ones() -> None:
 def test_an_image_without_points_is_empty() -> None:
     empty = np.empty(0, np.int64)
     for kind in (ImageKind.REVERSIBLE, ImageKind.TRAJECTORY_CENTER):
-        image = PointCloudImage(kind, empty, turns_of(FOLDS))
+        image = PointCloudImage(kind, empty, revolutions_of(FOLDS))
         assert (image.rows, image.width, image.drive_count) == (0, 0, 0)
     assert PointCloudImage(ImageKind.TOP_VIEW, empty, 10).rows == 0
 
@@ -156,7 +156,7 @@ def test_an_image_without_points_is_empty() -> None:
 @pytest.mark.parametrize("kind", [ImageKind.TRAJECTORY_REVERSIBLE, ImageKind.FEATURE_CENTER])
 def test_rows_of_a_street_are_its_turns(kind: ImageKind) -> None:
     street = simulated_drive(3, length_m=3.0, multi_return_share=0.1)
-    image = PointCloudImage(kind, street.pulse, true_turns(street))
+    image = PointCloudImage(kind, street.pulse, true_revolutions(street))
     rows, columns = image.pixel_of(np.arange(street.count))
     offset = rows - street.turn
     # A pulse on a fold may go either way by the rounding of its time.

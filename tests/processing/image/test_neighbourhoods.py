@@ -12,7 +12,7 @@ from processing.errors import Cancelled
 from processing.image.grid import PixelGrid
 from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
-from processing.image.neighbourhood_kernels import RowPoints, Surfaces, neighbourhood_kernel
+from processing.image.neighbourhood_kernels import PointRows, Surfaces, neighbourhood_kernel
 from processing.image.normals import RowLayout, oriented_surface_shapes, surface_shapes
 from processing.image.segment_kernels import JoiningRows, join_rows_kernel, tangents_kernel
 from processing.image.segments import JoinLimits, connected_segments
@@ -89,14 +89,24 @@ def test_walls_on_both_sides_of_a_street_face_the_street(tmp_path: Path) -> None
 
 def test_a_road_is_flat_across_the_ends_of_rows() -> None:
     # Rows begin in the middle of straight scan lines, as rows of a street begin below the vehicle.
-    turns, per_turn = 60, 100
-    xyz = plane(turns, per_turn, [0.02, 0, 0], [0, 0.1, 0])
-    starts = np.concatenate([[0], np.arange(50, turns * per_turn, per_turn), [turns * per_turn]])
+    revolutions, per_revolution = 60, 100
+    xyz = plane(revolutions, per_revolution, [0.02, 0, 0], [0, 0.1, 0])
+    starts = np.concatenate(
+        [
+            [0],
+            np.arange(50, revolutions * per_revolution, per_revolution),
+            [revolutions * per_revolution],
+        ]
+    )
     counts = np.diff(starts)
     columns = np.concatenate([np.arange(count) for count in counts]).astype(np.int32)
     columns[:50] += 50
-    grid = PixelGrid(starts.astype(np.int64), columns, np.zeros(counts.size, np.int32), per_turn)
-    shapes = oriented_surface_shapes(xyz, grid, RADIUS_M).shapes.reshape(turns, per_turn, 3)
+    grid = PixelGrid(
+        starts.astype(np.int64), columns, np.zeros(counts.size, np.int32), per_revolution
+    )
+    shapes = oriented_surface_shapes(xyz, grid, RADIUS_M).shapes.reshape(
+        revolutions, per_revolution, 3
+    )
     at_fold, elsewhere = shapes[10:-10, 45:55], shapes[10:-10, 25:35]
     np.testing.assert_allclose(at_fold.mean(axis=(0, 1)), elsewhere.mean(axis=(0, 1)), atol=0.05)
 
@@ -249,7 +259,7 @@ def test_kernels_do_the_same_without_the_compiler(*, is_regular: bool) -> None:
     layout = RowLayout(grid.columns, grid.row_starts, origins, grid.segments, is_regular=is_regular)
     compiled = surface_shapes(xyz, (1.0, 1.0, 1.0), layout, np.arange(72), RADIUS_M)
     plain = Surfaces(*(np.empty((72, 3), np.float32) for _ in range(3)))
-    rows = RowPoints(
+    rows = PointRows(
         xyz,
         np.ones(3),
         grid.columns,

@@ -20,12 +20,12 @@ FRAME = PlanFrame(west=-11_000.0, north=-34_990.0, px_per_m=2.0, width=20, heigh
 """Ten by ten metres, half a metre a pixel."""
 
 
-def add(raster: PlanRaster, *places: tuple[float, float, float], drive: int = 0, size: int = 1):
+def add(raster: PlanRaster, *positions: tuple[float, float, float], drive: int = 0, size: int = 1):
     """Points by their place from the origin; each has the colour of its number."""
-    count = len(places)
+    count = len(positions)
     colours = np.arange(count, dtype=np.uint8)[:, None] + np.array([10, 20, 30], np.uint8)
     points = 100 + np.arange(count)
-    raster.add(drive, points, np.array(places, dtype=np.float32), colours, size_px=size)
+    raster.add(drive, points, np.array(positions, dtype=np.float32), colours, size_px=size)
 
 
 def test_a_point_is_in_the_pixel_where_it_lies() -> None:
@@ -40,12 +40,12 @@ def test_a_point_is_in_the_pixel_where_it_lies() -> None:
 
 
 def test_of_several_points_in_a_pixel_the_highest_is_shown_whatever_their_order() -> None:
-    for places in ([(5.1, 5.1, 2.0), (5.2, 5.2, 1.0)], [(5.2, 5.2, 1.0), (5.1, 5.1, 2.0)]):
+    for positions in ([(5.1, 5.1, 2.0), (5.2, 5.2, 1.0)], [(5.2, 5.2, 1.0), (5.1, 5.1, 2.0)]):
         raster = PlanRaster(FRAME, ORIGIN)
-        add(raster, *places)
+        add(raster, *positions)
         picture = raster.picture()
         (shown,) = picture.points[picture.points != NO_POINT].tolist()
-        assert places[shown - 100][2] == 2.0
+        assert positions[shown - 100][2] == 2.0
 
 
 def test_what_is_above_the_ceiling_hides_nothing() -> None:

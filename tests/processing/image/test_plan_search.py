@@ -11,7 +11,7 @@ import pytest
 from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.plan_ground import ceilings_above, ground_along
-from processing.image.plan_points import PlanPoints, Sought
+from processing.image.plan_points import PlanPoints, PointQuery
 from processing.points.drive import Drive
 from tests.builders import START
 from tests.widgets.builders import imported_drive
@@ -43,8 +43,8 @@ def test_a_drive_without_trajectory_has_no_road(drive: Drive, tmp_path: Path) ->
 
 def test_the_ceiling_follows_the_nearest_place_of_the_road_and_ends_far_from_it() -> None:
     ground = np.array([[0.0, 0.0, 10.0], [100.0, 0.0, 20.0]])
-    places = np.array([[5.0, 3.0], [90.0, 2.0], [0.0, 500.0]])
-    assert ceilings_above(ground, places, 3.0).tolist() == [13.0, 23.0, np.inf]
+    positions = np.array([[5.0, 3.0], [90.0, 2.0], [0.0, 500.0]])
+    assert ceilings_above(ground, positions, 3.0).tolist() == [13.0, 23.0, np.inf]
 
 
 def test_a_place_where_a_point_lies_gives_that_point(drive: Drive) -> None:
@@ -52,7 +52,7 @@ def test_a_place_where_a_point_lies_gives_that_point(drive: Drive) -> None:
     random = np.random.default_rng(2)
     for point in random.integers(0, drive.count, 40).tolist():
         x, y, _ = drive.xyz(np.array([point]))[0].tolist()
-        found = points.point_at(Sought(x, y, 0.0, 0.05))
+        found = points.point_at(PointQuery(x, y, 0.0, 0.05))
         assert found is not None
         there = drive.xyz(np.array([found[1]]))[0]
         # Another one may lie exactly below or above it, as on a wall.
@@ -65,10 +65,10 @@ def test_of_what_is_close_the_highest_surface_is_seen(drive: Drive) -> None:
     top = int(xyz[:, 2].argmax())
     x, y, z = xyz[top].tolist()
     points = PlanPoints(((drive, KIND),))
-    found = points.point_at(Sought(x, y, 0.3, 0.5))
+    found = points.point_at(PointQuery(x, y, 0.3, 0.5))
     assert found is not None
     assert drive.xyz(np.array([found[1]]))[0, 2] >= z - 0.1
-    limited = points.point_at(Sought(x, y, 0.3, 0.5, ceiling_m=z - 1.0))
+    limited = points.point_at(PointQuery(x, y, 0.3, 0.5, ceiling_m=z - 1.0))
     assert limited is not None
     assert drive.xyz(np.array([limited[1]]))[0, 2] <= z - 1.0
 
@@ -76,6 +76,6 @@ def test_of_what_is_close_the_highest_surface_is_seen(drive: Drive) -> None:
 def test_nothing_is_found_where_no_point_is_in_reach(drive: Drive) -> None:
     points = PlanPoints(((drive, KIND),))
     far = drive.info.highest[0] + 50.0
-    assert points.point_at(Sought(far, START[1], 0.1, 1.0)) is None
-    assert points.point_at(Sought(START[0], START[1], 0.1, 1.0, ceiling_m=0.0)) is None
-    assert PlanPoints(()).point_at(Sought(0.0, 0.0, 1.0, 1.0)) is None
+    assert points.point_at(PointQuery(far, START[1], 0.1, 1.0)) is None
+    assert points.point_at(PointQuery(START[0], START[1], 0.1, 1.0, ceiling_m=0.0)) is None
+    assert PlanPoints(()).point_at(PointQuery(0.0, 0.0, 1.0, 1.0)) is None

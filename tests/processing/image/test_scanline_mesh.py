@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.image.scanline_arrays import Band
+from processing.image.scanline_arrays import MeshLimits
 from processing.image.scanline_mesh import SectionMesh, SectionVertices
 from processing.image.scanline_rows import RowPoints
 
@@ -24,22 +24,24 @@ def recorded(seed: int) -> Floats:
     """(rows, columns, 3) across, station and height of a trembling grid; NaN: nothing came back."""
     chance = np.random.default_rng(seed)
     row, column = np.mgrid[:ROWS, :COLUMNS].astype(np.float64)
-    places = np.stack([0.1 * column - 1.5, 0.07 * row + 0.03 * column, 0.02 * column], axis=2)
-    places += chance.normal(0.0, 0.02, places.shape)
-    places[chance.random((ROWS, COLUMNS)) < 0.15] = np.nan
-    return places
+    positions = np.stack([0.1 * column - 1.5, 0.07 * row + 0.03 * column, 0.02 * column], axis=2)
+    positions += chance.normal(0.0, 0.02, positions.shape)
+    positions[chance.random((ROWS, COLUMNS)) < 0.15] = np.nan
+    return positions
 
 
-def meshed(places: Floats, rows_at_once: int = ROWS) -> list[SectionVertices]:
+def meshed(positions: Floats, rows_at_once: int = ROWS) -> list[SectionVertices]:
     """The sections as the program makes them, some rows at a time."""
-    mesh = SectionMesh(COLUMNS, Band(90.0, 90.0, -9.0, 9.0, SPACING_M, -LAST, LAST, LONGEST_M))
+    mesh = SectionMesh(
+        COLUMNS, MeshLimits(90.0, 90.0, -9.0, 9.0, SPACING_M, -LAST, LAST, LONGEST_M)
+    )
     found = []
     for first in range(0, ROWS, rows_at_once):
-        part = places[first : first + rows_at_once]
+        part = positions[first : first + rows_at_once]
         is_there = np.isfinite(part[..., 0])
         row, column = np.nonzero(is_there)
         points = part[is_there]
-        before = int(np.isfinite(places[:first, :, 0]).sum())
+        before = int(np.isfinite(positions[:first, :, 0]).sum())
         counts = is_there.sum(axis=1)
         ends = np.cumsum(counts)
         table = np.column_stack(
@@ -66,29 +68,31 @@ def meshed(places: Floats, rows_at_once: int = ROWS) -> list[SectionVertices]:
     return found
 
 
-def triangles(places: Floats) -> list[Corners]:
+def triangles(positions: Floats) -> list[Corners]:
     """Corners of all triangles: cells are cut along the shorter diagonal."""
     found: list[Corners] = []
     for r in range(ROWS - 1):
         for c in range(COLUMNS - 1):
             a, b, d, e = (r, c), (r, c + 1), (r + 1, c), (r + 1, c + 1)
-            rising, falling = (np.linalg.norm(places[i] - places[j]) for i, j in ((a, e), (b, d)))
+            rising, falling = (
+                np.linalg.norm(positions[i] - positions[j]) for i, j in ((a, e), (b, d))
+            )
             if np.isnan(falling) or rising <= falling:
                 both = ((a, b, e), (a, e, d))
             else:
                 both = ((a, b, d), (b, e, d))
             for corners in both:
-                sides = [places[i] - places[j] for i, j in pairwise((*corners, corners[0]))]
+                sides = [positions[i] - positions[j] for i, j in pairwise((*corners, corners[0]))]
                 # What is NaN is no shorter.
                 if (np.linalg.norm(sides, axis=1) <= LONGEST_M).all():
                     found.append(corners)
     return found
 
 
-def crossings(places: Floats) -> Floats:
+def crossings(positions: Floats) -> Floats:
     """(n, 3) level, across and height where sections cross edges; within a cell no diagonal."""
     edges: dict[Corners, int] = {}
-    for corners in triangles(places):
+    for corners in triangles(positions):
         for i, j in pairwise((*corners, corners[0])):
             edge = tuple(sorted((i, j)))
             edges[edge] = edges.get(edge, 0) + 1
@@ -96,21 +100,21 @@ def crossings(places: Floats) -> Floats:
     for (i, j), times in edges.items():
         if i[0] != j[0] and i[1] != j[1] and times == 2:
             continue
-        start, length = places[i][1], places[j][1] - places[i][1]
+        start, length = positions[i][1], positions[j][1] - positions[i][1]
         low, high = sorted((start, start + length))
         for level in range(int(np.floor(low / SPACING_M)) + 1, int(np.floor(high / SPACING_M)) + 1):
             share = (level * SPACING_M - start) / length
-            place = places[i] + share * (places[j] - places[i])
-            found.append((level, place[0], place[2]))
+            position = positions[i] + share * (positions[j] - positions[i])
+            found.append((level, position[0], position[2]))
     return np.array(sorted(found))
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_sections_are_where_plain_numpy_puts_them(seed: int) -> None:
-    places = recorded(seed)
-    (found,) = meshed(places)
+    positions = recorded(seed)
+    (found,) = meshed(positions)
     every = np.column_stack([found.levels, found.across, found.height])
-    expected = crossings(places)
+    expected = crossings(positions)
     order = np.lexsort((every[:, 2], every[:, 1], every[:, 0]))
     assert len(every) == len(expected) > 300
     np.testing.assert_allclose(every[order], expected, atol=1e-9)
@@ -126,8 +130,8 @@ def test_neighbours_on_a_section_are_of_one_cell() -> None:
 
 @pytest.mark.parametrize("rows_at_once", [1, 5])
 def test_rows_may_come_in_any_number_at_a_time(rows_at_once: int) -> None:
-    places = recorded(3)
-    (whole,) = meshed(places)
-    last = meshed(places, rows_at_once)[-1]
+    positions = recorded(3)
+    (whole,) = meshed(positions)
+    last = meshed(positions, rows_at_once)[-1]
     for name in ("levels", "across", "height", "time", "intensity", "point", "is_break"):
         np.testing.assert_array_equal(getattr(last, name), getattr(whole, name))

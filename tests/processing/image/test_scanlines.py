@@ -19,9 +19,9 @@ from processing.image.scanlines import (
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive, write_trajectory
 from processing.points.passes import passes_of
-from processing.points.turns_file import write_turns
+from processing.points.revolutions_file import write_revolutions
 from tests.builders import START, SimulatedDrive, simulated_drive
-from tests.processing.image.recordings import drive_of, true_turns
+from tests.processing.image.recordings import drive_of, true_revolutions
 from tests.street_scene import CROSSFALL, CURB_AT_M, CURB_HEIGHT_M, StreetScene
 
 Floats = NDArray[np.float64]
@@ -37,7 +37,7 @@ def recorded(folder: Path, **changes: Any) -> tuple[Drive, SimulatedDrive]:
     drive_of(simulated, folder / "drive")
     write_trajectory(folder / "drive", simulated.trajectory)
     times = simulated.fold_times[~np.isnan(simulated.fold_times)]
-    write_turns(folder / "drive", replace(true_turns(simulated), reference_times=times))
+    write_revolutions(folder / "drive", replace(true_revolutions(simulated), reference_times=times))
     return Drive(folder / "drive"), simulated
 
 
@@ -48,8 +48,8 @@ def whole(drive: Drive, settings: ScanlineSettings = SETTINGS) -> Scanlines:
 
 def numbers_about(scanlines: Scanlines, drive: Drive, within_m: float) -> list[int]:
     """The sections about the middle of what was recorded."""
-    (way,) = passes_of(drive)
-    middle = way.station_at(np.median(np.asarray(drive.columns["time"])))
+    (vehicle_path,) = passes_of(drive)
+    middle = vehicle_path.station_at(np.median(np.asarray(drive.columns["time"])))
     found: list[int] = np.flatnonzero(np.abs(scanlines.stations_m - middle) < within_m).tolist()
     return found
 
@@ -57,8 +57,8 @@ def numbers_about(scanlines: Scanlines, drive: Drive, within_m: float) -> list[i
 def on_street(scanlines: Scanlines, number: int, curve: float) -> tuple[Floats, Floats]:
     """How far to the left of the road's middle a section's vertices are, and their height."""
     vertices = np.arange(scanlines.starts[number], scanlines.starts[number + 1])
-    places = scanlines.xyz(vertices) - START
-    return StreetScene(curve, LENGTH_M).along_across(places)[1], places[:, 2]
+    positions = scanlines.xyz(vertices) - START
+    return StreetScene(curve, LENGTH_M).along_across(positions)[1], positions[:, 2]
 
 
 def curb_of(outward: Floats, height: Floats) -> tuple[float, float]:
@@ -76,9 +76,9 @@ def curb_of(outward: Floats, height: Floats) -> tuple[float, float]:
 def test_every_section_shows_the_curbs_where_they_are(
     tmp_path: Path, mount: str, curve: float, speed: float
 ) -> None:
-    changes = {"turn_rate_hz": 50.0} if speed < 5 else {}
+    changes = {"revolution_rate_hz": 50.0} if speed < 5 else {}
     drive, _ = recorded(
-        tmp_path, mount=mount, curve=curve, speed_m_s=speed, pulses_per_turn=1500.0, **changes
+        tmp_path, mount=mount, curve=curve, speed_m_s=speed, pulses_per_revolution=1500.0, **changes
     )
     scanlines = whole(drive)
     np.testing.assert_allclose(np.diff(scanlines.stations_m), SETTINGS.spacing_m, atol=1e-9)
@@ -87,8 +87,8 @@ def test_every_section_shows_the_curbs_where_they_are(
     for number in numbers:
         left, height = on_street(scanlines, number, curve)
         for side in (-1, 1):
-            place, rise = curb_of(side * left, height)
-            assert place == pytest.approx(CURB_AT_M, abs=0.02)
+            position, rise = curb_of(side * left, height)
+            assert position == pytest.approx(CURB_AT_M, abs=0.02)
             assert rise == pytest.approx(CURB_HEIGHT_M, abs=0.015)
 
 
@@ -104,7 +104,7 @@ def test_heights_are_about_the_road_wherever_the_trajectory_was_carried(tmp_path
 
 
 def test_a_plane_stays_a_plane(tmp_path: Path) -> None:
-    drive, _ = recorded(tmp_path, mount="45", pulses_per_turn=1500.0)
+    drive, _ = recorded(tmp_path, mount="45", pulses_per_revolution=1500.0)
     scanlines = whole(drive)
     (middle, *_) = numbers_about(scanlines, drive, 0.2)
     left, height = on_street(scanlines, middle, 0.0)
@@ -136,15 +136,15 @@ def test_however_it_is_cut_into_blocks_the_scanlines_are_the_same_bits(
 def test_one_scanline_is_the_one_of_the_whole_drive(tmp_path: Path) -> None:
     drive, _ = recorded(tmp_path, range_noise_m=0.004, lost_share=0.1)
     expected = whole(drive)
-    (way,) = passes_of(drive)
-    one = scanline_through(drive, way.xyz_at([10.04], [3.0])[0], SETTINGS)
+    (vehicle_path,) = passes_of(drive)
+    one = scanline_through(drive, vehicle_path.xyz_at([10.04], [3.0])[0], SETTINGS)
     assert one is not None
     assert one.stations_m.tolist() == pytest.approx([10.0])
     number = int(np.argmin(np.abs(expected.stations_m - 10.0)))
     part = slice(int(expected.starts[number]), int(expected.starts[number + 1]))
     for name in FIELDS:
         np.testing.assert_array_equal(getattr(one, name), getattr(expected, name)[part])
-    assert scanline_through(drive, way.xyz_at([10.0], [90.0])[0], SETTINGS) is None
+    assert scanline_through(drive, vehicle_path.xyz_at([10.0], [90.0])[0], SETTINGS) is None
 
 
 def test_where_nothing_came_back_the_line_breaks(tmp_path: Path) -> None:
@@ -157,14 +157,14 @@ def test_where_nothing_came_back_the_line_breaks(tmp_path: Path) -> None:
 
 def test_a_vehicle_that_stands_with_its_laser_on_is_measured_once(tmp_path: Path) -> None:
     moving, _ = recorded(
-        tmp_path / "moving", mount="90", range_noise_m=0.003, pulses_per_turn=1000.0
+        tmp_path / "moving", mount="90", range_noise_m=0.003, pulses_per_revolution=1000.0
     )
     stopped, _ = recorded(
         tmp_path / "stopped",
         mount="90",
         range_noise_m=0.003,
         stop_at=8.0,
-        pulses_per_turn=1000.0,
+        pulses_per_revolution=1000.0,
         stop_s=2.0,
         fires_at_stop=True,
     )
@@ -172,10 +172,10 @@ def test_a_vehicle_that_stands_with_its_laser_on_is_measured_once(tmp_path: Path
     counts = [np.diff(whole(drive).starts) for drive in (moving, stopped)]
     assert counts[1].max() <= 1.5 * counts[0].max()
     standing = whole(stopped)
-    (way,) = passes_of(stopped)
-    stood = way.station_at(stopped.columns["time"][stopped.count // 2])
+    (vehicle_path,) = passes_of(stopped)
+    stood = vehicle_path.station_at(stopped.columns["time"][stopped.count // 2])
     for number in np.flatnonzero(np.abs(standing.stations_m - stood) < 1.0).tolist():
         left, height = on_street(standing, number, 0.0)
-        place, rise = curb_of(left, height)
-        assert place == pytest.approx(CURB_AT_M, abs=0.03)
+        position, rise = curb_of(left, height)
+        assert position == pytest.approx(CURB_AT_M, abs=0.03)
         assert rise == pytest.approx(CURB_HEIGHT_M, abs=0.03)

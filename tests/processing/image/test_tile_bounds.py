@@ -36,7 +36,7 @@ def hills(folder: Path | None = None) -> PointCloudImage:
     return PointCloudImage(ImageKind.TOP_VIEW, cells, WIDTH, coordinates=coordinates)
 
 
-def place_of_row(row: int) -> np.ndarray:
+def position_of_row(row: int) -> np.ndarray:
     """In the middle of a row, m."""
     return np.array([WIDTH / 2 * STEP, row * STEP, 0]) * SCALE + OFFSET
 
@@ -44,7 +44,7 @@ def place_of_row(row: int) -> np.ndarray:
 def test_what_is_worked_out_bit_by_bit_equals_what_is_made_in_one_go(tmp_path: Path) -> None:
     whole = hills().pyramid.table
     pyramid = hills(tmp_path / "d").pyramid
-    while not pyramid.extend(place_of_row(1300), 100_000):
+    while not pyramid.extend(position_of_row(1300), 100_000):
         assert not pyramid.is_ready
     assert pyramid.is_ready
     np.testing.assert_array_equal(pyramid.table, whole)
@@ -56,7 +56,7 @@ def test_what_is_worked_out_bit_by_bit_equals_what_is_made_in_one_go(tmp_path: P
 def test_tiles_near_the_place_asked_for_become_exact_first() -> None:
     whole = hills().pyramid
     pyramid = hills().pyramid
-    pyramid.extend(place_of_row(1400), 1)
+    pyramid.extend(position_of_row(1400), 1)
     near, far = TileKey(0, 1400 // 256, 0), TileKey(0, 0, 0)
     assert pyramid.is_exact(near)
     assert not pyramid.is_exact(far)
@@ -80,7 +80,7 @@ def test_a_sketch_says_about_where_tiles_are() -> None:
 
 def test_what_was_worked_out_before_the_program_ended_is_not_done_again(tmp_path: Path) -> None:
     first = hills(tmp_path / "d").pyramid
-    first.extend(place_of_row(1400), 200_000)
+    first.extend(position_of_row(1400), 200_000)
     first.keep()
     done = [key for key in first.keys(0) if first.is_exact(key)]
     assert 0 < len(done) < len(list(first.keys(0)))

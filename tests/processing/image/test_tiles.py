@@ -63,12 +63,12 @@ def test_the_coarsest_level_is_one_tile_and_children_tile_their_parent() -> None
 
 
 def test_a_coarse_tile_shows_points_of_its_children() -> None:
-    recording = random_recording(5, pulses_per_turn=700, turns=600, lost_share=0.5)
+    recording = random_recording(5, pulses_per_revolution=700, revolutions=600, lost_share=0.5)
     xyz = np.zeros((recording.pulses.size, 3), np.int32)
     image = PointCloudImage(
         ImageKind.TRAJECTORY_REVERSIBLE,
         recording.pulses,
-        recording.turns,
+        recording.revolutions,
         coordinates=Coordinates(xyz, SCALE, OFFSET),
     )
     pyramid = image.pyramid
@@ -82,12 +82,12 @@ def test_a_coarse_tile_shows_points_of_its_children() -> None:
 
 
 def test_bounds_hold_every_point_of_a_tile_and_touch_them() -> None:
-    recording = random_recording(1, pulses_per_turn=300, turns=600)
+    recording = random_recording(1, pulses_per_revolution=300, revolutions=600)
     random = np.random.default_rng(0)
     xyz = random.integers(-50_000, 50_000, (recording.pulses.size, 3)).astype(np.int32)
     coordinates = Coordinates(xyz, SCALE, OFFSET)
     image = PointCloudImage(
-        ImageKind.FEATURE_CENTER, recording.pulses, recording.turns, coordinates=coordinates
+        ImageKind.FEATURE_CENTER, recording.pulses, recording.revolutions, coordinates=coordinates
     )
     metres = xyz * np.array(SCALE) + np.array(OFFSET)
     rows, columns = image.pixel_of(np.arange(image.drive_count))

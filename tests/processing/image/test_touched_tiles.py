@@ -18,7 +18,7 @@ def drive(tmp_path_factory):
     return imported_drive(tmp_path_factory.mktemp("street"))
 
 
-@pytest.mark.parametrize("kind", [one for one in ImageKind if one.follows_way])
+@pytest.mark.parametrize("kind", [one for one in ImageKind if one.follows_path])
 def test_the_tiles_of_points_are_those_that_their_pixels_are_in(drive, kind):
     image = image_of(drive, kind)
     random = np.random.default_rng(3)

@@ -12,7 +12,7 @@ from processing.labels.strokes import (
     points_of_segment,
     points_under_brush,
     segments_of,
-    way_is_short,
+    stroke_is_short,
 )
 from processing.points.drive import Drive
 from tests.widgets.builders import imported_drive
@@ -57,7 +57,7 @@ def test_the_compiled_loop_does_what_the_plain_one_does(drive):
     scale, stretches = np.array(drive.info.scale), np.array([[0, 200], [250, 300]])
     way = np.stack([integers[10], integers[260]]).astype(float)
     plain, compiled = np.empty(300, np.int64), np.empty(300, np.int64)
-    kernel = strokes._near_way_kernel
+    kernel = strokes._near_stroke_kernel
     count = kernel.py_func(integers, scale, stretches, (way, 0.5), plain)
     assert kernel(integers, scale, stretches, (way, 0.5), compiled) == count
     np.testing.assert_array_equal(plain[:count], compiled[:count])
@@ -79,9 +79,9 @@ def test_a_segment_is_all_its_points(tmp_path):
 
 def test_a_jump_from_one_thing_to_another_is_no_way():
     here = np.zeros(3)
-    assert way_is_short(here, np.array([1.9, 0, 0]), 0.1)
-    assert not way_is_short(here, np.array([2.1, 0, 0]), 0.1)
-    assert way_is_short(here, np.array([9.0, 0, 0]), 1.0)
+    assert stroke_is_short(here, np.array([1.9, 0, 0]), 0.1)
+    assert not stroke_is_short(here, np.array([2.1, 0, 0]), 0.1)
+    assert stroke_is_short(here, np.array([9.0, 0, 0]), 1.0)
 
 
 def test_rules_choose_the_points_that_are_painted():

@@ -13,21 +13,21 @@ from processing.monitor import SilentMonitor
 from processing.noise.beam_origins import beam_origins
 from processing.noise.combined import noise_codes_in_space, noise_codes_with_beams
 from processing.noise.drive_noise import NoiseSearch
-from processing.noise.stretches import stretches_of
+from processing.noise.row_chunks import row_chunks_of
 from processing.owned_files import MARK
 from processing.points.drive import Drive
 from processing.runner import RunRequest, columns_of, run
 from processing.tools.noise import NOISE, NoiseParameters
 from processing.tools.tool import FinishedColumns
 from tests.noisy_street import POLE, NoisyStreet, noisy_street
-from tests.processing.image.recordings import drive_of, without_turns
+from tests.processing.image.recordings import drive_of, without_revolutions
 
 Codes = NDArray[np.uint8]
 
 
 @pytest.fixture(scope="module")
 def street() -> NoisyStreet:
-    return noisy_street(5, length_m=16.0, pulses_per_turn=600.0)
+    return noisy_street(5, length_m=16.0, pulses_per_revolution=600.0)
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +83,7 @@ def test_a_cut_of_the_recording_changes_next_to_nothing(
     drive: Drive, street: NoisyStreet, found: Mapping[str, Codes], tmp_path: Path
 ) -> None:
     codes = np.zeros(drive.count, np.uint8)
-    cut = NoiseSearch(drive, codes, tmp_path, drive.count, points_per_stretch=drive.count // 2)
+    cut = NoiseSearch(drive, codes, tmp_path, drive.count, points_per_chunk=drive.count // 2)
     cut.combined(0.5, SilentMonitor())
     assert ((codes > 0) != (found["combined"] > 0)).mean() < 0.002
     assert f_measure(codes > 0, street.noise > 0) >= 0.965
@@ -104,7 +104,7 @@ def test_without_beams_most_noise_is_found_and_surfaces_stay(
 ) -> None:
     whole = drive_of(street.drive, tmp_path / "d")
     order = np.lexsort(np.round(street.drive.xyz[:, :2], 1).T)
-    seen = without_turns(whole)
+    seen = without_revolutions(whole)
     assert beam_origins(seen) is None
     codes = noise_codes_in_space(street.drive.xyz[order])
     is_noise = street.noise[order] > 0
@@ -153,9 +153,9 @@ def test_stretches_own_every_row_once_and_look_some_metres_around() -> None:
     counts = np.full(200, 50)
     row_starts = np.concatenate([[0], np.cumsum(counts)])
     along = np.arange(200) * 1.0
-    stretches = list(stretches_of(row_starts, along, 1_500))
-    assert [row for one in stretches for row in one.rows] == list(range(200))
-    second = stretches[1]
+    chunks = list(row_chunks_of(row_starts, along, 1_500))
+    assert [row for one in chunks for row in one.rows] == list(range(200))
+    second = chunks[1]
     assert second.rows == range(30, 60)
     assert second.with_overlap == range(24, 66)
 
@@ -163,25 +163,25 @@ def test_stretches_own_every_row_once_and_look_some_metres_around() -> None:
 def test_a_stop_does_not_make_a_stretch_endless() -> None:
     row_starts = np.arange(1_001) * 50
     along = np.concatenate([np.arange(50.0), np.full(900, 50.0), 50 + np.arange(50.0)])
-    for one in stretches_of(row_starts, along, 1_000):
+    for one in row_chunks_of(row_starts, along, 1_000):
         looked = row_starts[one.with_overlap.stop] - row_starts[one.with_overlap.start]
         assert looked <= 2_000
         assert one.with_overlap.start <= one.rows.start < one.rows.stop <= one.with_overlap.stop
 
 
 def test_spikes_in_a_recording_are_left_out_of_its_rows(drive: Drive) -> None:
-    from processing.noise.beam_kernels import Beams
+    from processing.noise.beam_kernels import PointBeams
 
     rows, width = 40, 60
-    places = np.stack(np.meshgrid(np.arange(rows), np.arange(width), indexing="ij"), -1)
-    xyz = np.column_stack([places.reshape(-1, 2) * 0.05, np.zeros(rows * width)])
+    positions = np.stack(np.meshgrid(np.arange(rows), np.arange(width), indexing="ij"), -1)
+    xyz = np.column_stack([positions.reshape(-1, 2) * 0.05, np.zeros(rows * width)])
     xyz[100] = [0.0, 0.0, 5e4]
     origins = np.column_stack([xyz[:, 0], np.full(len(xyz), 1.5), np.full(len(xyz), 2.0)])
-    beams = Beams(
+    beams = PointBeams(
         xyz,
         origins,
         np.linalg.norm(xyz - origins, axis=1),
-        places[..., 1].ravel().astype(np.int32),
+        positions[..., 1].ravel().astype(np.int32),
         np.arange(rows + 1) * width,
         np.zeros(rows, np.int32),
         0.02,
@@ -194,10 +194,10 @@ def test_spikes_in_a_recording_are_left_out_of_its_rows(drive: Drive) -> None:
 def test_of_a_steep_bank_before_a_tripod_one_point_in_sixty_is_lost_at_most() -> None:
     random = np.random.default_rng(8)
     around, below = random.uniform(0, 2 * np.pi, 60_000), np.radians(random.uniform(8, 80, 60_000))
-    ways = np.column_stack(
+    directions = np.column_stack(
         [np.cos(below) * np.cos(around), np.cos(below) * np.sin(around), -np.sin(below)]
     )
-    ranges = 1.7 / (0.7 * ways[:, 0] - ways[:, 2])
-    xyz = ways[(ranges > 0) & (ranges < 25)] * ranges[(ranges > 0) & (ranges < 25), None]
+    ranges = 1.7 / (0.7 * directions[:, 0] - directions[:, 2])
+    xyz = directions[(ranges > 0) & (ranges < 25)] * ranges[(ranges > 0) & (ranges < 25), None]
     xyz += random.normal(0, 0.004, xyz.shape)
     assert (noise_codes_in_space(xyz) > 0).mean() < 0.016

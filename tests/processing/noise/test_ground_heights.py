@@ -15,7 +15,7 @@ _MARGIN_M = 7.0  # medians of few cells lean at the border
 _ALL_SURE = np.ones((int(_SIDE_M / _STEP_M)) ** 2, np.bool_)
 
 
-def _places() -> NDArray[np.float64]:
+def _positions() -> NDArray[np.float64]:
     line = np.arange(0, _SIDE_M, _STEP_M)[: int(_SIDE_M / _STEP_M)]
     return np.stack(np.meshgrid(line, line, indexing="ij"), -1).reshape(-1, 2)
 
@@ -23,7 +23,7 @@ def _places() -> NDArray[np.float64]:
 @settings(max_examples=15, deadline=None)
 @given(st.floats(-1.2, 1.2), st.floats(-1.2, 1.2))
 def test_the_ground_of_a_bank_follows_it(along: float, across: float) -> None:
-    xy = _places()
+    xy = _positions()
     xyz = np.column_stack([xy, xy @ [along, across]])
     inner = (np.abs(xy - _SIDE_M / 2) < _SIDE_M / 2 - _MARGIN_M).all(axis=1)
     heights = ground_below(xyz, _ALL_SURE, _CELL_M).heights[inner]
@@ -31,7 +31,7 @@ def test_the_ground_of_a_bank_follows_it(along: float, across: float) -> None:
 
 
 def test_a_point_over_a_bank_is_as_high_as_it_hangs() -> None:
-    xy = _places()
+    xy = _positions()
     xyz = np.column_stack([xy, xy[:, 0]])
     over = np.array([[10.3, 10.4, 12.3], [10.3, 10.4, 8.3]])
     is_sure = np.r_[_ALL_SURE, False, False]
@@ -40,7 +40,7 @@ def test_a_point_over_a_bank_is_as_high_as_it_hangs() -> None:
 
 
 def test_level_ground_does_not_lean_at_the_edge_of_a_roof() -> None:
-    xy = _places()
+    xy = _positions()
     is_roof = xy[:, 0] >= _SIDE_M / 2
     xyz = np.column_stack([xy, np.where(is_roof, 5.0, 0.0)])
     heights = ground_below(xyz, _ALL_SURE, _CELL_M).heights
@@ -49,7 +49,7 @@ def test_level_ground_does_not_lean_at_the_edge_of_a_roof() -> None:
 
 
 def test_a_clod_stands_out_on_smooth_ground_and_not_on_rough() -> None:
-    xy, clod = _places(), np.array([[12.05, 12.05, 0.1]])
+    xy, clod = _positions(), np.array([[12.05, 12.05, 0.1]])
     standing_out = []
     for rough_m in (0.0, 0.1):
         bumps = rough_m * np.random.default_rng(1).normal(size=len(xy))
@@ -64,7 +64,7 @@ def test_a_clod_stands_out_on_smooth_ground_and_not_on_rough() -> None:
 
 
 def test_the_steepness_of_the_ground_is_told_and_how_much_lies_high_over_it() -> None:
-    xy = _places()
+    xy = _positions()
     crowns = xy[:, 1] > _SIDE_M / 2
     bank = np.column_stack([xy, 0.6 * xy[:, 0]])
     leaves = bank[crowns] + [0.0, 0.0, 4.0]

@@ -7,7 +7,7 @@ import pytest
 
 from processing.monitor import SilentMonitor
 from processing.noise.flat_cells import flat_cells
-from processing.noise.key_order import counts_kernel, move_kernel, ordered_by_key
+from processing.noise.key_order import counts_kernel, move_kernel, order_by_key
 
 SILENT = SilentMonitor()
 
@@ -17,7 +17,7 @@ SILENT = SilentMonitor()
 def test_equal_keys_keep_their_order(count: int, most: int) -> None:
     keys = np.random.default_rng(count).integers(0, most, count)
     expected = np.argsort(keys, kind="stable")
-    ordered, order = ordered_by_key(keys.copy(), SILENT)
+    ordered, order = order_by_key(keys.copy(), SILENT)
     np.testing.assert_array_equal(order, expected)
     np.testing.assert_array_equal(ordered, keys[expected])
 

@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.noise.training.meadows import grown_over, with_little_noise
+from processing.noise.training.meadows import grow_grass, remove_most_noise
 from processing.noise.training.scanners import STANDING
-from processing.noise.training.scenes import Scene, scene_of
+from processing.noise.training.scenes import TrainingScene, scene_of
 from processing.noise.training.streets import GRASS, ROAD
 
 
 @pytest.fixture(scope="module")
-def scene() -> Scene:
+def scene() -> TrainingScene:
     return scene_of(4, STANDING, 20_000)[0]
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_grass_grows_on_the_ground_along_the_beams(scene: Scene, seed: int) -> None:
-    meadow = grown_over(scene, seed)
+def test_grass_grows_on_the_ground_along_the_beams(scene: TrainingScene, seed: int) -> None:
+    meadow = grow_grass(scene, seed)
     grown = meadow.kinds != scene.kinds
     assert grown.sum() > 100
     assert (scene.kinds[grown] == ROAD).all()
@@ -32,13 +32,13 @@ def test_grass_grows_on_the_ground_along_the_beams(scene: Scene, seed: int) -> N
     np.testing.assert_allclose(along / scene.ranges[:, None] ** 2, 0.0, atol=1e-9)
 
 
-def test_where_no_ground_was_met_nothing_grows(scene: Scene) -> None:
+def test_where_no_ground_was_met_nothing_grows(scene: TrainingScene) -> None:
     bare = scene.chosen(scene.kinds != ROAD)
-    assert grown_over(bare, 1) is bare
+    assert grow_grass(bare, 1) is bare
 
 
-def test_a_quiet_scene_keeps_what_is_true_and_loses_most_noise(scene: Scene) -> None:
+def test_a_quiet_scene_keeps_what_is_true_and_loses_most_noise(scene: TrainingScene) -> None:
     for seed in range(4):
-        quiet = with_little_noise(scene, seed)
+        quiet = remove_most_noise(scene, seed)
         assert (quiet.noise == 0).sum() == (scene.noise == 0).sum()
         assert (quiet.noise > 0).sum() < 0.55 * (scene.noise > 0).sum()

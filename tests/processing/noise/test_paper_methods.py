@@ -16,11 +16,11 @@ from processing.noise.statistical import DistanceSums, mean_distances, statistic
 from processing.noise.tiles_of_space import TiledCloud
 from processing.noise.whole_clouds import radius_outliers_by_parts, statistical_outliers_by_parts
 
-Cloud = NDArray[np.float64]
+CloudXyz = NDArray[np.float64]
 START = np.array([-11e3, -35e3, 120.0])
 
 
-def street(spikes: int = 1) -> Cloud:
+def street(spikes: int = 1) -> CloudXyz:
     """A dense plane that thins out, with points in the air and some far away; map coordinates."""
     chance = np.random.default_rng(5)
     plane = np.column_stack([chance.random(6_000) ** 2 * 30, chance.random(6_000) * 4])
@@ -29,7 +29,7 @@ def street(spikes: int = 1) -> Cloud:
     return np.vstack([np.column_stack([plane, np.zeros(6_000)]), air, far]) + START
 
 
-def open3d_kept(xyz: Cloud) -> dict[str, NDArray[np.bool_]]:
+def open3d_kept(xyz: CloudXyz) -> dict[str, NDArray[np.bool_]]:
     import open3d
 
     cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(xyz))
@@ -115,7 +115,7 @@ def test_a_point_without_a_place_is_noise_and_nobodys_neighbour() -> None:
     ],
 )
 def test_strange_clouds_are_judged_without_a_word(
-    cloud: Cloud, radius: int | None, statistical: int | None
+    cloud: CloudXyz, radius: int | None, statistical: int | None
 ) -> None:
     by_radius, by_statistics = radius_outliers(cloud), statistical_outliers(cloud)
     assert by_radius.size == by_statistics.size == len(cloud)
@@ -141,8 +141,8 @@ def test_parts_give_what_the_whole_cloud_gives(tmp_path: Path, points: int, tile
 
 def test_ties_are_the_same_in_every_part(tmp_path: Path) -> None:
     # Points on a lattice of 0.1 m: many pairs are exactly a radius apart, to a rounding.
-    places = np.stack(np.meshgrid(np.arange(60), np.arange(60)), -1).reshape(-1, 2) * 0.1
-    xyz = np.column_stack([places, np.zeros(len(places))]) + START
+    positions = np.stack(np.meshgrid(np.arange(60), np.arange(60)), -1).reshape(-1, 2) * 0.1
+    xyz = np.column_stack([positions, np.zeros(len(positions))]) + START
     silent = SilentMonitor()
     cloud = TiledCloud(lambda p: xyz[p], len(xyz), tmp_path / "order", 1.0, monitor=silent)
     found = np.zeros(len(xyz), np.uint8)

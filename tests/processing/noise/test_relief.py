@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from processing.noise.training.relief import Relief, on_relief, relief_of
 from processing.noise.training.scanners import STANDING
-from processing.noise.training.scenes import Scene, scene_of
+from processing.noise.training.scenes import TrainingScene, scene_of
 
 
 def test_a_bank_rises_over_its_width_and_stays() -> None:
@@ -19,7 +19,7 @@ def test_a_bank_rises_over_its_width_and_stays() -> None:
     assert bank.heights(xy) == pytest.approx([0.0, 0.0, 1.5, 3.0, 3.0])
 
 
-def _beams(scene: Scene) -> NDArray[np.int64]:
+def _beams(scene: TrainingScene) -> NDArray[np.int64]:
     return (scene.scans * 10_000 + scene.rows) * 10_000 + scene.columns
 
 

@@ -22,14 +22,14 @@ _HALVES_M = np.array([6.0, 4.0, 1.6])
 def room_scan(random: np.random.Generator) -> tuple[SphereScan, np.ndarray]:
     """A room of flat walls, and some points that float in it."""
     scan = sphere_scan(300, 200)
-    ways = scan.xyz - scan.place
-    ways /= np.linalg.norm(ways, axis=1)[:, None]
-    ranges = (_HALVES_M / np.maximum(np.abs(ways), 1e-9)).min(axis=1)
+    directions = scan.xyz - scan.position
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    ranges = (_HALVES_M / np.maximum(np.abs(directions), 1e-9)).min(axis=1)
     ranges += random.normal(0, 0.002, ranges.size)
     floats = np.zeros(ranges.size, np.bool_)
     floats[random.choice(ranges.size, 120, replace=False)] = True
     ranges[floats] *= random.uniform(0.3, 0.8, 120)
-    return replace(scan, xyz=scan.place + ways * ranges[:, None]), floats
+    return replace(scan, xyz=scan.position + directions * ranges[:, None]), floats
 
 
 def test_points_that_float_in_a_scanned_room_are_noise(tmp_path: Path) -> None:
@@ -40,7 +40,7 @@ def test_points_that_float_in_a_scanned_room_are_noise(tmp_path: Path) -> None:
     drive = Drive(folder)
     origins = beam_origins(drive)
     assert origins is not None
-    np.testing.assert_allclose(origins.of(np.arange(3)), np.tile(scan.place, (3, 1)))
+    np.testing.assert_allclose(origins.of(np.arange(3)), np.tile(scan.position, (3, 1)))
     image = image_of(drive, drive.pixel_kind)
     beams, _ = beams_of(drive, image, range(image.rows), origins)
     step = np.radians(120.0 / 199)

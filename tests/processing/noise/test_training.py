@@ -7,18 +7,18 @@ import pytest
 
 from processing.monitor import SilentMonitor
 from processing.noise.training.examples import case_in_space, case_with_beams
-from processing.noise.training.fitting import Shape, fitted, shifted_to_keep
+from processing.noise.training.fitting import TreesSize, fit_trees, shift_to_keep
 from processing.noise.training.noise_kinds import NOISE_KINDS
-from processing.noise.training.rays import BOX, CAPSULE, NOWHERE, PANE, STRIP, met_by, thing
+from processing.noise.training.rays import BOX, CAPSULE, NOWHERE, PANE, STRIP, thing, trace_rays
 from processing.noise.training.scanners import AIRBORNE, MOBILE, STANDING
-from processing.noise.training.scenes import Scene, scene_of, thinned
+from processing.noise.training.scenes import TrainingScene, scene_of, thin_scene
 from processing.noise.training.scores import f_measure, score_line
 from processing.noise.training.streets import KINDS, ROAD
 from processing.noise.trees import Trees, log_odds
 
 
 @pytest.fixture(scope="module")
-def scene() -> Scene:
+def scene() -> TrainingScene:
     return scene_of(2, MOBILE, 40_000)[0]
 
 
@@ -33,12 +33,12 @@ def scene() -> Scene:
     ],
 )
 def test_a_level_beam_meets_what_stands_ahead(row: list[float], reach: float) -> None:
-    met = met_by(np.zeros((1, 3)), np.eye(3)[:1], np.array([row]), 0.0, np.ones((1, 2)))
+    met = trace_rays(np.zeros((1, 3)), np.eye(3)[:1], np.array([row]), 0.0, np.ones((1, 2)))
     assert met.ranges[0] == pytest.approx(reach)
     assert met.things[0] == (0 if reach < NOWHERE else -1)
 
 
-def test_a_seed_gives_the_same_scene_again(scene: Scene) -> None:
+def test_a_seed_gives_the_same_scene_again(scene: TrainingScene) -> None:
     again = scene_of(2, MOBILE, 40_000)[0]
     np.testing.assert_array_equal(again.xyz, scene.xyz)
     np.testing.assert_array_equal(again.noise, scene.noise)
@@ -58,13 +58,13 @@ def test_a_scene_holds_noise_and_true_things_and_its_points_lie_on_their_beams(h
     assert beams.row_starts[-1] == scene.ranges.size
 
 
-def test_a_thinned_cloud_is_a_part_of_the_scene(scene: Scene) -> None:
-    sizes = {thinned(scene, seed).noise.size for seed in range(6)}
+def test_a_thinned_cloud_is_a_part_of_the_scene(scene: TrainingScene) -> None:
+    sizes = {thin_scene(scene, seed).noise.size for seed in range(6)}
     assert max(sizes) <= scene.noise.size
     assert len(sizes) > 2
 
 
-def test_examples_are_rows_that_say_what_they_are(scene: Scene) -> None:
+def test_examples_are_rows_that_say_what_they_are(scene: TrainingScene) -> None:
     with_beams, in_space = case_with_beams(scene, 0.002, 2), case_in_space(scene, 2)
     first = _tree_of_one_leaf(1.0)
     for examples in (
@@ -81,7 +81,7 @@ def test_examples_are_rows_that_say_what_they_are(scene: Scene) -> None:
     assert in_space.again(None, _tree_of_one_leaf(-9.0)).is_noise.size == 0
 
 
-def test_every_pass_sees_the_same_examples(scene: Scene) -> None:
+def test_every_pass_sees_the_same_examples(scene: TrainingScene) -> None:
     case = case_in_space(scene, 2)
     np.testing.assert_array_equal(case.alone()[1].rows, case.alone()[1].rows)
 
@@ -91,7 +91,7 @@ def _tree_of_one_leaf(odds: float) -> Trees:
     return Trees(none - 1, np.array([odds]), none, none, none, 0.0)
 
 
-def test_a_score_names_every_kind_that_is_there(scene: Scene) -> None:
+def test_a_score_names_every_kind_that_is_there(scene: TrainingScene) -> None:
     line = score_line("scene", scene.noise > 0, scene)
     assert "F 1.000" in line
     assert f"{NOISE_KINDS[1]} 1.000" in line
@@ -99,10 +99,12 @@ def test_a_score_names_every_kind_that_is_there(scene: Scene) -> None:
     assert f_measure(scene.noise > 99, scene.noise > 0) == 0.0
 
 
-def test_trees_are_fitted_to_examples_and_a_first_look_keeps_the_noise(scene: Scene) -> None:
+def test_trees_are_fitted_to_examples_and_a_first_look_keeps_the_noise(
+    scene: TrainingScene,
+) -> None:
     looks = case_with_beams(scene, 0.002, 2).alone()[0]
-    trees = fitted(looks, Shape(30, 12, 0.25))
-    first = shifted_to_keep(trees, looks.rows, looks.is_noise, 0.01)
+    trees = fit_trees(looks, TreesSize(30, 12, 0.25))
+    first = shift_to_keep(trees, looks.rows, looks.is_noise, 0.01)
     is_left = log_odds(first, looks.rows, SilentMonitor()) > 0
     assert is_left[looks.is_noise].mean() >= 0.985
     assert is_left.mean() < 1.0

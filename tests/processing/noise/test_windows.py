@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.noise.beam_kernels import Beams
+from processing.noise.beam_kernels import PointBeams
 from processing.noise.window_kernels import (
     NEAR_FEATURES,
     SUSPICION_FEATURES,
@@ -20,11 +20,11 @@ _NEAR = (range(-2, 3), 3, 1)
 _MIDDLE = (range(-4, 5, 2), 12, 1)
 _WIDE = (range(-10, 11, 5), 64, 2)
 
-Window = tuple[range, int, int]
+RowWindow = tuple[range, int, int]
 
 
 @pytest.fixture(scope="module")
-def beams() -> Beams:
+def beams() -> PointBeams:
     """Rows of uneven length with gaps and double returns, in two recordings."""
     random = np.random.default_rng(8)
     counts = random.integers(0, 90, 30)
@@ -32,18 +32,22 @@ def beams() -> Beams:
     starts = np.concatenate([[0], np.cumsum(counts)])
     segments = (np.arange(30) > 17).astype(np.int32)
     ranges = random.choice([4.0, 4.01, 4.06, 4.3, 9.0], columns.size)
-    places = np.zeros((columns.size, 3))
-    return Beams(places, places, ranges, columns.astype(np.int32), starts, segments, 0.01)
+    positions = np.zeros((columns.size, 3))
+    return PointBeams(
+        positions, positions, ranges, columns.astype(np.int32), starts, segments, 0.01
+    )
 
 
 @pytest.fixture(scope="module")
-def asked(beams: Beams) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def asked(beams: PointBeams) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Every third point, and its row."""
     points = np.arange(0, beams.ranges.size, 3)
     return points, np.searchsorted(beams.row_starts, points, "right") - 1
 
 
-def looked_at(beams: Beams, point: int, row: int, window: Window) -> tuple[NDArray[np.int64], int]:
+def looked_at(
+    beams: PointBeams, point: int, row: int, window: RowWindow
+) -> tuple[NDArray[np.int64], int]:
     """The other points of a window, and how many rows it has."""
     offsets, aside, stride = window
     found, rows = [], 0
@@ -53,24 +57,24 @@ def looked_at(beams: Beams, point: int, row: int, window: Window) -> tuple[NDArr
             of_row = np.arange(beams.row_starts[other], beams.row_starts[other + 1])
             away = beams.columns[of_row].astype(int) - beams.columns[point]
             found.append(of_row[np.abs(away) <= aside][::stride])
-    places = np.concatenate(found)
-    return places[places != point], rows
+    positions = np.concatenate(found)
+    return positions[positions != point], rows
 
 
 def plain_shares(
-    beams: Beams, is_sure: NDArray[np.bool_], point: int, row: int, window: Window
+    beams: PointBeams, is_sure: NDArray[np.bool_], point: int, row: int, window: RowWindow
 ) -> list[float]:
-    places, rows = looked_at(beams, point, row, window)
-    gaps = beams.ranges[places] - beams.ranges[point]
-    used, (_, aside, stride) = max(places.size, 1), window
+    positions, rows = looked_at(beams, point, row, window)
+    gaps = beams.ranges[positions] - beams.ranges[point]
+    used, (_, aside, stride) = max(positions.size, 1), window
     near = [(np.abs(gaps) < limit).sum() / used for limit in (0.025, 0.1, 0.4)]
     aside_of = [(gaps < -0.1).sum() / used, (gaps > 0.1).sum() / used]
-    sure = (is_sure[places] & (gaps < -0.1)).sum() / used
-    return [stride * places.size / (rows * (2 * aside + 1) - 1), *near, *aside_of, sure]
+    sure = (is_sure[positions] & (gaps < -0.1)).sum() / used
+    return [stride * positions.size / (rows * (2 * aside + 1) - 1), *near, *aside_of, sure]
 
 
 def test_near_and_wide_windows_hold_what_plain_counting_finds(
-    beams: Beams, asked: tuple[NDArray[np.int64], NDArray[np.int64]]
+    beams: PointBeams, asked: tuple[NDArray[np.int64], NDArray[np.int64]]
 ) -> None:
     points, rows = asked
     is_sure = np.random.default_rng(1).random(beams.ranges.size) < 0.5
@@ -89,7 +93,7 @@ def test_near_and_wide_windows_hold_what_plain_counting_finds(
 
 
 def test_suspicion_is_the_mean_of_what_was_said_beside(
-    beams: Beams, asked: tuple[NDArray[np.int64], NDArray[np.int64]]
+    beams: PointBeams, asked: tuple[NDArray[np.int64], NDArray[np.int64]]
 ) -> None:
     points, rows = asked
     suspicions = np.random.default_rng(2).random(beams.ranges.size).astype(np.float32)
@@ -97,7 +101,9 @@ def test_suspicion_is_the_mean_of_what_was_said_beside(
     suspicion_kernel(beams, suspicions, points, rows, found)
     for i, (point, row) in enumerate(zip(points, rows, strict=True)):
         for number, window in enumerate((_MIDDLE, _WIDE)):
-            places, _ = looked_at(beams, int(point), int(row), window)
-            alike = places[np.abs(beams.ranges[places] - beams.ranges[point]) < 0.1]
-            means = [float(suspicions[one].mean()) if one.size else 0.0 for one in (places, alike)]
+            positions, _ = looked_at(beams, int(point), int(row), window)
+            alike = positions[np.abs(beams.ranges[positions] - beams.ranges[point]) < 0.1]
+            means = [
+                float(suspicions[one].mean()) if one.size else 0.0 for one in (positions, alike)
+            ]
             np.testing.assert_allclose(found[i, 2 * number : 2 * number + 2], means, rtol=1e-4)

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from processing.points import reference_times, vehicle_frame
-from processing.points.reference_times import find_crossings, repaired
+from processing.points.reference_times import find_crossings, repair_reference_times
+from processing.points.revolutions import PointColumns
 from processing.points.trajectory import Trajectory
-from processing.points.turns import PointColumns
 from processing.points.vehicle_frame import Poses
 from tests.builders import simulated_drive
 
@@ -18,7 +18,7 @@ PERIOD_S = 0.01
 def test_good_crossings_are_kept_as_they_are():
     predicted = np.arange(100) * PERIOD_S
     crossed = predicted + 0.002 * PERIOD_S * np.sin(predicted * 20) + 0.1 * PERIOD_S
-    times = repaired(predicted, crossed, np.ones(100, dtype=np.int64), PERIOD_S)
+    times = repair_reference_times(predicted, crossed, np.ones(100, dtype=np.int64), PERIOD_S)
     assert times == pytest.approx(crossed, abs=1e-12)
 
 
@@ -27,7 +27,7 @@ def test_a_missing_crossing_is_predicted_from_its_neighbours():
     crossed = predicted + 0.1 * PERIOD_S
     hidden = crossed.copy()
     hidden[40:60] = np.nan
-    times = repaired(predicted, hidden, np.ones(100, dtype=np.int64), PERIOD_S)
+    times = repair_reference_times(predicted, hidden, np.ones(100, dtype=np.int64), PERIOD_S)
     assert times == pytest.approx(crossed, abs=1e-12)
 
 
@@ -39,14 +39,14 @@ def test_a_crossing_far_from_its_neighbours_is_replaced(miss, pulses):
     disturbed = crossed.copy()
     disturbed[50] += miss * PERIOD_S
     chord[50] = pulses
-    times = repaired(predicted, disturbed, chord, PERIOD_S)
+    times = repair_reference_times(predicted, disturbed, chord, PERIOD_S)
     assert times == pytest.approx(crossed, abs=1e-12)
 
 
 def test_without_crossings_the_prediction_stands():
     predicted = np.arange(10) * PERIOD_S
     nothing = np.full(10, np.nan)
-    times = repaired(predicted, nothing, np.zeros(10, dtype=np.int64), PERIOD_S)
+    times = repair_reference_times(predicted, nothing, np.zeros(10, dtype=np.int64), PERIOD_S)
     assert (times == predicted).all()
 
 
@@ -56,15 +56,17 @@ def test_a_crossing_divides_the_time_as_it_divides_the_offsets():
     xyz = np.column_stack([-left, [0] * 4, [-2000] * 4]).astype(np.int32)
     ones = np.ones(4, dtype=np.uint8)
     points = PointColumns(xyz, (0.001,) * 3, (0.0,) * 3, time, ones, ones)
-    way = Trajectory(np.array([-1.0, 1.0]), np.zeros((2, 3)), np.zeros((2, 3)), has_attitude=True)
+    vehicle_path = Trajectory(
+        np.array([-1.0, 1.0]), np.zeros((2, 3)), np.zeros((2, 3)), has_attitude=True
+    )
     pulses = np.array([5, 6, 9, 10])
     crossed, chord = find_crossings(
-        points, pulses, Poses.of(way), np.array([1.5e-5]), period_s=1e-4, below_m=-0.5
+        points, pulses, Poses.of(vehicle_path), np.array([1.5e-5]), period_s=1e-4, below_m=-0.5
     )
     assert crossed[0] == pytest.approx(1.25e-5)
     assert chord[0] == 3
     above, _ = find_crossings(
-        points, pulses, Poses.of(way), np.array([1.5e-5]), period_s=1e-4, below_m=-3.0
+        points, pulses, Poses.of(vehicle_path), np.array([1.5e-5]), period_s=1e-4, below_m=-3.0
     )
     assert np.isnan(above[0])
 

@@ -79,8 +79,8 @@ def test_points_in_the_vehicle_are_turned_and_moved_back() -> None:
     away = xyz - trajectory.positions_at(times)
     wanted = np.einsum("nji,nj->ni", trajectory.rotations_at(times), away)
     np.testing.assert_allclose(trajectory.to_vehicle(xyz, times), wanted, atol=1e-10)
-    place = trajectory.to_vehicle([[10.0, 21.0, 30.5]], [100.0])
-    np.testing.assert_allclose(np.linalg.norm(place), np.hypot(1.0, 0.5))
+    position = trajectory.to_vehicle([[10.0, 21.0, 30.5]], [100.0])
+    np.testing.assert_allclose(np.linalg.norm(position), np.hypot(1.0, 0.5))
 
 
 def test_times_outside_and_inside_long_gaps_are_not_covered() -> None:

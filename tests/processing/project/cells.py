@@ -1,4 +1,4 @@
-"""A drive as an import leaves it where it finds no turns: by cells of the top view."""
+"""A drive as an import leaves it where it finds no revolutions: by cells of the top view."""
 
 from __future__ import annotations
 

@@ -55,11 +55,12 @@ def replayed_history(folder: Path) -> dict[str, Feature]:
     with closing(connect(folder / "project.gpkg", "ro")) as connection:
         query = "SELECT value FROM zuka_settings WHERE key = 'history_position'"
         found = connection.execute(query).fetchone()
-        position = int(found[0]) if found else 0
+        last_position = int(found[0]) if found else 0
         stored = connection.execute(
-            "SELECT place, change FROM zuka_history WHERE place <= ? ORDER BY place", (position,)
+            "SELECT place, change FROM zuka_history WHERE place <= ? ORDER BY place",
+            (last_position,),
         ).fetchall()
-    assert [place for place, _ in stored] == list(range(1, position + 1))
+    assert [position for position, _ in stored] == list(range(1, last_position + 1))
     features: dict[str, Feature] = {}
     for _, text in stored:
         change = change_from_json(text, folder)

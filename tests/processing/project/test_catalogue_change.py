@@ -23,7 +23,7 @@ from processing.project.catalogue import (
     FeatureKind,
     Geometry,
 )
-from processing.project.catalogue_change import compare, with_used_kinds
+from processing.project.catalogue_change import compare, keep_used_kinds
 from processing.project.catalogue_file import read_catalogue, symbol_names
 from processing.project.catalogue_writing import write_catalogue
 from processing.project.change import Change
@@ -89,7 +89,7 @@ def test_the_same_catalogue_changes_nothing(bundled: Catalogue) -> None:
     found = compare(bundled, bundled, [curb("a"), replace(sign("b"), kind="of_another_time")])
     assert found.loses_nothing
     assert found.texts() == ()
-    assert with_used_kinds(bundled, found) == bundled
+    assert keep_used_kinds(bundled, found) == bundled
 
 
 def test_a_kind_that_did_not_fit_before_is_no_obstacle(bundled: Catalogue) -> None:

@@ -17,7 +17,7 @@ from processing.points.drive import Drive
 from processing.points.drive_info import read_drive_info
 from processing.project.catalogue import Geometry
 from processing.project.change import Change
-from processing.project.drive_completion import carried_again, complete_drive
+from processing.project.drive_completion import carry_results_again, complete_drive
 from processing.project.feature import Feature, PointReference, Vertex
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.label_change import label_changes
@@ -86,9 +86,9 @@ def test_rows_and_pulses_are_those_of_an_import_with_the_trajectory(
     assert drive.info.rows_by == "trajectory"
     for name in ("xyz", "time", "pulse", "intensity", "classification"):
         assert (drive.columns[name] == with_trajectory.columns[name]).all(), name
-    assert drive.turns is not None
-    assert with_trajectory.turns is not None
-    assert (drive.turns.fold_pulses == with_trajectory.turns.fold_pulses).all()
+    assert drive.revolutions is not None
+    assert with_trajectory.revolutions is not None
+    assert (drive.revolutions.fold_pulses == with_trajectory.revolutions.fold_pulses).all()
     assert (drive.trajectory.xyz == with_trajectory.trajectory.xyz).all()
     ours, theirs = drive.sources(0, drive.count), with_trajectory.sources(0, drive.count)
     assert (ours[0] == theirs[0]).all()
@@ -137,7 +137,7 @@ def test_what_was_drawn_and_labelled_stays_on_its_points(project, delivery):
 
 def test_steps_on_points_that_moved_are_not_taken_back_and_later_ones_are(project, delivery):
     drive = project.drives[0]
-    has_rows = drive.turns is not None
+    has_rows = drive.revolutions is not None
     project.features.apply(LABEL, Change(added=(_line_on(drive, [7, 4000]),)))
     project.complete_drives([_completed(project, delivery)])
     assert project.history.can_undo is has_rows
@@ -155,7 +155,7 @@ def test_labels_that_were_set_meanwhile_are_not_lost(project, delivery):
     project.features.apply(LABEL, Change(labels=labels))
     with pytest.raises(OutOfRange, match="changed"):
         project.complete_drives([completed])
-    again = carried_again(completed, drive, SilentMonitor())
+    again = carry_results_again(completed, drive, SilentMonitor())
     (drive,) = project.complete_drives([again])
     assert (labels_of(drive, np.arange(drive.count)) == 5).sum() == 50
 

@@ -48,9 +48,9 @@ def project(streets, tmp_path) -> Iterator[Project]:
 
 def _line(id_: str, *drives: str, status=Status.ACCEPTED, run="") -> Feature:
     rests = [PointReference(drive, 3) for drive in drives] or [None]
-    places = [Vertex((1.0 + at, 2.0, 3.0), rest) for at, rest in enumerate((*rests, None))]
+    positions = [Vertex((1.0 + at, 2.0, 3.0), rest) for at, rest in enumerate((*rests, None))]
     made_by = Provenance("curbs", 1, confidence=0.5, run=run)
-    return Feature(id_, "curb", Geometry.LINE, tuple(places), status=status, provenance=made_by)
+    return Feature(id_, "curb", Geometry.LINE, tuple(positions), status=status, provenance=made_by)
 
 
 def _remove(project: Project, number: int) -> None:

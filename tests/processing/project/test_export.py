@@ -60,8 +60,8 @@ def _feature(
     **attributes: str | float,
 ) -> Feature:
     vertices = tuple(
-        Vertex(position, PointReference("left", 10 + place))
-        for place, position in enumerate(positions)
+        Vertex(position, PointReference("left", 10 + number))
+        for number, position in enumerate(positions)
     )
     return Feature(id_, kind, geometry, vertices, attributes, status, Provenance())
 
@@ -261,11 +261,11 @@ def test_a_delivered_file_of_the_same_name_is_not_overwritten(
 def test_a_file_in_the_place_of_the_folder_is_told(
     tmp_path: Path, catalogue: Catalogue, street: tuple[Feature, ...]
 ) -> None:
-    place = tmp_path / "out"
-    place.write_text("a file")
+    position = tmp_path / "out"
+    position.write_text("a file")
     with pytest.raises(UserError):
-        export(street, catalogue, "EPSG:6677", _request(place))
-    assert place.read_text() == "a file"
+        export(street, catalogue, "EPSG:6677", _request(position))
+    assert position.read_text() == "a file"
 
 
 _FULL_DISK = """

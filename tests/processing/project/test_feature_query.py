@@ -48,14 +48,14 @@ KINDS = Catalogue(
         ),
     )
 )
-PLACE = Vertex((1.0, 2.0, 3.0))
+POSITION = Vertex((1.0, 2.0, 3.0))
 
 
 def pole(**attributes: AttributeValue) -> Feature:
-    return Feature("a1b2c3d4", "pole", Geometry.POINT, (PLACE,), attributes)
+    return Feature("a1b2c3d4", "pole", Geometry.POINT, (POSITION,), attributes)
 
 
-CURB = Feature("ffee0011", "curb", Geometry.LINE, (PLACE, PLACE), {"side": "left"})
+CURB = Feature("ffee0011", "curb", Geometry.LINE, (POSITION, POSITION), {"side": "left"})
 
 
 def finds(feature: Feature, **rule: object) -> bool:
@@ -94,7 +94,7 @@ def test_kind_and_status_must_be_among_those_asked_for() -> None:
 
 
 def test_occluded_vertices_are_asked_for() -> None:
-    occluded = CURB.with_vertices((PLACE, Vertex((1.0, 2.0, 3.0), is_occluded=True)))
+    occluded = CURB.with_vertices((POSITION, Vertex((1.0, 2.0, 3.0), is_occluded=True)))
     assert finds(occluded, has_occluded=True)
     assert not finds(CURB, has_occluded=True)
 
@@ -154,7 +154,7 @@ def test_a_choice_is_found_by_its_value_and_its_names(name: str) -> None:
 
 
 def test_a_kind_that_the_catalogue_lacks_is_found_by_its_id_and_values() -> None:
-    stray = Feature("00112233", "old_kind", Geometry.POINT, (PLACE,), {"note": "broken"})
+    stray = Feature("00112233", "old_kind", Geometry.POINT, (POSITION,), {"note": "broken"})
     assert finds(stray, text="old_kind broken")
     assert finds(stray, conditions=(AttributeCondition("note", Comparison.EQUAL, "broken"),))
     assert not finds(stray, conditions=(AttributeCondition("side", Comparison.EMPTY),))

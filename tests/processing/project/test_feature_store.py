@@ -15,7 +15,7 @@ from processing.errors import BadFile
 from processing.project.catalogue import Geometry
 from processing.project.change import Change, Replacement
 from processing.project.feature import Feature, PointReference, Vertex
-from processing.project.geometry_blob import places_of
+from processing.project.geometry_blob import positions_of
 from processing.project.project import Project
 from processing.project.runs import Run, new_run_id
 from processing.text import Text
@@ -152,7 +152,7 @@ def test_a_feature_moved_by_a_gis_program_is_read(tmp_path):
         enveloped = blob[:3] + bytes([blob[3] | 2]) + blob[4:8] + bytes(32) + blob[8:]
         gis.execute("UPDATE features SET geom = ?", (enveloped,))
     gis.close()
-    assert places_of(enveloped) == places_of(blob)
+    assert positions_of(enveloped) == positions_of(blob)
     with closing(Project.open(folder)) as project:
         assert features_of(project) == {"c": curb("c")}
 

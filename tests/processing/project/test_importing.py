@@ -73,8 +73,8 @@ def test_two_scanners_are_two_drives_however_they_are_told_apart(tmp_path, left,
     drives = _imported(tmp_path, files, [way])
     assert sorted(drive.count for drive in drives) == sorted([left.count, right.count])
     for drive in drives:
-        assert drive.turns is not None
-        assert abs(drive.turns.turn_rate_hz - 100.0) < 0.5
+        assert drive.revolutions is not None
+        assert abs(drive.revolutions.revolution_rate_hz - 100.0) < 0.5
 
 
 def _joined(first, second, output, told_by):

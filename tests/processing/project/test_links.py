@@ -31,7 +31,7 @@ from processing.project.scratch_folder import scratch_folder
 from processing.project.truth_store import TruthStore
 from processing.project.unfinished_imports import remove_import, remove_litter
 from processing.project.volume_store import VolumeStore
-from processing.simulate.whole_folder import made_whole
+from processing.simulate.whole_folder import write_whole_folder
 from tests.processing.project.labelled import labelled_project
 
 FOLDERS = (
@@ -109,22 +109,22 @@ def drive_id(project: Path) -> str:
     return drive.name
 
 
-def put_link(place: Path, target: Path) -> None:
+def put_link(position: Path, target: Path) -> None:
     """A link in the place of what may be there, which becomes what the link leads to."""
-    place.parent.mkdir(parents=True, exist_ok=True)
-    if place.exists():
+    position.parent.mkdir(parents=True, exist_ok=True)
+    if position.exists():
         shutil.rmtree(target) if target.is_dir() else target.unlink()
-        place.rename(target)
-    place.symlink_to(target, target_is_directory=target.is_dir())
+        position.rename(target)
+    position.symlink_to(target, target_is_directory=target.is_dir())
 
 
 @pytest.mark.parametrize("writing", [True, False])
 @pytest.mark.parametrize("place", [*FOLDERS, *FILES])
 def test_a_project_with_a_link_in_it_is_refused_and_nothing_is_touched(
-    project: Path, outside: Path, place: str, writing: bool
+    project: Path, outside: Path, position: str, writing: bool
 ) -> None:
-    link = project / place.format(drive=drive_id(project))
-    put_link(link, outside if place in FOLDERS else outside / "mine.txt")
+    link = project / position.format(drive=drive_id(project))
+    put_link(link, outside if position in FOLDERS else outside / "mine.txt")
     before = tree_of(outside), tree_of(project)
     with pytest.raises(InUse) as refused:
         Project.open(project, writing=writing).close()
@@ -194,8 +194,8 @@ REMOVALS: Mapping[str, tuple[str, Callable[[Path], object]]] = {
 def test_nothing_is_removed_through_a_link_that_came_later(
     project: Path, outside: Path, what: str
 ) -> None:
-    place, remove = REMOVALS[what]
-    put_link(project / place, outside)
+    position, remove = REMOVALS[what]
+    put_link(project / position, outside)
     before = tree_of(outside)
     with suppress(InUse):
         remove(project)
@@ -261,9 +261,9 @@ OTHERS = ("tmp/photos", "tmp/import-2024", "label_steps/notes", "results/volumes
 
 
 @pytest.mark.parametrize("place", OTHERS)
-def test_what_somebody_put_into_a_project_stays(project: Path, place: str) -> None:
-    (project / place).mkdir(parents=True)
-    (project / place / "mine.txt").write_text("mine")
+def test_what_somebody_put_into_a_project_stays(project: Path, position: str) -> None:
+    (project / position).mkdir(parents=True)
+    (project / position / "mine.txt").write_text("mine")
     (project / "tmp").mkdir(exist_ok=True)
     (project / "tmp" / "mine.txt").write_text("mine")
     with closing(Project.open(project)) as opened:
@@ -272,7 +272,7 @@ def test_what_somebody_put_into_a_project_stays(project: Path, place: str) -> No
         mine.mkdir(parents=True)
         (mine / "mine.txt").write_text("mine")
         TruthStore(opened.settings).remove_unlisted(opened.drives)
-    assert (project / place / "mine.txt").read_text() == "mine"
+    assert (project / position / "mine.txt").read_text() == "mine"
     assert (project / "tmp" / "mine.txt").read_text() == "mine"
     assert (mine / "mine.txt").read_text() == "mine"
 
@@ -314,7 +314,7 @@ def test_scratch_removes_only_scratch(tmp_path: Path, outside: Path) -> None:
 def test_a_simulation_takes_no_folder_that_is_not_its_own(
     tmp_path: Path, outside: Path, is_linked: bool
 ) -> None:
-    with made_whole(tmp_path / "street") as hidden:
+    with write_whole_folder(tmp_path / "street") as hidden:
         pass
     assert not (tmp_path / "street" / MARK).exists()
     (tmp_path / "street").rmdir()
@@ -324,6 +324,6 @@ def test_a_simulation_takes_no_folder_that_is_not_its_own(
         hidden.mkdir()
         (hidden / "mine.txt").write_text("mine")
     before = tree_of(outside), tree_of(hidden)
-    with pytest.raises(InUse), made_whole(tmp_path / "street"):
+    with pytest.raises(InUse), write_whole_folder(tmp_path / "street"):
         pass
     assert (tree_of(outside), tree_of(hidden)) == before

@@ -11,7 +11,7 @@ import pytest
 
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
-from processing.project.import_request import described, digest_of, marks_of, request_from
+from processing.project.import_request import describe_request, digest_of, marks_of, request_from
 from processing.project.importing import ImportRequest, import_drives
 from processing.project.label_export import write_labelled_points
 
@@ -38,11 +38,11 @@ def test_results_read_the_file_as_the_import_did(tmp_path: Path, request_: Impor
 
 def test_an_import_that_goes_on_knows_the_answer(request_: ImportRequest) -> None:
     marks = marks_of(request_)
-    assert request_from(described(request_, marks)) == (request_, marks)
+    assert request_from(describe_request(request_, marks)) == (request_, marks)
     other = replace(request_, columns=("-", "x", "y", "z"))
-    assert digest_of(described(other, marks)) != digest_of(described(request_, marks))
+    assert digest_of(describe_request(other, marks)) != digest_of(describe_request(request_, marks))
 
 
 def test_a_request_without_an_answer_is_written_down_as_ever(request_: ImportRequest) -> None:
     plain = replace(request_, columns=())
-    assert "columns" not in described(plain, marks_of(plain))
+    assert "columns" not in describe_request(plain, marks_of(plain))

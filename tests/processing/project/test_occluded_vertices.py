@@ -53,12 +53,14 @@ def test_a_project_of_the_first_schema_is_opened_with_its_history(tmp_path: Path
         connection.execute("DROP TABLE zuka_history_labels")
         connection.execute("DELETE FROM gpkg_extensions WHERE table_name = 'zuka_history_labels'")
         connection.execute("UPDATE zuka_settings SET value = '1' WHERE key = 'schema'")
-        for place, text in connection.execute("SELECT place, change FROM zuka_history").fetchall():
+        for position, text in connection.execute(
+            "SELECT place, change FROM zuka_history"
+        ).fetchall():
             change = json.loads(text)
             for feature in change["added"]:
                 del feature["occluded"]
             connection.execute(
-                "UPDATE zuka_history SET change = ? WHERE place = ?", (json.dumps(change), place)
+                "UPDATE zuka_history SET change = ? WHERE place = ?", (json.dumps(change), position)
             )
     with closing(Project.open(folder)) as project:
         assert features_of(project) == {"a": line}

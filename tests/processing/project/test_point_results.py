@@ -18,7 +18,7 @@ from processing.tools.tool import FinishedColumns
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 
 
-class Impatient(SilentMonitor):
+class CancelAfterFirstFile(SilentMonitor):
     """Cancels once the first file is written."""
 
     def __init__(self) -> None:
@@ -84,7 +84,7 @@ def test_points_of_any_order_get_their_own_results(
 def test_all_outputs_are_written_or_none(tmp_path: Path, drive: Drive) -> None:
     result = found_on(drive, tmp_path / "found")
     with pytest.raises(Cancelled):
-        write_point_results([(drive, result)], tmp_path / "out" / "o.las", Impatient())
+        write_point_results([(drive, result)], tmp_path / "out" / "o.las", CancelAfterFirstFile())
     assert list((tmp_path / "out").iterdir()) == []
 
 

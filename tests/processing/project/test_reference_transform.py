@@ -74,9 +74,9 @@ def test_a_place_comes_where_the_national_formulas_put_it(
     here: int, there: int, latitude: float, share: float
 ) -> None:
     longitude = _ZONES[here][1] * share + _ZONES[there][1] * (1 - share)
-    place = np.array([[*_plane(latitude, longitude, here), 12.5]])
+    position = np.array([[*_plane(latitude, longitude, here), 12.5]])
     expected = np.array([[*_plane(latitude, longitude, there), 12.5]])
-    moved = reference_transform(f"EPSG:{here}", f"EPSG:{there}").apply(place)
+    moved = reference_transform(f"EPSG:{here}", f"EPSG:{there}").apply(position)
     assert np.abs(moved - expected).max() < 1e-4
 
 
@@ -90,17 +90,17 @@ def test_there_and_back_is_exact_to_a_tenth_of_a_millimetre(
     zones: tuple[int, int], easting: float, northing: float, height: float
 ) -> None:
     here, there = (f"EPSG:{zone}" for zone in zones)
-    place = np.array([[easting, northing, height]])
-    moved = reference_transform(here, there).apply(place)
+    position = np.array([[easting, northing, height]])
+    moved = reference_transform(here, there).apply(position)
     back = reference_transform(there, here).apply(moved)
-    assert np.abs(back - place).max() < 1e-4
+    assert np.abs(back - position).max() < 1e-4
     assert moved[0, 2] == height
 
 
 def test_what_is_given_is_not_written_to() -> None:
-    place = np.array([[1.0, 2.0, 3.0]])
-    reference_transform("EPSG:6677", "EPSG:6676").apply(place)
-    assert place.tolist() == [[1.0, 2.0, 3.0]]
+    position = np.array([[1.0, 2.0, 3.0]])
+    reference_transform("EPSG:6677", "EPSG:6676").apply(position)
+    assert position.tolist() == [[1.0, 2.0, 3.0]]
 
 
 def test_the_heights_of_a_compound_system_do_not_count() -> None:

@@ -87,9 +87,9 @@ def test_on_a_full_disk_nothing_changes_in_memory_or_on_disk_and_work_goes_on_af
 @pytest.fixture
 def folder_for_all() -> Iterator[Path]:
     """A folder that other users may enter; pytest's own are closed, now and then anew."""
-    with TemporaryDirectory(prefix="zuka-") as place:
-        Path(place).chmod(0o755)
-        yield Path(place)
+    with TemporaryDirectory(prefix="zuka-") as position:
+        Path(position).chmod(0o755)
+        yield Path(position)
 
 
 def test_a_folder_without_rights_is_read_and_refuses_to_be_written_in_one_sentence(folder_for_all):

@@ -21,8 +21,8 @@ from processing.project.review_order import along_street, worst_first
 from tests.processing.image.recordings import small_drive
 
 
-def feature(id: str, *places: Position, geometry: Geometry = Geometry.LINE) -> Feature:
-    return Feature(id, "curb_lower", geometry, tuple(map(Vertex, places)))
+def feature(id: str, *positions: Position, geometry: Geometry = Geometry.LINE) -> Feature:
+    return Feature(id, "curb_lower", geometry, tuple(map(Vertex, positions)))
 
 
 def on_point(id: str, drive: str, point: int, confidence: float = 0.5) -> Feature:
@@ -45,8 +45,8 @@ def test_a_line_is_looked_at_half_way_along_it() -> None:
 
 
 def test_a_measured_vertex_near_the_middle_of_a_line_is_looked_at_itself() -> None:
-    places = [(float(x), 0.0, 0.0) for x in (0, 4, 9, 10)]
-    vertices = tuple(Vertex(xyz, PointReference("left", n)) for n, xyz in enumerate(places))
+    positions = [(float(x), 0.0, 0.0) for x in (0, 4, 9, 10)]
+    vertices = tuple(Vertex(xyz, PointReference("left", n)) for n, xyz in enumerate(positions))
     assert middle_of(Feature("l", "curb_lower", Geometry.LINE, vertices)) is vertices[1]
 
 

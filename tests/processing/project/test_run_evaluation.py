@@ -23,8 +23,8 @@ def drive(tmp_path: Path) -> Drive:
     return small_drive(tmp_path / "d")[0]
 
 
-def by_hand(id: str, *places: Position, kind: str = "curb_lower") -> Feature:
-    return Feature(id, kind, Geometry.LINE, tuple(map(Vertex, places)))
+def by_hand(id: str, *positions: Position, kind: str = "curb_lower") -> Feature:
+    return Feature(id, kind, Geometry.LINE, tuple(map(Vertex, positions)))
 
 
 def within(drive: Drive) -> tuple[Position, Position]:

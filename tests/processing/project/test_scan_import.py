@@ -37,8 +37,8 @@ def test_a_pixel_of_the_scan_image_is_a_cell_of_the_grid(tmp_path, suffix):
     assert np.allclose(drive.xyz(slice(None)), scan.xyz, atol=2e-4)
     empty = image.raster(range(image.rows), range(image.width)) < 0
     assert empty.sum() == scan.shape[0] * scan.shape[1] - scan.cells.shape[0]
-    assert drive.info.scanner_place == tuple(scan.place)
-    assert drive.turns is None
+    assert drive.info.scanner_position == tuple(scan.position)
+    assert drive.revolutions is None
     assert not (drive.folder / "grid.bin").exists()
     assert drive.info.source_runs or suffix == "e57"
     _, indices = drive.sources(0, drive.count)
@@ -46,21 +46,21 @@ def test_a_pixel_of_the_scan_image_is_a_cell_of_the_grid(tmp_path, suffix):
 
 
 def test_every_scan_of_a_file_becomes_a_drive_with_its_number_and_place(tmp_path):
-    scans = [sphere_scan(20 + k, 16, place=(10.0 * k, 0.0, 1.0)) for k in range(3)]
+    scans = [sphere_scan(20 + k, 16, position=(10.0 * k, 0.0, 1.0)) for k in range(3)]
     path = tmp_path / "rooms.ptx"
     path.write_text(ptx_text(*scans))
     drives = _imported(tmp_path, path)
     assert [drive.info.name for drive in drives] == ["rooms (1)", "rooms (2)", "rooms (3)"]
     for drive, scan in zip(drives, scans, strict=True):
         assert np.array_equal(_cells(drive), scan.cells)
-        assert drive.info.scanner_place == tuple(scan.place)
+        assert drive.info.scanner_position == tuple(scan.position)
 
 
 def test_a_place_that_the_sweeps_contradict_is_not_kept(tmp_path):
     scan = sphere_scan()
     lines = ptx_text(scan).splitlines()
     # The points were moved to the project's frame, and the pose was left out.
-    shifted = scan.xyz - scan.place + np.array([2.0, 1.0, 0.5])
+    shifted = scan.xyz - scan.position + np.array([2.0, 1.0, 0.5])
     lines[2] = lines[9] = "0 0 0"
     lines[9] += " 1"
     at = 10 + scan.cells[:, 0] * scan.shape[1] + scan.cells[:, 1]
@@ -70,7 +70,7 @@ def test_a_place_that_the_sweeps_contradict_is_not_kept(tmp_path):
     path.write_text("\n".join([*lines, ""]))
     (drive,) = _imported(tmp_path, path)
     assert drive.info.rows_by == "scan"
-    assert drive.info.scanner_place is None
+    assert drive.info.scanner_position is None
 
 
 def _text_scan(tmp_path, grid, xyz):
@@ -107,10 +107,10 @@ def test_a_grid_that_contradicts_itself_gives_the_top_view_and_says_why(tmp_path
     (drive,) = _imported(tmp_path, _text_scan(tmp_path, grid, xyz))
     assert drive.image_kinds == (ImageKind.TOP_VIEW,)
     assert why in drive.info.rows_reason.en
-    place = drive.xyz(slice(None))
-    assert np.allclose(np.sort(place, axis=0), np.sort(xyz, axis=0), atol=1e-3)
+    position = drive.xyz(slice(None))
+    assert np.allclose(np.sort(position, axis=0), np.sort(xyz, axis=0), atol=1e-3)
     _, indices = drive.sources(0, drive.count)
-    assert np.allclose(xyz[indices], place, atol=1e-3)
+    assert np.allclose(xyz[indices], position, atol=1e-3)
 
 
 def test_several_returns_of_a_beam_share_a_pixel_the_first_one_shown(tmp_path):

@@ -30,7 +30,7 @@ def volume_m3(solid: Solid) -> float:
     """By the divergence theorem: right only if the faces close the body and look outwards."""
     total = 0.0
     for face in (*solid.top, *solid.sides, *solid.bottom):
-        first, *others = solid.places[list(face)]
+        first, *others = solid.positions[list(face)]
         for second, third in pairwise(others):
             total += float(np.dot(first, np.cross(second, third))) / 6
     return total
@@ -63,7 +63,7 @@ def test_a_lid_has_one_face_above_and_four_beside() -> None:
     assert [len(face) for face in solid.top] == [4]
     assert [len(face) for face in solid.sides] == [4] * 4
     # Square to the top, on a slope too.
-    down = solid.places[4:] - solid.places[:4]
+    down = solid.positions[4:] - solid.positions[:4]
     assert np.linalg.norm(down, axis=1) == pytest.approx(0.1)
     assert down @ (LID[1] - LID[0]) == pytest.approx(0.0, abs=1e-12)
 

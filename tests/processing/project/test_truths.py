@@ -16,8 +16,8 @@ from processing.labels.label_column import make_column, write_labels
 from processing.monitor import SilentMonitor
 from processing.points.columns import ColumnWriter
 from processing.points.drive import Drive
-from processing.points.judgement import JUDGED, Judgement
-from processing.project.class_evaluation import evaluate_classes, judged_columns
+from processing.points.error_map import ERROR_MAP, ErrorMapValue
+from processing.project.class_evaluation import error_map_columns, evaluate_classes
 from processing.project.importing import ImportRequest
 from processing.project.importing import import_drives as imported
 from processing.project.project import Project
@@ -182,7 +182,7 @@ def test_a_file_for_another_cloud_is_refused_and_leaves_nothing(
     assert not into.exists()
 
 
-class Impatient:
+class CancelAtOnce:
     """Somebody who cancels at once."""
 
     def report(self, fraction: float, text: Text | None = None) -> None: ...
@@ -194,7 +194,7 @@ class Impatient:
 def test_a_cancelled_truth_leaves_nothing(project: Project, drive: Drive) -> None:
     into = project.temporary_folder()
     with pytest.raises(Cancelled):
-        truth_as_it_stands((drive,), into, Impatient())
+        truth_as_it_stands((drive,), into, CancelAtOnce())
     assert not into.exists()
 
 
@@ -228,13 +228,13 @@ def test_runs_and_the_cloud_as_it_stands_are_counted_where_the_truth_is_known(
     assert counts.turned().recall == pytest.approx(860 / 900)
     assert now.run is None
     assert now.counts.f_measure == 1.0
-    columns = judged_columns(drive, "a", first, project.temporary_folder(), SILENT)
-    seen = np.bincount(columns.read(JUDGED, 0, drive.count), minlength=5)
-    assert seen[Judgement.RIGHTLY_KEPT] == 860
-    assert seen[Judgement.RIGHTLY_REMOVED] == 40
-    assert seen[Judgement.WRONGLY_REMOVED] == 40
-    assert seen[Judgement.WRONGLY_KEPT] == 60
-    assert seen[Judgement.UNKNOWN] == drive.count - 1000
+    columns = error_map_columns(drive, "a", first, project.temporary_folder(), SILENT)
+    seen = np.bincount(columns.read(ERROR_MAP, 0, drive.count), minlength=5)
+    assert seen[ErrorMapValue.RIGHTLY_KEPT] == 860
+    assert seen[ErrorMapValue.RIGHTLY_REMOVED] == 40
+    assert seen[ErrorMapValue.WRONGLY_REMOVED] == 40
+    assert seen[ErrorMapValue.WRONGLY_KEPT] == 60
+    assert seen[ErrorMapValue.UNKNOWN] == drive.count - 1000
 
 
 def test_a_run_that_said_nothing_or_on_another_drive_is_left_out(

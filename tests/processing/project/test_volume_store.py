@@ -22,7 +22,7 @@ from processing.project.volume import (
     ChosenSide,
     KeptVolume,
     SideKind,
-    VolumeWish,
+    VolumeRequest,
     new_volume,
 )
 from processing.project.volume_store import VolumeStore, write_volume
@@ -50,8 +50,8 @@ def _result(registration: Registration | None = SHIFT) -> VolumeResult:
     return VolumeResult(volumes, "grid", 0.5, _change(), registration, notes)
 
 
-def _wish() -> VolumeWish:
-    return VolumeWish(
+def _request() -> VolumeRequest:
+    return VolumeRequest(
         BEFORE,
         DESIGN,
         {"method": "grid", "grid_m": 0.5, "correct_shift": True},
@@ -63,7 +63,7 @@ def _wish() -> VolumeWish:
 
 def _kept(project: Path, made: datetime = MADE) -> KeptVolume:
     result = _result()
-    kept = new_volume(_wish(), result, crs="EPSG:6677", version=2, made=made)
+    kept = new_volume(_request(), result, crs="EPSG:6677", version=2, made=made)
     folder = project / "tmp" / kept.id
     write_volume(kept, result, folder)
     VolumeStore(project).add(kept, folder)
@@ -85,8 +85,8 @@ def test_a_volume_is_read_again_as_it_was_kept(tmp_path: Path) -> None:
 
 def test_a_volume_without_registration_and_lines_is_read_again(tmp_path: Path) -> None:
     result = _result(None)
-    wish = VolumeWish(ChosenSide(SideKind.LEVEL, height_m=4.25), BEFORE, {})
-    kept = new_volume(wish, result, crs="", version=1, made=MADE)
+    request = VolumeRequest(ChosenSide(SideKind.LEVEL, height_m=4.25), BEFORE, {})
+    kept = new_volume(request, result, crs="", version=1, made=MADE)
     write_volume(kept, result, tmp_path / "made")
     VolumeStore(tmp_path).add(kept, tmp_path / "made")
     assert VolumeStore(tmp_path).all() == (kept,)
@@ -105,7 +105,7 @@ def test_sections_are_read_again_with_the_earth_between_them(tmp_path: Path) -> 
     sections = _section(0.0, 5, np.arange(4) > 0), _section(10.0, 9, None)
     line = SectionedLine("中心線", xy, 2.5, sections)
     result = replace(_result(), method="end-area", line=line, between=((1.5, np.nan),))
-    kept = new_volume(_wish(), result, crs="", version=1, made=MADE)
+    kept = new_volume(_request(), result, crs="", version=1, made=MADE)
     write_volume(kept, result, tmp_path / "made")
     store = VolumeStore(tmp_path)
     store.add(kept, tmp_path / "made")
@@ -133,7 +133,7 @@ def test_the_first_one_is_listed_first(tmp_path: Path) -> None:
 
 
 def test_what_was_not_taken_in_is_not_there(tmp_path: Path) -> None:
-    kept = new_volume(_wish(), _result(), crs="", version=1, made=MADE)
+    kept = new_volume(_request(), _result(), crs="", version=1, made=MADE)
     write_volume(kept, _result(), tmp_path / "tmp" / kept.id)
     assert VolumeStore(tmp_path).all() == ()
     with pytest.raises(MissingInput):
@@ -141,7 +141,7 @@ def test_what_was_not_taken_in_is_not_there(tmp_path: Path) -> None:
 
 
 def test_writing_that_fails_leaves_no_folder(tmp_path: Path) -> None:
-    kept = new_volume(_wish(), _result(), crs="", version=1, made=MADE)
+    kept = new_volume(_request(), _result(), crs="", version=1, made=MADE)
     unknown = replace(kept, crs=object())  # type: ignore[arg-type]
     with pytest.raises(TypeError):
         write_volume(unknown, _result(), tmp_path / "made")
@@ -210,9 +210,9 @@ while True:
 """
 
 
-def wish_of_a_site() -> VolumeWish:
+def wish_of_a_site() -> VolumeRequest:
     """Give what was compared."""
-    return _wish()
+    return _request()
 
 
 def large_result() -> VolumeResult:

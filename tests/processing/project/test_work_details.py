@@ -16,7 +16,7 @@ from processing.tools.parameters import MOST_LETTERS, parameters_of
 
 DETAILS = WorkDetails(
     work="令和8年度 国道1号改良工事",
-    place="No.0〜No.12",
+    position="No.0〜No.12",
     client="国土交通省 関東地方整備局",
     contractor="株式会社 髙橋組",
     surveyor="吉田 﨑子",

@@ -20,16 +20,16 @@ from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from processing.runner import RunRequest, run
 from processing.simulate.materials import Material
-from processing.simulate.mesh import MeshBuilder, Shape
-from processing.simulate.scanning.beams import Spin, beams_of
-from processing.simulate.scanning.casting import Scene
-from processing.simulate.scanning.passes import Pass
+from processing.simulate.mesh import MeshBuilder, TriangleShape
+from processing.simulate.scanning.beams import ScanPattern, beams_of
+from processing.simulate.scanning.casting import RaycastScene
 from processing.simulate.scanning.sensors import Head
+from processing.simulate.scanning.simulated_passes import SimulatedPass
 from processing.tools.registry import TOOLS
 from processing.tools.tool import Candidate, CandidateResult
 
 Floats = NDArray[np.float64]
-Profile = Sequence[tuple[float, float]]
+RoadCrossSection = Sequence[tuple[float, float]]
 
 ORIGIN = np.array([-11_000.0, -35_000.0, 100.0])
 START_S = 410_000_000.0
@@ -38,11 +38,18 @@ RECORDS_PER_S = 200.0
 FARTHEST_M = 40.0
 SPEED_M_S = 5.0
 
-ROAD: Profile = ((-7.0, 0.17), (-4.02, 0.15), (-4.0, 0.0), (4.0, 0.0), (4.02, 0.15), (7.0, 0.17))
+ROAD: RoadCrossSection = (
+    (-7.0, 0.17),
+    (-4.02, 0.15),
+    (-4.0, 0.0),
+    (4.0, 0.0),
+    (4.02, 0.15),
+    (7.0, 0.17),
+)
 """Eight metres between two curbs of 15 cm."""
-WALLS: Profile = ((-6.0, 8.0), (-6.0, -30.0))
+WALLS: RoadCrossSection = ((-6.0, 8.0), (-6.0, -30.0))
 """A wall to the right of the way; the one to the left is its mirror image."""
-TUNNEL: Profile = (
+TUNNEL: RoadCrossSection = (
     *(
         (3.0 * np.cos(turn), 1.5 + 3.0 * np.sin(turn))
         for turn in np.radians(np.arange(-30, 211, 5))
@@ -56,12 +63,12 @@ HEAD_90 = Head("left", 1, (-0.6, 0.0, 0.5), 0.0, 0.0)
 
 
 @dataclass(frozen=True)
-class Recording:
+class DrivenRecording:
     """What is driven, scanned and delivered.
 
     Attributes
     ----------
-    way : (m, 2) float64
+    vehicle_path : (m, 2) float64
         Where the vehicle is at each record, 200 a second, m.
     facing : (m,) float64
         Radians, anticlockwise from east.
@@ -71,9 +78,9 @@ class Recording:
         (n,) bool of (n, 3) places and (n,) pulse numbers: what comes back.
     """
 
-    way: Floats
+    vehicle_path: Floats
     facing: Floats
-    scene: tuple[Shape, ...]
+    scene: tuple[TriangleShape, ...]
     head: Head = HEAD_45
     pulses: int = 1_000
     turns_per_s: float = 50.0
@@ -87,7 +94,7 @@ class Recording:
 
 
 @dataclass(frozen=True)
-class Told:
+class RunOutcome:
     """What came of a run: candidates, or the sentence that says why there are none."""
 
     candidates: tuple[Candidate, ...]
@@ -113,13 +120,13 @@ def turning_back(length_m: float, radius_m: float) -> Floats:
     return np.vstack(legs)
 
 
-def facing_along(way: Floats) -> Floats:
+def facing_along(vehicle_path: Floats) -> Floats:
     """The direction of a way, where it has one."""
-    steps = np.gradient(way, axis=0)
+    steps = np.gradient(vehicle_path, axis=0)
     return np.asarray(np.unwrap(np.arctan2(steps[:, 1], steps[:, 0])))
 
 
-def drawn_along(profile: Profile, line: Floats) -> Shape:
+def drawn_along(profile: RoadCrossSection, line: Floats) -> TriangleShape:
     """A profile swept along a line in plan, as triangles."""
     sides = np.gradient(line, axis=0)
     sides /= np.hypot(*sides.T)[:, None]
@@ -135,31 +142,31 @@ def drawn_along(profile: Profile, line: Floats) -> Shape:
     return vertices, np.concatenate([np.column_stack(one) for one in triangles]).astype(np.int64)
 
 
-def road_along(length_m: float, profile: Profile = ROAD) -> Shape:
+def road_along(length_m: float, profile: RoadCrossSection = ROAD) -> TriangleShape:
     """A straight road to the east, longer than what is driven of it."""
     return drawn_along(profile, np.array([[-25.0, 0.0], [length_m + 25.0, 0.0]]))
 
 
-def mirrored(profile: Profile) -> Profile:
+def mirrored(profile: RoadCrossSection) -> RoadCrossSection:
     """The same on the other side."""
     return tuple((-across, up) for across, up in profile)
 
 
-def delivered(recording: Recording, folder: Path, name: str = "left") -> ImportRequest:
+def delivered(recording: DrivenRecording, folder: Path, name: str = "left") -> ImportRequest:
     """Write points and trajectory."""
     folder.mkdir(parents=True, exist_ok=True)
     driven = _pass(recording)
     count = int(driven.duration_s * recording.pulses * recording.turns_per_s)
-    spin = Spin(recording.pulses, recording.turns_per_s, 0.0)
-    beams = beams_of(driven, recording.head, spin, range(count))
+    scan_pattern = ScanPattern(recording.pulses, recording.turns_per_s, 0.0)
+    beams = beams_of(driven, recording.head, scan_pattern, range(count))
     builder = MeshBuilder()
     for shape in recording.scene:
         builder.add(shape, Material.ASPHALT, 11, 0)
-    ranges = Scene(builder.mesh(), np.zeros(3)).cast(beams.origins, beams.ways).ranges
+    ranges = RaycastScene(builder.mesh(), np.zeros(3)).cast(beams.origins, beams.directions).ranges
     random = np.random.default_rng(recording.seed)
     is_met = ranges < FARTHEST_M
     ranges = ranges[is_met] + random.normal(0.0, recording.noise_m, int(is_met.sum()))
-    xyz = beams.origins[is_met] + ranges[:, None] * beams.ways[is_met]
+    xyz = beams.origins[is_met] + ranges[:, None] * beams.directions[is_met]
     pulse = np.flatnonzero(is_met)
     kept = recording.keep(xyz, pulse)
     cloud = folder / f"{name}.laz"
@@ -196,38 +203,38 @@ def imported(folder: Path, *requests: ImportRequest) -> tuple[Drive, ...]:
     return tuple(Drive(one) for one in folders)
 
 
-def recorded(folder: Path, recording: Recording) -> tuple[Drive, ...]:
+def recorded(folder: Path, recording: DrivenRecording) -> tuple[Drive, ...]:
     """A recording, delivered and imported."""
     return imported(folder, delivered(recording, folder))
 
 
 def told_by(
     tool: str, drives: Sequence[Drive], folder: Path, monitor: Monitor | None = None
-) -> Told:
+) -> RunOutcome:
     """What a tool finds, or why it finds nothing."""
     request = RunRequest(tool, drives[0], TOOLS[tool].parameters(), tuple(drives[1:]))
     try:
         result = run(request, monitor or SilentMonitor(), into=folder / f"{tool} columns")
     except UserError as error:
-        return Told((), error.what.en)
+        return RunOutcome((), error.what.en)
     assert isinstance(result, CandidateResult)
-    return Told(result.candidates, result.note.en)
+    return RunOutcome(result.candidates, result.note.en)
 
 
-def told_of(tool: str, request: ImportRequest, folder: Path) -> Told:
+def told_of(tool: str, request: ImportRequest, folder: Path) -> RunOutcome:
     """The same from the delivery on, which may be refused already."""
     try:
         drives = imported(folder, request)
     except UserError as error:
-        return Told((), error.what.en)
+        return RunOutcome((), error.what.en)
     return told_by(tool, drives, folder)
 
 
-def nearest_to_way_m(candidates: Sequence[Candidate], way: Floats) -> float:
-    """How near any candidate comes to the middle of the vehicle's way, m; inf without any."""
+def nearest_to_path_m(candidates: Sequence[Candidate], vehicle_path: Floats) -> float:
+    """How near any candidate comes to the middle of the vehicle's path, m; inf without any."""
     import shapely
 
-    path = shapely.linestrings(way[:, :2] + ORIGIN[:2])
+    path = shapely.linestrings(vehicle_path[:, :2] + ORIGIN[:2])
     rings = [
         np.vstack([one.xyz, one.xyz[:1]]) if one.geometry == "area" else one.xyz
         for one in candidates
@@ -236,17 +243,19 @@ def nearest_to_way_m(candidates: Sequence[Candidate], way: Floats) -> float:
     return min((float(shapely.distance(one, path)) for one in lines), default=np.inf)
 
 
-def with_pause(recording: Recording, at: int, seconds: float) -> Recording:
+def with_pause(recording: DrivenRecording, at: int, seconds: float) -> DrivenRecording:
     """The same, but the vehicle stands a while at one of its records and goes on scanning."""
     again = np.full(int(seconds * RECORDS_PER_S), at)
-    order = np.r_[np.arange(at), again, np.arange(at, len(recording.way))]
-    return replace(recording, way=recording.way[order], facing=recording.facing[order])
+    order = np.r_[np.arange(at), again, np.arange(at, len(recording.vehicle_path))]
+    return replace(
+        recording, vehicle_path=recording.vehicle_path[order], facing=recording.facing[order]
+    )
 
 
-def _pass(recording: Recording) -> Pass:
-    count = len(recording.way)
+def _pass(recording: DrivenRecording) -> SimulatedPass:
+    count = len(recording.vehicle_path)
     time_s = np.arange(count) / RECORDS_PER_S
-    places = np.column_stack([recording.way, np.full(count, HIGH_M)])
+    positions = np.column_stack([recording.vehicle_path, np.full(count, HIGH_M)])
     c, s, zero, one = (
         np.cos(recording.facing),
         np.sin(recording.facing),
@@ -262,14 +271,14 @@ def _pass(recording: Recording) -> Pass:
         axis=-1,
     )
     angles = np.column_stack([zero, zero, (90.0 - np.degrees(recording.facing)) % 360.0])
-    return Pass(0, time_s, places, axes, zero, angles, np.zeros((count, 3)))
+    return SimulatedPass(0, time_s, positions, axes, zero, angles, np.zeros((count, 3)))
 
 
-def _write_trajectory(path: Path, driven: Pass, recording: Recording) -> None:
-    places = driven.places + ORIGIN + recording.shift_m
+def _write_trajectory(path: Path, driven: SimulatedPass, recording: DrivenRecording) -> None:
+    positions = driven.positions + ORIGIN + recording.shift_m
     np.savetxt(
         path,
-        np.column_stack([driven.time_s + recording.start_s, places, driven.angles_deg]),
+        np.column_stack([driven.time_s + recording.start_s, positions, driven.angles_deg]),
         fmt=["%.6f", "%.5f", "%.5f", "%.5f", "%.6f", "%.6f", "%.6f"],
         delimiter=",",
         comments="",

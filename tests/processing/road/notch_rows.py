@@ -34,7 +34,7 @@ def is_between_bars(along: Floats, across: Floats) -> NDArray[np.bool_]:
     return inside & (np.mod(along - first, 2 * BARS_M) < BARS_M)
 
 
-class Rows:
+class NotchRows:
     """Rows at 45 degrees to a way along x: one after another, from left to right.
 
     Attributes
@@ -56,7 +56,7 @@ class Rows:
     ) -> None:
         random = np.random.default_rng(0)
         across = np.arange(-5.0, 5.0, 0.010)
-        places, rights, parts, pulses, starts = [], [], [], [], [0]
+        positions, rights, parts, pulses, starts = [], [], [], [], [0]
         for row in range(rows):
             at = 0.11 * row
             x, y = at + across, -across
@@ -69,9 +69,9 @@ class Rows:
             parts.append(np.column_stack([x, y, z])[kept])
             pulses.append((row * 2 * across.size + np.arange(across.size))[kept])
             starts.append(starts[-1] + int(kept.sum()))
-            places.append([at, 0.0, slope * at])
+            positions.append([at, 0.0, slope * at])
             rights.append([0.0, -1.0])
         self.xyz = np.concatenate(parts)
         self.pulse = np.concatenate(pulses).astype(np.int64)
         spans = np.column_stack([starts[:-1], starts[1:]])
-        self.sweeps = (spans, np.array(places), np.array(rights))
+        self.sweeps = (spans, np.array(positions), np.array(rights))

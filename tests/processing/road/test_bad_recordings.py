@@ -20,15 +20,15 @@ from tests.processing.road.bad_recordings import (
     START_S,
     TUNNEL,
     WALLS,
+    DrivenRecording,
     Floats,
-    Recording,
-    Told,
+    RunOutcome,
     delivered,
     drawn_along,
     facing_along,
     imported,
     mirrored,
-    nearest_to_way_m,
+    nearest_to_path_m,
     recorded,
     road_along,
     straight,
@@ -45,25 +45,25 @@ CLEAR_M = 1.5
 BOTH = pytest.mark.parametrize("tool", ["curbs", "gutters"])
 
 
-def driving(**changes: object) -> Recording:
+def driving(**changes: object) -> DrivenRecording:
     """The plain case: a straight road between two curbs."""
-    way = straight(LENGTH_M)
-    plain = Recording(way, facing_along(way), (road_along(LENGTH_M),))
+    vehicle_path = straight(LENGTH_M)
+    plain = DrivenRecording(vehicle_path, facing_along(vehicle_path), (road_along(LENGTH_M),))
     return replace(plain, **changes)  # type: ignore[arg-type] # by the fields' names
 
 
-def assert_nothing_found(told: Told) -> None:
+def assert_nothing_found(told: RunOutcome) -> None:
     """No candidate, but a sentence."""
     assert told.candidates == ()
     assert told.sentence.endswith(".")
 
 
-def assert_clear(told: Told, way: Floats) -> None:
+def assert_clear(told: RunOutcome, vehicle_path: Floats) -> None:
     """Nothing lies where the vehicle drove."""
-    assert nearest_to_way_m(told.candidates, way) > CLEAR_M
+    assert nearest_to_path_m(told.candidates, vehicle_path) > CLEAR_M
 
 
-def lines_at(told: Told, north_m: float) -> float:
+def lines_at(told: RunOutcome, north_m: float) -> float:
     """Metres of lines along the street within 5 cm of a distance to the left of the way."""
     found = 0.0
     for one in told.candidates:
@@ -77,16 +77,16 @@ def test_the_plain_road_has_both_edges_of_both_curbs(tmp_path: Path) -> None:
     recording = driving()
     drives = recorded(tmp_path, recording)
     curbs = told_by("curbs", drives, tmp_path)
-    assert_clear(curbs, recording.way)
+    assert_clear(curbs, recording.vehicle_path)
     for side in (-4.01, 4.01):
         assert lines_at(curbs, side) > LENGTH_M
 
 
-@pytest.mark.parametrize("way", ["forward", "reverse", "square"])
-def test_the_plain_road_has_no_gutter(tmp_path: Path, way: str) -> None:
-    recording = driving(head=HEAD_90) if way == "square" else driving()
-    if way == "reverse":
-        recording = replace(recording, way=recording.way[::-1])
+@pytest.mark.parametrize("vehicle_path", ["forward", "reverse", "square"])
+def test_the_plain_road_has_no_gutter(tmp_path: Path, vehicle_path: str) -> None:
+    recording = driving(head=HEAD_90) if vehicle_path == "square" else driving()
+    if vehicle_path == "reverse":
+        recording = replace(recording, vehicle_path=recording.vehicle_path[::-1])
     assert_nothing_found(told_by("gutters", recorded(tmp_path, recording), tmp_path))
 
 
@@ -113,8 +113,8 @@ def test_what_hangs_overhead_is_no_road(tmp_path: Path, tool: str) -> None:
 
 @BOTH
 def test_a_vehicle_that_only_stands_has_passed_nothing(tmp_path: Path, tool: str) -> None:
-    way = np.tile([[8.0, 0.0]], (600, 1))
-    recording = driving(way=way, facing=np.zeros(600))
+    vehicle_path = np.tile([[8.0, 0.0]], (600, 1))
+    recording = driving(vehicle_path=vehicle_path, facing=np.zeros(600))
     told = told_by(tool, recorded(tmp_path, recording), tmp_path)
     assert_nothing_found(told)
 
@@ -124,28 +124,32 @@ def test_a_standstill_on_the_way_leaves_no_line_across_the_road(tmp_path: Path, 
     recording = with_pause(driving(), at=300, seconds=3.0)
     drives = recorded(tmp_path, recording)
     told = told_by(tool, drives, tmp_path)
-    assert_clear(told, recording.way)
+    assert_clear(told, recording.vehicle_path)
     assert lines_at(told, 4.01) < 2.5 * LENGTH_M  # each edge once, not once a pass
 
 
 def test_a_drive_in_reverse_finds_the_same_curbs(tmp_path: Path) -> None:
-    way = straight(LENGTH_M)[::-1]
-    recording = driving(way=way, facing=np.zeros(len(way)))
+    vehicle_path = straight(LENGTH_M)[::-1]
+    recording = driving(vehicle_path=vehicle_path, facing=np.zeros(len(vehicle_path)))
     drives = recorded(tmp_path, recording)
     curbs = told_by("curbs", drives, tmp_path)
-    assert_clear(curbs, way)
+    assert_clear(curbs, vehicle_path)
     for side in (-4.01, 4.01):
         assert lines_at(curbs, side) > LENGTH_M
 
 
 @BOTH
 def test_a_turn_back_joins_no_lines_across_the_road(tmp_path: Path, tool: str) -> None:
-    way = turning_back(LENGTH_M, radius_m=3.0)
+    vehicle_path = turning_back(LENGTH_M, radius_m=3.0)
     wide = tuple((across * 2.0, up) for across, up in ROAD)
     line = np.array([[-25.0, 0.0], [LENGTH_M + 40.0, 0.0]])
-    recording = driving(way=way, facing=facing_along(way), scene=(drawn_along(wide, line),))
+    recording = driving(
+        vehicle_path=vehicle_path,
+        facing=facing_along(vehicle_path),
+        scene=(drawn_along(wide, line),),
+    )
     drives = recorded(tmp_path, recording)
-    assert_clear(told_by(tool, drives, tmp_path), way)
+    assert_clear(told_by(tool, drives, tmp_path), vehicle_path)
 
 
 @BOTH
@@ -155,7 +159,7 @@ def test_lines_in_a_round_tunnel_lie_at_the_foot_of_its_wall_if_anywhere(
     recording = driving(scene=(road_along(LENGTH_M, TUNNEL),))
     drives = recorded(tmp_path, recording)
     told = told_by(tool, drives, tmp_path)
-    assert_clear(told, recording.way)
+    assert_clear(told, recording.vehicle_path)
     assert all(abs(np.abs(one.xyz[:, 1] - ORIGIN[1]) - 2.6).max() < 0.4 for one in told.candidates)
 
 
@@ -177,7 +181,7 @@ def test_wet_road_with_holes_gives_no_line_round_the_holes(tmp_path: Path, tool:
     recording = driving(keep=dry)
     drives = recorded(tmp_path, recording)
     told = told_by(tool, drives, tmp_path)
-    assert nearest_to_way_m(told.candidates, recording.way) > 3.5
+    assert nearest_to_path_m(told.candidates, recording.vehicle_path) > 3.5
 
 
 @BOTH
@@ -201,7 +205,7 @@ def test_a_head_square_to_the_way_finds_the_curbs(tmp_path: Path) -> None:
     recording = driving(head=HEAD_90)
     drives = recorded(tmp_path, recording)
     curbs = told_by("curbs", drives, tmp_path)
-    assert_clear(curbs, recording.way)
+    assert_clear(curbs, recording.vehicle_path)
     for side in (-4.01, 4.01):
         assert lines_at(curbs, side) > LENGTH_M
 
@@ -214,13 +218,13 @@ def test_two_drives_five_centimetres_apart_give_each_curb_once(tmp_path: Path) -
     drives = imported(tmp_path, first, second)
     assert len(drives) == 2
     curbs = told_by("curbs", drives, tmp_path)
-    assert_clear(curbs, again.way)
+    assert_clear(curbs, again.vehicle_path)
     for side in (-4.01, 4.01):
         lines = sum(lines_at(curbs, side + shift) for shift in (-0.06, 0.04, 0.14))
         assert LENGTH_M < lines < 3 * LENGTH_M  # the heads see other ends of it
 
 
-class Impatient(SilentMonitor):
+class CancelAtCheck(SilentMonitor):
     """Wants to stop at the so-manyth time that it is asked; takes no going back."""
 
     def __init__(self, patience: int) -> None:
@@ -240,11 +244,11 @@ class Impatient(SilentMonitor):
 @BOTH
 def test_a_run_stops_whenever_it_is_told_to(tmp_path: Path, tool: str) -> None:
     drives = recorded(tmp_path, driving())
-    counted = Impatient(1_000_000)
+    counted = CancelAtCheck(1_000_000)
     told_by(tool, drives, tmp_path, counted)
     asked = 1_000_000 - counted.left
     assert asked > 1
     for patience in (0, asked // 2, asked - 1):
         with pytest.raises(Cancelled):
-            told_by(tool, drives, tmp_path, Impatient(patience))
+            told_by(tool, drives, tmp_path, CancelAtCheck(patience))
     assert not list(tmp_path.glob("* columns"))

@@ -47,11 +47,11 @@ def curb_points(
     )
     lengths = np.hypot(*np.diff(outline, axis=0).T)
     ends = np.append(0.0, np.cumsum(lengths))
-    places = random.uniform(0, ends[-1], int(per_m * 2.0))
-    xz = np.column_stack([np.interp(places, ends, outline[:, k]) for k in (0, 1)])
+    positions = random.uniform(0, ends[-1], int(per_m * 2.0))
+    xz = np.column_stack([np.interp(positions, ends, outline[:, k]) for k in (0, 1)])
     xz += random.normal(0, noise_m, xz.shape)
     xz[:, 0] += at_m
-    return np.sort(random.uniform(0, 8, places.size)), xz
+    return np.sort(random.uniform(0, 8, positions.size)), xz
 
 
 def measured(
@@ -93,21 +93,21 @@ def test_noise_of_fifteen_millimetres_costs_one_or_two_centimetres() -> None:
 
 
 def test_grass_over_the_top_does_not_lift_the_edge() -> None:
-    along, places = curb_points()
+    along, positions = curb_points()
     grass = np.column_stack([np.linspace(0.03, 0.3, 150), np.linspace(0.2, 0.35, 150)])
     order = np.argsort(np.concatenate([along, np.linspace(0, 8, 150)]), kind="stable")
     found = measured(
         (
             np.sort(np.concatenate([along, np.linspace(0, 8, 150)])),
-            np.vstack([places, grass])[order],
+            np.vstack([positions, grass])[order],
         )
     )
     assert found[UPPER_ABOVE] == pytest.approx(0.15, abs=0.01)
 
 
 def test_the_foot_of_a_curb_behind_an_open_gutter_is_the_strip_between() -> None:
-    along, places = curb_points(fall=0.0)
-    across, above = places.T
+    along, positions = curb_points(fall=0.0)
+    across, above = positions.T
     is_open, is_wall = (across > -0.34) & (across < -0.11), (across > -0.11) & (across < -0.08)
     random = np.random.default_rng(9)
     above = np.where(is_open, above - 0.3, above)
@@ -119,9 +119,9 @@ def test_the_foot_of_a_curb_behind_an_open_gutter_is_the_strip_between() -> None
 
 
 def test_of_a_hidden_face_the_end_of_the_top_is_the_upper_edge() -> None:
-    along, places = curb_points()
-    is_top = (places[:, 0] > 0.015) & (places[:, 1] > 0.14)
-    found = measured((along[is_top], places[is_top]), is_hidden=True)
+    along, positions = curb_points()
+    is_top = (positions[:, 0] > 0.015) & (positions[:, 1] > 0.14)
+    found = measured((along[is_top], positions[is_top]), is_hidden=True)
     assert found[UPPER_ACROSS] == pytest.approx(0.015, abs=0.015)
     assert found[UPPER_ABOVE] == pytest.approx(0.15, abs=0.005)
 
@@ -130,16 +130,16 @@ def test_of_a_hidden_face_the_end_of_the_top_is_the_upper_edge() -> None:
 def test_a_narrow_top_with_soil_behind_it_is_told_from_the_soil(at_m: float) -> None:
     random = np.random.default_rng(6)
     top, face, soil = (random.uniform(0, 1, count) for count in (30, 30, 60))
-    places = np.vstack(
+    positions = np.vstack(
         [
             np.column_stack([at_m + 0.1 * top, np.full(30, 0.12)]),
             np.column_stack([np.full(30, at_m + 0.1), 0.11 * face]),
             np.column_stack([at_m + 0.1 + 0.3 * soil, np.full(60, 0.01)]),
         ]
     )
-    places += random.normal(0, 0.003, places.shape)
+    positions += random.normal(0, 0.003, positions.shape)
     along = np.sort(random.uniform(2, 6, 120))
-    points = (along, random.permutation(places))
+    points = (along, random.permutation(positions))
     found = measured(points, is_hidden=True, step_m=0.13, is_edging=True)
     assert found[UPPER_ACROSS] == pytest.approx(at_m, abs=0.025)
     assert found[UPPER_ABOVE] == pytest.approx(0.12, abs=0.01)
@@ -149,10 +149,10 @@ def test_a_hidden_top_of_a_pavement_may_fall_from_the_rough_height() -> None:
     """Only where the stone is narrow may its other face lie close below the top."""
     random = np.random.default_rng(7)
     across = random.uniform(0.0, 0.3, 120)
-    places = np.column_stack([across, 0.15 - 0.2 * across + random.normal(0, 0.004, 120)])
+    positions = np.column_stack([across, 0.15 - 0.2 * across + random.normal(0, 0.004, 120)])
     along = np.sort(random.uniform(2, 6, 120))
-    wide = measured((along, places), is_hidden=True)
-    narrow = measured((along, places), is_hidden=True, is_edging=True)
+    wide = measured((along, positions), is_hidden=True)
+    narrow = measured((along, positions), is_hidden=True, is_edging=True)
     assert wide[UPPER_ABOVE] == pytest.approx(0.15, abs=0.01)
     assert wide[HIGH_POINTS] > narrow[HIGH_POINTS]
 
@@ -171,8 +171,8 @@ def test_the_kernel_and_its_plain_form_agree() -> None:
 
 
 def test_the_nearest_point_is_within_reach_or_none() -> None:
-    along, places = np.array([0.0, 1.0, 2.0]), np.zeros((3, 2))
+    along, positions = np.array([0.0, 1.0, 2.0]), np.zeros((3, 2))
     wanted = np.array([[1.1, 0.0, 0.05], [2.0, 0.3, 0.0]])
     found = np.empty(2, np.int64)
-    nearest_kernel(along, places, wanted, 0.15, found)
+    nearest_kernel(along, positions, wanted, 0.15, found)
     assert found.tolist() == [1, -1]

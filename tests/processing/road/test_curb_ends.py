@@ -14,9 +14,9 @@ from processing.road.curbs.curb_edge_kernels import (
     UPPER_ABOVE,
 )
 from processing.road.curbs.curb_ends import own_part
-from processing.road.curbs.curb_joins import pooled
+from processing.road.curbs.curb_joins import join_edges
 from processing.road.curbs.curb_lines import CurbLine, lines_of
-from tests.processing.road.test_curb_lines import guide_of, measures_of
+from tests.processing.road.test_curb_lines import approximate_line_of, measures_of
 
 COUNT, END = 120, 80
 NOISE_M, SOIL_M = 0.002, 0.005
@@ -30,7 +30,7 @@ def curb() -> NDArray[np.float64]:
 
 
 def lines(*measures: NDArray[np.float64]) -> list[CurbLine]:
-    return list(lines_of(guide_of(COUNT), pooled(measures, 0.45), 8.0))
+    return list(lines_of(approximate_line_of(COUNT), join_edges(measures, 0.45), 8.0))
 
 
 def test_a_curb_goes_on_where_its_face_is_not_seen() -> None:
@@ -76,5 +76,5 @@ def test_a_line_whose_face_looks_away_is_left_as_it_is() -> None:
     measures = curb()
     measures[:, FACE_POINTS] = 0.0
     measures[END:, [LOW_OFF, HIGH_OFF]] = SOIL_M
-    edges = pooled([measures], 0.45)
+    edges = join_edges([measures], 0.45)
     assert own_part(edges, np.isfinite(edges.across_error), (3, 100)) == (3, 100)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from processing.road.curbs.approximate_lines import approximate_lines_of
 from processing.road.curbs.curb_confidence import CurbFacts, chance_of
 from processing.road.curbs.curb_edge_kernels import (
     FACE_POINTS,
@@ -20,8 +21,7 @@ from processing.road.curbs.curb_edge_kernels import (
     UPPER_ACROSS,
 )
 from processing.road.curbs.curb_evidence import facts_of, noise_of
-from processing.road.curbs.curb_guides import guides_of
-from processing.road.curbs.curb_joins import pooled
+from processing.road.curbs.curb_joins import join_edges
 from processing.road.curbs.curb_lines import lines_of
 from processing.road.curbs.curb_runs import StepRun
 from processing.tools.curbs import CurbParameters
@@ -33,11 +33,11 @@ LEAST = CurbParameters().least_confidence
 
 def facts(measures: NDArray[np.float64], run: StepRun) -> CurbFacts:
     """With a scanner's noise of 2 mm."""
-    (guide,) = guides_of([run], 8.0)
-    count = guide.xyz.shape[0]
-    edges = pooled([measures[:count]], 0.45)
-    (line,) = lines_of(guide, edges, 8.0)
-    return facts_of((guide, line), [run], edges, [measures[:count]], (INLIER_M, NOISE_M))
+    (approximate_line,) = approximate_lines_of([run], 8.0)
+    count = approximate_line.xyz.shape[0]
+    edges = join_edges([measures[:count]], 0.45)
+    (line,) = lines_of(approximate_line, edges, 8.0)
+    return facts_of((approximate_line, line), [run], edges, [measures[:count]], (INLIER_M, NOISE_M))
 
 
 def chance(measures: NDArray[np.float64], run: StepRun | None = None) -> float:
@@ -78,13 +78,13 @@ def test_what_is_too_tall_for_kerb_stones_is_less_likely() -> None:
 
 def test_what_stands_behind_another_rise_is_less_likely() -> None:
     first = run_of(0.0, 4.0)
-    behind = replace(first, risen_m=first.risen_m + 0.15, above_way_m=first.above_way_m + 0.15)
+    behind = replace(first, risen_m=first.risen_m + 0.15, above_path_m=first.above_path_m + 0.15)
     assert chance(stone(), behind) < chance(stone(), first) - 0.2
 
 
 def test_a_long_line_may_stand_behind_another_curb() -> None:
     first = run_of(0.0, 30.0)
-    behind = replace(first, risen_m=first.risen_m + 0.15, above_way_m=first.above_way_m + 0.15)
+    behind = replace(first, risen_m=first.risen_m + 0.15, above_path_m=first.above_path_m + 0.15)
     measures = np.vstack([stone(), stone()])
     assert chance(measures, behind) == pytest.approx(chance(measures, first))
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from processing.road.curbs.approximate_lines import ApproximateLine, approximate_lines_of
 from processing.road.curbs.curb_confidence import confidence_of
 from processing.road.curbs.curb_edge_kernels import (
     ERROR_ACROSS,
@@ -23,11 +24,10 @@ from processing.road.curbs.curb_edge_kernels import (
     UPPER_ABOVE,
     UPPER_ACROSS,
 )
-from processing.road.curbs.curb_guides import Guide, guides_of
-from processing.road.curbs.curb_joins import pooled
+from processing.road.curbs.curb_joins import join_edges
 from processing.road.curbs.curb_lines import lines_of
 from processing.road.curbs.curb_runs import StepRun
-from processing.road.curbs.curb_smoothing import Smoothness, smoothed
+from processing.road.curbs.curb_smoothing import Smoothness, smooth_values
 
 Floats = NDArray[np.float64]
 
@@ -52,10 +52,10 @@ def run_of(from_m: float, to_m: float, *, drive: int = 0, is_back: bool = False)
         top_m=one * 0.3,
         foot_m=one * 0.3,
         spread_m=one * 0.03,
-        sureness=one * 20,
+        significance=one * 20,
         foot_roughness_m=one * 0.003,
         foot_cover_m=one * 0.003,
-        above_way_m=one * -0.05,
+        above_path_m=one * -0.05,
         risen_m=one * 0,
     )
     if not is_back:
@@ -64,10 +64,10 @@ def run_of(from_m: float, to_m: float, *, drive: int = 0, is_back: bool = False)
     return replace(run, side=1, **back)
 
 
-def guide_of(count: int) -> Guide:
+def approximate_line_of(count: int) -> ApproximateLine:
     """A straight guide along x."""
     xyz = np.column_stack([np.arange(count) * STEP_M, np.full(count, 5.0), np.zeros(count)])
-    return Guide(
+    return ApproximateLine(
         xyz,
         np.tile([0.0, 1.0], (count, 1)),
         np.ones(count, np.bool_),
@@ -104,49 +104,51 @@ def test_curbs_that_meet_at_a_corner_are_one_guide() -> None:
         for aside, up in ((0.0, 0.0), (0.015, 0.15))
     ]
     across = replace(along, lower=into[0], upper=into[1])
-    (guide,) = guides_of([along, across], 8.0)
-    assert np.hypot(*(guide.xyz[0, :2] - [0.0, 5.0])) < 0.2
-    assert np.hypot(*(guide.xyz[-1, :2] - [10.2, 15.3])) < 0.3
+    (approximate_line,) = approximate_lines_of([along, across], 8.0)
+    assert np.hypot(*(approximate_line.xyz[0, :2] - [0.0, 5.0])) < 0.2
+    assert np.hypot(*(approximate_line.xyz[-1, :2] - [10.2, 15.3])) < 0.3
 
 
 def test_runs_there_and_back_are_one_guide_along_the_first_drive() -> None:
-    guides = guides_of([run_of(0, 30), run_of(10, 50, drive=1, is_back=True)], 8.0)
-    assert len(guides) == 1
-    assert guides[0].is_along
-    assert guides[0].xyz[0, 0] == pytest.approx(0.0, abs=0.3)
-    assert guides[0].xyz[-1, 0] == pytest.approx(50.0, abs=0.3)
-    assert np.abs(guides[0].xyz[:, 1] - 5.0).max() < 0.05
+    approximate_lines = approximate_lines_of(
+        [run_of(0, 30), run_of(10, 50, drive=1, is_back=True)], 8.0
+    )
+    assert len(approximate_lines) == 1
+    assert approximate_lines[0].is_along
+    assert approximate_lines[0].xyz[0, 0] == pytest.approx(0.0, abs=0.3)
+    assert approximate_lines[0].xyz[-1, 0] == pytest.approx(50.0, abs=0.3)
+    assert np.abs(approximate_lines[0].xyz[:, 1] - 5.0).max() < 0.05
 
 
 def test_a_parked_car_is_bridged_and_a_street_is_not() -> None:
-    assert len(guides_of([run_of(0, 20), run_of(26, 40)], 8.0)) == 1
-    assert len(guides_of([run_of(0, 20), run_of(32, 40)], 8.0)) == 2
+    assert len(approximate_lines_of([run_of(0, 20), run_of(26, 40)], 8.0)) == 1
+    assert len(approximate_lines_of([run_of(0, 20), run_of(32, 40)], 8.0)) == 2
 
 
 def test_a_bridge_is_no_place_that_was_seen() -> None:
-    guide = guides_of([run_of(0, 20), run_of(26, 40)], 8.0)[0]
-    inside = (guide.xyz[:, 0] > 20.5) & (guide.xyz[:, 0] < 25.5)
+    approximate_line = approximate_lines_of([run_of(0, 20), run_of(26, 40)], 8.0)[0]
+    inside = (approximate_line.xyz[:, 0] > 20.5) & (approximate_line.xyz[:, 0] < 25.5)
     assert inside.any()
-    assert not guide.is_seen[inside].any()
-    assert (guide.runs[inside] == -1).all()
+    assert not approximate_line.is_seen[inside].any()
+    assert (approximate_line.runs[inside] == -1).all()
 
 
 def test_runs_on_both_sides_of_a_street_are_never_joined() -> None:
     other = run_of(0, 30)
     other = replace(other, side=1, lower=other.lower - [0, 8, 0], upper=other.lower - [0, 8.015, 0])
-    assert len(guides_of([run_of(0, 30), other], 8.0)) == 2
+    assert len(approximate_lines_of([run_of(0, 30), other], 8.0)) == 2
 
 
 def test_the_offset_between_two_drives_leaves_no_step_where_one_ends() -> None:
     one, other = measures_of(100), measures_of(100, across_m=0.04)
     one[60:] = np.nan
-    edges = pooled([one, other], 0.45)
+    edges = join_edges([one, other], 0.45)
     before, after = edges.lower_across[:55].mean(), edges.lower_across[65:].mean()
     assert before == pytest.approx(after, abs=0.003)
 
 
 def test_what_is_higher_than_a_curb_is_left_out() -> None:
-    edges = pooled([measures_of(10, step_m=0.6)], 0.45)
+    edges = join_edges([measures_of(10, step_m=0.6)], 0.45)
     assert np.isnan(edges.lower_across).all()
     assert np.isinf(edges.across_error).all()
 
@@ -154,7 +156,7 @@ def test_what_is_higher_than_a_curb_is_left_out() -> None:
 def test_a_hidden_stretch_is_bridged_and_marked() -> None:
     measures = measures_of(100)
     measures[40:60] = np.nan
-    lines = list(lines_of(guide_of(100), pooled([measures], 0.45), 8.0))
+    lines = list(lines_of(approximate_line_of(100), join_edges([measures], 0.45), 8.0))
     assert len(lines) == 1
     assert not lines[0].is_seen[40:60].any()
     np.testing.assert_allclose(lines[0].upper[:, 1], 5.015, atol=0.012)
@@ -164,7 +166,7 @@ def test_a_hidden_stretch_is_bridged_and_marked() -> None:
 def test_a_street_mouth_parts_a_curb() -> None:
     measures = measures_of(100)
     measures[40:60, UPPER_ABOVE] = measures[40:60, LOWER_ABOVE]
-    lines = list(lines_of(guide_of(100), pooled([measures], 0.45), 8.0))
+    lines = list(lines_of(approximate_line_of(100), join_edges([measures], 0.45), 8.0))
     assert [line.is_seen.size for line in lines] == [40, 40]
 
 
@@ -172,14 +174,14 @@ def test_a_curb_lowered_to_the_road_goes_on() -> None:
     step = np.interp(np.arange(100), [36, 40, 60, 64], [0.15, 0.0, 0.0, 0.15])
     measures = measures_of(100)
     measures[:, UPPER_ABOVE] = measures[:, LOWER_ABOVE] + step
-    lines = list(lines_of(guide_of(100), pooled([measures], 0.45), 8.0))
+    lines = list(lines_of(approximate_line_of(100), join_edges([measures], 0.45), 8.0))
     assert len(lines) == 1
 
 
 def test_a_parked_car_in_the_middle_of_a_curb_does_not_lift_it() -> None:
     measures = measures_of(100)
     measures[40:50, UPPER_ABOVE] = 0.4
-    line = next(iter(lines_of(guide_of(100), pooled([measures], 0.45), 8.0)))
+    line = next(iter(lines_of(approximate_line_of(100), join_edges([measures], 0.45), 8.0)))
     assert line.steps_m.max() < 0.17
 
 
@@ -187,21 +189,21 @@ def test_smoothing_keeps_a_corner_and_takes_noise_away() -> None:
     at = np.arange(200)
     true = np.where(at < 100, 0.0, (at - 100) * 0.02)
     noisy = true + np.random.default_rng(3).normal(0, 0.005, at.size)
-    found = smoothed(noisy, np.ones(at.size), Smoothness(12.0, 0.004))
+    found = smooth_values(noisy, np.ones(at.size), Smoothness(12.0, 0.004))
     assert math.sqrt(float(((found - true) ** 2).mean())) < 0.003
     assert abs(found[100]) < 0.015
 
 
 def test_smoothing_bridges_what_is_not_known() -> None:
     values = np.where((np.arange(50) > 20) & (np.arange(50) < 30), np.nan, np.arange(50) * 0.1)
-    found = smoothed(values, np.isfinite(values).astype(float), Smoothness(12.0, 0.01))
+    found = smooth_values(values, np.isfinite(values).astype(float), Smoothness(12.0, 0.01))
     np.testing.assert_allclose(found, np.arange(50) * 0.1, atol=1e-6)
 
 
 def test_what_comes_down_as_far_as_it_rose_is_likely_the_far_side_of_an_island() -> None:
-    far = replace(run_of(0.0, 6.0), rises=-1, sureness=np.full(60, 9.0), top_m=np.zeros(60))
+    far = replace(run_of(0.0, 6.0), rises=-1, significance=np.full(60, 9.0), top_m=np.zeros(60))
     island = replace(far, risen_m=np.full(60, 0.15))
     assert confidence_of(island) > confidence_of(far) + 0.1
     assert confidence_of(replace(far, risen_m=np.full(60, 0.4))) == confidence_of(far)
-    levee = replace(island, above_way_m=np.full(60, -0.3))
+    levee = replace(island, above_path_m=np.full(60, -0.3))
     assert confidence_of(levee) == confidence_of(far)

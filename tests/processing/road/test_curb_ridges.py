@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.road.curbs.curb_doubts import runs_of, without_doubtful, without_inner_faces
+from processing.road.curbs.curb_filters import remove_inner_faces, remove_unlikely_runs, runs_of
 from processing.road.curbs.curb_ridges import ridges_of
 from processing.road.curbs.curb_runs import StepRun
 from processing.road.curbs.ridge_kernels import ridges_kernel
@@ -19,14 +19,14 @@ from processing.road.curbs.step_columns import (
     UPPER_ACROSS,
     UPPER_HEIGHT,
 )
-from tests.processing.road.test_curb_runs import SETTINGS, Surface, scanlines
+from tests.processing.road.test_curb_runs import SETTINGS, SurfaceFunction, scanlines
 
 _Floats = NDArray[np.float64]
 
 SCANNER_M = 2.4
 
 
-def seen(ground: Surface) -> Surface:
+def seen(ground: SurfaceFunction) -> SurfaceFunction:
     """What a scanner above the way shows of a ground: NaN in the shadow of what stands nearer."""
 
     def shown(station: float, across: _Floats) -> _Floats:
@@ -42,7 +42,7 @@ def seen(ground: Surface) -> Surface:
     return shown
 
 
-def strip(stone_m: float = 0.10, high_m: float = 0.12, front_m: float = 0.10) -> Surface:
+def strip(stone_m: float = 0.10, high_m: float = 0.12, front_m: float = 0.10) -> SurfaceFunction:
     """A curb, soil behind it and, at 4.5 m, an edging stone before the walk."""
 
     def ground(_station: float, across: _Floats) -> _Floats:
@@ -55,10 +55,10 @@ def strip(stone_m: float = 0.10, high_m: float = 0.12, front_m: float = 0.10) ->
     return seen(ground)
 
 
-def found(surface: Surface) -> tuple[StepRun, ...]:
+def found(surface: SurfaceFunction) -> tuple[StepRun, ...]:
     """The runs that are taken for curbs and look away from the way."""
     made = scanlines(surface)
-    runs = without_doubtful(tuple(runs_of([made], 0, SETTINGS)), SETTINGS)
+    runs = remove_unlikely_runs(tuple(runs_of([made], 0, SETTINGS)), SETTINGS)
     return tuple(run for run in runs if run.rises < 0)
 
 
@@ -82,11 +82,11 @@ def test_an_edging_stone_is_one_run_along_its_far_edge() -> None:
 
 
 def test_of_an_edging_stone_the_face_towards_the_strip_is_left_out() -> None:
-    runs = without_doubtful(
+    runs = remove_unlikely_runs(
         tuple(runs_of([scanlines(strip())], 0, SETTINGS)), replace(SETTINGS, least_step_m=0.02)
     )
     fronts = [run for run in runs if run.rises > 0 and np.median(run.upper[:, 0]) > 4.0]
-    kept = without_inner_faces(runs, SETTINGS)
+    kept = remove_inner_faces(runs, SETTINGS)
     assert fronts
     assert not [run for run in kept if any(run is front for front in fronts)]
     assert [run for run in kept if run.is_edging]
@@ -109,7 +109,7 @@ def test_the_rear_of_a_kerb_stone_is_no_edging() -> None:
         strip(front_m=0.0),  # no front
     ],
 )
-def test_walls_wide_tops_and_tops_without_a_front_are_no_ridges(surface: Surface) -> None:
+def test_walls_wide_tops_and_tops_without_a_front_are_no_ridges(surface: SurfaceFunction) -> None:
     steps = ridges_of(scanlines(surface, length_m=1.0), SETTINGS).steps.table
     assert not (np.abs(steps[:, UPPER_ACROSS] - 4.5) < 0.1).any()
 

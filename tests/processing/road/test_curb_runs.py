@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from processing.image.scanlines import Scanlines
 from processing.road.curbs.curb_chains import chains_of
-from processing.road.curbs.curb_doubts import looks_of, runs_of, without_doubtful
+from processing.road.curbs.curb_filters import curb_indications_of, remove_unlikely_runs, runs_of
 from processing.road.curbs.curb_profile import StepSettings, steps_of
 from processing.road.curbs.curb_runs import StepRun, run_of, spread_of
 
@@ -18,10 +18,12 @@ _Floats = NDArray[np.float64]
 SETTINGS = StepSettings()
 SPACING_M = 0.1
 
-Surface = Callable[[float, _Floats], _Floats]
+SurfaceFunction = Callable[[float, _Floats], _Floats]
 
 
-def scanlines(surface: Surface, length_m: float = 12.0, noise_m: float = 0.004) -> Scanlines:
+def scanlines(
+    surface: SurfaceFunction, length_m: float = 12.0, noise_m: float = 0.004
+) -> Scanlines:
     """Scanlines of a straight way to the north over a surface: height by station and across."""
     random = np.random.default_rng(8)
     stations = np.arange(0.0, length_m, SPACING_M)
@@ -37,7 +39,9 @@ def scanlines(surface: Surface, length_m: float = 12.0, noise_m: float = 0.004) 
     return Scanlines(
         number=0,
         stations_m=stations,
-        places=np.column_stack([np.zeros_like(stations), stations, np.full_like(stations, 20.0)]),
+        positions=np.column_stack(
+            [np.zeros_like(stations), stations, np.full_like(stations, 20.0)]
+        ),
         rights=np.tile([1.0, 0.0], (stations.size, 1)),
         starts=starts.astype(np.int64),
         across_m=np.concatenate([across[is_seen] for is_seen in seen]),
@@ -49,15 +53,15 @@ def scanlines(surface: Surface, length_m: float = 12.0, noise_m: float = 0.004) 
     )
 
 
-def curb(at: float, high: float, lean: float = 0.02) -> Surface:
+def curb(at: float, high: float, lean: float = 0.02) -> SurfaceFunction:
     """A curb on the right, its foot at a place."""
     return lambda _station, across: np.clip((across - at) / lean, 0.0, 1.0) * high
 
 
-def found(surface: Surface, noise_m: float = 0.004) -> tuple[StepRun, ...]:
+def found(surface: SurfaceFunction, noise_m: float = 0.004) -> tuple[StepRun, ...]:
     """The runs on a surface that are taken for curbs."""
     made = scanlines(surface, noise_m=noise_m)
-    return without_doubtful(tuple(runs_of([made], 3, SETTINGS)), SETTINGS)
+    return remove_unlikely_runs(tuple(runs_of([made], 3, SETTINGS)), SETTINGS)
 
 
 def test_a_curb_is_one_run_from_end_to_end_with_both_edges_where_they_are() -> None:
@@ -188,15 +192,15 @@ def test_where_the_ground_comes_up_to_the_road_from_a_channel_is_no_curb(
 
 
 def test_what_the_ground_about_a_run_says_is_told_apart() -> None:
-    def all_of(surface: Surface) -> list[StepRun]:
+    def all_of(surface: SurfaceFunction) -> list[StepRun]:
         return [run for run in runs_of([scanlines(surface)], 3, SETTINGS) if run.seen_m > 5.0]
 
     (upright,) = all_of(curb(3.0, 0.15))
-    assert looks_of(upright) == (True, True)
+    assert curb_indications_of(upright) == (True, True)
     (bank,) = all_of(curb(3.0, 0.30, lean=0.28))
-    assert looks_of(bank) == (False, True)
+    assert curb_indications_of(bank) == (False, True)
     wall = all_of(lambda _, across: np.where((across > 2.7) & (across < 3.0), -0.3, 0.0))
-    assert all(not looks_of(run).is_of_road for run in wall)
+    assert all(not curb_indications_of(run).is_of_road for run in wall)
     assert wall
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from processing.points.passes import Pass, passes_of_trajectory
 from processing.points.trajectory import Trajectory
-from processing.road.gutters.grating_found import GratingFound, one_of_each
+from processing.road.gutters.grating_facts import GratingFound, one_of_each
 from processing.road.gutters.gratings import GratingParameters, gratings_among
 from processing.road.gutters.notches import OPENING, Notches
 
@@ -51,13 +51,13 @@ def notches_at(x: np.ndarray, across: np.ndarray, *, width_m: float = 0.03) -> N
 def openings_of_a_grating() -> tuple[np.ndarray, np.ndarray]:
     """Where rows 0.111 m apart pass between bars 0.06 m apart."""
     (x0, y0), (x1, y1) = CORNERS
-    places = []
+    positions = []
     for middle in np.arange(x0 + 0.02, x1, 0.04):
         for row in range(100):
             across = middle - row * SPEED_M_S / ROWS_PER_S
             if y0 < across < y1:
-                places.append((middle, across))
-    found = np.array(places)
+                positions.append((middle, across))
+    found = np.array(positions)
     return found[:, 0], found[:, 1]
 
 

@@ -10,7 +10,7 @@ from processing.road.gutters.gutter_confidence import chance_of, facts_of
 from processing.road.gutters.gutter_contrast import contrast_of
 from processing.road.gutters.gutter_holes import JointNotches, hole_fit
 from processing.road.gutters.gutter_joints import LID, JointRow
-from processing.road.gutters.gutter_lids import Cover
+from processing.road.gutters.gutter_lids import GutterCover
 from processing.road.gutters.gutter_runs import GutterRun
 from processing.road.gutters.notches import OPENING, Notches
 
@@ -71,9 +71,9 @@ def gutter(height_m: float = 0.0) -> GutterRun:
     return GutterRun(axis, row, hole_fit(at_joints), LID_M, 10.0)
 
 
-def covers() -> tuple[Cover, ...]:
+def covers() -> tuple[GutterCover, ...]:
     return tuple(
-        Cover(
+        GutterCover(
             np.zeros((4, 3)),
             is_grating=False,
             is_bridged=False,

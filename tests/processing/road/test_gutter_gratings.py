@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.road.gutters.grating_found import GratingFacts, GratingFound
+from processing.road.gutters.grating_facts import GratingFacts, GratingFound
 from processing.road.gutters.gutter_axis import GutterAxis
-from processing.road.gutters.gutter_gratings import SureCovers, with_gratings
-from processing.road.gutters.gutter_lids import Cover
+from processing.road.gutters.gutter_gratings import RatedCovers, add_gratings
+from processing.road.gutters.gutter_lids import GutterCover
 
 WIDE_M, LONG_M = 0.4, 0.6
 AXIS = GutterAxis.through(np.array([[0.0, 0.0, 5.0], [10.0, 0.0, 5.0]]))
@@ -21,8 +21,8 @@ def rectangle(middle: tuple[float, float], long: float, wide: float) -> NDArray[
     return ring + np.array([*middle, 0.0])
 
 
-def cover(along_m: float, *, long_m: float = LONG_M, is_grating: bool = False) -> Cover:
-    return Cover(
+def cover(along_m: float, *, long_m: float = LONG_M, is_grating: bool = False) -> GutterCover:
+    return GutterCover(
         rectangle((along_m, 0.0), long_m, WIDE_M),
         is_grating=is_grating,
         is_bridged=False,
@@ -44,13 +44,13 @@ def grating(x: float, y: float = 0.0, *, long_m: float = 0.5, sure: float = 0.9)
     return GratingFound(corners, long_m, 0.38, facts, sure, points=(4, 5, 6, 7), drive=1)
 
 
-def lids(count: int = 5, sure: float = 0.7) -> SureCovers:
+def lids(count: int = 5, sure: float = 0.7) -> RatedCovers:
     covers = tuple(cover(1.0 + LONG_M * number) for number in range(count))
-    return SureCovers(covers, np.full(count, sure))
+    return RatedCovers(covers, np.full(count, sure))
 
 
 def test_a_grating_takes_the_place_of_the_lid_that_was_taken_for_one() -> None:
-    own, beside = with_gratings(AXIS, lids(), [grating(2.2)])
+    own, beside = add_gratings(AXIS, lids(), [grating(2.2)])
 
     assert not beside
     assert [one.is_grating for one in own.covers] == [False, False, True, False, False]
@@ -61,15 +61,15 @@ def test_a_grating_takes_the_place_of_the_lid_that_was_taken_for_one() -> None:
 
 
 def test_lids_that_are_surer_stay() -> None:
-    own, beside = with_gratings(AXIS, lids(sure=0.95), [grating(2.2)])
+    own, beside = add_gratings(AXIS, lids(sure=0.95), [grating(2.2)])
 
     assert not beside
     assert not any(one.is_grating for one in own.covers)
 
 
 def test_a_grating_that_the_joints_tell_of_too_keeps_its_place_and_is_surer() -> None:
-    both = SureCovers((cover(1.0), cover(1.55, long_m=0.5, is_grating=True)), np.array([0.7, 0.6]))
-    own, _ = with_gratings(AXIS, both, [grating(1.56)])
+    both = RatedCovers((cover(1.0), cover(1.55, long_m=0.5, is_grating=True)), np.array([0.7, 0.6]))
+    own, _ = add_gratings(AXIS, both, [grating(1.56)])
 
     assert own.covers == both.covers
     assert own.sure == pytest.approx([0.7, 0.9])
@@ -77,7 +77,7 @@ def test_a_grating_that_the_joints_tell_of_too_keeps_its_place_and_is_surer() ->
 
 def test_a_catch_basin_beside_a_gutter_is_none_of_its_covers() -> None:
     basin = grating(2.2, 0.9)
-    own, beside = with_gratings(AXIS, lids(), [basin])
+    own, beside = add_gratings(AXIS, lids(), [basin])
 
     assert beside == (basin,)
     assert len(own.covers) == 5

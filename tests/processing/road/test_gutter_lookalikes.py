@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from processing.tools.tool import Candidate
 from tests.processing.road.bad_recordings import (
     HEAD_45,
-    Profile,
-    Recording,
+    DrivenRecording,
+    RoadCrossSection,
     drawn_along,
     facing_along,
     recorded,
@@ -21,7 +21,7 @@ from tests.processing.road.bad_recordings import (
     told_by,
 )
 
-Shape = tuple[NDArray[np.float64], NDArray[np.int64]]
+LookalikeShape = tuple[NDArray[np.float64], NDArray[np.int64]]
 Box = tuple[float, float, float, float]  # from and to along, from and to across to the left
 
 LENGTH_M, BEYOND_M = 16.0, 8.0
@@ -30,7 +30,7 @@ HOLES_M = ((-3.335, -3.235), (-3.145, -3.045))
 HOLE_M = 0.03
 
 
-def plates(boxes: list[Box], height_m: float = 0.0) -> Shape:
+def plates(boxes: list[Box], height_m: float = 0.0) -> LookalikeShape:
     """Level rectangles."""
     corners = [
         (x, y, height_m) for a, b, c, d in boxes for x, y in ((a, c), (b, c), (b, d), (a, d))
@@ -40,7 +40,7 @@ def plates(boxes: list[Box], height_m: float = 0.0) -> Shape:
     return np.array(corners), faces.astype(np.int64)
 
 
-def sheet(across: tuple[float, float], height_m: float) -> Shape:
+def sheet(across: tuple[float, float], height_m: float) -> LookalikeShape:
     """A level strip along the whole way."""
     low, high = across
     return plates([(-BEYOND_M, LENGTH_M + BEYOND_M, low, high)], height_m)
@@ -52,7 +52,7 @@ def pieces(length_m: float, gap_m: float) -> Iterator[tuple[float, float]]:
         yield float(start) + gap_m / 2, float(start + length_m) - gap_m / 2
 
 
-def lids() -> list[Shape]:
+def lids() -> list[LookalikeShape]:
     """Lids with twin holes at their joints, over a channel 30 cm deep."""
     boxes: list[Box] = []
     for first, last in pieces(LID_M, 0.004):
@@ -66,40 +66,40 @@ def lids() -> list[Shape]:
     return [plates(boxes), along_way(channel), *sides]
 
 
-def along_way(profile: Profile) -> Shape:
+def along_way(profile: RoadCrossSection) -> LookalikeShape:
     """A profile along the whole way."""
     return drawn_along(profile, np.array([[-BEYOND_M, 0.0], [LENGTH_M + BEYOND_M, 0.0]]))
 
 
-def grooved(across: tuple[float, float], gap_m: float, deep_m: float) -> list[Shape]:
+def grooved(across: tuple[float, float], gap_m: float, deep_m: float) -> list[LookalikeShape]:
     """A strip of blocks of 60 cm with grooves between them."""
     blocks: list[Box] = [(first, last, *across) for first, last in pieces(0.6, gap_m)]
     return [plates(blocks), sheet(across, -deep_m)]
 
 
-def l_gutter() -> list[Shape]:
+def l_gutter() -> list[LookalikeShape]:
     """Blocks of 60 cm with an apron of 50 cm before a curb of 15 cm."""
     curb = along_way(((-7.0, 0.17), (-3.52, 0.15), (-3.5, 0.0)))
     return [curb, *grooved((-3.5, -3.0), 0.008, 0.012), sheet((-3.0, 7.0), 0.0)]
 
 
-def pavement_of_slabs() -> list[Shape]:
+def pavement_of_slabs() -> list[LookalikeShape]:
     """Concrete slabs of 60 cm over the whole road."""
     return grooved((-7.0, 7.0), 0.008, 0.015)
 
 
-def old_curb_stones() -> list[Shape]:
+def old_curb_stones() -> list[LookalikeShape]:
     """Worn stones of 60 cm, 15 cm wide and 3 cm high, with open joints between them."""
     stones = plates([(first, last, -3.15, -3.0) for first, last in pieces(0.6, 0.02)], 0.03)
     return [stones, sheet((-7.0, 7.0), 0.0)]
 
 
-def covers_found(shapes: list[Shape], folder: Path) -> list[Candidate]:
+def covers_found(shapes: list[LookalikeShape], folder: Path) -> list[Candidate]:
     """Lids and gratings that the tool finds."""
-    way = straight(LENGTH_M)
-    recording = Recording(
-        way,
-        facing_along(way),
+    vehicle_path = straight(LENGTH_M)
+    recording = DrivenRecording(
+        vehicle_path,
+        facing_along(vehicle_path),
         tuple(shapes),
         head=HEAD_45,
         pulses=3_000,
@@ -120,6 +120,6 @@ def test_lids_with_holes_are_found(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("shapes", [l_gutter, pavement_of_slabs, old_curb_stones])
 def test_what_looks_like_a_gutter_is_none(
-    shapes: Callable[[], list[Shape]], tmp_path: Path
+    shapes: Callable[[], list[LookalikeShape]], tmp_path: Path
 ) -> None:
     assert covers_found(shapes(), tmp_path) == []

@@ -17,7 +17,7 @@ from tests.processing.road.notch_rows import (
     HOLE_WIDE_M,
     HOLES_FROM_M,
     LID_M,
-    Rows,
+    NotchRows,
     is_hole,
 )
 
@@ -29,7 +29,7 @@ def nothing_open(along: Floats, across: Floats) -> NDArray[np.bool_]:
     return np.zeros(np.broadcast(along, across).shape, np.bool_)
 
 
-def found_in(rows: Rows, noise_m: float = 0.002) -> tuple[Floats, NDArray[np.int64]]:
+def found_in(rows: NotchRows, noise_m: float = 0.002) -> tuple[Floats, NDArray[np.int64]]:
     """What the kernel notes."""
     out = (np.empty((5_000, FOUND)), np.empty((5_000, 3), np.int64))
     limits = (6.5, 1.5, noise_m, 0.02, 0.01, 0.10, 3.0)
@@ -54,7 +54,7 @@ def off_the_holes(found: Floats) -> Floats:
     ],
 )
 def test_holes_are_found_on_slopes_with_noise_and_lost_pulses(changes: dict[str, Any]) -> None:
-    rows = Rows(is_hole, **changes)
+    rows = NotchRows(is_hole, **changes)
     found, _ = found_in(rows, changes.get("noise_m", 0.002))
     deep = found[found[:, 3] > DEEP_M / 2]
 
@@ -70,7 +70,7 @@ def test_holes_are_found_on_slopes_with_noise_and_lost_pulses(changes: dict[str,
 
 
 def test_the_place_of_a_hole_is_on_the_lid_and_not_below() -> None:
-    found, _ = found_in(Rows(is_hole, slope=0.10))
+    found, _ = found_in(NotchRows(is_hole, slope=0.10))
     deep = found[found[:, 3] > DEEP_M / 2]
 
     assert np.abs(deep[:, 2] - 0.10 * deep[:, 0]).max() < 0.006
@@ -78,14 +78,14 @@ def test_the_place_of_a_hole_is_on_the_lid_and_not_below() -> None:
 
 
 def test_a_plain_road_has_no_openings() -> None:
-    found, _ = found_in(Rows(nothing_open, fall=0.04, slope=0.05))
+    found, _ = found_in(NotchRows(nothing_open, fall=0.04, slope=0.05))
 
     assert not (found[:, 3] > 0.012).any()
     assert len(found) < 0.005 * 60 * 1_000
 
 
 def test_a_missing_pulse_alone_is_noted_as_lost() -> None:
-    rows = Rows(nothing_open, lost_share=0.01)
+    rows = NotchRows(nothing_open, lost_share=0.01)
     found, _ = found_in(rows)
     pattern = found[:, 8].astype(np.int64)
 
@@ -94,7 +94,7 @@ def test_a_missing_pulse_alone_is_noted_as_lost() -> None:
 
 
 def test_a_curb_is_no_opening() -> None:
-    rows = Rows(nothing_open)
+    rows = NotchRows(nothing_open)
     is_walk = -rows.xyz[:, 1] > 3.0
     rows.xyz[is_walk, 2] += 0.15
     found, _ = found_in(rows)
@@ -103,7 +103,7 @@ def test_a_curb_is_no_opening() -> None:
 
 
 def test_holes_close_to_a_wall_are_found_on_both_sides() -> None:
-    rows = Rows(lambda along, across: is_hole(along, np.abs(across)))
+    rows = NotchRows(lambda along, across: is_hole(along, np.abs(across)))
     last = HOLES_FROM_M[1] + HOLE_WIDE_M
     # Beyond the lid, not what was measured through its holes.
     is_wall = (np.abs(rows.xyz[:, 1]) > last + 0.035) & (rows.xyz[:, 2] > -DEEP_M / 2)
@@ -117,7 +117,7 @@ def test_holes_close_to_a_wall_are_found_on_both_sides() -> None:
 
 
 def test_grass_is_no_row_of_openings() -> None:
-    rows = Rows(nothing_open)
+    rows = NotchRows(nothing_open)
     random = np.random.default_rng(1)
     is_grass = -rows.xyz[:, 1] > 3.0
     rows.xyz[is_grass, 2] += random.uniform(0.0, 0.15, int(is_grass.sum()))

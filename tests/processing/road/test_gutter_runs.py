@@ -28,7 +28,7 @@ LIDS = lengths_of((LID_M,), (0.5, 1.0))
 Floats = NDArray[np.float64]
 
 
-def way(radius_m: float) -> Pass:
+def vehicle_path(radius_m: float) -> Pass:
     """Sixty metres, straight or to the left."""
     driven = np.arange(0.0, 60.0, 0.5)
     turned = driven / radius_m
@@ -81,7 +81,7 @@ def holes_seen(random: np.random.Generator, share: float) -> tuple[Floats, Float
 
 @pytest.mark.parametrize("radius_m", [1e6, 40.0])
 def test_lids_are_found_by_half_of_their_holes_also_in_a_bend(radius_m: float) -> None:
-    one, random = way(radius_m), np.random.default_rng(5)
+    one, random = vehicle_path(radius_m), np.random.default_rng(5)
     (run,) = gutter_runs([one], [notches_at(one, *holes_seen(random, 0.5))], 5)
     assert run.length_m == LID_M
     assert run.holes.type.width_m == WIDTH_M
@@ -91,40 +91,40 @@ def test_lids_are_found_by_half_of_their_holes_also_in_a_bend(radius_m: float) -
 
 
 def test_two_heads_together_find_what_neither_finds_alone() -> None:
-    one, random = way(1e6), np.random.default_rng(3)
+    one, random = vehicle_path(1e6), np.random.default_rng(3)
     heads = [notches_at(one, *holes_seen(random, 0.35)) for _ in range(2)]
     (run,) = gutter_runs([one, one], heads, 5)
     assert run.row.starts_m.size >= COUNT - 2
 
 
 def test_notches_by_chance_are_no_gutter() -> None:
-    one, random = way(1e6), np.random.default_rng(7)
+    one, random = vehicle_path(1e6), np.random.default_rng(7)
     along, across = random.uniform(0, 40, 300), random.uniform(-1.5, 1.5, 300)
     found = gutter_runs([one], [notches_at(one, along, across)], 5)
     assert sum(run.row.starts_m.size for run in found if run.holes.gain > 0.3) < 10
 
 
 def test_a_long_step_is_no_gutter() -> None:
-    one, random = way(1e6), np.random.default_rng(9)
+    one, random = vehicle_path(1e6), np.random.default_rng(9)
     along = np.arange(0.0, 40.0, 0.07) + random.normal(0, 0.01, 572)
     found = gutter_runs([one], [notches_at(one, along, np.zeros(along.size))], 5)
     assert sum(run.row.starts_m.size for run in found if run.row.value > 18) == 0
 
 
 def test_a_far_gutter_is_found_by_few_of_its_joints() -> None:
-    one, random = way(1e6), np.random.default_rng(4)
+    one, random = vehicle_path(1e6), np.random.default_rng(4)
     along = joints(75)[random.random(76) < 0.5]
     along = along + random.normal(0, 0.008, along.size)
     beside = random.uniform(0, 45, 60), random.uniform(-1.5, 1.5, 60)
     across = random.choice([-HOLES_M, HOLES_M], along.size)
-    places = np.concatenate([along, beside[0]]), np.concatenate([across, beside[1]])
-    (run,) = gutter_runs([one], [notches_at(one, *places)], 8)
+    positions = np.concatenate([along, beside[0]]), np.concatenate([across, beside[1]])
+    (run,) = gutter_runs([one], [notches_at(one, *positions)], 8)
     assert run.length_m == LID_M
     assert run.row.starts_m.size > 30
 
 
 def test_lids_of_two_lengths_may_be_mixed() -> None:
-    one, random = way(1e6), np.random.default_rng(6)
+    one, random = vehicle_path(1e6), np.random.default_rng(6)
     lids = random.choice([0.5, 0.6], 60)
     along = np.repeat(np.concatenate([[0.0], np.cumsum(lids + JOINT_M)]), 4)
     across = np.tile([-HOLES_M, HOLES_M], along.size // 2)
@@ -135,14 +135,14 @@ def test_lids_of_two_lengths_may_be_mixed() -> None:
 
 
 def test_joints_at_a_spacing_that_no_lids_have_are_no_gutter() -> None:
-    one = way(1e6)
+    one = vehicle_path(1e6)
     along = np.repeat(np.arange(40) * 0.68, 2)
     across = np.tile([-HOLES_M, HOLES_M], 40)
     assert gutter_runs([one], [notches_at(one, along, across)], 5) == ()
 
 
 def test_grooves_between_blocks_are_no_gutter() -> None:
-    one, random = way(1e6), np.random.default_rng(8)
+    one, random = vehicle_path(1e6), np.random.default_rng(8)
     along = np.repeat(joints(60), 3)
     grooves = notches_at(one, along, random.uniform(-0.25, 0.25, along.size))
     shallow = replace(grooves, depth_m=np.full(grooves.count, 0.012))
@@ -150,7 +150,7 @@ def test_grooves_between_blocks_are_no_gutter() -> None:
 
 
 def test_a_walk_with_joints_of_its_own_lifts_no_gutter() -> None:
-    one, random = way(1e6), np.random.default_rng(10)
+    one, random = vehicle_path(1e6), np.random.default_rng(10)
     gutter = notches_at(one, *holes_seen(random, 0.4))
     along, across = random.uniform(0, 37, 900), random.uniform(0.2, 1.2, 900)
     walk = notches_at(one, along, across, 0.15)
@@ -163,7 +163,7 @@ def test_a_walk_with_joints_of_its_own_lifts_no_gutter() -> None:
 
 @pytest.mark.parametrize("gap_m", [3.2, JOINT_M])
 def test_lids_of_another_type_are_a_gutter_of_their_own(gap_m: float) -> None:
-    one, random = way(1e6), np.random.default_rng(11)
+    one, random = vehicle_path(1e6), np.random.default_rng(11)
     along = np.repeat(joints(30), 4)
     twin = random.choice([-HOLES_M, HOLES_M], along.size)
     far_m = along.max() + gap_m
@@ -177,7 +177,7 @@ def test_lids_of_another_type_are_a_gutter_of_their_own(gap_m: float) -> None:
 
 
 def test_nothing_is_found_where_there_are_no_notches() -> None:
-    one = way(1e6)
+    one = vehicle_path(1e6)
     assert gutter_runs([one], [], 5) == ()
     assert gutter_runs([one], [notches_at(one, np.empty(0), np.empty(0))], 5) == ()
 
@@ -226,7 +226,7 @@ def points_on(run: GutterRun, random: np.random.Generator, sunken: int) -> Point
 
 
 def test_lids_lie_on_their_own_tops_at_their_true_size() -> None:
-    one, random = way(1e6), np.random.default_rng(2)
+    one, random = vehicle_path(1e6), np.random.default_rng(2)
     (run,) = gutter_runs([one], [notches_at(one, *holes_seen(random, 0.9))], 5)
     covers = covers_of(run, 0, [points_on(run, random, 10)])
     cover = covers[20]
@@ -242,7 +242,7 @@ def test_lids_lie_on_their_own_tops_at_their_true_size() -> None:
 
 
 def test_the_outline_is_both_long_edges() -> None:
-    one, random = way(1e6), np.random.default_rng(2)
+    one, random = vehicle_path(1e6), np.random.default_rng(2)
     (run,) = gutter_runs([one], [notches_at(one, *holes_seen(random, 0.9))], 5)
     covers = covers_of(run, 0, [points_on(run, random, 10)])
     left, right = edge_lines(covers, 6.0)
@@ -256,7 +256,7 @@ def test_an_axis_tells_places_as_it_gives_them() -> None:
     turn = np.linspace(0, 1, 60)
     axis = GutterAxis.through(np.column_stack([30 * np.sin(turn), 30 * np.cos(turn), turn]))
     along, across = np.linspace(1, 25, 40), np.linspace(-0.4, 0.4, 40)
-    told = axis.told(axis.places(along, across), 0.5)
+    told = axis.told(axis.positions(along, across), 0.5)
     np.testing.assert_allclose(told[0], along, atol=0.01)
     np.testing.assert_allclose(told[1], across, atol=0.003)
     np.testing.assert_allclose(told[2], 0.0, atol=0.003)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from processing.score.mapped_features import Floats, MappedFeature, MappedFile, Shape
+from processing.score.mapped_features import Floats, GeometryType, MappedFeature, MappedFile
 
 EAST, NORTH = -11_000.0, -35_000.0
 ORIGIN = np.array([EAST, NORTH, 120.0])
@@ -20,7 +20,7 @@ def map_of(features: Sequence[MappedFeature], name: str = "truth.geojson") -> Ma
 
 
 def feature(
-    shape: Shape, xyz: Floats | Sequence[Sequence[float]], /, **facts: object
+    shape: GeometryType, xyz: Floats | Sequence[Sequence[float]], /, **facts: object
 ) -> MappedFeature:
     return MappedFeature(1, shape, ORIGIN + np.array(xyz, np.float64).reshape(-1, 3), facts)
 

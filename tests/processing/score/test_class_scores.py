@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from processing.score.class_scores import class_score
-from processing.score.point_classes import ClassCounts, TwoByTwo
+from processing.score.confusion_matrix import ClassCounts, ConfusionMatrix
 
 TRUTH = np.array([2, 2, 11, 11, 11, 11, 65, 65, 18, 0, 0], np.uint8)
 RESULT = np.array([2, 11, 11, 11, 11, 2, 65, 1, 18, 65, 2], np.uint8)
@@ -22,10 +22,10 @@ def test_the_truth_itself_is_right_in_everything() -> None:
 def test_classes_are_counted_each_against_all_others() -> None:
     score = class_score(ClassCounts.of(TRUTH, RESULT))
     assert score.points == 9
-    assert score.class_of("2") == TwoByTwo(1, 1, 1, 6)
-    assert score.class_of("11") == TwoByTwo(3, 1, 1, 4)
-    assert score.class_of("ground_and_road") == TwoByTwo(6, 0, 0, 3)
-    assert score.class_of("65") == TwoByTwo(1, 0, 1, 7)
+    assert score.class_of("2") == ConfusionMatrix(1, 1, 1, 6)
+    assert score.class_of("11") == ConfusionMatrix(3, 1, 1, 4)
+    assert score.class_of("ground_and_road") == ConfusionMatrix(6, 0, 0, 3)
+    assert score.class_of("65") == ConfusionMatrix(1, 0, 1, 7)
     right, not_known = (one.share for one in score.shares)
     assert (right.hits, right.of, not_known.hits, not_known.of) == (6, 9, 2, 11)
     mean_f, joined = (one.value for one in score.figures)

@@ -7,24 +7,30 @@ import pytest
 
 from processing.road.curbs.curb_confidence import CONSTANT, WEIGHTS, CurbFacts, chance_of
 from processing.score.curb_training import EXPECTED
-from processing.score.learnt_chances import Known, chances, fitted, left_out, reliability
+from processing.score.learned_confidence import (
+    LabelledThings,
+    chances,
+    cross_validate,
+    fit_weights,
+    reliability,
+)
 
 FACTS = len(CurbFacts._fields)
 RISEN = CurbFacts._fields.index("risen_m")
 
 
-def known(count: int = 200) -> Known:
+def known(count: int = 200) -> LabelledThings:
     """Lines on ten streets: those behind a rise of more than 5 cm are no curbs."""
     random = np.random.default_rng(7)
     terms = np.zeros((count, FACTS))
     terms[:, RISEN] = random.uniform(0.0, 0.2, count)
     terms[:, -1] = random.uniform(1.0, 2.0, count)
     worth = random.uniform(1.0, 3.0, count)
-    return Known(terms, terms[:, RISEN] < 0.05, worth, np.arange(count) % 10)
+    return LabelledThings(terms, terms[:, RISEN] < 0.05, worth, np.arange(count) % 10)
 
 
 def test_what_tells_curbs_apart_gets_weight_and_no_weight_changes_its_sign() -> None:
-    weights = fitted(known(), EXPECTED)
+    weights = fit_weights(known(), EXPECTED)
     assert weights[1 + RISEN] < -25.0
     assert weights[1] >= 0.0
     assert np.all(weights[2:] <= 0.0)
@@ -32,7 +38,7 @@ def test_what_tells_curbs_apart_gets_weight_and_no_weight_changes_its_sign() -> 
 
 def test_streets_left_out_are_told_right() -> None:
     lines = known()
-    chance = left_out(lines, EXPECTED)
+    chance = cross_validate(lines, EXPECTED)
     sure = chance >= 0.9
     assert sure.any()
     assert lines.is_right[sure].mean() >= 0.9
@@ -40,7 +46,7 @@ def test_streets_left_out_are_told_right() -> None:
 
 def test_chances_of_the_command_are_those_of_the_tool() -> None:
     facts = CurbFacts(0.5, 0.03, -0.02, 0.0, 0.0, 0.0, 0.4, 1.2)
-    lines = Known(
+    lines = LabelledThings(
         np.array([facts._replace(before=0.0)]), np.array([True]), np.ones(1), np.zeros(1, np.int64)
     )
     weights = np.array([CONSTANT, *WEIGHTS])
@@ -49,7 +55,7 @@ def test_chances_of_the_command_are_those_of_the_tool() -> None:
 
 def test_the_table_counts_every_line_once() -> None:
     lines = known()
-    rows = reliability(lines, left_out(lines, EXPECTED)).strip().splitlines()[2:]
+    rows = reliability(lines, cross_validate(lines, EXPECTED)).strip().splitlines()[2:]
     cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in rows]
     assert sum(int(row[1]) for row in cells) == lines.is_right.size
     assert sum(int(row[2]) for row in cells) == int(lines.is_right.sum())

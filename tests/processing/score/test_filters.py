@@ -10,11 +10,11 @@ import pytest
 
 from processing.formats.point_files import read_info
 from processing.score import peer_filters
+from processing.score.confusion_matrix import ClassCounts
 from processing.score.filter_methods import as_delivered, noise_methods, site_methods
-from processing.score.filter_scenes import Scene, airborne_samples, noise_scenes, sites
-from processing.score.filter_tables import Found, airborne_table, noise_table, sites_table
-from processing.score.filters import HEADINGS, main, with_section
-from processing.score.point_classes import ClassCounts
+from processing.score.filter_scenes import FilterScene, airborne_samples, noise_scenes, sites
+from processing.score.filter_tables import FilterResult, airborne_table, noise_table, sites_table
+from processing.score.filters import HEADINGS, main, replace_section
 from processing.score.point_scores import ground_score, noise_score
 
 
@@ -92,9 +92,9 @@ def test_the_command_replaces_its_own_section_and_paints_errors(data: Path, tmp_
 
 
 def test_a_section_that_is_not_there_yet_comes_to_the_end() -> None:
-    assert with_section("# A\n\nx\n", "## B", "## B\n\ny\n") == "# A\n\nx\n\n## B\n\ny\n"
+    assert replace_section("# A\n\nx\n", "## B", "## B\n\ny\n") == "# A\n\nx\n\n## B\n\ny\n"
     page = "# A\n\n## B\n\nold\n\n### deeper\n\nold\n"
-    assert with_section(page, "## B", "## B\n\ny\n") == "# A\n\n## B\n\ny\n"
+    assert replace_section(page, "## B", "## B\n\ny\n") == "# A\n\n## B\n\ny\n"
 
 
 def test_peers_that_are_not_installed_are_named_in_their_rows(
@@ -103,12 +103,12 @@ def test_peers_that_are_not_installed_are_named_in_their_rows(
     monkeypatch.setattr(peer_filters, "find_spec", lambda _: None)
     monkeypatch.setenv("PATH", "")
     xyz, codes = box_on_plain()
-    scene = Scene("plain", None, None, xyz, codes, {})
+    scene = FilterScene("plain", None, None, xyz, codes, {})
     found = []
     for method in (*noise_methods(), *site_methods()):
         if not method.ours and method.name != "nothing removed":
             assert method.codes(scene, tmp_path) is None
-            found.append(Found("plain", method.name, method.settings, False, None))
+            found.append(FilterResult("plain", method.name, method.settings, False, None))
     for table in (noise_table(found), sites_table(found), airborne_table(found)):
         lines = table.splitlines()
         assert sum("not installed" in line for line in lines) == len(found)
@@ -120,14 +120,14 @@ def test_tables_have_the_figures_of_the_scores() -> None:
     result = truth.copy()
     result[[0, 95]] = 18, 0
     row = noise_table(
-        [Found("road", "m", "s", True, noise_score(ClassCounts.of(truth, result)))]
+        [FilterResult("road", "m", "s", True, noise_score(ClassCounts.of(truth, result)))]
     ).splitlines()[2]
     cells = [cell.strip() for cell in row.split("|")[1:-1]]
     assert cells[:9] == ["road", "m", "s", *["98.889 %"] * 3, "0.900", "0.900", "0.900"]
     truth = np.where(truth == 0, 2, 1).astype(np.uint8)
     result = np.where(result == 0, 2, 1).astype(np.uint8)
     score = ground_score(ClassCounts.of(truth, result))
-    found = [Found(f"samp{number}", "m", "s", True, score) for number in (12, 22)]
+    found = [FilterResult(f"samp{number}", "m", "s", True, score) for number in (12, 22)]
     cells = [cell.strip() for cell in sites_table(found).splitlines()[2].split("|")[1:-1]]
     assert cells[3:] == [
         *["0.900"] * 3,

@@ -10,8 +10,8 @@ from processing.score.one_to_one import best_pairs, pairs_within
 
 
 def test_equal_places_are_paired_with_themselves() -> None:
-    places = np.random.default_rng(1).uniform(0, 100, (50, 2))
-    of_result, of_truth = pairs_within(places, places, 1.0)
+    positions = np.random.default_rng(1).uniform(0, 100, (50, 2))
+    of_result, of_truth = pairs_within(positions, positions, 1.0)
     assert of_result.tolist() == of_truth.tolist() == list(range(50))
 
 

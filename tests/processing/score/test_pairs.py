@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from processing.errors import Unsuitable
 from processing.monitor import SilentMonitor
 from processing.score.coded_points import CodedFile, CodedPoints, pairs_by_order
-from processing.score.pairs_by_place import pairs_by_place
+from processing.score.pairs_by_position import pairs_by_position
 
 STEP_M = 0.001
 
@@ -25,7 +25,7 @@ def file_of(
         for start in range(0, len(codes), block):
             yield CodedPoints(codes, xyz, kinds).part(slice(start, start + block))
 
-    return CodedFile(Path("cloud"), len(codes), step_m, has_places=True, blocks=blocks)
+    return CodedFile(Path("cloud"), len(codes), step_m, has_positions=True, blocks=blocks)
 
 
 def cloud(count: int) -> tuple[NDArray[np.float64], NDArray[np.uint8]]:
@@ -68,7 +68,7 @@ def test_points_at_one_place_are_paired_in_the_order_of_the_files(
     xyz, codes = cloud(400)
     xyz[200:] = xyz[:200]
     order = np.r_[np.random.default_rng(0).permutation(200), 200 + np.arange(200)]
-    pairs = pairs_by_place(
+    pairs = pairs_by_position(
         file_of(xyz, codes, 33),
         file_of(xyz[order], codes[order], 50),
         tmp_path,
@@ -89,7 +89,7 @@ def test_points_without_counterpart_are_counted_one_to_one(tmp_path: Path, at_on
     lacking = np.arange(10, 300)
     with pytest.raises(Unsuitable, match="4 of the result's 294 points and 10 of the truth's 300"):
         list(
-            pairs_by_place(
+            pairs_by_position(
                 file_of(xyz + np.r_[0.0, 0.0, 1.0] * (np.arange(300) < 10)[:, None], codes, 33),
                 file_of(np.r_[xyz[lacking], xyz[[50] * 4]], codes[np.r_[lacking, [50] * 4]], 50),
                 tmp_path,
@@ -102,5 +102,5 @@ def test_points_without_counterpart_are_counted_one_to_one(tmp_path: Path, at_on
 def test_a_file_without_points_has_no_pairs(tmp_path: Path) -> None:
     nothing = file_of(np.empty((0, 3)), np.empty(0, np.uint8), 10)
     assert list(pairs_by_order(nothing, nothing, SilentMonitor())) == []
-    pairs = pairs_by_place(nothing, nothing, tmp_path, SilentMonitor())
+    pairs = pairs_by_position(nothing, nothing, tmp_path, SilentMonitor())
     assert sum(len(pair.truth.codes) for pair in pairs) == 0

@@ -21,18 +21,18 @@ from processing.project.truth_of_file import coded_truth, truth_of_file
 from processing.project.truth_store import Truth, TruthStore, read_truth
 from processing.project.truth_study import study_by_truth
 from processing.runner import RunRequest, run
+from processing.score.confusion_matrix import ConfusionMatrix
 from processing.score.parameter_study import (
     ParameterStudy,
     StudyCell,
     StudyRequest,
-    Varied,
+    VariedParameter,
     can_vary,
     steps_of,
     study,
     usual_range,
     varied_of,
 )
-from processing.score.point_classes import TwoByTwo
 from processing.text import Text
 from processing.tools.noise import NoiseParameters
 from tests.builders import write_laz, write_trajectory_csv
@@ -73,7 +73,7 @@ def project(files: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[P
 
 
 def radius_study(project: Project, **changes: object) -> StudyRequest:
-    varied = (Varied("radius_m", (0.2, 0.4)), Varied("neighbours", (5, 20)))
+    varied = (VariedParameter("radius_m", (0.2, 0.4)), VariedParameter("neighbours", (5, 20)))
     fixed = {"method": "radius"}
     return StudyRequest("noise", project.drives, fixed, varied, **changes)  # type: ignore[arg-type] - by name
 
@@ -91,7 +91,7 @@ def test_each_setting_scores_as_a_run_with_it(project: Project, tmp_path: Path) 
         result = run(RunRequest("noise", drive, parameters), SILENT, into=tmp_path / "run")
         called = np.isin(result.read("classification", 0, drive.count), (7, 18))  # type: ignore[union-attr] - it gives columns
         result.remove()  # type: ignore[union-attr] - it gives columns
-        assert cell.counts == TwoByTwo.of(is_noise, called)
+        assert cell.counts == ConfusionMatrix.of(is_noise, called)
     assert found.best is max(found.cells, key=lambda cell: cell.counts.f_measure)
     assert found.fixed == {"method": "radius"}
     assert found.untouched.recall == 0.0
@@ -177,9 +177,9 @@ def test_what_cannot_be_varied_is_refused_with_the_words_that_can(words: str) ->
         varied_of("noise", [words])
 
 
-@pytest.mark.parametrize("varied", [(), (Varied("radius_m", (0.1,)),) * 2])
+@pytest.mark.parametrize("varied", [(), (VariedParameter("radius_m", (0.1,)),) * 2])
 def test_one_or_two_parameters_are_varied(
-    project: Project, tmp_path: Path, varied: tuple[Varied, ...]
+    project: Project, tmp_path: Path, varied: tuple[VariedParameter, ...]
 ) -> None:
     request = StudyRequest("noise", project.drives, {}, varied)
     with pytest.raises(OutOfRange, match="one or two"):
@@ -189,22 +189,22 @@ def test_one_or_two_parameters_are_varied(
 def test_values_outside_their_limits_are_refused_before_the_first_run(
     project: Project, tmp_path: Path
 ) -> None:
-    request = StudyRequest("noise", project.drives, {}, (Varied("radius_m", (0.1, 99.0)),))
+    request = StudyRequest("noise", project.drives, {}, (VariedParameter("radius_m", (0.1, 99.0)),))
     with pytest.raises(OutOfRange, match=r"0\.01 to 10"):
         study_by_truth(request, "t", tmp_path / "w", SILENT, is_part=False)
 
 
 def test_the_best_is_the_first_of_equals_and_none_where_nothing_can_be_scored() -> None:
-    cells = [StudyCell((one,), TwoByTwo(5, 1, 1, 9)) for one in (1, 2)]
-    varied = (Varied("neighbours", (1, 2)),)
+    cells = [StudyCell((one,), ConfusionMatrix(5, 1, 1, 9)) for one in (1, 2)]
+    varied = (VariedParameter("neighbours", (1, 2)),)
     assert ParameterStudy("noise", 1, {}, varied, tuple(cells)).best is cells[0]
-    nothing = StudyCell((1,), TwoByTwo(0, 0, 0, 9))
+    nothing = StudyCell((1,), ConfusionMatrix(0, 0, 0, 9))
     assert ParameterStudy("noise", 1, {}, varied, (nothing,)).best is None
 
 
 def test_studies_are_kept_with_the_project_the_last_fifty(project: Project, tmp_path: Path) -> None:
-    cells = (StudyCell((0.5, "radius"), TwoByTwo(5, 1, 1, 9)),)
-    varied = (Varied("radius_m", (0.5,)), Varied("method", ("radius",)))
+    cells = (StudyCell((0.5, "radius"), ConfusionMatrix(5, 1, 1, 9)),)
+    varied = (VariedParameter("radius_m", (0.5,)), VariedParameter("method", ("radius",)))
     found = ParameterStudy("noise", 1, {"deviations": 1.5}, varied, cells)
     store = StudyStore(project.settings)
     for number in range(52):

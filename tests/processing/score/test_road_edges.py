@@ -11,18 +11,18 @@ import cv2
 import numpy as np
 import pytest
 
-from processing.score.curb_lines import curb_score, judged_edges
-from processing.score.gutters import gutter_score, judged_gutters
-from processing.score.line_places import Lines
+from processing.score.curb_lines import curb_score, score_edges
+from processing.score.gutters import gutter_score, score_gutters
+from processing.score.line_positions import PolylineIndex
 from processing.score.mapped_features import Floats, MappedFile
 from processing.score.reliability_svg import reliability_svg
-from processing.score.road_edges import TOOLS, Answers, certainties, sections_of
+from processing.score.road_edges import TOOLS, RoadScores, certainties, sections_of
 from processing.score.road_failures import curb_failures
 from processing.score.road_gutter_failures import gutter_failures
-from processing.score.road_pictures import RoadMaps, painted, write_sheets
-from processing.score.road_reach import BANDS_M, reach_table, reached
-from processing.score.road_scenes import BOTH, Cloud, RoadScene, wish_of
-from processing.score.road_surroundings import Failure, Surroundings
+from processing.score.road_pictures import RoadMaps, paint_failure, write_sheets
+from processing.score.road_reach import BANDS_M, count_by_reach, reach_table
+from processing.score.road_scenes import BOTH, RoadScene, StreetCloud, options_of
+from processing.score.road_surroundings import Failure, StreetSurroundings
 from processing.score.road_tables import ScoredStreet
 from tests.processing.score.small_maps import (
     ORIGIN,
@@ -40,18 +40,18 @@ CURBS, GUTTER = street_curbs(), gutter()
 NOBODY, CAR, WALL = 0, 1, 2
 
 
-def cloud_of(*patches: tuple[tuple[float, float], float, int, int]) -> Cloud:
+def cloud_of(*patches: tuple[tuple[float, float], float, int, int]) -> StreetCloud:
     """Road of 60 by 30 m, and patches: their middle, height, label and instance."""
     random = np.random.default_rng(0)
     parts = [np.column_stack([random.uniform((-5, -15), (55, 15), (60_000, 2)), np.zeros(60_000)])]
     labels, instances = [np.full(60_000, 11)], [np.full(60_000, NOBODY)]
     for middle, height_m, label, instance in patches:
-        places = random.uniform(-1, 1, (4_000, 2)) * (2.0, 0.3) + middle
-        parts.append(np.column_stack([places, random.uniform(0, height_m, 4_000)]))
+        positions = random.uniform(-1, 1, (4_000, 2)) * (2.0, 0.3) + middle
+        parts.append(np.column_stack([positions, random.uniform(0, height_m, 4_000)]))
         labels.append(np.full(4_000, label))
         instances.append(np.full(4_000, instance))
     xyz: Floats = np.vstack(parts) + ORIGIN
-    return Cloud(
+    return StreetCloud(
         xyz,
         random.integers(0, 60_000, len(xyz)).astype(np.uint16),
         np.concatenate(labels).astype(np.uint8),
@@ -59,11 +59,11 @@ def cloud_of(*patches: tuple[tuple[float, float], float, int, int]) -> Cloud:
     )
 
 
-def around(folder: Path, cloud: Cloud) -> Surroundings:
+def around(folder: Path, cloud: StreetCloud) -> StreetSurroundings:
     (folder / "truth").mkdir(parents=True)
     kinds = {CAR: {"kind": "car"}, WALL: {"kind": "wall"}}
     (folder / "truth/instance_kinds.json").write_text(json.dumps(kinds), "utf-8")
-    return Surroundings(RoadScene("street", folder, ()), cloud)
+    return StreetSurroundings(RoadScene("street", folder, ()), cloud)
 
 
 def types_of(failures: list[Failure]) -> Counter[tuple[str, str]]:
@@ -72,7 +72,7 @@ def types_of(failures: list[Failure]) -> Counter[tuple[str, str]]:
 
 def test_what_is_judged_place_by_place_adds_up_to_the_counts() -> None:
     result = with_more(without_each_third(CURBS), *moved(map_of(curb_pair(0, 6, 9)), 0, 5).features)
-    edges, score = judged_edges(result, CURBS), curb_score(result, CURBS)
+    edges, score = score_edges(result, CURBS), curb_score(result, CURBS)
     assert sum(int(one.is_found.sum()) for one in edges.values()) == score.counts_of("all").hits
     false = [piece for one in edges.values() for line in one.lines for piece in line.false]
     assert len(false) == score.counts_of("all").false_alarms == 6
@@ -80,17 +80,17 @@ def test_what_is_judged_place_by_place_adds_up_to_the_counts() -> None:
     assert shares == {0.0, 1.0}
 
     shorter = map_of(GUTTER.features[:-4])
-    covers, score = judged_gutters(shorter, GUTTER), gutter_score(shorter, GUTTER)
+    covers, score = score_gutters(shorter, GUTTER), gutter_score(shorter, GUTTER)
     assert len(covers.missed) == score.counts_of("slots").misses > 0
     assert len(covers.found) == score.counts_of("slots").hits > 0
     assert all(is_right for _, is_right in covers.is_right)
     away = moved(GUTTER, north=20.0)
-    assert len(judged_gutters(away, GUTTER).beside) == len(GUTTER.features)
-    assert not any(is_right for _, is_right in judged_gutters(away, GUTTER).is_right)
+    assert len(score_gutters(away, GUTTER).beside) == len(GUTTER.features)
+    assert not any(is_right for _, is_right in score_gutters(away, GUTTER).is_right)
 
 
 def test_failures_are_sorted_by_what_stands_around_them(tmp_path: Path) -> None:
-    edges = judged_edges(map_of([]), CURBS)
+    edges = score_edges(map_of([]), CURBS)
     first = edges["upper"].asked[2].xyz.mean(axis=0) - ORIGIN
     beside = around(tmp_path / "a", cloud_of(((first[0], first[1]), 1.5, 64, CAR)))
     missed = types_of(list(curb_failures("street", edges, beside)))
@@ -99,21 +99,21 @@ def test_failures_are_sorted_by_what_stands_around_them(tmp_path: Path) -> None:
     assert missed["missed", "hidden, few points"] == 40 - missed["missed", "vehicles"]
 
     wall = moved(map_of(curb_pair(10, 12, 9)), north=6.0)
-    place = wall.features[0].xyz.mean(axis=0) - ORIGIN
-    at_wall = around(tmp_path / "b", cloud_of(((place[0], place[1]), 1.0, 6, WALL)))
-    false = types_of(list(curb_failures("street", judged_edges(wall, CURBS), at_wall)))
+    position = wall.features[0].xyz.mean(axis=0) - ORIGIN
+    at_wall = around(tmp_path / "b", cloud_of(((position[0], position[1]), 1.0, 6, WALL)))
+    false = types_of(list(curb_failures("street", score_edges(wall, CURBS), at_wall)))
     assert false["false", "walls and fences"] == 2
     second = with_more(CURBS, *moved(map_of(curb_pair(0, 20, 9)), north=0.03).features)
-    again = types_of(list(curb_failures("street", judged_edges(second, CURBS), at_wall)))
+    again = types_of(list(curb_failures("street", score_edges(second, CURBS), at_wall)))
     assert again == {("false", "second line along a curb"): 20}
 
 
 def test_what_was_asked_for_is_counted_by_how_far_from_the_way_it_lies(tmp_path: Path) -> None:
-    edges = judged_edges(without_each_third(CURBS), CURBS)
-    covers = judged_gutters(map_of(GUTTER.features[:-4]), GUTTER)
+    edges = score_edges(without_each_third(CURBS), CURBS)
+    covers = score_gutters(map_of(GUTTER.features[:-4]), GUTTER)
     own = around(tmp_path, cloud_of())
-    own.paths = Lines([ORIGIN + np.array([[-5.0, 0.0, 0.0], [55.0, 0.0, 0.0]])])
-    counts = reached(edges, covers, own)
+    own.paths = PolylineIndex([ORIGIN + np.array([[-5.0, 0.0, 0.0], [55.0, 0.0, 0.0]])])
+    counts = count_by_reach(edges, covers, own)
     found = sum(int(one.is_found.sum()) for one in edges.values())
     assert counts["curbs"].sum(axis=0).tolist() == [
         found,
@@ -130,12 +130,12 @@ def test_what_was_asked_for_is_counted_by_how_far_from_the_way_it_lies(tmp_path:
 def test_slots_are_sorted_by_what_covers_them(tmp_path: Path) -> None:
     soiled = with_facts(GUTTER, lambda _: {"uncovered": 0.7})
     street = around(tmp_path / "a", cloud_of())
-    missed = judged_gutters(map_of([]), soiled)
+    missed = score_gutters(map_of([]), soiled)
     found = types_of(list(gutter_failures("street", missed, soiled, street, CURBS)))
     assert set(found) == {("missed", "covered by leaves, soil or plants")}
     beyond = moved(map_of(GUTTER.features[:1]), east=-1.0)
     false = list(
-        gutter_failures("street", judged_gutters(beyond, GUTTER), GUTTER, street, map_of([]))
+        gutter_failures("street", score_gutters(beyond, GUTTER), GUTTER, street, map_of([]))
     )
     assert types_of(false)["false", "gap or end of a run"] == 1
     assert types_of(false)["missed", "too far"] == 0
@@ -144,9 +144,9 @@ def test_slots_are_sorted_by_what_covers_them(tmp_path: Path) -> None:
 def test_failures_become_sheets_that_can_be_opened(tmp_path: Path) -> None:
     street = around(tmp_path / "a", cloud_of())
     nothing = map_of([])
-    failures = list(curb_failures("street", judged_edges(nothing, CURBS), street))
+    failures = list(curb_failures("street", score_edges(nothing, CURBS), street))
     maps = RoadMaps(CURBS, nothing)
-    pictures = [(one, painted(one, maps, street)) for one in failures[:16]]
+    pictures = [(one, paint_failure(one, maps, street)) for one in failures[:16]]
     (paths,) = write_sheets(pictures, tmp_path / "sheets").values()
     assert [path.name[-6:] for path in paths] == ["01.png", "02.png"]
     sheet = cv2.imread(str(paths[0]))
@@ -167,7 +167,7 @@ def test_a_candidate_is_right_if_most_of_it_lies_on_what_is_true() -> None:
 
 
 def test_the_page_has_every_table_and_the_plot_is_a_picture(tmp_path: Path) -> None:
-    answers = Answers()
+    answers = RoadScores()
     for tool, score, truth in (
         ("curbs", curb_score, CURBS),
         ("gutters", gutter_score, GUTTER),
@@ -189,7 +189,7 @@ def test_the_page_has_every_table_and_the_plot_is_a_picture(tmp_path: Path) -> N
 
 
 def test_streets_take_turns_and_stay_the_same_for_a_seed() -> None:
-    wishes = [wish_of(number, 401 + number) for number in range(12)]
+    wishes = [options_of(number, 401 + number) for number in range(12)]
     assert {one.style for one in wishes} == {"urban", "rural", "highway"}
     assert len({one.sensor for one in wishes}) == 5
     assert sum(one.passes == 2 for one in wishes) == 3

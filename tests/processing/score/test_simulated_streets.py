@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from processing.score.disturbed_truths import DISTURBANCES, disturbed_rows
+from processing.score.disturbed_truths import DISTURBANCES, score_disturbed
 from processing.score.simulated_streets import (
-    Cloud,
+    RecordedCloud,
     curb_heights,
     plate_distances,
     pulse_rate,
@@ -26,18 +26,18 @@ def _write(path: Path, members: list[tuple[str, Any, dict[str, Any]]]) -> None:
     features = [
         {
             "type": "Feature",
-            "geometry": {"type": shape, "coordinates": places},
+            "geometry": {"type": shape, "coordinates": positions},
             "properties": {"confidence": 1.0, "status": "candidate", **facts},
         }
-        for shape, places, facts in members
+        for shape, positions, facts in members
     ]
     text = json.dumps({"type": "FeatureCollection", "crs": _CRS, "features": features})
     path.write_text(text, encoding="utf-8")
 
 
-def _cloud(xyz: np.ndarray, label: int, instance: int) -> Cloud:
+def _cloud(xyz: np.ndarray, label: int, instance: int) -> RecordedCloud:
     count = len(xyz)
-    return Cloud(xyz, np.full(count, label, np.uint8), np.full(count, instance, np.int32))
+    return RecordedCloud(xyz, np.full(count, label, np.uint8), np.full(count, instance, np.int32))
 
 
 def test_a_step_is_measured_from_the_points_beside_it(tmp_path: Path) -> None:
@@ -104,7 +104,7 @@ def test_scores_of_disturbed_truths_fall(tmp_path: Path) -> None:
     facts = {"kind": "pole", "type": "lamp_post", "height_m": 8.0, "diameter_m": 0.15}
     poles = [("Point", [30.0 * k, 2.0 * (k % 2), 0.0], facts) for k in range(6)]
     _write(tmp_path / "poles.geojson", poles)
-    rows = list(disturbed_rows(tmp_path))
+    rows = list(score_disturbed(tmp_path))
     scores = dict(zip(DISTURBANCES, map(float, rows[1][2:]), strict=True))
     assert scores["as it is"] == scores["30 cm aside"] == 1.0
     assert scores["3 m aside"] == 0.0

@@ -10,9 +10,9 @@ from processing.earthwork.volume_parameters import VolumeParameters
 from processing.monitor import Monitor, SilentMonitor
 from processing.score import site_volumes
 from processing.score.known_body import body_points, body_rows, body_volume_m3
-from processing.score.site_volumes import rows_of, scored_site
+from processing.score.site_volumes import rows_of, score_site
+from processing.simulate.requests import SiteRequest
 from processing.simulate.site import simulate_site
-from processing.simulate.wishes import SiteWish
 
 
 def test_every_method_comes_near_the_volume_of_a_known_body() -> None:
@@ -33,10 +33,10 @@ def test_the_known_body_is_as_high_as_its_formula_says() -> None:
 
 
 def test_a_simulated_site_is_held_against_its_truth(tmp_path: Path) -> None:
-    wish = SiteWish(seed=5, length_m=20.0, stations=2, spacing_m=0.06)
+    request = SiteRequest(seed=5, length_m=20.0, stations=2, spacing_m=0.06)
     folder = tmp_path / "site"
-    simulate_site(wish, folder, SilentMonitor())
-    site = scored_site("small", folder, VolumeParameters())
+    simulate_site(request, folder, SilentMonitor())
+    site = score_site("small", folder, VolumeParameters())
     rows = rows_of([site])
 
     # The true sums over what was measured and over all of the site are of one site.
@@ -56,7 +56,7 @@ def test_sites_are_made_when_they_are_asked_for_and_gone_afterwards(
 ) -> None:
     made: list[Path] = []
 
-    def simulated(_wish: SiteWish, folder: Path, _monitor: Monitor) -> None:
+    def simulated(_request: SiteRequest, folder: Path, _monitor: Monitor) -> None:
         folder.mkdir()
         made.append(folder)
 

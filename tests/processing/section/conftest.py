@@ -24,7 +24,7 @@ def both_heads(street: Drive, tmp_path_factory: pytest.TempPathFactory) -> tuple
 
 def recorded(tmp_path_factory: pytest.TempPathFactory, head: Literal["left", "right"]) -> Drive:
     folder = tmp_path_factory.mktemp("section")
-    delivered = simulated_drive(3, pulses_per_turn=800.0, head=head)
+    delivered = simulated_drive(3, pulses_per_revolution=800.0, head=head)
     points = write_laz(delivered, folder / "street.laz")
     trajectory = write_trajectory_csv(delivered, folder / "trajectory.csv")
     (folder / "drives").mkdir()

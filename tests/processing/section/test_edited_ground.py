@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.section.edited_ground import edited_lines
+from processing.section.edited_ground import update_ground_lines
 from processing.section.surface_line import SurfaceLine
 
 OFFSETS = np.arange(-10.0, 10.01, 0.5)
@@ -22,7 +22,7 @@ def heights(lines, offsets) -> np.ndarray:
     """Of the lines, NaN where there is none."""
     found = np.full(len(offsets), np.nan)
     for line in lines:
-        x, y = line.places.T
+        x, y = line.positions.T
         inside = (offsets >= x[0]) & (offsets <= x[-1])
         found[inside] = np.interp(offsets[inside], x, y)
     return found
@@ -31,13 +31,13 @@ def heights(lines, offsets) -> np.ndarray:
 def test_lines_are_as_found_where_nothing_was_painted():
     section = slab(np.zeros_like)
     was = np.ones(len(section), np.bool_)
-    assert edited_lines(FOUND, section, was, was) == FOUND
+    assert update_ground_lines(FOUND, section, was, was) == FOUND
 
 
 def test_what_was_taken_for_a_thing_and_is_ground_lifts_the_line_there_only():
     section = slab(lambda x: np.where(np.abs(x) < 2, 1.0, 0.0))
     was = section[:, 1] == 0
-    lines = edited_lines(FOUND, section, np.ones(len(section), np.bool_), was)
+    lines = update_ground_lines(FOUND, section, np.ones(len(section), np.bool_), was)
     at = np.array([-9.0, -3.0, -1.5, 0.0, 1.5, 3.0, 9.0])
     np.testing.assert_allclose(heights(lines, at), [0, 0, 1, 1, 1, 0, 0], atol=1e-9)
     assert not any(line.is_filled for line in lines)
@@ -47,35 +47,35 @@ def test_where_ground_was_painted_away_the_line_is_filled_in_between_its_edges()
     section = slab(lambda x: 0.1 * x)
     found = (SurfaceLine(np.column_stack([OFFSETS, 0.1 * OFFSETS]), is_filled=False),)
     was = np.ones(len(section), np.bool_)
-    lines = edited_lines(found, section, np.abs(section[:, 0]) > 3, was)
+    lines = update_ground_lines(found, section, np.abs(section[:, 0]) > 3, was)
     at = np.linspace(-9.5, 9.5, 40)
     np.testing.assert_allclose(heights(lines, at), 0.1 * at, atol=0.02)
     (filled,) = [line for line in lines if line.is_filled]
-    assert filled.places[0, 0] == pytest.approx(-3.0, abs=0.5)
-    assert filled.places[-1, 0] == pytest.approx(3.0, abs=0.5)
+    assert filled.positions[0, 0] == pytest.approx(-3.0, abs=0.5)
+    assert filled.positions[-1, 0] == pytest.approx(3.0, abs=0.5)
 
 
 def test_without_any_ground_left_only_the_ends_of_what_was_found_stay():
     section = slab(np.zeros_like)
     was = np.ones(len(section), np.bool_)
-    lines = edited_lines(FOUND, section, np.zeros(len(section), np.bool_), was)
-    assert all(line.is_filled or np.ptp(line.places[:, 0]) < 1.0 for line in lines)
+    lines = update_ground_lines(FOUND, section, np.zeros(len(section), np.bool_), was)
+    assert all(line.is_filled or np.ptp(line.positions[:, 0]) < 1.0 for line in lines)
 
 
 def test_ground_beyond_the_end_of_the_line_makes_it_longer():
     section = slab(np.zeros_like)
     short = (SurfaceLine(np.array([[-10.0, 0.0], [-1.0, 0.0]]), is_filled=False),)
     was = section[:, 0] < -1
-    lines = edited_lines(short, section, was | (section[:, 0] > 1), was)
+    lines = update_ground_lines(short, section, was | (section[:, 0] > 1), was)
     at = np.array([-5.0, 5.0])
     np.testing.assert_allclose(heights(lines, at), 0.0, atol=1e-9)
-    assert max(line.places[-1, 0] for line in lines) == pytest.approx(10.0, abs=0.3)
+    assert max(line.positions[-1, 0] for line in lines) == pytest.approx(10.0, abs=0.3)
 
 
 def test_of_two_surfaces_above_each_other_the_lower_one_is_the_ground():
     ground, roof = slab(np.zeros_like), slab(lambda x: np.full_like(x, 2.5))
     section = np.concatenate([ground, roof[np.abs(roof[:, 0]) < 2]])
     was = section[:, 1] == 0
-    lines = edited_lines(FOUND, section, np.ones(len(section), np.bool_), was)
+    lines = update_ground_lines(FOUND, section, np.ones(len(section), np.bool_), was)
     at = np.linspace(-9.0, 9.0, 50)
     np.testing.assert_allclose(heights(lines, at), 0.0, atol=1e-9)

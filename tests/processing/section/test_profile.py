@@ -47,8 +47,8 @@ def test_a_wide_gap_interrupts_the_ground_and_a_narrow_one_does_not() -> None:
     assert ground_line([], []) == ()
 
 
-def line(*places: tuple[float, float, float], is_closed: bool = False) -> DrawnLine:
-    return DrawnLine(Text("Curb", "縁石"), "curb", 30, np.array(places, float), is_closed)
+def line(*positions: tuple[float, float, float], is_closed: bool = False) -> DrawnLine:
+    return DrawnLine(Text("Curb", "縁石"), "curb", 30, np.array(positions, float), is_closed)
 
 
 def test_a_line_crosses_where_it_passes_the_plane() -> None:

@@ -42,6 +42,6 @@ def test_a_point_at_the_border_is_cut_off() -> None:
 
 def test_the_kernel_does_the_same_uncompiled() -> None:
     out, nearest = np.zeros((9, 12, 3), np.uint8), np.full((9, 12), np.inf, np.float32)
-    places, colours = np.array([[6.2, 4.7]]), np.array([RED], np.uint8)
-    raster._paint_kernel.py_func(places, np.zeros(1), colours, 3, nearest, out)  # type: ignore[attr-defined]
+    positions, colours = np.array([[6.2, 4.7]]), np.array([RED], np.uint8)
+    raster._paint_kernel.py_func(positions, np.zeros(1), colours, 3, nearest, out)  # type: ignore[attr-defined]
     assert (out == painted([(6.2, 4.7)], [0.0], 3)).all()

@@ -15,30 +15,30 @@ HEADING_DEG = 30.0
 
 
 @dataclass
-class Cloud:
+class DriveCloud:
     """What the axis asks of a drive: places in metres."""
 
-    places: NDArray[np.float64]
+    positions: NDArray[np.float64]
     info: SimpleNamespace = field(default_factory=SimpleNamespace)
 
     @property
     def count(self) -> int:
-        return len(self.places)
+        return len(self.positions)
 
     def xyz(self, points: slice) -> NDArray[np.float64]:
-        return self.places[points].copy()
+        return self.positions[points].copy()
 
 
-def levee(seed: int, low: float, high: float) -> Cloud:
+def levee(seed: int, low: float, high: float) -> DriveCloud:
     """A band 24 m wide along a heading, with a few points ten kilometres off."""
     random = np.random.default_rng(seed)
     along, across = random.uniform(low, high, 40_000), random.uniform(-12, 12, 40_000)
     angle = np.radians(90 - HEADING_DEG)
     east = 500.0 + along * np.cos(angle) - across * np.sin(angle)
     north = -800.0 + along * np.sin(angle) + across * np.cos(angle)
-    places = np.column_stack([east, north, random.normal(20, 0.1, 40_000)])
-    places[::4000] += 10_000.0
-    return Cloud(places)
+    positions = np.column_stack([east, north, random.normal(20, 0.1, 40_000)])
+    positions[::4000] += 10_000.0
+    return DriveCloud(positions)
 
 
 def test_the_axis_leads_along_the_middle_of_all_stations_together() -> None:
@@ -54,12 +54,12 @@ def test_the_axis_leads_along_the_middle_of_all_stations_together() -> None:
 
 def test_a_cloud_without_extent_has_no_axis() -> None:
     assert site_axis([]) is None
-    assert site_axis([Cloud(np.empty((0, 3)))]) is None
-    assert site_axis([Cloud(np.full((10, 3), 7.0))]) is None
+    assert site_axis([DriveCloud(np.empty((0, 3)))]) is None
+    assert site_axis([DriveCloud(np.full((10, 3), 7.0))]) is None
 
 
 def test_ten_points_in_a_row_have_one() -> None:
-    places = np.column_stack([np.arange(10.0), np.zeros(10), np.zeros(10)])
-    axis = site_axis([Cloud(places)])
+    positions = np.column_stack([np.arange(10.0), np.zeros(10), np.zeros(10)])
+    axis = site_axis([DriveCloud(positions)])
     assert axis is not None
     assert 6.0 < axis.stations.length_m <= 9.0

@@ -15,14 +15,14 @@ CORNER = Stations([(0.0, 0.0, 10.0), (0.0, 20.0, 11.0), (30.0, 20.0, 11.0)])
 
 def circle(radius_m: float) -> Stations:
     turned = np.linspace(0.0, np.pi / 2, 400)
-    places = radius_m * np.column_stack([1 - np.cos(turned), np.sin(turned), 0 * turned])
-    return Stations(places)
+    positions = radius_m * np.column_stack([1 - np.cos(turned), np.sin(turned), 0 * turned])
+    return Stations(positions)
 
 
 def test_a_station_is_metres_in_plan_from_the_beginning() -> None:
     assert CORNER.length_m == pytest.approx(50.0)
-    assert CORNER.place_at(10.0) == pytest.approx((0.0, 10.0, 10.5))
-    assert CORNER.place_at(35.0) == pytest.approx((15.0, 20.0, 11.0))
+    assert CORNER.position_at(10.0) == pytest.approx((0.0, 10.0, 10.5))
+    assert CORNER.position_at(35.0) == pytest.approx((15.0, 20.0, 11.0))
     assert CORNER.nearest((15.0, 26.0, 0.0)) == pytest.approx(35.0)
 
 
@@ -35,18 +35,20 @@ def test_the_section_across_has_the_left_side_of_the_line_on_its_left() -> None:
 
 
 def test_the_line_goes_straight_on_and_level_beyond_its_ends() -> None:
-    assert CORNER.place_at(-5.0) == pytest.approx((0.0, -5.0, 10.0))
-    assert CORNER.place_at(53.0) == pytest.approx((33.0, 20.0, 11.0))
+    assert CORNER.position_at(-5.0) == pytest.approx((0.0, -5.0, 10.0))
+    assert CORNER.position_at(53.0) == pytest.approx((33.0, 20.0, 11.0))
     assert CORNER.nearest((4.0, -5.0, 0.0)) == pytest.approx(-5.0)
     assert CORNER.nearest((36.0, 25.0, 0.0)) == pytest.approx(56.0)
 
 
-@pytest.mark.parametrize("place", [(-9.0, 24.0), (-2.0, 31.0), (5.0, 6.0), (31.0, 3.0)])
-def test_the_cut_found_for_a_place_goes_through_it_at_bends_too(place: tuple[float, float]) -> None:
+@pytest.mark.parametrize("position", [(-9.0, 24.0), (-2.0, 31.0), (5.0, 6.0), (31.0, 3.0)])
+def test_the_cut_found_for_a_place_goes_through_it_at_bends_too(
+    position: tuple[float, float],
+) -> None:
     for stations in (CORNER, circle(30.0)):
-        station = stations.through((*place, 0.0))
+        station = stations.through((*position, 0.0))
         cut = stations.cut_at(station, 1.0, 15.0)
-        assert cut.to_section([(*place, 0.0)])[0, 2] == pytest.approx(0.0, abs=1e-3)
+        assert cut.to_section([(*position, 0.0)])[0, 2] == pytest.approx(0.0, abs=1e-3)
 
 
 def test_a_place_that_is_passed_twice_is_found_on_the_pass_that_is_meant() -> None:
@@ -71,7 +73,7 @@ def test_a_vehicle_that_trembles_at_rest_gets_no_further() -> None:
 def test_the_outline_of_an_area_leads_back_to_its_beginning() -> None:
     square = Stations([(0, 0, 0), (10, 0, 0), (10, 10, 0), (0, 10, 0)], is_closed=True)
     assert square.length_m == pytest.approx(40.0)
-    assert square.place_at(35.0) == pytest.approx((0.0, 5.0, 0.0))
+    assert square.position_at(35.0) == pytest.approx((0.0, 5.0, 0.0))
 
 
 def test_where_a_line_turns_back_its_own_side_gives_the_direction() -> None:
@@ -79,7 +81,7 @@ def test_where_a_line_turns_back_its_own_side_gives_the_direction() -> None:
     assert hairpin.direction_at(10.0) == pytest.approx((0.0, -1.0))
 
 
-@pytest.mark.parametrize("places", [[], [(0, 0, 0)], [(0, 0, 0), (0, 0, 5)]])
-def test_a_line_without_length_in_plan_is_refused(places: list[tuple[int, int, int]]) -> None:
+@pytest.mark.parametrize("positions", [[], [(0, 0, 0)], [(0, 0, 0), (0, 0, 5)]])
+def test_a_line_without_length_in_plan_is_refused(positions: list[tuple[int, int, int]]) -> None:
     with pytest.raises(Unsuitable):
-        Stations(places)
+        Stations(positions)

@@ -10,7 +10,7 @@ import pytest
 from processing.ground.cells import CellGrid
 from processing.ground.stored_surface import StoredSurface, SurfaceTile, SurfaceWriter
 from processing.section.cut import Cut
-from processing.section.surface_line import surface_lines, without_doubles
+from processing.section.surface_line import remove_doubles, surface_lines
 
 ORIGIN = np.array([-12_000.0, -36_000.0, 5.0])
 CUT = Cut((-11_990.0, -35_990.0, 20.0), (1.0, 0.0), half_length_m=8.0)
@@ -34,9 +34,9 @@ def test_ground_is_a_line_of_measured_and_filled_stretches(surface: StoredSurfac
     lines = surface_lines(surface, CUT)
     assert [line.is_filled for line in lines] == [False, True, False]
     for line in lines:
-        east = line.places[:, 0] + 10.0
-        np.testing.assert_allclose(line.places[:, 1], 5.0 + GRADE * east, atol=1e-3)
-    ends = [line.places[[0, -1], 0] + 10.0 for line in lines]
+        east = line.positions[:, 0] + 10.0
+        np.testing.assert_allclose(line.positions[:, 1], 5.0 + GRADE * east, atol=1e-3)
+    ends = [line.positions[[0, -1], 0] + 10.0 for line in lines]
     np.testing.assert_allclose(ends[0], (2.0, 10.0), atol=0.55)
     np.testing.assert_allclose(ends[1], (10.0, 12.0), atol=0.55)
     assert ends[0][1] == ends[1][0]
@@ -49,5 +49,5 @@ def test_beside_the_surface_there_is_none(surface: StoredSurface) -> None:
 
 def test_drives_that_keep_the_same_surface_show_it_once(surface: StoredSurface) -> None:
     one, other = surface_lines(surface, CUT), surface_lines(surface, CUT)
-    assert without_doubles([one, other]) == one
-    assert len(without_doubles([one, other[:1]])) == 4
+    assert remove_doubles([one, other]) == one
+    assert len(remove_doubles([one, other[:1]])) == 4

@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from processing.simulate.forecast import forecast_site, forecast_street
-from processing.simulate.wishes import SiteWish, StreetWish
+from processing.simulate.requests import SiteRequest, StreetRequest
 
-SMALL = StreetWish(length_m=20.0, pulses=300, turns_per_s=30.0, speed_km_h=30.0, images=False)
+SMALL = StreetRequest(length_m=20.0, pulses=300, turns_per_s=30.0, speed_km_h=30.0, images=False)
 
 
 def test_points_and_time_follow_from_length_speed_and_pulses() -> None:
@@ -29,7 +29,7 @@ def test_passes_waits_and_images_take_more() -> None:
 
 def test_a_speed_of_nought_is_the_usual_one_of_the_style() -> None:
     slow, fast = (
-        forecast_street(StreetWish(style=style)).density for style in ("urban", "highway")
+        forecast_street(StreetRequest(style=style)).density for style in ("urban", "highway")
     )
     assert slow is not None
     assert fast is not None
@@ -38,6 +38,6 @@ def test_a_speed_of_nought_is_the_usual_one_of_the_style() -> None:
 
 
 def test_a_finer_site_of_more_stations_takes_more_and_has_no_density() -> None:
-    coarse, fine = SiteWish(stations=4, spacing_m=0.04), SiteWish(stations=8, spacing_m=0.02)
+    coarse, fine = SiteRequest(stations=4, spacing_m=0.04), SiteRequest(stations=8, spacing_m=0.02)
     assert forecast_site(fine).points == pytest.approx(8 * forecast_site(coarse).points, rel=1e-5)
     assert forecast_site(fine).density is None

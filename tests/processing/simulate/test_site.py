@@ -13,16 +13,16 @@ import pytest
 
 from processing.errors import Cancelled, InUse, OutOfRange
 from processing.monitor import SilentMonitor
+from processing.simulate.requests import SiteRequest
 from processing.simulate.site import simulate_site
 from processing.simulate.sites.heights import HeightGrid
 from processing.simulate.sites.volumes import cut_and_fill
-from processing.simulate.wishes import SiteWish
 from processing.text import Text
 
-WISH = SiteWish(seed=11, length_m=24.0, style="levee", stations=3, spacing_m=0.12)
+REQUEST = SiteRequest(seed=11, length_m=24.0, style="levee", stations=3, spacing_m=0.12)
 
 
-class Impatient:
+class CancelAtNthCheck:
     """Stops the work at the n-th question."""
 
     def __init__(self, patience: int) -> None:
@@ -40,7 +40,7 @@ class Impatient:
 @pytest.fixture(scope="module")
 def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("sites") / "one"
-    made = simulate_site(WISH, folder, SilentMonitor())
+    made = simulate_site(REQUEST, folder, SilentMonitor())
     assert made.points == (folder / "in/before.laz", folder / "in/after.laz")
     return folder
 
@@ -102,7 +102,7 @@ def test_volumes_are_those_of_the_truth_s_own_grounds(site: Path) -> None:
 
 
 def test_a_seed_gives_the_same_bytes_again(site: Path, tmp_path: Path) -> None:
-    simulate_site(WISH, tmp_path / "two", SilentMonitor())
+    simulate_site(REQUEST, tmp_path / "two", SilentMonitor())
     files = sorted(path.relative_to(site) for path in site.rglob("*") if path.is_file())
     assert len(files) == 11
     for name in files:
@@ -115,14 +115,14 @@ def test_a_seed_gives_the_same_bytes_again(site: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize("patience", [0, 3, 20])
 def test_a_cancelled_site_leaves_nothing(tmp_path: Path, patience: int) -> None:
     with pytest.raises(Cancelled):
-        simulate_site(WISH, tmp_path / "site", Impatient(patience))
+        simulate_site(REQUEST, tmp_path / "site", CancelAtNthCheck(patience))
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_folder_with_files_is_refused_and_stays_as_it_is(tmp_path: Path) -> None:
     (tmp_path / "notes.txt").write_text("mine")
     with pytest.raises(InUse):
-        simulate_site(WISH, tmp_path, SilentMonitor())
+        simulate_site(REQUEST, tmp_path, SilentMonitor())
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
 
 
@@ -131,5 +131,5 @@ def test_a_folder_with_files_is_refused_and_stays_as_it_is(tmp_path: Path) -> No
 )
 def test_a_wish_beyond_its_limits_is_refused(tmp_path: Path, wrong: dict[str, object]) -> None:
     with pytest.raises(OutOfRange):
-        simulate_site(dataclasses.replace(WISH, **wrong), tmp_path / "site", SilentMonitor())
+        simulate_site(dataclasses.replace(REQUEST, **wrong), tmp_path / "site", SilentMonitor())
     assert list(tmp_path.iterdir()) == []

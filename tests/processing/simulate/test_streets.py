@@ -14,25 +14,25 @@ import pytest
 from processing.errors import Cancelled, InUse, OutOfRange
 from processing.formats.trajectory_csv import read_trajectory_csv
 from processing.monitor import SilentMonitor
+from processing.simulate.requests import StreetRequest
 from processing.simulate.streets import simulate_street
 from processing.simulate.truth import TRUTH_FILES
-from processing.simulate.wishes import StreetWish
 
-_WISH = StreetWish(
+_WISH = StreetRequest(
     seed=11, length_m=15.0, sensor="vq250", pulses=500, turns_per_s=40.0, images=False
 )
-Maker = Callable[[StreetWish], Path]
+DeliveryMaker = Callable[[StreetRequest], Path]
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Maker:
-    known: dict[StreetWish, Path] = {}
+def made(tmp_path_factory: pytest.TempPathFactory) -> DeliveryMaker:
+    known: dict[StreetRequest, Path] = {}
 
-    def make(wish: StreetWish) -> Path:
-        if wish not in known:
-            known[wish] = tmp_path_factory.mktemp("made") / "street"
-            simulate_street(wish, known[wish], SilentMonitor())
-        return known[wish]
+    def make(request: StreetRequest) -> Path:
+        if request not in known:
+            known[request] = tmp_path_factory.mktemp("made") / "street"
+            simulate_street(request, known[request], SilentMonitor())
+        return known[request]
 
     return make
 
@@ -45,26 +45,29 @@ def _files(folder: Path) -> dict[str, bytes]:
     }
 
 
-def test_the_same_seed_gives_the_same_bytes(made: Maker, tmp_path: Path) -> None:
+def test_the_same_seed_gives_the_same_bytes(made: DeliveryMaker, tmp_path: Path) -> None:
     simulate_street(_WISH, tmp_path / "again", SilentMonitor())
     assert _files(made(_WISH)) == _files(tmp_path / "again")
 
 
-def test_another_seed_gives_another_street(made: Maker) -> None:
-    one, other = (laspy.read(made(wish) / "left.laz") for wish in (_WISH, replace(_WISH, seed=12)))
+def test_another_seed_gives_another_street(made: DeliveryMaker) -> None:
+    one, other = (
+        laspy.read(made(request) / "left.laz") for request in (_WISH, replace(_WISH, seed=12))
+    )
     assert not np.array_equal(one.x[:1000], other.x[:1000])
 
 
-def test_a_longer_street_begins_like_a_shorter_one(made: Maker) -> None:
+def test_a_longer_street_begins_like_a_shorter_one(made: DeliveryMaker) -> None:
     short, long = (
-        laspy.read(made(wish) / "right.laz") for wish in (_WISH, replace(_WISH, length_m=25.0))
+        laspy.read(made(request) / "right.laz")
+        for request in (_WISH, replace(_WISH, length_m=25.0))
     )
     same = int(0.95 * len(short.points))
     assert len(long.points) > 1.3 * len(short.points)
     assert (short.points.array[:same] == long.points.array[:same]).all()
 
 
-def test_files_are_as_deliveries_are(made: Maker) -> None:
+def test_files_are_as_deliveries_are(made: DeliveryMaker) -> None:
     folder = made(_WISH)
     trajectory = read_trajectory_csv(folder / "trajectory.csv")
     for number, name in enumerate(("left", "right"), start=1):
@@ -81,7 +84,7 @@ def test_files_are_as_deliveries_are(made: Maker) -> None:
         assert (np.asarray(points.return_number) <= np.asarray(points.number_of_returns)).all()
 
 
-def test_beams_leave_from_where_the_trajectory_says(made: Maker) -> None:
+def test_beams_leave_from_where_the_trajectory_says(made: DeliveryMaker) -> None:
     """Seen from the head, pulses of one turn lie in the plane square to its axis."""
     folder = made(_WISH)
     trajectory = read_trajectory_csv(folder / "trajectory.csv")
@@ -94,7 +97,7 @@ def test_beams_leave_from_where_the_trajectory_says(made: Maker) -> None:
     assert np.percentile(np.abs(beams @ np.array(axis)), 99) < 0.05
 
 
-def test_every_point_has_its_truth(made: Maker) -> None:
+def test_every_point_has_its_truth(made: DeliveryMaker) -> None:
     truth = made(_WISH) / "truth"
     kinds = json.loads((truth / "instance_kinds.json").read_text())
     for name in ("left", "right"):
@@ -109,7 +112,7 @@ def test_every_point_has_its_truth(made: Maker) -> None:
         assert (labels == 11).mean() > 0.05
 
 
-def test_counts_of_the_truth_are_those_of_the_points(made: Maker) -> None:
+def test_counts_of_the_truth_are_those_of_the_points(made: DeliveryMaker) -> None:
     truth = made(_WISH) / "truth"
     instances = np.concatenate(
         [np.load(truth / f"{one}.instances.npy") for one in ("left", "right")]
@@ -127,7 +130,7 @@ def test_counts_of_the_truth_are_those_of_the_points(made: Maker) -> None:
                 assert facts["front_points"] <= facts["points"] <= seen
 
 
-def test_a_second_pass_is_another_delivery_of_the_same_street(made: Maker) -> None:
+def test_a_second_pass_is_another_delivery_of_the_same_street(made: DeliveryMaker) -> None:
     folder = made(replace(_WISH, passes=2))
     assert {one.name for one in folder.glob("*.laz")} == {
         "left.laz",
@@ -142,16 +145,18 @@ def test_a_second_pass_is_another_delivery_of_the_same_street(made: Maker) -> No
     assert np.linalg.norm(first.xyz[0, :2] - second.xyz[-1, :2]) < 15
 
 
-def test_phase_scanners_record_too(made: Maker) -> None:
+def test_phase_scanners_record_too(made: DeliveryMaker) -> None:
     folder = made(replace(_WISH, sensor="zf9012", style="rural"))
     points = laspy.read(folder / "scan.laz")
     assert (points.number_of_returns == 1).all()
     assert len(points.points) > 5000
 
 
-def test_the_shortest_and_fastest_pass_of_the_slowest_sensor_is_recorded(made: Maker) -> None:
-    wish = replace(_WISH, style="highway", length_m=10.0, speed_km_h=130.0, pulses=1)
-    folder = made(replace(wish, turns_per_s=0.5))
+def test_the_shortest_and_fastest_pass_of_the_slowest_sensor_is_recorded(
+    made: DeliveryMaker,
+) -> None:
+    request = replace(_WISH, style="highway", length_m=10.0, speed_km_h=130.0, pulses=1)
+    folder = made(replace(request, turns_per_s=0.5))
     assert len(laspy.read(folder / "left.laz").points) <= 4
 
 
@@ -170,9 +175,9 @@ def test_a_stopped_simulation_leaves_nothing(tmp_path: Path) -> None:
 
 
 def test_wrong_wishes_are_told(tmp_path: Path) -> None:
-    for wish in (replace(_WISH, style="moon"), replace(_WISH, sensor="p40")):
+    for request in (replace(_WISH, style="moon"), replace(_WISH, sensor="p40")):
         with pytest.raises(OutOfRange):
-            simulate_street(wish, tmp_path / "street", SilentMonitor())
+            simulate_street(request, tmp_path / "street", SilentMonitor())
     (tmp_path / "mine").write_text("x")
     with pytest.raises(InUse):
         simulate_street(_WISH, tmp_path, SilentMonitor())

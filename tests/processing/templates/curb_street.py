@@ -13,7 +13,7 @@ from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from processing.templates.profile_template import MadeLine, ProfileTemplate
-from processing.templates.slab import Frame
+from processing.templates.slab import SectionFrame
 from tests.builders import START, SimulatedDrive, simulated_drive, write_laz, write_trajectory_csv
 from tests.street_scene import CROSSFALL, CURB_AT_M, CURB_HEIGHT_M, WALL_AT_M, StreetScene
 
@@ -43,7 +43,7 @@ def recorded(folder: Path, *, without: tuple[float, float] | None = None) -> Dri
     """Drive along a bend without noise; points of the curb between two stations are lost."""
     street = simulated_drive(
         3,
-        pulses_per_turn=1200.0,
+        pulses_per_revolution=1200.0,
         length_m=LENGTH_M,
         lost_share=0.0,
         curve=CURVE,
@@ -75,14 +75,14 @@ def stations(xyz: Floats) -> tuple[Floats, Floats]:
     return StreetScene(CURVE, LENGTH_M).along_across(xyz - START)
 
 
-def frame_at(along: float, across: float, height: float) -> Frame:
+def frame_at(along: float, across: float, height: float) -> SectionFrame:
     """Look along the road from a place of it."""
     turned, radius = CURVE * along, 1 / CURVE
     east, north = (math.cos(turned) - 1) * radius, math.sin(turned) * radius
-    place = START + np.array(
+    position = START + np.array(
         [east - across * math.cos(turned), north - across * math.sin(turned), height]
     )
-    return Frame(place, math.pi / 2 + turned)
+    return SectionFrame(position, math.pi / 2 + turned)
 
 
 def off_edge(xyz: Floats, height: float, across: float = CURB_AT_M) -> Floats:

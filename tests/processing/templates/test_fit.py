@@ -11,10 +11,10 @@ import pytest
 from processing.errors import Cancelled, Unsuitable
 from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
-from processing.templates.fit import FitSettings, Walk, fit_along, fit_at
+from processing.templates.fit import FitSettings, TemplatePath, fit_along, fit_at
 from processing.templates.fitted_lines import fitted_lines
 from processing.templates.preview import preview_at
-from processing.templates.slab import Frame
+from processing.templates.slab import SectionFrame
 from processing.text import Text
 from tests.builders import simulated_drive
 from tests.processing.templates.curb_street import (
@@ -60,12 +60,12 @@ def street(tmp_path_factory: pytest.TempPathFactory) -> Drive:
 
 
 @pytest.fixture(scope="module")
-def walk(street: Drive) -> Walk:
+def walk(street: Drive) -> TemplatePath:
     return fit_along(street, CURB, CURB_FRAME, SETTINGS, SilentMonitor())
 
 
 def test_lines_lie_within_a_centimetre_of_both_edges_along_the_whole_street(
-    street: Drive, walk: Walk
+    street: Drive, walk: TemplatePath
 ) -> None:
     upper, lower = fitted_lines(street, walk, SETTINGS, SilentMonitor())
     assert (upper.edge, lower.edge) == ("upper", "lower")
@@ -78,13 +78,15 @@ def test_lines_lie_within_a_centimetre_of_both_edges_along_the_whole_street(
         assert line.scores.size == pytest.approx(line.length_m, abs=1.5)
 
 
-def test_a_line_between_its_vertices_is_as_near_as_at_them(street: Drive, walk: Walk) -> None:
+def test_a_line_between_its_vertices_is_as_near_as_at_them(
+    street: Drive, walk: TemplatePath
+) -> None:
     upper, _ = fitted_lines(street, walk, SETTINGS, SilentMonitor())
     between = (upper.xyz[1:] + upper.xyz[:-1]) / 2
     assert off_edge(between, TOP_M).max() < 0.012
 
 
-def test_vertices_rest_on_measured_points_that_are_near(street: Drive, walk: Walk) -> None:
+def test_vertices_rest_on_measured_points_that_are_near(street: Drive, walk: TemplatePath) -> None:
     upper, _ = fitted_lines(street, walk, SETTINGS, SilentMonitor())
     rests = upper.points >= 0
     assert rests.mean() > 0.8
@@ -93,10 +95,12 @@ def test_vertices_rest_on_measured_points_that_are_near(street: Drive, walk: Wal
 
 
 def test_a_start_beside_the_edge_finds_it(street: Drive) -> None:
-    beside = Frame(CURB_FRAME.place + np.array([0.12, -0.08, 0.05]), CURB_FRAME.heading_rad + 0.1)
+    beside = SectionFrame(
+        CURB_FRAME.position + np.array([0.12, -0.08, 0.05]), CURB_FRAME.heading_rad + 0.1
+    )
     start = fit_at(street, CURB, beside, SETTINGS)
     assert start.score > 0.95
-    assert off_edge(start.frame.place[None], TOP_M).max() < 0.01
+    assert off_edge(start.frame.position[None], TOP_M).max() < 0.01
 
 
 def test_a_template_of_the_left_side_follows_the_right_one_mirrored(street: Drive) -> None:
@@ -105,7 +109,7 @@ def test_a_template_of_the_left_side_follows_the_right_one_mirrored(street: Driv
     assert found.template == CURB.mirrored()
     fits = found.scores >= SETTINGS.least_score
     assert fits.sum() > 20
-    assert off_edge(found.places[fits], TOP_M, -CURB_AT_M).max() < 0.015
+    assert off_edge(found.positions[fits], TOP_M, -CURB_AT_M).max() < 0.015
 
 
 def test_a_gap_of_three_metres_is_bridged_and_its_score_is_low(tmp_path: Path) -> None:
@@ -154,7 +158,7 @@ def test_a_level_piece_of_road_is_no_curb(street: Drive) -> None:
 
 
 def test_where_nothing_is_measured_the_score_is_zero(street: Drive) -> None:
-    nowhere = Frame(CURB_FRAME.place + np.array([0.0, 0.0, 50.0]), 0.0)
+    nowhere = SectionFrame(CURB_FRAME.position + np.array([0.0, 0.0, 50.0]), 0.0)
     assert fit_at(street, CURB, nowhere, SETTINGS).score == 0.0
 
 
@@ -168,17 +172,17 @@ def test_cancelling_leaves_nothing(street: Drive, checks: int) -> None:
 
 def test_a_cloud_without_turns_is_followed_too(tmp_path: Path) -> None:
     straight = simulated_drive(
-        3, pulses_per_turn=1200.0, length_m=12.0, lost_share=0.0, range_noise_m=0.0
+        3, pulses_per_revolution=1200.0, length_m=12.0, lost_share=0.0, range_noise_m=0.0
     )
     drive = imported(tmp_path, straight, is_bare=True)
-    assert drive.turns is None
-    frame = Frame(CURB_FRAME.place, np.pi / 2)
-    frame.place[:] = [-11_034.0, -35_014.0, 125.0 + TOP_M]
+    assert drive.revolutions is None
+    frame = SectionFrame(CURB_FRAME.position, np.pi / 2)
+    frame.position[:] = [-11_034.0, -35_014.0, 125.0 + TOP_M]
     walk = fit_along(drive, CURB, frame, SETTINGS, SilentMonitor())
     fits = walk.scores >= SETTINGS.least_score
     assert fits.sum() > 10
-    assert np.abs(walk.places[fits, 0] + 11_034.0).max() < 0.01
-    assert np.abs(walk.places[fits, 2] - 125.0 - TOP_M).max() < 0.01
+    assert np.abs(walk.positions[fits, 0] + 11_034.0).max() < 0.01
+    assert np.abs(walk.positions[fits, 2] - 125.0 - TOP_M).max() < 0.01
 
 
 def test_a_preview_shows_points_in_the_axes_of_the_template_as_it_was_drawn(street: Drive) -> None:

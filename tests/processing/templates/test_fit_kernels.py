@@ -22,7 +22,7 @@ from processing.templates.fit_kernels import (
     slab_kernel,
 )
 from processing.templates.profile_template import ProfileTemplate
-from processing.templates.shape import Shape
+from processing.templates.shape import FittableTemplate
 from tests.processing.templates.curb_street import CURB
 
 Floats = NDArray[np.float64]
@@ -40,12 +40,12 @@ def way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
 
 def on_shape(template: ProfileTemplate, pose: Floats, *, rows: int = 9) -> Floats:
     """Points on a template that lies in a slab by a pose, a row every 8 cm."""
-    places = []
+    positions = []
     for profile in template.shape:
         for one, other in itertools.pairwise(profile):
             share = np.linspace(0, 1, max(2, round(math.dist(one, other) / 0.015)))[:, None]
-            places.append(np.array(one) + share * (np.array(other) - np.array(one)))
-    across, up = np.vstack(places).T
+            positions.append(np.array(one) + share * (np.array(other) - np.array(one)))
+    across, up = np.vstack(positions).T
     cos, sin = math.cos(pose[TILT]), math.sin(pose[TILT])
     slab = []
     for along in np.linspace(-0.35, 0.35, rows):
@@ -55,14 +55,14 @@ def on_shape(template: ProfileTemplate, pose: Floats, *, rows: int = 9) -> Float
     return np.ascontiguousarray(np.vstack(slab))
 
 
-def score(slab: Floats, pose: Floats, shape: Shape) -> float:
+def score(slab: Floats, pose: Floats, shape: FittableTemplate) -> float:
     limits = (shape.tolerance_m, shape.reach_m, 1.0)
     return float(fit_kernels.score_kernel(slab, pose, shape.segments, shape.zones, limits)[0])
 
 
 def test_a_moved_tilted_and_turned_shape_is_found_again(way: str) -> None:
     true = np.array([0.013, -0.008, math.radians(1.5), 0.02, -0.015])
-    slab, shape = on_shape(CURB, true), Shape.of(CURB)
+    slab, shape = on_shape(CURB, true), FittableTemplate.of(CURB)
     pose = np.zeros(POSE)
     loose = np.full(POSE, 0.2)
     fit_kernels.refine_kernel(slab, pose, (np.zeros(POSE), loose), shape.segments, 0.02)
@@ -71,29 +71,31 @@ def test_a_moved_tilted_and_turned_shape_is_found_again(way: str) -> None:
 
 
 def test_stretches_without_points_are_unseen_not_missed(way: str) -> None:
-    slab, shape = on_shape(CURB, np.zeros(POSE)), Shape.of(CURB)
+    slab, shape = on_shape(CURB, np.zeros(POSE)), FittableTemplate.of(CURB)
     without_road = np.ascontiguousarray(slab[slab[:, 0] < 0.05])
     assert score(without_road, np.zeros(POSE), shape) > 0.99
 
 
 def test_points_off_the_shape_count_against_what_they_lie_beside(way: str) -> None:
-    shape = Shape.of(CURB)
+    shape = FittableTemplate.of(CURB)
     level = np.column_stack([np.linspace(-0.3, 0.3, 60), np.full(60, -0.15), np.zeros(60)])
     assert score(level, np.zeros(POSE), shape) < 0.6
 
 
 def test_points_in_an_empty_zone_take_from_the_score(way: str) -> None:
     zone = (((-0.2, 0.1), (0.2, 0.1), (0.2, 0.4), (-0.2, 0.4)),)
-    strict = Shape.of(ProfileTemplate("curb", CURB.shape, CURB.lines, zone, CURB.tolerance_m))
+    strict = FittableTemplate.of(
+        ProfileTemplate("curb", CURB.shape, CURB.lines, zone, CURB.tolerance_m)
+    )
     slab = on_shape(CURB, np.zeros(POSE))
     assert score(slab, np.zeros(POSE), strict) > 0.99
     wall = np.column_stack([np.zeros(200), np.linspace(0.12, 0.38, 200), np.zeros(200)])
     assert score(np.vstack([slab, wall]), np.zeros(POSE), strict) < 0.6
-    assert score(np.vstack([slab, wall]), np.zeros(POSE), Shape.of(CURB)) > 0.7
+    assert score(np.vstack([slab, wall]), np.zeros(POSE), FittableTemplate.of(CURB)) > 0.7
 
 
 def test_no_points_give_no_score(way: str) -> None:
-    assert score(np.empty((0, 3)), np.zeros(POSE), Shape.of(CURB)) == 0.0
+    assert score(np.empty((0, 3)), np.zeros(POSE), FittableTemplate.of(CURB)) == 0.0
 
 
 def test_a_slab_holds_what_lies_in_its_box(way: str) -> None:

@@ -10,7 +10,7 @@ import pytest
 from processing.errors import BadFile, MissingInput, OutOfRange
 from processing.templates.profile_template import MadeLine, ProfileTemplate
 from processing.templates.template_text import (
-    parsed_template,
+    parse_template,
     read_template,
     template_line,
     template_text,
@@ -30,11 +30,11 @@ def test_a_template_is_read_as_it_was_written(tmp_path: Path) -> None:
     path = tmp_path / "側溝.json"
     path.write_text("\ufeff" + template_text(GUTTER), encoding="utf-8")
     assert read_template(path) == GUTTER
-    assert parsed_template(template_text(CURB), "here") == CURB
+    assert parse_template(template_text(CURB), "here") == CURB
     line = template_line(GUTTER)
     assert line.startswith('{"name": "側溝 L型"')
     assert "\n" not in line
-    assert parsed_template(line, "here") == GUTTER
+    assert parse_template(line, "here") == GUTTER
 
 
 def test_mirrored_twice_it_is_the_same() -> None:
@@ -101,7 +101,7 @@ def test_what_is_no_profile_is_refused(what: str, changes: dict[str, object]) ->
 )
 def test_what_is_no_template_is_refused_with_its_place(text: str) -> None:
     with pytest.raises(BadFile) as caught:
-        parsed_template(text, "street.json")
+        parse_template(text, "street.json")
     assert "street.json" in caught.value.line("en")
     assert "street.json" in caught.value.line("ja")
 

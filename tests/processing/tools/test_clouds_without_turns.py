@@ -45,7 +45,7 @@ def test_normals_of_a_sphere_seen_from_inside_point_to_its_middle(tmp_path, is_p
     name, text = ("room.ptx", ptx_text(scan)) if is_placed else ("room.txt", text)
     drive = _drive(tmp_path, name, text)
     assert drive.image_kinds == (ImageKind.SCAN,)
-    assert (drive.info.scanner_place is not None) == is_placed
+    assert (drive.info.scanner_position is not None) == is_placed
     normals = _run(drive, "normals", tmp_path)["normal"] / 127.0
     wanted = scan.centre - drive.xyz(slice(None))
     wanted /= np.linalg.norm(wanted, axis=1, keepdims=True)
@@ -58,7 +58,7 @@ def test_normals_of_a_sphere_seen_from_inside_point_to_its_middle(tmp_path, is_p
 def test_segments_of_a_scan_end_where_the_distance_jumps(tmp_path):
     scan = sphere_scan(200, 120)
     is_near = (scan.cells[:, 0] > 50) & (scan.cells[:, 0] < 100) & (scan.cells[:, 1] > 40)
-    near = scan.place + (scan.xyz - scan.place) * np.where(is_near, 0.4, 1.0)[:, None]
+    near = scan.position + (scan.xyz - scan.position) * np.where(is_near, 0.4, 1.0)[:, None]
     text = "x y z column row\n" + _text(near, scan.cells)
     drive = _drive(tmp_path, "room.txt", text)
     segments = _run(drive, "segments", tmp_path)["segment"]
@@ -116,7 +116,7 @@ def test_odd_clouds_have_a_picture_and_go_through_tools(tmp_path, name):
 
 def test_a_tool_that_needs_revolutions_says_why_a_scan_has_none(tmp_path):
     drive = _drive(tmp_path, "room.ptx", ptx_text(sphere_scan()))
-    needy = replace(TOOLS["normals"], needs=Needs.TURNS)
+    needy = replace(TOOLS["normals"], needs=Needs.REVOLUTIONS)
     with pytest.raises(Unsuitable) as refused:
         check_needs(needy, drive)
     assert "The scanner stood still" in refused.value.remedy.en

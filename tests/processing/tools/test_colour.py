@@ -30,7 +30,7 @@ from tests.processing.image.recordings import drive_of
 ROAD, WALL, POLE = 0, 3, 4
 
 
-class Told(SilentMonitor):
+class RecordingMonitor(SilentMonitor):
     """Notes what is said, and stops when asked for long enough."""
 
     def __init__(self, stops_after: int = 10**9) -> None:
@@ -64,7 +64,7 @@ def with_images(drive: Drive, images: tuple[CameraImage, ...]) -> Drive:
 
 @pytest.fixture(scope="module")
 def street() -> SimulatedDrive:
-    return simulated_drive(3, pulses_per_turn=600.0, lost_share=0.0)
+    return simulated_drive(3, pulses_per_revolution=600.0, lost_share=0.0)
 
 
 @pytest.fixture(scope="module")
@@ -144,7 +144,11 @@ def test_many_blocks_give_the_same_colours_as_one(drive: Drive) -> None:
 def test_it_can_be_cancelled_between_images(drive: Drive) -> None:
     into = drive.folder.parent / "found"
     with pytest.raises(Cancelled):
-        run(RunRequest("colour", drive, ColourParameters()), Told(stops_after=6), into=into)
+        run(
+            RunRequest("colour", drive, ColourParameters()),
+            RecordingMonitor(stops_after=6),
+            into=into,
+        )
     assert not into.exists()
 
 
@@ -152,7 +156,7 @@ def test_missing_images_are_told_and_the_others_used(drive: Drive) -> None:
     assert drive.images is not None
     for image in drive.images.images[:3]:
         image.path.unlink()
-    told = Told()
+    told = RecordingMonitor()
     request = RunRequest("colour", drive, ColourParameters())
     found = columns_of(run(request, told, into=drive.folder.parent / "found"))
     assert any("3 of 6 camera images are missing" in text for text in told.texts)

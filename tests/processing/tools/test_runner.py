@@ -25,7 +25,7 @@ from processing.tools.registry import POINT_TOOLS, TOOLS
 from processing.tools.segments import SEGMENTS, SegmentsParameters
 from processing.tools.tool import Needs
 from tests.camera_scene import looking, photograph
-from tests.processing.image.recordings import small_drive, without_turns
+from tests.processing.image.recordings import small_drive, without_revolutions
 
 
 class Watching:
@@ -77,7 +77,7 @@ def test_a_tool_gives_what_it_declares_and_the_drive_can_store_it(drive: Drive, 
 
 @pytest.mark.parametrize("name", list(POINT_TOOLS))
 def test_a_tool_runs_on_a_cloud_without_turns(drive: Drive, name: str) -> None:
-    flat = without_turns(drive)
+    flat = without_revolutions(drive)
     assert flat.image_kinds == (ImageKind.TOP_VIEW,)
     result = run(
         RunRequest(name, flat, TOOLS[name].parameters()), SilentMonitor(), into=new_in(flat)
@@ -110,8 +110,8 @@ def test_an_unknown_tool_is_refused_with_the_known_ones() -> None:
 
 
 def test_a_tool_that_needs_turns_refuses_a_cloud_without_them(drive: Drive) -> None:
-    flat = without_turns(drive)
-    tool = dataclasses.replace(NORMALS, needs=Needs.TURNS)
+    flat = without_revolutions(drive)
+    tool = dataclasses.replace(NORMALS, needs=Needs.REVOLUTIONS)
     with pytest.raises(Unsuitable) as refusal:
         check_needs(tool, flat)
     assert refusal.value.remedy == flat.info.rows_reason

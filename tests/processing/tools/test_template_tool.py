@@ -12,7 +12,7 @@ from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.runner import RunRequest, run
 from processing.templates.template_text import template_text
-from processing.tools.parameters import filled_in
+from processing.tools.parameters import fill_parameters
 from processing.tools.template import TEMPLATE, TemplateParameters
 from processing.tools.tool import CandidateResult
 from tests.builders import simulated_drive
@@ -25,7 +25,7 @@ from tests.processing.templates.curb_street import (
     recorded,
 )
 
-EAST, NORTH, HEIGHT = CURB_FRAME.place.tolist()
+EAST, NORTH, HEIGHT = CURB_FRAME.position.tolist()
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def street(tmp_path_factory: pytest.TempPathFactory) -> Drive:
 
 
 def run_with(drive: Drive, **values: float | str) -> CandidateResult:
-    parameters = filled_in(TemplateParameters, values)
+    parameters = fill_parameters(TemplateParameters, values)
     result = run(
         RunRequest(TEMPLATE.id, drive, parameters), SilentMonitor(), into=drive.folder / "new"
     )
@@ -84,7 +84,7 @@ def test_with_a_trajectory_nothing_is_remarked(street: Drive) -> None:
 
 
 def test_without_a_trajectory_the_direction_must_be_given(tmp_path: Path) -> None:
-    straight = simulated_drive(3, pulses_per_turn=1200.0, length_m=8.0, range_noise_m=0.0)
+    straight = simulated_drive(3, pulses_per_revolution=1200.0, length_m=8.0, range_noise_m=0.0)
     drive = imported(tmp_path, straight, is_bare=True)
     remark = TEMPLATE.remark(drive)
     assert remark is not None

@@ -18,19 +18,19 @@ from tests.camera_scene import looking, photograph
 from tests.widgets.builders import OpenMap, imported_drive
 from widgets.camera_view.panel import CameraPanel
 from widgets.camera_view.view import CameraView
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 LEFT = Qt.MouseButton.LeftButton
 
 
-def place_at(east: float, north: float, up: float = 0.0) -> Place:
+def position_at(east: float, north: float, up: float = 0.0) -> PickedPosition:
     """A place, m from the street's start."""
     easting, northing, height = (START + np.array([east, north, up])).tolist()
-    return Place((easting, northing, height))
+    return PickedPosition((easting, northing, height))
 
 
 @dataclass
-class Hand:
+class CameraViewUser:
     """A panel and the hand at its mouse and keyboard."""
 
     qtbot: QtBot
@@ -41,9 +41,9 @@ class Hand:
     def view(self) -> CameraView:
         return self.panel.view
 
-    def look_at(self, place: Place) -> None:
+    def look_at(self, position: PickedPosition) -> None:
         """Move the cursor elsewhere and wait for the image."""
-        self.map.shared.cursor.move_to(place)
+        self.map.shared.cursor.move_to(position)
         self.wait_sharp()
 
     def wait_sharp(self) -> None:
@@ -53,10 +53,10 @@ class Hand:
         work()
         self.wait_sharp()
 
-    def spot(self, place: Place) -> QPoint:
-        position = self.view.position_of(place)
-        assert position is not None
-        return position.toPoint()
+    def spot(self, position: PickedPosition) -> QPoint:
+        pixel = self.view.position_of(position)
+        assert pixel is not None
+        return pixel.toPoint()
 
     def click(self, spot: QPoint) -> None:
         self.qtbot.mouseClick(self.view, LEFT, pos=spot)
@@ -89,16 +89,16 @@ def photographed(tmp_path_factory: pytest.TempPathFactory) -> Drive:
 
 
 @pytest.fixture
-def hand(qtbot: QtBot, photographed: Drive) -> Iterator[Hand]:
-    hand = shown(qtbot, OpenMap((photographed,)))
-    yield hand
-    hand.view.close()
+def user(qtbot: QtBot, photographed: Drive) -> Iterator[CameraViewUser]:
+    user = shown(qtbot, OpenMap((photographed,)))
+    yield user
+    user.view.close()
 
 
-def shown(qtbot: QtBot, open_map: OpenMap) -> Hand:
+def shown(qtbot: QtBot, open_map: OpenMap) -> CameraViewUser:
     panel = CameraPanel(open_map, open_map.shared)
     qtbot.addWidget(panel)
     panel.resize(800, 600)
     with qtbot.waitExposed(panel):
         panel.show()
-    return Hand(qtbot, open_map, panel)
+    return CameraViewUser(qtbot, open_map, panel)

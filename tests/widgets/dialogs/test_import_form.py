@@ -17,7 +17,7 @@ def test_delivered_classes_become_labels_only_when_that_is_asked_for(qtbot, as_l
     form.findChild(QCheckBox).setChecked(as_labels)
     with qtbot.waitSignal(form.import_requested) as asked:
         form.findChild(QDialogButtonBox).accepted.emit()
-    (wish,) = asked.args
-    assert wish.classes_as_labels is as_labels
-    assert wish.files == (Path("/left.laz"),)
-    assert wish.project.name == "street.zuka"
+    (request,) = asked.args
+    assert request.classes_as_labels is as_labels
+    assert request.files == (Path("/left.laz"),)
+    assert request.project.name == "street.zuka"

@@ -7,10 +7,10 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QKeySequenceEdit, QLabel, QLineEdit, QPushButton, QTreeWidget
 from pytestqt.qtbot import QtBot
 
-from widgets.dialogs.shortcuts import KeyTrouble, ShortcutRow, ShortcutsForm
+from widgets.dialogs.shortcuts import KeyProblem, ShortcutRow, ShortcutsForm
 
-TAKEN = KeyTrouble("Ctrl+E already does: Export; it would lose its key.", may_be_taken=True)
-FIXED = KeyTrouble("Space belongs to the views.", may_be_taken=False)
+TAKEN = KeyProblem("Ctrl+E already does: Export; it would lose its key.", may_be_taken=True)
+FIXED = KeyProblem("Space belongs to the views.", may_be_taken=False)
 ROWS = (
     ShortcutRow("export", "Export", "書き出し", "File", "Ctrl+E", "Ctrl+E"),
     ShortcutRow("curb", "Draw: Curb", "作図: 縁石", "Draw", "1", "1", is_changed=True),

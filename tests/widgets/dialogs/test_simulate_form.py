@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QComboBox, QDialogButtonBox, QLabel, QLineEdit, QP
 from pytestqt.qtbot import QtBot
 
 from processing.simulate.forecast import forecast_site, forecast_street
-from processing.simulate.wishes import SiteWish, StreetWish
+from processing.simulate.requests import SiteRequest, StreetRequest
 from widgets.dialogs.simulate import SimulateForm
 from widgets.parts.density_view import DensityView
 from widgets.parts.number_field import NumberField
@@ -55,10 +55,10 @@ def test_what_is_set_is_asked_for(qtbot: QtBot, form: SimulateForm, tmp_path: Pa
     style.setCurrentIndex(style.findData("rural"))
     with qtbot.waitSignal(form.simulation_requested) as asked:
         qtbot.mouseClick(create(form), Qt.MouseButton.LeftButton)
-    (wish,) = asked.args
-    assert wish.order == "street"
-    assert wish.wish == StreetWish(length_m=35.0, style="rural")
-    assert wish.folder == tmp_path / "street-rural-1"
+    (request,) = asked.args
+    assert request.order == "street"
+    assert request.request == StreetRequest(length_m=35.0, style="rural")
+    assert request.folder == tmp_path / "street-rural-1"
     assert not form.isVisible()
 
 
@@ -67,38 +67,38 @@ def test_the_proposed_folder_is_new_and_follows_the_values_until_one_is_typed(
 ) -> None:
     (tmp_path / "street-urban-7").mkdir()
     field(form, "street", "seed", NumberField).setValue(7)
-    assert form.wish.folder == tmp_path / "street-urban-7-2"
+    assert form.request.folder == tmp_path / "street-urban-7-2"
     line = folder_of(form)
     line.selectAll()
     qtbot.keyClicks(line, str(tmp_path / "mine"))
     field(form, "street", "seed", NumberField).setValue(8)
-    assert form.wish.folder == tmp_path / "mine"
+    assert form.request.folder == tmp_path / "mine"
 
 
 def test_every_change_asks_for_what_it_gives(qtbot: QtBot, form: SimulateForm) -> None:
     with qtbot.waitSignal(form.forecast_wanted) as asked:
         field(form, "street", "speed_km_h", NumberField).setValue(25.0)
-    assert asked.args[0].wish == StreetWish(speed_km_h=25.0)
+    assert asked.args[0].request == StreetRequest(speed_km_h=25.0)
     with qtbot.waitSignal(form.forecast_wanted) as asked:
         form.findChild(QTabBar).setCurrentIndex(1)
-    assert asked.args[0].wish == SiteWish()
+    assert asked.args[0].request == SiteRequest()
     assert asked.args[0].folder.name == "site-levee-1"
 
 
 def test_a_street_has_a_density_and_a_site_none(form: SimulateForm) -> None:
-    form.show_forecast(forecast_street(StreetWish(speed_km_h=36.0)), PLENTY)
+    form.show_forecast(forecast_street(StreetRequest(speed_km_h=36.0)), PLENTY)
     assert "Scan lines every 10.0 cm at 36 km/h" in said(form)
     assert form.findChild(DensityView).isVisible()
-    form.show_forecast(forecast_site(SiteWish()), PLENTY)
+    form.show_forecast(forecast_site(SiteRequest()), PLENTY)
     assert not form.findChild(DensityView).isVisible()
     assert "points" in said(form)
 
 
 def test_too_little_room_is_said_and_nothing_can_be_made(form: SimulateForm) -> None:
-    form.show_forecast(forecast_street(StreetWish()), 1_000_000)
+    form.show_forecast(forecast_street(StreetRequest()), 1_000_000)
     assert "The disk has only" in said(form)
     assert not create(form).isEnabled()
-    form.show_forecast(forecast_street(StreetWish()), PLENTY)
+    form.show_forecast(forecast_street(StreetRequest()), PLENTY)
     assert "The disk has only" not in said(form)
     assert create(form).isEnabled()
 

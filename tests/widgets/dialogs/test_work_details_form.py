@@ -67,7 +67,7 @@ def test_every_detail_has_a_line_with_its_name(qtbot: QtBot, language: Language)
     form = shown(qtbot, language)
     words = {one.text() for one in form.findChildren(QLabel)}
     for one in parameters_of(WorkDetails):
-        assert one.name.spoken(language) in words
+        assert one.name.in_language(language) in words
         assert line(form, one.id).isVisible()
 
 

@@ -15,7 +15,7 @@ from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache
 from processing.points.drive import Drive
 from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
-from tests.widgets.builders import OpenMap, place_on
+from tests.widgets.builders import OpenMap, position_on
 from widgets.image_view.view import ImageView
 from widgets.mouse_tools.mouse_tool import MouseTool
 
@@ -23,7 +23,7 @@ LEFT = Qt.MouseButton.LeftButton
 
 
 @dataclass
-class Hand:
+class ImageViewUser:
     """A view and the hand at its mouse and keyboard."""
 
     qtbot: QtBot
@@ -33,7 +33,7 @@ class Hand:
 
     def spot(self, point: int) -> QPoint:
         """Where the middle of a point's pixel is."""
-        position = self.view.position_of(place_on(self.drive, point))
+        position = self.view.position_of(position_on(self.drive, point))
         assert position is not None
         return QPoint(int(np.floor(position.x())), int(np.floor(position.y())))
 
@@ -87,7 +87,7 @@ def open_map(left_drive: Drive, right_drive: Drive) -> OpenMap:
 
 
 @pytest.fixture
-def hand(qtbot: QtBot, open_map: OpenMap, tiles: TileCache, left_drive: Drive) -> Hand:
+def user(qtbot: QtBot, open_map: OpenMap, tiles: TileCache, left_drive: Drive) -> ImageViewUser:
     """Give a view of the left drive with pixels large enough to be aimed at."""
     settings = open_map.shared.view_settings
     settings.show_image(left_drive.id, ImageKind.TRAJECTORY_CENTER)
@@ -97,7 +97,7 @@ def hand(qtbot: QtBot, open_map: OpenMap, tiles: TileCache, left_drive: Drive) -
     with qtbot.waitSignal(view.sharpened, timeout=30_000):
         view.show()
     view.show_everything()
-    hand = Hand(qtbot, open_map, view, left_drive)
-    hand.view.zoom_by(4.0 / view.viewport.zoom_v)
-    view.center_on(place_on(left_drive, hand.points_across(3)[1]))
-    return hand
+    user = ImageViewUser(qtbot, open_map, view, left_drive)
+    user.view.zoom_by(4.0 / view.viewport.zoom_v)
+    view.center_on(position_on(left_drive, user.points_across(3)[1]))
+    return user

@@ -8,22 +8,22 @@ from processing.monitor import SilentMonitor
 from processing.points.drive import Drive
 from processing.project.importing import ImportRequest, import_drives
 from tests.structured_scans import SphereScan, ptx_text, sphere_scan
-from widgets.image_view.locked_scrolling import place_along
-from widgets.image_view.picture import Picture
-from widgets.shared.image_lay import ImageLay
+from widgets.image_view.locked_scrolling import position_along
+from widgets.image_view.oriented_image import OrientedImage
+from widgets.shared.image_orientation import ImageOrientation
 
 
-def _picture(tmp_path, scan: SphereScan) -> Picture:
+def _picture(tmp_path, scan: SphereScan) -> OrientedImage:
     path = tmp_path / "room.ptx"
     path.write_text(ptx_text(scan))
     (folder,) = import_drives(ImportRequest((path,)), tmp_path / "made", SilentMonitor())
-    return Picture.of(Drive(folder), ImageKind.SCAN)
+    return OrientedImage.of(Drive(folder), ImageKind.SCAN)
 
 
 def _turned_over(scan: SphereScan, axis: int) -> SphereScan:
     cells = scan.cells.copy()
     cells[:, axis] = scan.shape[axis] - 1 - cells[:, axis]
-    return SphereScan(scan.place, scan.centre, cells, scan.xyz, scan.shape)
+    return SphereScan(scan.position, scan.centre, cells, scan.xyz, scan.shape)
 
 
 @pytest.mark.parametrize("is_upside_down", [False, True])
@@ -33,13 +33,13 @@ def test_the_sky_is_up_and_right_is_right(tmp_path, is_upside_down, is_anticlock
     scan = _turned_over(scan, 1) if is_upside_down else scan
     scan = _turned_over(scan, 0) if is_anticlockwise else scan
     picture = _picture(tmp_path, scan)
-    lay = picture.turned(ImageLay(is_vertical=True, is_mirrored_across=True))
-    assert lay == ImageLay(is_reversed_along=is_anticlockwise)
+    orientation = picture.turned(ImageOrientation(is_vertical=True, is_mirrored_across=True))
+    assert orientation == ImageOrientation(is_reversed_along=is_anticlockwise)
     points = np.arange(picture.drive.count)
-    places = picture.places(*picture.image.pixel_of(points))
-    beams = picture.drive.xyz(points) - scan.place
-    assert np.corrcoef(places[:, 1], beams[:, 2])[0, 1] < -0.9
-    right = -places[:, 0] if lay.is_reversed_along else places[:, 0]
+    positions = picture.positions(*picture.image.pixel_of(points))
+    beams = picture.drive.xyz(points) - scan.position
+    assert np.corrcoef(positions[:, 1], beams[:, 2])[0, 1] < -0.9
+    right = -positions[:, 0] if orientation.is_reversed_along else positions[:, 0]
     clockwise = -np.unwrap(np.arctan2(beams[:, 1], beams[:, 0])[np.argsort(right, kind="stable")])
     assert np.polyfit(np.sort(right), clockwise, 1)[0] > 0
 
@@ -52,8 +52,8 @@ def test_a_pixel_is_as_wide_as_it_is_in_the_room(tmp_path):
 
 def test_another_picture_of_the_room_goes_to_the_same_place(tmp_path):
     picture = _picture(tmp_path, sphere_scan())
-    place = place_along(picture, (30.5, 20.5), picture)
-    assert place is not None
-    assert abs(place[0] - 30.5) <= 1
-    assert place[1] is not None
-    assert abs(place[1] - 20.5) <= 1
+    position = position_along(picture, (30.5, 20.5), picture)
+    assert position is not None
+    assert abs(position[0] - 30.5) <= 1
+    assert position[1] is not None
+    assert abs(position[1] - 20.5) <= 1

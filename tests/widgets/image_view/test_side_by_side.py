@@ -23,14 +23,14 @@ from processing.points.drive import Drive
 from processing.project.catalogue import Geometry
 from processing.project.importing import ImportRequest, import_drives
 from tests.mouse_events import move_mouse, turn_wheel
-from tests.widgets.builders import OpenMap, path_tool, place_on
-from widgets.image_view.locked_scrolling import following, place_along
+from tests.widgets.builders import OpenMap, path_tool, position_on
+from widgets.image_view.locked_scrolling import following, position_along
+from widgets.image_view.oriented_image import OrientedImage
 from widgets.image_view.panes import ShownImage
-from widgets.image_view.picture import Picture
 from widgets.image_view.side_by_side import MOST, ImageViews
 from widgets.image_view.view import ImageView
 from widgets.image_view.viewport import Viewport
-from widgets.shared.image_lay import ImageLay
+from widgets.shared.image_orientation import ImageOrientation
 
 LEFT = Qt.MouseButton.LeftButton
 
@@ -60,7 +60,7 @@ def moment_of(view: ImageView) -> float:
 def metres_per_px(view: ImageView) -> float:
     picture = view.picture
     assert picture is not None
-    return picture.lay.length_m / picture.size[0] / view.viewport.zoom_u
+    return picture.orientation.length_m / picture.size[0] / view.viewport.zoom_u
 
 
 def far_in(view: ImageView) -> None:
@@ -143,7 +143,7 @@ def test_a_click_in_one_image_moves_no_other_along(
     far_in(views.main)
     image = image_of(left_drive, ImageKind.TRAJECTORY_CENTER)
     point = image.nearest_filled(image.rows // 2 + 5, image.width // 2, 5)
-    spot = views.main.position_of(place_on(left_drive, point))
+    spot = views.main.position_of(position_on(left_drive, point))
     assert spot is not None
     seen = views.main.viewport, other.viewport.centre[0]
     qtbot.mouseClick(views.main, LEFT, pos=spot.toPoint())
@@ -162,14 +162,16 @@ def test_a_line_is_begun_in_one_image_and_ended_in_another(
     for view, drive, step in ((views.main, left_drive, 0), (other, right_drive, 4)):
         image = image_of(drive, ImageKind.TRAJECTORY_CENTER)
         point = image.nearest_filled(image.rows // 2 + step, image.width // 2, 5)
-        spot = view.position_of(place_on(drive, point))
+        spot = view.position_of(position_on(drive, point))
         assert spot is not None
         qtbot.mouseClick(view, LEFT, Qt.KeyboardModifier.ControlModifier, spot.toPoint())
-        clicked.append(place_on(drive, point))
+        clicked.append(position_on(drive, point))
     qtbot.keyClick(other, Qt.Key.Key_Return)
     (line,) = open_map.stored.values()
-    assert [vertex.xyz for vertex in line.vertices] == [place.xyz for place in clicked]
-    assert [vertex.measured for vertex in line.vertices] == [place.measured for place in clicked]
+    assert [vertex.xyz for vertex in line.vertices] == [position.xyz for position in clicked]
+    assert [vertex.measured for vertex in line.vertices] == [
+        position.measured for position in clicked
+    ]
 
 
 def test_what_is_hidden_is_hidden_in_all(views: ImageViews, open_map: OpenMap) -> None:
@@ -190,13 +192,13 @@ def test_attribute_and_sides_belong_to_an_image_direction_to_all(
     settings = open_map.shared.view_settings
     views.add()
     own = views._beside[0].settings
-    own.lay_image(ImageLay(is_mirrored_across=True))
+    own.orient_image(ImageOrientation(is_mirrored_across=True))
     own.change_look(attribute="height")
     settings.change_look(attribute="normal")
-    settings.lay_image(ImageLay(is_vertical=True))
+    settings.orient_image(ImageOrientation(is_vertical=True))
     assert own.look.attribute == "height"
-    assert own.image_lay == ImageLay(is_vertical=True, is_mirrored_across=True)
-    assert settings.image_lay == ImageLay(is_vertical=True)
+    assert own.image_orientation == ImageOrientation(is_vertical=True, is_mirrored_across=True)
+    assert settings.image_orientation == ImageOrientation(is_vertical=True)
 
 
 @pytest.mark.parametrize("is_vertical", [False, True])
@@ -205,7 +207,7 @@ def test_the_same_place_is_on_one_line_in_all_images(
 ) -> None:
     other = views.add()
     assert other is not None
-    open_map.shared.view_settings.lay_image(ImageLay(is_vertical=is_vertical))
+    open_map.shared.view_settings.orient_image(ImageOrientation(is_vertical=is_vertical))
     views.grab()
     far_in(views.main)
     middles = [view.mapTo(views, QPoint(0, 0)) for view in views.views]
@@ -219,8 +221,10 @@ def test_images_are_kept_and_shown_again(
     qtbot: QtBot, views: ImageViews, open_map: OpenMap, right_drive: Drive
 ) -> None:
     shown = (
-        ShownImage(right_drive.id, ImageKind.REVERSIBLE, "height", ImageLay(is_vertical=True)),
-        ShownImage("gone", ImageKind.REVERSIBLE, "height", ImageLay()),
+        ShownImage(
+            right_drive.id, ImageKind.REVERSIBLE, "height", ImageOrientation(is_vertical=True)
+        ),
+        ShownImage("gone", ImageKind.REVERSIBLE, "height", ImageOrientation()),
     )
     views.arrange(shown)
     assert views.images == shown[:1]
@@ -245,27 +249,29 @@ def test_the_mouse_of_any_image_is_told(
     far_in(views.main)
     image = image_of(right_drive, ImageKind.TRAJECTORY_CENTER)
     point = image.nearest_filled(image.rows // 2, image.width // 2, 5)
-    spot = other.position_of(place_on(right_drive, point))
+    spot = other.position_of(position_on(right_drive, point))
     assert spot is not None
     move_mouse(other, spot.toPoint())
-    assert open_map.shared.cursor.hover == place_on(right_drive, point)
+    assert open_map.shared.cursor.hover == position_on(right_drive, point)
 
 
 def test_a_second_pass_follows_by_the_place_in_plan(left_drive: Drive) -> None:
-    picture = Picture.of(left_drive, ImageKind.TRAJECTORY_CENTER)
+    picture = OrientedImage.of(left_drive, ImageKind.TRAJECTORY_CENTER)
     image = copy(picture.image)
     image.row_times = image.row_times + 3600.0
-    lay = replace(picture.lay, plan=picture.lay.plan + np.array([3.0, 0.0]))
-    beside = replace(picture, image=image, lay=lay)
-    found = place_along(picture, (200.3, 100.0), beside)
+    orientation = replace(picture.orientation, plan=picture.orientation.plan + np.array([3.0, 0.0]))
+    beside = replace(picture, image=image, orientation=orientation)
+    found = position_along(picture, (200.3, 100.0), beside)
     assert found is not None
     u, v = found
     assert v is None
-    assert np.hypot(*(picture.lay.plan_at(200.3) - lay.plan_at(u))) == pytest.approx(3.0, abs=0.01)
+    assert np.hypot(
+        *(picture.orientation.plan_at(200.3) - orientation.plan_at(u))
+    ) == pytest.approx(3.0, abs=0.01)
     viewport = Viewport(900, 700, tuple(map(float, picture.size)), picture.stretch)
     assert following(picture, viewport, beside, viewport) is not None
-    far = replace(beside, lay=replace(lay, plan=lay.plan + 1000.0))
-    assert place_along(picture, (200.3, 100.0), far) is None
+    far = replace(beside, orientation=replace(orientation, plan=orientation.plan + 1000.0))
+    assert position_along(picture, (200.3, 100.0), far) is None
     assert following(picture, viewport, far, viewport) is None
 
 
@@ -283,22 +289,22 @@ def surveyed(tmp_path: Path, left_drive: Drive) -> Drive:
 
 
 def test_a_view_from_above_follows_and_leads(left_drive: Drive, surveyed: Drive) -> None:
-    street = Picture.of(left_drive, ImageKind.TRAJECTORY_CENTER)
-    above = Picture.of(surveyed, ImageKind.TOP_VIEW)
+    street = OrientedImage.of(left_drive, ImageKind.TRAJECTORY_CENTER)
+    above = OrientedImage.of(surveyed, ImageKind.TOP_VIEW)
     image = street.image
     point = image.nearest_filled(image.rows // 2, image.width // 2, image.width)
     xyz = left_drive.xyz(np.array([point]))[0]
     rows, columns = image.pixel_of(np.array([point]))
-    place = street.places(rows, columns.astype(np.int64))[0]
-    found = place_along(street, (float(place[0]), float(place[1])), above)
+    position = street.positions(rows, columns.astype(np.int64))[0]
+    found = position_along(street, (float(position[0]), float(position[1])), above)
     near = nearest_point(surveyed, xyz, 2.0)
     rows, columns = above.image.pixel_of(np.array([near]))
-    centre = tuple(above.places(rows, columns.astype(np.int64))[0].tolist())
+    centre = tuple(above.positions(rows, columns.astype(np.int64))[0].tolist())
     assert found == centre
-    back = place_along(above, centre, street)
+    back = position_along(above, centre, street)
     assert back is not None
     assert back[1] is None
-    away_m = np.diff(street.lay.distance_m(np.array([back[0], place[0]])))[0]
+    away_m = np.diff(street.orientation.distance_m(np.array([back[0], position[0]])))[0]
     assert abs(away_m) < 2.0
 
 

@@ -12,28 +12,28 @@ from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.tiles import TileKey
 from processing.points.drive import Drive
-from widgets.image_view.picture import Picture
+from widgets.image_view.oriented_image import OrientedImage
 from widgets.image_view.tile_images import TileImages
-from widgets.shared.view_settings import PointLook
+from widgets.shared.view_settings import PointStyle
 
 KIND = ImageKind.TRAJECTORY_CENTER
 
 
 @pytest.fixture
-def images(tiles: TileCache, picture: Picture, qapp: object) -> Iterator[TileImages]:
+def images(tiles: TileCache, picture: OrientedImage, qapp: object) -> Iterator[TileImages]:
     made = TileImages(tiles)
-    made.show(picture, PointLook())
+    made.show(picture, PointStyle())
     yield made
     tiles.tell_nobody()
 
 
 @pytest.fixture
-def picture(left_drive: Drive) -> Picture:
-    return Picture.of(left_drive, KIND)
+def picture(left_drive: Drive) -> OrientedImage:
+    return OrientedImage.of(left_drive, KIND)
 
 
 def request_for(drive: Drive, key: TileKey) -> TileRequest:
-    look = PointLook()
+    look = PointStyle()
     return TileRequest(drive.id, KIND, key, look.attribute, look.low_percent, look.high_percent)
 
 
@@ -59,7 +59,7 @@ def test_what_may_be_looked_at_next_is_loaded_once_the_rest_is_there(
 
 
 def test_a_tile_that_another_view_loaded_stands_in_until_the_sharp_one_comes(
-    images: TileImages, tiles: TileCache, picture: Picture, qtbot: QtBot
+    images: TileImages, tiles: TileCache, picture: OrientedImage, qtbot: QtBot
 ) -> None:
     top = picture.image.pyramid.top
     assert images.available(top) is None

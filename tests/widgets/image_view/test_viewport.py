@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from widgets.image_view.picture import Span
+from widgets.image_view.oriented_image import Span
 from widgets.image_view.viewport import Viewport
 
 STREET = Viewport(1600, 900, (1300.0, 1000.0), stretch=6.0, zoom=0.9, centre=(300, 500), top=20)

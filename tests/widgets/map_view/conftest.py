@@ -16,13 +16,13 @@ from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap
 from widgets.map_view.view import MapView
 from widgets.mouse_tools.mouse_tool import MouseTool
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 LEFT = Qt.MouseButton.LeftButton
 
 
 @dataclass
-class Hand:
+class MapViewUser:
     """A view and the hand at its mouse."""
 
     qtbot: QtBot
@@ -30,21 +30,21 @@ class Hand:
     view: MapView
     drive: Drive
 
-    def look_at(self, place: Place, px_per_m: float) -> None:
+    def look_at(self, position: PickedPosition, px_per_m: float) -> None:
         """Look at a place from so near, and wait until the picture is sharp."""
-        lay = self.view.lay()
-        assert lay is not None
-        x, y = lay.to_plane(np.array([place.xyz]))[0].tolist()
+        projection = self.view.projection()
+        assert projection is not None
+        x, y = projection.to_plane(np.array([position.xyz]))[0].tolist()
         viewport = self.view.viewport
         with self.qtbot.waitSignal(self.view.sharpened, timeout=30_000):
             self.view.set_viewport(
                 viewport.zoomed(px_per_m / viewport.scale, 0.0, 0.0).centred_on(x, y)
             )
 
-    def spot(self, place: Place) -> QPoint:
-        position = self.view.position_of(place)
-        assert position is not None
-        return position.toPoint()
+    def spot(self, position: PickedPosition) -> QPoint:
+        pixel = self.view.position_of(position)
+        assert pixel is not None
+        return pixel.toPoint()
 
     def take(self, tool: MouseTool) -> MouseTool:
         self.map.listen_to(tool)
@@ -96,12 +96,14 @@ def open_map(left_drive: Drive) -> OpenMap:
 
 
 @pytest.fixture
-def hand(qtbot: QtBot, open_map: OpenMap, tiles: TileCache, left_drive: Drive) -> Iterator[Hand]:
+def user(
+    qtbot: QtBot, open_map: OpenMap, tiles: TileCache, left_drive: Drive
+) -> Iterator[MapViewUser]:
     """Give a view of the left drive, all of it in the window."""
     view = MapView(open_map, open_map.shared, tiles)
     qtbot.addWidget(view)
     view.resize(900, 700)
     with qtbot.waitSignal(view.sharpened, timeout=30_000):
         view.show()
-    yield Hand(qtbot, open_map, view, left_drive)
+    yield MapViewUser(qtbot, open_map, view, left_drive)
     view.close()

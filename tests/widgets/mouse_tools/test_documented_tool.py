@@ -14,11 +14,11 @@ from widgets.mouse_tools.drawing_tool import NO_POINT, DrawingTool
 from widgets.mouse_tools.mouse_tool import Hit
 from widgets.mouse_tools.select import Select
 from widgets.mouse_tools.toolbox import MouseToolbox
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 GUIDE = Path(__file__).parents[3] / "docs" / "adding_a_mouse_tool.md"
-WEST = Hit(Place((10.0, 20.0, 3.0)))
-EAST = Hit(Place((10.2, 20.0, 3.1)))
+WEST = Hit(PickedPosition((10.0, 20.0, 3.0)))
+EAST = Hit(PickedPosition((10.2, 20.0, 3.1)))
 
 
 @pytest.fixture
@@ -59,7 +59,7 @@ def test_two_clicks_make_a_point_halfway(source: OpenMap, tool: DrawingTool) -> 
 
 def test_it_is_taken_back_and_left_like_any_other(source: OpenMap, tool: DrawingTool) -> None:
     tool.press(Hit(None))
-    assert source.told == [NO_POINT]
+    assert source.reported == [NO_POINT]
     tool.press(WEST)
     tool.step_back()
     assert not tool.is_busy
@@ -74,6 +74,6 @@ def test_it_goes_into_the_hand(source: OpenMap, tool: DrawingTool) -> None:
     tools = {"select": Select(source, source.shared), "between": tool}
     toolbox = MouseToolbox(source, source.shared, tools, parent=parent)
     toolbox.choose("between")
-    toolbox.hand.press(WEST)
-    toolbox.hand.press(EAST)
+    toolbox.current_tool.press(WEST)
+    toolbox.current_tool.press(EAST)
     assert [feature.geometry for feature in source.stored.values()] == [Geometry.POINT]

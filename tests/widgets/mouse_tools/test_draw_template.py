@@ -22,16 +22,16 @@ from widgets.mouse_tools.draw_template import (
     TemplatePart,
 )
 from widgets.mouse_tools.mouse_tool import Hit, Ray
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.shared_state import SharedState
 
 CUT = Cut((100.0, 200.0, 50.0), (0.6, -0.8), width_m=0.5, half_length_m=5.0)
 
 
-def at(across: float, up: float, away: float = 0.0) -> Place:
+def at(across: float, up: float, away: float = 0.0) -> PickedPosition:
     """A place of the section."""
     easting, northing, height = CUT.to_space([[across, 50.0 + up, away]])[0].tolist()
-    return Place((easting, northing, height))
+    return PickedPosition((easting, northing, height))
 
 
 def on_point(across: float, up: float, away: float = 0.0, reach_m: float = 0.01) -> Hit:
@@ -70,9 +70,9 @@ def zone(shared: SharedState) -> DrawTemplate:
 
 
 def heard(tool: DrawTemplate) -> list[Text]:
-    told: list[Text] = []
-    tool.told.connect(told.append)
-    return told
+    reported: list[Text] = []
+    tool.reported.connect(reported.append)
+    return reported
 
 
 def drawn_by(tool: DrawTemplate, clicks: Sequence[Hit]) -> DrawnProfile:
@@ -89,13 +89,13 @@ def drawn_by(tool: DrawTemplate, clicks: Sequence[Hit]) -> DrawnProfile:
 
 
 def test_clicks_make_a_profile_about_the_first_of_them(shape: DrawTemplate) -> None:
-    told = heard(shape)
+    reported = heard(shape)
     drawn = drawn_by(
         shape, [on_point(1.0, 0.15, 0.1), on_point(1.02, 0.0, -0.2), on_point(1.4, 0.01)]
     )
     assert drawn.about(drawn.anchor) == (((0.0, 0.0), (0.02, -0.15), (0.4, -0.14)),)
     assert drawn.cut == CUT
-    assert told == [BEGIN]
+    assert reported == [BEGIN]
 
 
 def test_a_click_back_on_the_anchor_begins_its_other_side(
@@ -134,37 +134,37 @@ def test_a_point_near_the_mouse_does_not_pull_a_zone(zone: DrawTemplate) -> None
 
 
 def test_too_little_is_told_and_stays_at_hand(shape: DrawTemplate, zone: DrawTemplate) -> None:
-    told = heard(shape)
+    reported = heard(shape)
     shape.press(on_point(1.0, 0.15))
     shape.press(on_point(1.001, 0.151))
     shape.complete()
-    assert told[-1] == TOO_SHORT
+    assert reported[-1] == TOO_SHORT
     assert shape.is_busy
-    told = heard(zone)
+    reported = heard(zone)
     zone.press(on_nothing(1.0, 0.0))
     zone.press(on_nothing(1.2, 0.0))
     zone.complete()
-    assert told == [TOO_SMALL]
+    assert reported == [TOO_SMALL]
     assert zone.is_busy
 
 
 def test_without_a_section_and_beside_it_a_click_is_refused(shape: DrawTemplate) -> None:
-    told = heard(shape)
+    reported = heard(shape)
     shape.use_cut(None)
     shape.press(on_point(1.0, 0.0))
     shape.use_cut(CUT)
     shape.press(Hit(at(1.0, 0.0, 3.0)))
     shape.press(Hit(None))
-    assert told == [NEEDS_SECTION, NOT_IN_SECTION, NOT_IN_SECTION]
+    assert reported == [NEEDS_SECTION, NOT_IN_SECTION, NOT_IN_SECTION]
     assert not shape.is_busy
 
 
 def test_a_section_that_moves_on_does_not_move_what_was_begun(shape: DrawTemplate) -> None:
-    told = heard(shape)
+    reported = heard(shape)
     shape.press(on_point(1.0, 0.15))
     shape.use_cut(Cut((110.0, 210.0, 50.0), (0.6, -0.8), width_m=0.5, half_length_m=5.0))
-    shape.press(Hit(Place((110.0, 210.0, 50.0))))
-    assert told[-1] == NOT_IN_SECTION
+    shape.press(Hit(PickedPosition((110.0, 210.0, 50.0))))
+    assert reported[-1] == NOT_IN_SECTION
     drawn = drawn_by(shape, [on_point(1.0, 0.0)])
     assert drawn.cut == CUT
 

@@ -14,33 +14,33 @@ from processing.project.change import Change
 from processing.project.feature import PointReference
 from processing.text import Text
 from tests.widgets.builders import KINDS, OpenMap, do_now
-from widgets.mouse_tools.draw_path import DROPPED, RESTORED, DrawPath
+from widgets.mouse_tools.draw_line import DROPPED, RESTORED, DrawLine
 from widgets.mouse_tools.draw_point import DrawPoint
-from widgets.mouse_tools.draw_shape import DrawShape, Shape
+from widgets.mouse_tools.draw_shape import DrawShape, ThreePointShape
 from widgets.mouse_tools.drawing_tool import NO_KIND, NO_POINT, TOO_FEW, DrawingTool
-from widgets.mouse_tools.legs import Way
+from widgets.mouse_tools.legs import LegMode
 from widgets.mouse_tools.mouse_tool import Hit
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 A, B, C, D = (
-    Place((float(number), 10.5 * number**2, 3.25), PointReference("left", number))
+    PickedPosition((float(number), 10.5 * number**2, 3.25), PointReference("left", number))
     for number in range(4)
 )
 
 
-def line_tool(source: OpenMap) -> DrawPath:
-    return DrawPath(source, source.shared, Geometry.LINE, do_now)
+def line_tool(source: OpenMap) -> DrawLine:
+    return DrawLine(source, source.shared, Geometry.LINE, do_now)
 
 
-def area_tool(source: OpenMap) -> DrawPath:
-    return DrawPath(source, source.shared, Geometry.AREA, do_now)
+def area_tool(source: OpenMap) -> DrawLine:
+    return DrawLine(source, source.shared, Geometry.AREA, do_now)
 
 
 def point_tool(source: OpenMap) -> DrawPoint:
     return DrawPoint(source, source.shared)
 
 
-class Desk:
+class DrawingSession:
     """A tool and what comes out of it."""
 
     def __init__(self, make: Callable[[OpenMap], DrawingTool]) -> None:
@@ -50,23 +50,23 @@ class Desk:
         (geometry,) = self.tool.draws
         self.tool.set_kind(KINDS[self.map.kind_of(geometry)])
         self.changes: list[Change] = []
-        self.told: list[Text] = []
+        self.reported: list[Text] = []
         self.finished = 0
         self.tool.change_requested.connect(lambda _, change: self.changes.append(change))
-        self.tool.told.connect(self.told.append)
+        self.tool.reported.connect(self.reported.append)
         self.tool.finished.connect(self._on_finished)
 
     def _on_finished(self) -> None:
         self.finished += 1
 
-    def click(self, *places: Place | None) -> None:
-        for place in places:
-            self.tool.press(Hit(place))
-            self.tool.release(Hit(place))
+    def click(self, *positions: PickedPosition | None) -> None:
+        for position in positions:
+            self.tool.press(Hit(position))
+            self.tool.release(Hit(position))
 
 
 def test_a_line_has_the_exact_places_that_were_clicked() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.click(A, B, C, D)
     desk.tool.complete()
     (change,) = desk.changes
@@ -81,7 +81,7 @@ def test_a_line_has_the_exact_places_that_were_clicked() -> None:
 
 
 def test_the_sketch_follows_clicks_and_the_mouse() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.click(A)
     desk.tool.move(Hit(B))
     drawing = desk.shared.sketch.drawing
@@ -94,7 +94,7 @@ def test_the_sketch_follows_clicks_and_the_mouse() -> None:
 
 
 def test_backspace_takes_back_one_vertex_after_another() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.click(A, B, C)
     desk.tool.step_back()
     desk.click(D)
@@ -105,24 +105,24 @@ def test_backspace_takes_back_one_vertex_after_another() -> None:
 
 
 def test_escape_drops_the_drawing_first_and_gives_the_hand_back_then() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.click(A, B)
     desk.tool.leave()
-    assert desk.told == [DROPPED]
+    assert desk.reported == [DROPPED]
     assert (desk.shared.sketch.drawing, desk.finished, desk.changes) == (None, 0, [])
     desk.tool.leave()
     assert desk.finished == 1
 
 
 def test_leaving_again_while_the_hand_is_taken_back_ends() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.tool.finished.connect(desk.tool.leave)
     desk.tool.leave()
     assert desk.finished == 1
 
 
 def test_another_tool_is_taken_without_a_word() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.click(A, B)
     desk.tool.put_down()
     assert (desk.shared.sketch.drawing, desk.finished, desk.changes) == (None, 0, [])
@@ -132,34 +132,34 @@ def test_another_tool_is_taken_without_a_word() -> None:
     ("make", "clicks"), [(line_tool, [A]), (area_tool, [A, B]), (area_tool, [A])]
 )
 def test_too_few_vertices_are_said_and_kept(
-    make: Callable[[OpenMap], DrawingTool], clicks: list[Place]
+    make: Callable[[OpenMap], DrawingTool], clicks: list[PickedPosition]
 ) -> None:
-    desk = Desk(make)
+    desk = DrawingSession(make)
     desk.click(*clicks)
     desk.tool.complete()
     assert desk.changes == []
-    assert desk.told == [TOO_FEW[next(iter(desk.tool.draws))]]
+    assert desk.reported == [TOO_FEW[next(iter(desk.tool.draws))]]
     assert desk.shared.sketch.drawing is not None
     assert len(desk.shared.sketch.drawing.vertices) == len(clicks)
 
 
 def test_completing_nothing_says_nothing() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.tool.complete()
-    assert (desk.changes, desk.told) == ([], [])
+    assert (desk.changes, desk.reported) == ([], [])
 
 
 def test_both_presses_of_a_double_click_are_one_vertex() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.click(A, B, B)
     desk.tool.complete()
     assert len(desk.changes[0].added[0].vertices) == 2
 
 
 def test_a_click_on_nothing_adds_nothing_and_says_so() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.click(A, None)
-    assert desk.told == [NO_POINT]
+    assert desk.reported == [NO_POINT]
     assert desk.shared.sketch.drawing is not None
     assert len(desk.shared.sketch.drawing.vertices) == 1
 
@@ -167,15 +167,15 @@ def test_a_click_on_nothing_adds_nothing_and_says_so() -> None:
 def test_without_a_kind_nothing_is_drawn() -> None:
     source = OpenMap()
     tool = line_tool(source)
-    told: list[Text] = []
-    tool.told.connect(told.append)
+    reported: list[Text] = []
+    tool.reported.connect(reported.append)
     tool.press(Hit(A))
-    assert told == [NO_KIND]
+    assert reported == [NO_KIND]
     assert source.shared.sketch.drawing is None
 
 
 def test_an_area_is_a_ring_whose_first_vertex_is_not_repeated() -> None:
-    desk = Desk(area_tool)
+    desk = DrawingSession(area_tool)
     desk.click(A, B, C)
     desk.tool.complete()
     (feature,) = desk.changes[0].added
@@ -184,14 +184,14 @@ def test_an_area_is_a_ring_whose_first_vertex_is_not_repeated() -> None:
 
 
 def test_every_click_of_the_point_tool_is_a_feature() -> None:
-    desk = Desk(point_tool)
+    desk = DrawingSession(point_tool)
     desk.click(A, B)
     assert [change.added[0].vertices[0].xyz for change in desk.changes] == [A.xyz, B.xyz]
     assert desk.shared.sketch.drawing is None
 
 
 def test_another_kind_colours_the_drawing_at_hand() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.click(A)
     desk.tool.set_kind(replace(KINDS["curb"], id="gutter"))
     assert desk.shared.sketch.drawing is not None
@@ -199,56 +199,56 @@ def test_another_kind_colours_the_drawing_at_hand() -> None:
 
 
 def test_features_drawn_one_after_the_other_have_ids_of_their_own() -> None:
-    desk = Desk(point_tool)
+    desk = DrawingSession(point_tool)
     desk.click(A, B)
     assert len({change.added[0].id for change in desk.changes}) == 2
 
 
 def test_a_dropped_drawing_comes_back_by_backspace() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.click(A, B, C)
     desk.tool.leave()
     desk.tool.step_back()
-    assert desk.told == [DROPPED, RESTORED]
+    assert desk.reported == [DROPPED, RESTORED]
     desk.tool.complete()
     assert [vertex.xyz for vertex in desk.changes[0].added[0].vertices] == [A.xyz, B.xyz, C.xyz]
 
 
 def test_closing_a_line_leads_it_back_to_its_first_vertex() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.click(A, B, C)
-    assert isinstance(desk.tool, DrawPath)
+    assert isinstance(desk.tool, DrawLine)
     desk.tool.close()
     vertices = desk.changes[0].added[0].vertices
     assert [vertex.xyz for vertex in vertices] == [A.xyz, B.xyz, C.xyz, A.xyz]
 
 
 def test_a_click_on_the_first_vertex_closes_the_line() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.click(A, B, C, A)
     assert len(desk.changes[0].added[0].vertices) == 4
 
 
 def test_an_area_that_crosses_itself_is_not_made_but_kept_in_the_hand() -> None:
     corners = [(0.0, 0.0), (2.0, 2.0), (2.0, 0.0), (0.0, 2.0)]
-    desk = Desk(area_tool)
-    desk.click(*(Place((x, y, 1.0)) for x, y in corners))
+    desk = DrawingSession(area_tool)
+    desk.click(*(PickedPosition((x, y, 1.0)) for x, y in corners))
     desk.tool.complete()
     assert desk.changes == []
-    assert "E 1.00, N 1.00" in desk.told[-1].en
+    assert "E 1.00, N 1.00" in desk.reported[-1].en
     desk.tool.step_back()
     desk.tool.complete()
     assert len(desk.changes[0].added[0].vertices) == 3
 
 
 def test_an_arc_passes_its_three_clicks_and_goes_on_straight() -> None:
-    desk = Desk(line_tool)
-    assert isinstance(desk.tool, DrawPath)
-    desk.click(Place((0.0, 0.0, 1.0)))
-    desk.tool.set_way(Way.ARC)
-    desk.click(Place((1.0, 1.0, 1.0)), Place((2.0, 0.0, 1.0)))
-    desk.tool.set_way(Way.STRAIGHT)
-    desk.click(Place((5.0, 0.0, 1.0)))
+    desk = DrawingSession(line_tool)
+    assert isinstance(desk.tool, DrawLine)
+    desk.click(PickedPosition((0.0, 0.0, 1.0)))
+    desk.tool.set_mode(LegMode.ARC)
+    desk.click(PickedPosition((1.0, 1.0, 1.0)), PickedPosition((2.0, 0.0, 1.0)))
+    desk.tool.set_mode(LegMode.STRAIGHT)
+    desk.click(PickedPosition((5.0, 0.0, 1.0)))
     desk.tool.complete()
     xyz = np.array([vertex.xyz for vertex in desk.changes[0].added[0].vertices])
     assert np.allclose(xyz[-1], (5.0, 0.0, 1.0))
@@ -258,11 +258,11 @@ def test_an_arc_passes_its_three_clicks_and_goes_on_straight() -> None:
 
 
 def test_heights_of_a_curve_without_points_are_marked() -> None:
-    desk = Desk(line_tool)
-    assert isinstance(desk.tool, DrawPath)
-    desk.click(Place((0.0, 0.0, 1.0)))
-    desk.tool.set_way(Way.SPLINE)
-    desk.click(Place((1.0, 1.0, 2.0)), Place((2.0, 0.0, 3.0)))
+    desk = DrawingSession(line_tool)
+    assert isinstance(desk.tool, DrawLine)
+    desk.click(PickedPosition((0.0, 0.0, 1.0)))
+    desk.tool.set_mode(LegMode.SPLINE)
+    desk.click(PickedPosition((1.0, 1.0, 2.0)), PickedPosition((2.0, 0.0, 3.0)))
     desk.tool.complete()
     vertices = desk.changes[0].added[0].vertices
     assert [vertex.is_occluded for vertex in vertices].count(False) == 3
@@ -270,10 +270,10 @@ def test_heights_of_a_curve_without_points_are_marked() -> None:
 
 
 def test_taking_back_a_click_of_a_spline_leaves_the_others() -> None:
-    desk = Desk(line_tool)
-    assert isinstance(desk.tool, DrawPath)
-    desk.tool.set_way(Way.SPLINE)
-    desk.click(*(Place((float(n), float(n % 2), 1.0)) for n in range(5)))
+    desk = DrawingSession(line_tool)
+    assert isinstance(desk.tool, DrawLine)
+    desk.tool.set_mode(LegMode.SPLINE)
+    desk.click(*(PickedPosition((float(n), float(n % 2), 1.0)) for n in range(5)))
     desk.tool.step_back()
     drawing = desk.shared.sketch.drawing
     assert drawing is not None
@@ -281,11 +281,11 @@ def test_taking_back_a_click_of_a_spline_leaves_the_others() -> None:
 
 
 def test_shift_holds_the_direction_or_the_one_across() -> None:
-    desk = Desk(line_tool)
-    desk.click(Place((0.0, 0.0, 1.0)), Place((4.0, 0.0, 1.0)))
+    desk = DrawingSession(line_tool)
+    desk.click(PickedPosition((0.0, 0.0, 1.0)), PickedPosition((4.0, 0.0, 1.0)))
     shift = Qt.KeyboardModifier.ShiftModifier
     for wanted, reached in (((9.0, 0.3), (9.0, 0.0)), ((9.2, 5.0), (9.0, 5.0))):
-        desk.tool.press(Hit(Place((*wanted, 1.0)), modifiers=shift))
+        desk.tool.press(Hit(PickedPosition((*wanted, 1.0)), modifiers=shift))
         drawing = desk.shared.sketch.drawing
         assert drawing is not None
         assert drawing.vertices[-1].xyz[:2] == pytest.approx(reached)
@@ -295,18 +295,18 @@ def test_a_sign_is_turned_by_dragging() -> None:
     kind = replace(
         KINDS["pole"], attributes=(AttributeField("facing_deg", Text.same("f"), "number"),)
     )
-    desk = Desk(point_tool)
+    desk = DrawingSession(point_tool)
     desk.tool.set_kind(kind)
-    desk.tool.press(Hit(Place((0.0, 0.0, 1.0))))
-    desk.tool.move(Hit(Place((2.0, 0.0, 1.0))))
-    desk.tool.release(Hit(Place((2.0, 0.0, 1.0))))
+    desk.tool.press(Hit(PickedPosition((0.0, 0.0, 1.0))))
+    desk.tool.move(Hit(PickedPosition((2.0, 0.0, 1.0))))
+    desk.tool.release(Hit(PickedPosition((2.0, 0.0, 1.0))))
     (feature,) = desk.changes[0].added
     assert feature.vertices[0].xyz == (0.0, 0.0, 1.0)
     assert feature.attributes == {"facing_deg": 90.0}
 
 
 def test_a_line_that_is_chosen_goes_on_from_its_first_vertex_in_its_own_direction() -> None:
-    desk = Desk(line_tool)
+    desk = DrawingSession(line_tool)
     desk.click(B, C)
     desk.tool.complete()
     (line,) = desk.changes[0].added
@@ -324,12 +324,12 @@ def test_a_line_that_is_chosen_goes_on_from_its_first_vertex_in_its_own_directio
 )
 def test_a_rectangle_becomes_what_the_kind_is(geometry: Geometry, count: int) -> None:
     source = OpenMap()
-    tool = DrawShape(source, source.shared, Shape.RECTANGLE)
+    tool = DrawShape(source, source.shared, ThreePointShape.RECTANGLE)
     changes: list[Change] = []
     tool.change_requested.connect(lambda _, change: changes.append(change))
     tool.set_kind(KINDS[source.kind_of(geometry)])
     for xy in ((0.0, 0.0), (2.0, 0.0), (1.0, 0.5)):
-        tool.press(Hit(Place((*xy, 1.0))))
+        tool.press(Hit(PickedPosition((*xy, 1.0))))
     vertices = changes[0].added[0].vertices
     assert len(vertices) == count
     if geometry is Geometry.POINT:
@@ -338,22 +338,22 @@ def test_a_rectangle_becomes_what_the_kind_is(geometry: Geometry, count: int) ->
 
 def test_three_points_in_one_line_make_no_circle_and_say_so() -> None:
     source = OpenMap()
-    tool = DrawShape(source, source.shared, Shape.CIRCLE)
-    told: list[Text] = []
-    tool.told.connect(told.append)
+    tool = DrawShape(source, source.shared, ThreePointShape.CIRCLE)
+    reported: list[Text] = []
+    tool.reported.connect(reported.append)
     tool.set_kind(KINDS["lid"])
     for x in (0.0, 1.0, 2.0):
-        tool.press(Hit(Place((x, 0.0, 1.0))))
-    assert len(told) == 1
+        tool.press(Hit(PickedPosition((x, 0.0, 1.0))))
+    assert len(reported) == 1
 
 
 def test_a_refused_shape_has_its_first_clicks_again() -> None:
     source = OpenMap()
-    tool = DrawShape(source, source.shared, Shape.CIRCLE)
+    tool = DrawShape(source, source.shared, ThreePointShape.CIRCLE)
     tool.set_kind(KINDS["lid"])
     tool.change_requested.connect(lambda *_: tool.take_back())
-    for place in (A, B, C):
-        tool.press(Hit(place))
+    for position in (A, B, C):
+        tool.press(Hit(position))
     drawing = source.shared.sketch.drawing
     assert drawing is not None
     assert [vertex.xyz for vertex in drawing.vertices] == [A.xyz, B.xyz]

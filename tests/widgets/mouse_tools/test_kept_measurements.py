@@ -5,10 +5,10 @@ from __future__ import annotations
 from processing.project.catalogue import Catalogue, FeatureKind, Geometry
 from processing.text import Text
 from tests.widgets.builders import OpenMap
-from widgets.mouse_tools.draw_path import CROSSES
+from widgets.mouse_tools.draw_line import CROSSES
 from widgets.mouse_tools.measure import MEASURED_AREA, MeasureTool
 from widgets.mouse_tools.mouse_tool import Hit
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 A, B, C, D = ((0.0, 0.0, 1.0), (10.0, 0.0, 1.0), (10.0, 10.0, 1.0), (0.0, 10.0, 1.0))
 
@@ -26,15 +26,15 @@ class AreasToo(OpenMap):
 def test_a_measured_area_that_crosses_itself_is_not_kept_and_goes_on_once_it_does_not():
     source = AreasToo()
     tool = source.listen_to(MeasureTool(source, source.shared, is_closed=True))
-    for place in (A, C, B, D):
-        tool.press(Hit(Place(place)))
+    for position in (A, C, B, D):
+        tool.press(Hit(PickedPosition(position)))
     tool.keep()
     assert not source.stored
-    assert source.told[-1].en.startswith(CROSSES.en.split("{", maxsplit=1)[0])
+    assert source.reported[-1].en.startswith(CROSSES.en.split("{", maxsplit=1)[0])
     for _ in range(3):
         tool.step_back()
-    for place in (B, C, D):
-        tool.press(Hit(Place(place)))
+    for position in (B, C, D):
+        tool.press(Hit(PickedPosition(position)))
     tool.keep()
     (kept,) = source.stored.values()
     assert [vertex.xyz for vertex in kept.vertices] == [A, B, C, D]

@@ -15,13 +15,13 @@ from processing.points.drive import Drive
 from processing.project.change import Change
 from processing.section.cut import Cut
 from processing.text import Text
-from tests.widgets.builders import OpenMap, do_now, imported_drive, place_on
-from widgets.mouse_tools.mouse_tool import Boxed, DragShape, Hit
+from tests.widgets.builders import OpenMap, do_now, imported_drive, position_on
+from widgets.mouse_tools.mouse_tool import DragShape, EnclosedHits, Hit
 from widgets.mouse_tools.paint_brush import PaintBrush
 from widgets.mouse_tools.paint_outline import PaintOutline
 from widgets.mouse_tools.paint_segments import IN_NO_SEGMENT, NO_SEGMENTS, PaintSegments
 from widgets.mouse_tools.paint_tool import NOTHING_THERE, PaintTool
-from widgets.section_view.lay import SectionLay
+from widgets.section_view.projection import SectionProjection
 
 NOWHERE = Hit(None)
 
@@ -48,7 +48,7 @@ class Easel:
         self.drive = drive
         self.map = OpenMap((drive,))
         self.changes: list[tuple[Text, Change]] = []
-        self.told: list[Text] = []
+        self.reported: list[Text] = []
 
     @property
     def palette(self):
@@ -64,7 +64,7 @@ class Easel:
 
     def use(self, tool: PaintTool) -> PaintTool:
         tool.change_requested.connect(self.apply)
-        tool.told.connect(self.told.append)
+        tool.reported.connect(self.reported.append)
         return tool
 
     def apply(self, label: Text, change: Change) -> None:
@@ -77,11 +77,11 @@ class Easel:
             self.map.shared.map_changes.labels_changed.emit(drive.id, one.unpacked_points())
 
     def hit(self, point: int) -> Hit:
-        return Hit(place_on(self.drive, point))
+        return Hit(position_on(self.drive, point))
 
     def brush(self, point: int) -> np.ndarray:
-        place = np.array(place_on(self.drive, point).xyz)
-        return points_under_brush(self.drive, place, place, self.palette.radius_m)
+        position = np.array(position_on(self.drive, point).xyz)
+        return points_under_brush(self.drive, position, position, self.palette.radius_m)
 
 
 @pytest.fixture
@@ -186,7 +186,7 @@ def test_only_points_without_a_label_or_of_one_class_are_painted(easel):
     np.testing.assert_array_equal(np.flatnonzero(easel.labels), curb)
     tool.press(easel.hit(5000))
     tool.release(easel.hit(5000))
-    assert easel.told[-1] == NOTHING_THERE
+    assert easel.reported[-1] == NOTHING_THERE
     assert len(easel.changes) == 3
 
 
@@ -206,11 +206,11 @@ def test_an_outline_labels_all_points_inside_drawn_or_not(easel):
     tool = easel.use(PaintOutline(easel.map, easel.map.shared, do_now, DragShape.LASSO))
     assert tool.drag_shape(NOWHERE) is DragShape.LASSO
     name, every = easel.drive.id, np.arange(100, 200)
-    tool.choose_box(Boxed(frozenset(), {name: every[::7]}, find_every=lambda: {name: every}))
+    tool.choose_box(EnclosedHits(frozenset(), {name: every[::7]}, find_every=lambda: {name: every}))
     np.testing.assert_array_equal(np.flatnonzero(easel.labels), every)
     # A view may give points in any order; drives that are gone are passed over.
     unordered = np.array([900, 300, 900, 301])
-    tool.choose_box(Boxed(frozenset(), {name: unordered, "gone": every}))
+    tool.choose_box(EnclosedHits(frozenset(), {name: unordered, "gone": every}))
     assert np.flatnonzero(easel.labels)[-3:].tolist() == [300, 301, 900]
     assert not tool.is_busy
 
@@ -221,7 +221,7 @@ def test_a_long_stroke_is_made_anew_where_an_undo_came_between(easel):
     name = easel.drive.id
     easel.palette.choose(6)
     make_column(easel.drive)
-    tool.choose_box(Boxed(frozenset(), {}, find_every=lambda: {name: np.arange(50)}))
+    tool.choose_box(EnclosedHits(frozenset(), {}, find_every=lambda: {name: np.arange(50)}))
     work, take = later.waiting.pop()
     result = work()
     undone = np.arange(10, 20)
@@ -243,7 +243,9 @@ def test_two_long_strokes_quickly_are_both_done_and_escape_drops_the_last(easel)
     for first in (0, 30, 70):
         points = np.arange(first, first + 40)
         easel.palette.choose(2 + first)
-        tool.choose_box(Boxed(frozenset(), {}, find_every=lambda points=points: {name: points}))
+        tool.choose_box(
+            EnclosedHits(frozenset(), {}, find_every=lambda points=points: {name: points})
+        )
     tool.leave()
     later.do_all()
     assert (easel.labels[:30] == 2).all()
@@ -255,7 +257,7 @@ def test_two_long_strokes_quickly_are_both_done_and_escape_drops_the_last(easel)
 def test_work_that_failed_leaves_the_hand_free(easel):
     later = Later()
     tool = easel.use(PaintOutline(easel.map, easel.map.shared, later, DragShape.BOX))
-    tool.choose_box(Boxed(frozenset(), {}, find_every=dict))
+    tool.choose_box(EnclosedHits(frozenset(), {}, find_every=dict))
     _, take = later.waiting.pop()
     take(None)
     assert not tool.is_busy
@@ -272,7 +274,7 @@ def test_without_segments_one_sentence_says_what_to_do(easel):
     tool = easel.use(PaintSegments(easel.map, easel.map.shared, do_now))
     tool.press(easel.hit(50))
     tool.release(easel.hit(50))
-    assert easel.told == [NO_SEGMENTS]
+    assert easel.reported == [NO_SEGMENTS]
     assert not tool.is_busy
 
 
@@ -286,7 +288,7 @@ def test_a_click_labels_the_whole_segment_and_nothing_else(easel):
     np.testing.assert_array_equal(np.flatnonzero(easel.labels), np.flatnonzero(segments == 1))
     tool.press(easel.hit(5))
     tool.release(easel.hit(5))
-    assert IN_NO_SEGMENT in easel.told
+    assert IN_NO_SEGMENT in easel.reported
     assert len(easel.changes) == 1
 
 
@@ -356,12 +358,12 @@ def test_in_a_section_the_brush_is_a_circle_through_the_slab_of_every_drive(ease
     easel.palette.set_radius(0.5)
     xyz = easel.drive.xyz(np.array([5000]))[0]
     cut = Cut(tuple(xyz.tolist()), (1.0, 0.0), width_m=0.6)
-    lay = SectionLay(cut)
+    projection = SectionProjection(cut)
     for drive in easel.map.drives():
         image_of(drive, drive.image_kinds[-1]).pyramid.prepare()
 
     def hit(offset: float) -> Hit:
-        return Hit(None, ray=lay.ray((offset, 0.0)))
+        return Hit(None, ray=projection.ray((offset, 0.0)))
 
     tool.press(hit(-1.0))
     tool.move(hit(1.0))

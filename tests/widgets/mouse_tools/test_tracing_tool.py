@@ -11,17 +11,17 @@ from numpy.typing import NDArray
 from processing.points.drive import Drive
 from processing.project.catalogue import Geometry
 from processing.project.feature import Vertex
-from tests.processing.image.profiled_streets import UPPER, Street, off_line, recorded
-from tests.widgets.builders import OpenMap, path_tool, place_on
-from widgets.mouse_tools.draw_path import DrawPath
-from widgets.mouse_tools.legs import Way
+from tests.processing.image.profiled_streets import UPPER, ProfiledStreet, off_line, recorded
+from tests.widgets.builders import OpenMap, path_tool, position_on
+from widgets.mouse_tools.draw_line import DrawLine
+from widgets.mouse_tools.legs import LegMode
 from widgets.mouse_tools.mouse_tool import Hit
 from widgets.mouse_tools.tracing import STRAIGHT_ON, TracedLine, tracing_work
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 Floats = NDArray[np.float64]
 
-STREET = Street(length_m=12.0)
+STREET = ProfiledStreet(length_m=12.0)
 
 
 @pytest.fixture(scope="module")
@@ -34,16 +34,18 @@ def source(drive: Drive) -> OpenMap:
     return OpenMap((drive,))
 
 
-def tracer(source: OpenMap) -> DrawPath:
+def tracer(source: OpenMap) -> DrawLine:
     tool = path_tool(source, Geometry.LINE)
     source.listen_to(tool)
-    tool.set_way(Way.TRACE)
+    tool.set_mode(LegMode.TRACE)
     return tool
 
 
-def hit_near(drive: Drive, place: Floats, reach_m: float = 0.2) -> Hit:
+def hit_near(drive: Drive, position: Floats, reach_m: float = 0.2) -> Hit:
     xyz = drive.xyz(slice(0, drive.count))
-    return Hit(place_on(drive, int(np.linalg.norm(xyz - place, axis=1).argmin())), reach_m=reach_m)
+    return Hit(
+        position_on(drive, int(np.linalg.norm(xyz - position, axis=1).argmin())), reach_m=reach_m
+    )
 
 
 def drawn(source: OpenMap) -> Floats:
@@ -58,9 +60,9 @@ def test_two_clicks_and_enter_are_a_curb(source: OpenMap, drive: Drive) -> None:
     tool.press(hit_near(drive, edge[-50]))
     tool.complete()
     (line,) = source.stored.values()
-    places = np.array([vertex.xyz for vertex in line.vertices])
-    assert off_line(places, edge).max() < 0.03
-    assert np.linalg.norm(places[-1] - places[0]) > 10.0
+    positions = np.array([vertex.xyz for vertex in line.vertices])
+    assert off_line(positions, edge).max() < 0.03
+    assert np.linalg.norm(positions[-1] - positions[0]) > 10.0
     assert all(vertex.measured is not None for vertex in line.vertices)
 
 
@@ -75,11 +77,11 @@ def test_backspace_takes_the_traced_piece_back_whole(source: OpenMap, drive: Dri
 
 def test_what_comes_after_it_was_taken_back_is_dropped(source: OpenMap, drive: Drive) -> None:
     waiting: list[tuple[Callable[[], object], Callable[[object | None], None]]] = []
-    tool = DrawPath(
+    tool = DrawLine(
         source, source.shared, Geometry.LINE, lambda work, take: waiting.append((work, take))
     )
     tool.set_kind(path_tool(source, Geometry.LINE).kind)
-    tool.set_way(Way.TRACE)
+    tool.set_mode(LegMode.TRACE)
     edge = STREET.edge(UPPER)
     tool.press(hit_near(drive, edge[50]))
     tool.press(hit_near(drive, edge[-50]))
@@ -95,12 +97,12 @@ def test_enter_before_the_trace_has_come_completes_when_it_comes(
     source: OpenMap, drive: Drive
 ) -> None:
     waiting: list[tuple[Callable[[], object], Callable[[object | None], None]]] = []
-    tool = DrawPath(
+    tool = DrawLine(
         source, source.shared, Geometry.LINE, lambda work, take: waiting.append((work, take))
     )
     source.listen_to(tool)
     tool.set_kind(path_tool(source, Geometry.LINE).kind)
-    tool.set_way(Way.TRACE)
+    tool.set_mode(LegMode.TRACE)
     edge = STREET.edge(UPPER)
     tool.press(hit_near(drive, edge[50]))
     tool.press(hit_near(drive, edge[-50]))
@@ -112,15 +114,15 @@ def test_enter_before_the_trace_has_come_completes_when_it_comes(
 
 
 def test_a_failed_trace_leaves_the_drawing_as_it_was(source: OpenMap, drive: Drive) -> None:
-    tool = DrawPath(source, source.shared, Geometry.LINE, lambda work, take: take(None))
+    tool = DrawLine(source, source.shared, Geometry.LINE, lambda work, take: take(None))
     source.listen_to(tool)
     tool.set_kind(path_tool(source, Geometry.LINE).kind)
-    tool.set_way(Way.TRACE)
+    tool.set_mode(LegMode.TRACE)
     edge = STREET.edge(UPPER)
     tool.press(hit_near(drive, edge[50]))
     tool.press(hit_near(drive, edge[-50]))
     assert len(drawn(source)) == 1
-    assert source.told[-1].en == "The line could not be followed."
+    assert source.reported[-1].en == "The line could not be followed."
 
 
 def test_where_nothing_is_to_be_followed_a_second_click_goes_straight(
@@ -133,9 +135,9 @@ def test_where_nothing_is_to_be_followed_a_second_click_goes_straight(
     tool.press(end)
     if len(drawn(source)) == 1:
         tool.press(end)
-        assert source.told[-1] == STRAIGHT_ON
-    assert end.place is not None
-    assert tuple(drawn(source)[-1]) == end.place.xyz
+        assert source.reported[-1] == STRAIGHT_ON
+    assert end.position is not None
+    assert tuple(drawn(source)[-1]) == end.position.xyz
 
 
 def test_a_traced_piece_is_dragged_to_where_it_should_pass(source: OpenMap, drive: Drive) -> None:
@@ -152,9 +154,9 @@ def test_a_traced_piece_is_dragged_to_where_it_should_pass(source: OpenMap, driv
     tool.move(via)
     tool.release(via)
     after = drawn(source)
-    assert via.place is not None
+    assert via.position is not None
     assert len(before) > 1
-    assert np.linalg.norm(after - np.array(via.place.xyz), axis=1).min() < 1e-9
+    assert np.linalg.norm(after - np.array(via.position.xyz), axis=1).min() < 1e-9
     assert np.allclose(after[[0, -1]], before[[0, -1]])
 
 
@@ -165,8 +167,8 @@ def test_places_that_rest_on_no_point_give_no_work(source: OpenMap) -> None:
 def test_a_place_far_from_the_drive_stops_the_trace_and_says_why(
     source: OpenMap, drive: Drive
 ) -> None:
-    here = place_on(drive, drive.count // 2)
-    far = Place((here.xyz[0] + 500.0, here.xyz[1], here.xyz[2]))
+    here = position_on(drive, drive.count // 2)
+    far = PickedPosition((here.xyz[0] + 500.0, here.xyz[1], here.xyz[2]))
     through = (Vertex(far.xyz), Vertex(here.xyz, here.measured))
     work = tracing_work(source, through, across_gaps=False)
     assert work is not None

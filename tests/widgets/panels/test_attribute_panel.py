@@ -22,9 +22,9 @@ from processing.project.feature import (
 )
 from processing.text import Text
 from tests.widgets.builders import OpenMap
-from widgets.panels.attribute_field import read_value, written
+from widgets.panels.attribute_field import format_attribute, read_value
 from widgets.panels.attribute_panel import AttributePanel
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 NUMBER = AttributeField("number", Text("Number", "番号"), "text")
 HEIGHT = AttributeField("height_m", Text("Height", "高さ"), "number", "m")
@@ -318,9 +318,9 @@ def test_the_button_goes_from_one_occluded_vertex_to_the_next(
     went = []
     for _ in range(4):
         qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
-        went.append(open_map.shared.cursor.place)
-    places = [Place(vertex.xyz) for vertex in (*hidden, hidden[1], hidden[0])]
-    assert went == places
+        went.append(open_map.shared.cursor.position)
+    positions = [PickedPosition(vertex.xyz) for vertex in (*hidden, hidden[1], hidden[0])]
+    assert went == positions
 
 
 def test_without_occluded_vertices_nothing_is_said_of_them(
@@ -391,4 +391,4 @@ def test_full_width_input_is_read_as_it_is_meant(
 
 @pytest.mark.parametrize("number", [0.1, 1e-7, 1234567.125, -3.0, 1e22])
 def test_a_number_is_written_so_that_it_reads_back_the_same(number: float) -> None:
-    assert read_value(HEIGHT, written(number)) == number
+    assert read_value(HEIGHT, format_attribute(number)) == number

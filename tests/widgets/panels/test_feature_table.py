@@ -18,7 +18,7 @@ from processing.project.change import Change
 from processing.project.feature import Provenance, Status, Vertex
 from processing.text import Text
 from tests.widgets.builders import OpenMap
-from tests.widgets.panels.table_hand import (
+from tests.widgets.panels.table_user import (
     LEFT,
     NONE,
     SHIFT,
@@ -39,7 +39,7 @@ from tests.widgets.panels.table_hand import (
 )
 from widgets.panels.feature_table import FeatureTable
 from widgets.panels.feature_table_model import MOST_SINGLE_CHANGES
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 
 @pytest.fixture
@@ -136,10 +136,10 @@ def test_only_the_changed_row_is_drawn_again(
 ) -> None:
     draw(open_map, *(pole(i) for i in range(20)))
     model = rows_in(table).model()
-    with qtbot.waitSignal(model.dataChanged) as told, qtbot.assertNotEmitted(model.modelReset):
+    with qtbot.waitSignal(model.dataChanged) as reported, qtbot.assertNotEmitted(model.modelReset):
         change(open_map, pole(7, status=Status.REJECTED))
-    assert told.args is not None
-    assert (told.args[0].row(), told.args[1].row()) == (7, 7)
+    assert reported.args is not None
+    assert (reported.args[0].row(), reported.args[1].row()) == (7, 7)
 
 
 def test_one_by_one_or_all_at_once_the_rows_are_the_same(
@@ -171,11 +171,11 @@ def test_a_click_on_a_row_selects_once(
     qtbot: QtBot, table: FeatureTable, open_map: OpenMap
 ) -> None:
     draw(open_map, *(pole(i) for i in range(5)))
-    told: list[frozenset[str]] = []
-    open_map.shared.selection.features_changed.connect(told.append)
+    reported: list[frozenset[str]] = []
+    open_map.shared.selection.features_changed.connect(reported.append)
     click_row(qtbot, table, 1, NONE)
     click_row(qtbot, table, 3, SHIFT)
-    assert told == [frozenset({"pole-00001"}), frozenset({f"pole-0000{i}" for i in (1, 2, 3)})]
+    assert reported == [frozenset({"pole-00001"}), frozenset({f"pole-0000{i}" for i in (1, 2, 3)})]
 
 
 def test_a_filter_that_hides_selected_features_leaves_them_selected(
@@ -197,10 +197,10 @@ def test_a_removed_feature_that_was_selected_leaves_the_selection_of_others_alon
     poles = [pole(i) for i in range(4)]
     draw(open_map, *poles)
     choose(open_map, poles[1], poles[2])
-    told: list[object] = []
-    open_map.shared.selection.features_changed.connect(told.append)
+    reported: list[object] = []
+    open_map.shared.selection.features_changed.connect(reported.append)
     open_map.apply(Text.same("away"), Change(removed=(poles[1],)))
-    assert told == []
+    assert reported == []
     assert table.selected_features() == (poles[2],)
     draw(open_map, poles[1])
     assert cells(table, "Number") == ["No. 0", "No. 1", "No. 2", "No. 3"]
@@ -216,7 +216,7 @@ def test_the_keys_move_select_go_there_and_delete(
     qtbot.keyClick(view, Qt.Key.Key_Down)
     assert open_map.shared.selection.features == {"pole-00001"}
     qtbot.keyClick(view, Qt.Key.Key_Return)
-    assert open_map.shared.cursor.place == Place((1.0, 0.0, 5.0))
+    assert open_map.shared.cursor.position == PickedPosition((1.0, 0.0, 5.0))
     qtbot.keyClick(view, Qt.Key.Key_Delete)
     assert "pole-00001" not in open_map.stored
     assert open_map.applied[-1][0].en == "Delete a feature"
@@ -233,7 +233,7 @@ def test_a_double_click_goes_to_the_first_vertex(
     spot = middle_of(view, 1)
     qtbot.mouseClick(view.viewport(), LEFT, NONE, spot)
     qtbot.mouseDClick(view.viewport(), LEFT, NONE, spot)
-    assert open_map.shared.cursor.place == Place((4.0, 0.0, 5.0))
+    assert open_map.shared.cursor.position == PickedPosition((4.0, 0.0, 5.0))
 
 
 def test_with_the_filter_for_occluded_vertices_the_cursor_goes_to_the_first_of_them(
@@ -248,7 +248,7 @@ def test_with_the_filter_for_occluded_vertices_the_cursor_goes_to_the_first_of_t
     assert cells(table, "Occluded") == ["1"]
     click_row(qtbot, table, 0, NONE)
     qtbot.keyClick(rows_in(table), Qt.Key.Key_Return)
-    assert open_map.shared.cursor.place == Place((7.0, 8.0, 9.0))
+    assert open_map.shared.cursor.position == PickedPosition((7.0, 8.0, 9.0))
 
 
 def test_features_are_found_by_status_and_by_an_attribute(

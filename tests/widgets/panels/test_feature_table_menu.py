@@ -14,7 +14,7 @@ from processing.project.change import Change
 from processing.project.feature import Status
 from processing.text import Text
 from tests.widgets.builders import OpenMap
-from tests.widgets.panels.table_hand import (
+from tests.widgets.panels.table_user import (
     NONE,
     MapWithPoles,
     act,
@@ -32,7 +32,7 @@ from tests.widgets.panels.table_hand import (
     type_words,
 )
 from widgets.panels.feature_table import FeatureTable
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 
 @pytest.fixture
@@ -84,7 +84,7 @@ def test_the_menu_selects_all_of_a_kind_and_goes_there(
     draw(open_map, pole(1), curb("a", 2.0), pole(2))
     choose(open_map, pole(2))
     act(table, "Go there")
-    assert open_map.shared.cursor.place == Place((2.0, 0.0, 5.0))
+    assert open_map.shared.cursor.position == PickedPosition((2.0, 0.0, 5.0))
     act(table, "Select all of this kind")
     assert open_map.shared.selection.features == {"pole-00001", "pole-00002"}
 
@@ -97,7 +97,7 @@ def test_nothing_chosen_has_no_menu_and_deletes_nothing(
     qtbot.keyClick(rows_in(table), Qt.Key.Key_Delete)
     qtbot.keyClick(rows_in(table), Qt.Key.Key_Return)
     assert len(open_map.stored) == 1
-    assert open_map.shared.cursor.place is None
+    assert open_map.shared.cursor.position is None
 
 
 def test_a_kind_that_the_catalogue_lacks_is_shown_by_its_id(

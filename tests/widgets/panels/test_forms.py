@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 from processing.errors import OutOfRange
 from processing.text import Language, Text
 from processing.tools.parameters import (
-    Choice,
+    ParameterChoice,
     choice,
     count,
     file,
@@ -27,7 +27,7 @@ from widgets.parts.number_field import NumberField
 
 
 @dataclass(frozen=True)
-class Settings:
+class FormSettings:
     radius_m: float = length(
         0.5,
         low=0.05,
@@ -38,7 +38,10 @@ class Settings:
     neighbours: int = count(113, low=1, high=999, name=Text("Neighbours", "近傍点数"))
     method: str = choice(
         "fast",
-        choices=(Choice("fast", Text("Fast", "高速")), Choice("exact", Text("Exact", "正確"))),
+        choices=(
+            ParameterChoice("fast", Text("Fast", "高速")),
+            ParameterChoice("exact", Text("Exact", "正確")),
+        ),
         name=Text("Method", "方法"),
     )
     is_strict: bool = switch(default=False, name=Text("Strict", "厳密"))
@@ -47,7 +50,7 @@ class Settings:
 
 @pytest.fixture
 def form(qtbot: QtBot) -> ParameterForm:
-    form = ParameterForm(Settings, "en")
+    form = ParameterForm(FormSettings, "en")
     qtbot.addWidget(form)
     form.show()
     return form
@@ -61,13 +64,13 @@ def type_into(qtbot: QtBot, field: NumberField, text: str) -> None:
 
 
 def test_an_untouched_form_gives_the_defaults(form: ParameterForm) -> None:
-    assert form.value() == Settings()
+    assert form.value() == FormSettings()
 
 
 def test_what_is_set_comes_back(form: ParameterForm) -> None:
     values = {"radius_m": 1.25, "neighbours": 7, "method": "exact", "is_strict": True}
     form.set_values(values)
-    assert form.value() == Settings(1.25, 7, "exact", is_strict=True)
+    assert form.value() == FormSettings(1.25, 7, "exact", is_strict=True)
 
 
 def test_what_is_typed_is_the_value(qtbot: QtBot, form: ParameterForm) -> None:
@@ -75,7 +78,7 @@ def test_what_is_typed_is_the_value(qtbot: QtBot, form: ParameterForm) -> None:
     assert isinstance(field, NumberField)
     with qtbot.waitSignal(form.changed, timeout=30_000):
         type_into(qtbot, field, "2.125")
-    assert form.value() == Settings(radius_m=2.125)
+    assert form.value() == FormSettings(radius_m=2.125)
 
 
 @pytest.mark.parametrize("text", ["99", "-1", "0.001", "abc"])
@@ -96,7 +99,7 @@ def test_bad_values_are_refused_as_a_whole(
 ) -> None:
     with pytest.raises(OutOfRange):
         form.set_values({"is_strict": True, **values})
-    assert form.value() == Settings()
+    assert form.value() == FormSettings()
 
 
 def test_every_kind_has_its_field(qtbot: QtBot, form: ParameterForm) -> None:
@@ -121,13 +124,13 @@ def test_a_default_can_be_restored(qtbot: QtBot, form: ParameterForm) -> None:
     assert button is not None
     assert button.isEnabled()
     qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
-    assert form.value() == Settings()
+    assert form.value() == FormSettings()
     assert not button.isEnabled()
 
 
 @pytest.mark.parametrize(("language", "word"), [("en", "Radius"), ("ja", "半径")])
 def test_the_form_speaks_both_languages(qtbot: QtBot, language: Language, word: str) -> None:
-    form = ParameterForm(Settings, language)
+    form = ParameterForm(FormSettings, language)
     qtbot.addWidget(form)
     assert word in [label.text() for label in form.findChildren(QLabel)]
 

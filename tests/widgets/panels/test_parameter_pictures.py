@@ -23,7 +23,7 @@ SCENES = sorted(path.stem for path in path_of("pictures/parameters").glob("*.svg
 
 
 @dataclass(frozen=True)
-class Shown:
+class ShownForm:
     lowest_m: float = length(
         0.03, low=0.01, high=0.2, name=Text("Least", "最小"), picture="curb/lowest"
     )
@@ -44,7 +44,9 @@ class Plain:
 
 @pytest.fixture
 def panel(qtbot: QtBot) -> ProcessingPanel:
-    panel = ProcessingPanel("en", {"shown": tool("shown", Shown), "plain": tool("plain", Plain)})
+    panel = ProcessingPanel(
+        "en", {"shown": tool("shown", ShownForm), "plain": tool("plain", Plain)}
+    )
     qtbot.addWidget(panel)
     panel.resize(300, 700)
     panel.show()
@@ -82,11 +84,11 @@ def test_pictures_have_one_size_four_colours_and_no_words(scene: str) -> None:
 
 
 def test_the_list_of_pictures_names_each_of_them() -> None:
-    told = path_of("pictures/parameters/README.md").read_text(encoding="utf-8")
+    reported = path_of("pictures/parameters/README.md").read_text(encoding="utf-8")
     for scene in SCENES:
-        assert f"| `{scene}`" in told
+        assert f"| `{scene}`" in reported
         for piece in picture_source(scene).split('<g id="')[1:]:
-            assert f"`{piece.partition(chr(34))[0]}`" in told
+            assert f"`{piece.partition(chr(34))[0]}`" in reported
 
 
 def test_only_the_part_that_is_meant_is_in_the_picture() -> None:
@@ -152,7 +154,7 @@ def test_a_tool_is_run_as_its_form_stands_by_one_word(qtbot: QtBot, panel: Proce
     assert panel.run_tool("plain")
     form_of(panel).set_values({"most": 7})
     assert panel.run_tool("shown")
-    assert asked == [("plain", Plain()), ("shown", Shown(most=7))]
+    assert asked == [("plain", Plain()), ("shown", ShownForm(most=7))]
     panel.ask_reasons_from(lambda tool_id: Text("No.", "不可。") if tool_id == "plain" else None)
     assert not panel.run_tool("plain")
     assert len(asked) == 2

@@ -124,14 +124,14 @@ def test_a_hidden_run_is_struck_out_and_its_features_are_not_shown(
     run, features = store(open_map)
     _, others = store(open_map, seed=2)
     settings = open_map.shared.view_settings
-    told = []
-    settings.shown_features_changed.connect(lambda: told.append(True))
+    reported = []
+    settings.shown_features_changed.connect(lambda: reported.append(True))
     item, _ = items_of(panel)
     actions_of(panel, item)["Hide its features"].trigger()
     assert settings.hidden_runs == {run}
     assert not settings.shows(features[0])
     assert settings.shows(others[0])
-    assert told == [True]
+    assert reported == [True]
     assert item.font(0).strikeOut()
     assert item.data(0, RUN) == run
     actions_of(panel, item)["Show its features"].trigger()

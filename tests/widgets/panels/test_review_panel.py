@@ -96,7 +96,7 @@ def test_candidates_that_wait_are_counted_and_one_click_starts(
 def test_the_queue_is_shown_in_numbers(panel: ReviewPanel, open_map: OpenMap) -> None:
     run, features = store(open_map)
     state = ReviewState((run,), last_s=(2.0, 2.0, 2.0))
-    progress = ReviewProgress(state, accepted=2, rejected=1, left=5, place=4)
+    progress = ReviewProgress(state, accepted=2, rejected=1, left=5, position=4)
     panel.show_review(progress, features[3])
     assert "5 left · 0:10" in labels(panel)
     assert "2 accepted · 1 rejected · 30 a minute" in labels(panel)
@@ -115,7 +115,7 @@ def test_a_candidate_that_was_decided_already_says_so(
     panel: ReviewPanel, open_map: OpenMap
 ) -> None:
     run, features = store(open_map)
-    progress = ReviewProgress(ReviewState((run,)), rejected=1, left=7, place=1)
+    progress = ReviewProgress(ReviewState((run,)), rejected=1, left=7, position=1)
     panel.show_review(progress, replace(features[0], status=Status.REJECTED))
     assert "Decided: Rejected" in card(panel).lines()
 
@@ -146,7 +146,7 @@ def test_every_button_names_its_key_and_asks_for_its_deed(
     qtbot: QtBot, panel: ReviewPanel, open_map: OpenMap, words: str, signal: str
 ) -> None:
     run, features = store(open_map)
-    panel.show_review(ReviewProgress(ReviewState((run,)), left=8, place=1), features[0])
+    panel.show_review(ReviewProgress(ReviewState((run,)), left=8, position=1), features[0])
     with qtbot.waitSignal(getattr(panel, signal), timeout=30_000):
         qtbot.mouseClick(button(panel, words), Qt.MouseButton.LeftButton)
     assert not button(panel, words).hasFocus()
@@ -158,7 +158,7 @@ def test_accepting_many_says_how_many_before_it_is_done(
     run, features = store(open_map)
     sure = [one.provenance.confidence for one in features]
     panel.ask_count_from(lambda least: sum(one >= least for one in sure))
-    panel.show_review(ReviewProgress(ReviewState((run,)), left=8, place=1), features[0])
+    panel.show_review(ReviewProgress(ReviewState((run,)), left=8, position=1), features[0])
     assert button(panel, "Accept 1").isEnabled()
     number = panel.findChild(NumberField)
     assert isinstance(number, NumberField)
@@ -174,7 +174,7 @@ def test_enter_in_the_number_ends_typing_and_judges_nothing(
     qtbot: QtBot, panel: ReviewPanel, open_map: OpenMap
 ) -> None:
     run, features = store(open_map)
-    panel.show_review(ReviewProgress(ReviewState((run,)), left=8, place=1), features[0])
+    panel.show_review(ReviewProgress(ReviewState((run,)), left=8, position=1), features[0])
     judge = QAction(panel)
     judge.setShortcut("Return")
     judge.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
@@ -200,7 +200,7 @@ def test_runs_are_marked_in_a_menu_one_at_least(
     qtbot: QtBot, panel: ReviewPanel, open_map: OpenMap
 ) -> None:
     (first, features), (second, _) = store(open_map), store(open_map, 5, seed=2)
-    panel.show_review(ReviewProgress(ReviewState((first,)), left=8, place=1), features[0])
+    panel.show_review(ReviewProgress(ReviewState((first,)), left=8, position=1), features[0])
     assert chooser(panel).words.startswith("finder, ")
     everything, one, other = run_actions(panel)
     assert [action.isChecked() for action in (one, other)] == [True, False]
@@ -229,7 +229,7 @@ def test_rejected_features_are_shown_on_request(panel: ReviewPanel, open_map: Op
 
 def test_the_review_can_be_ended(qtbot: QtBot, panel: ReviewPanel, open_map: OpenMap) -> None:
     run, features = store(open_map)
-    panel.show_review(ReviewProgress(ReviewState((run,)), left=8, place=1), features[0])
+    panel.show_review(ReviewProgress(ReviewState((run,)), left=8, position=1), features[0])
     with qtbot.waitSignal(panel.open_requested) as asked:
         qtbot.mouseClick(button(panel, "End"), Qt.MouseButton.LeftButton)
     assert asked.args == [(), ReviewOrder.CONFIDENCE]

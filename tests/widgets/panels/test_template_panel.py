@@ -30,32 +30,32 @@ from tests.widgets.builders import KINDS, OpenMap, do_now
 from widgets.mouse_tools.draw_template import DrawnProfile, TemplatePart
 from widgets.panels.template_panel import NOWHERE, TemplatePanel
 from widgets.panels.template_picture import TemplatePicture
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
-EAST, NORTH, HEIGHT = CURB_FRAME.place.tolist()
+EAST, NORTH, HEIGHT = CURB_FRAME.position.tolist()
 RIGHT = (float(CURB_FRAME.right[0]), float(CURB_FRAME.right[1]))
 CUT = Cut((EAST, NORTH, HEIGHT), RIGHT, width_m=0.5, half_length_m=6.0)
 
 
-def place(across: float, up: float) -> Position:
+def position(across: float, up: float) -> Position:
     """A place of the section about the curb's upper edge."""
     easting, northing, height = CUT.to_space([[across, HEIGHT + up, 0.0]])[0].tolist()
     return easting, northing, height
 
 
-ON_CURB = Place(place(0.0, 0.0))
+ON_CURB = PickedPosition(position(0.0, 0.0))
 DRAWN = DrawnProfile(
     TemplatePart.SHAPE,
     CUT,
     (
-        (place(0.0, 0.0), place(0.0, -CURB_HEIGHT_M), place(0.3, -CURB_HEIGHT_M + 0.006)),
-        (place(0.0, 0.0), place(-0.3, 0.0)),
+        (position(0.0, 0.0), position(0.0, -CURB_HEIGHT_M), position(0.3, -CURB_HEIGHT_M + 0.006)),
+        (position(0.0, 0.0), position(-0.3, 0.0)),
     ),
 )
 ZONE = DrawnProfile(
     TemplatePart.EMPTY_ZONE,
     CUT,
-    ((place(-0.2, 0.1), place(0.2, 0.1), place(0.2, 0.4), place(-0.2, 0.4)),),
+    ((position(-0.2, 0.1), position(0.2, 0.1), position(0.2, 0.4), position(-0.2, 0.4)),),
 )
 
 
@@ -144,19 +144,19 @@ def test_the_score_follows_the_cursor(panel: TemplatePanel, store: TemplateStore
     panel.use_cut(CUT)
     panel._shared.cursor.move_to(ON_CURB)
     assert "Score here: 1.00" in words(panel)
-    panel._shared.cursor.move_to(Place(place(2.5, -0.1)))
+    panel._shared.cursor.move_to(PickedPosition(position(2.5, -0.1)))
     assert "Score here: 0." in words(panel)
 
 
 def test_an_empty_zone_is_added_where_the_template_lies(
     qtbot: QtBot, panel: TemplatePanel, store: TemplateStore
 ) -> None:
-    told: list[Text] = []
-    panel.told.connect(told.append)
+    reported: list[Text] = []
+    panel.reported.connect(reported.append)
     store.put(CURB)
     panel.read_project()
     panel.take_drawn(ZONE)
-    assert told == [NOWHERE]
+    assert reported == [NOWHERE]
     panel.use_cut(CUT)
     panel._shared.cursor.move_to(ON_CURB)
     with qtbot.waitSignal(panel.draw_requested) as asked:
@@ -228,7 +228,7 @@ def test_the_newest_wish_for_a_look_counts(
     panel.use_cut(CUT)
     panel.show()
     for across in (2.0, 1.0, 0.0):
-        open_map.shared.cursor.move_to(Place(place(across, 0.0)))
+        open_map.shared.cursor.move_to(PickedPosition(position(across, 0.0)))
     assert len(waiting) == 1
     work, take = waiting.pop()
     take(work())

@@ -13,13 +13,13 @@ from pytestqt.qtbot import QtBot
 
 from processing.earthwork.volume_result import Registration, Volumes
 from processing.project.epochs import Epoch
-from processing.project.volume import ChosenSide, KeptVolume, SideKind, VolumeWish
+from processing.project.volume import ChosenSide, KeptVolume, SideKind, VolumeRequest
 from processing.text import Text
 from processing.tools.parameters import length
 from tests.widgets.builders import OpenMap
-from widgets.panels.volume.look_form import LookForm
 from widgets.panels.volume.side_box import SideBox
-from widgets.panels.volume.volume_form import FileArea, Within
+from widgets.panels.volume.style_form import VolumeStyleForm
+from widgets.panels.volume.volume_form import AreaChoice, FileArea
 from widgets.panels.volume.volume_panel import VolumePanel
 from widgets.parts.number_field import NumberField
 from widgets.shared.shown_volume import ContourOf
@@ -32,17 +32,17 @@ VOLUMES = Volumes(1234.56, 2345.67, 3210.0, 321.0, 45.6, 1200.0, 2300.0)
 
 
 @dataclass(frozen=True)
-class Mesh:
+class MeshParameters:
     """Parameters of a tool."""
 
-    grid_m: float = length(0.5, low=0.05, high=5.0, name=Text("Mesh", "メッシュ"))
+    grid_m: float = length(0.5, low=0.05, high=5.0, name=Text("MeshParameters", "メッシュ"))
 
 
 def _kept(id_: str, registration: Registration | None = SHIFT, *, hour: int = 9) -> KeptVolume:
-    wish = VolumeWish(APRIL.side, MAY.side, {"grid_m": 0.5})
+    request = VolumeRequest(APRIL.side, MAY.side, {"grid_m": 0.5})
     made = datetime(2026, 5, 2, hour, tzinfo=UTC)
     notes = (Text("Much was filled in.", "補間が多くあります。"),)
-    return KeptVolume(id_, made, 1, "EPSG:6677", wish, VOLUMES, "grid", 0.5, registration, notes)
+    return KeptVolume(id_, made, 1, "EPSG:6677", request, VOLUMES, "grid", 0.5, registration, notes)
 
 
 @pytest.fixture
@@ -53,7 +53,7 @@ def street() -> OpenMap:
 @pytest.fixture
 def panel(qtbot: QtBot, street: OpenMap) -> VolumePanel:
     exports = (("report", Text("Report", "報告書")), ("xml", Text("Surface", "面")))
-    shown = VolumePanel(street.shared, Mesh, exports, language="en")
+    shown = VolumePanel(street.shared, MeshParameters, exports, language="en")
     qtbot.addWidget(shown)
     shown.resize(280, 700)
     shown.show()
@@ -140,13 +140,13 @@ def test_the_area_of_a_file_counts_once_there_is_one(qtbot: QtBot, panel: Volume
     box = next(one for one in panel.findChildren(QComboBox) if one.findText("Everything") >= 0)
     with qtbot.waitSignal(panel.form.boundary_wanted):
         _pick(box, "Area from a file…")
-    assert panel.form.within is Within.EVERYTHING
+    assert panel.form.within is AreaChoice.EVERYTHING
     panel.form.take_boundaries(Path("/x/site.geojson"), ())
-    assert panel.form.within is Within.FILE
+    assert panel.form.within is AreaChoice.FILE
     assert panel.form.boundary == FileArea(Path("/x/site.geojson"))
     assert box.currentText() == "site.geojson"
     _pick(box, "Selected areas")
-    assert panel.form.within is Within.SELECTED
+    assert panel.form.within is AreaChoice.SELECTED
     assert panel.form.boundary is None
     _pick(box, "site.geojson")
     assert panel.form.boundary == FileArea(Path("/x/site.geojson"))
@@ -167,14 +167,16 @@ def test_of_a_file_with_several_layers_one_is_chosen(qtbot: QtBot, panel: Volume
     assert panel.form.boundary == FileArea(Path("/x/b.gpkg"))
     assert box.findText("計画.dxf: 工区1") < 0
     panel.form.start_anew()
-    assert panel.form.within is Within.EVERYTHING
+    assert panel.form.within is AreaChoice.EVERYTHING
     assert box.findText("b.gpkg") < 0
 
 
 def test_numbers_have_units_signs_and_their_digits(panel: VolumePanel) -> None:
     panel.show_volumes((_kept("a"),), "a")
-    told = {id_: panel.table.value(id_) for id_ in ("cut", "fill", "net", "uncertainty", "area")}
-    assert told == {
+    reported = {
+        id_: panel.table.value(id_) for id_ in ("cut", "fill", "net", "uncertainty", "area")
+    }
+    assert reported == {
         "cut": "1,234.6",
         "fill": "2,345.7",
         "net": "+1,111.1",
@@ -203,23 +205,23 @@ def test_results_are_listed_the_newest_first_chosen_and_removed(
     panel.show_volumes((_kept("old"), _kept("new", hour=10)), "new")
     (box,) = [one for one in panel.findChildren(QComboBox) if one.findData("old") >= 0]
     assert [box.itemData(at) for at in range(box.count())] == ["new", "old"]
-    with qtbot.waitSignal(panel.volume_chosen) as told:
+    with qtbot.waitSignal(panel.volume_chosen) as reported:
         _pick(box, box.itemText(1))
-    assert told.args == ["old"]
+    assert reported.args == ["old"]
     panel.show_volumes((_kept("old"), _kept("new", hour=10)), "old")
     (remove,) = [one for one in panel.findChildren(QToolButton) if one.text() == "✕"]
-    with qtbot.waitSignal(panel.removal_requested) as told:
+    with qtbot.waitSignal(panel.removal_requested) as reported:
         qtbot.mouseClick(remove, LEFT)
-    assert told.args == ["old"]
+    assert reported.args == ["old"]
 
 
 def test_exports_are_offered_by_name(qtbot: QtBot, panel: VolumePanel) -> None:
     panel.show_volumes((_kept("a"),), "a")
     actions = panel.export_menu.actions()
     assert [action.text() for action in actions] == ["Report", "Surface"]
-    with qtbot.waitSignal(panel.export_requested) as told:
+    with qtbot.waitSignal(panel.export_requested) as reported:
         actions[1].trigger()
-    assert told.args == ["xml"]
+    assert reported.args == ["xml"]
 
 
 def test_only_what_suits_a_volume_is_offered(panel: VolumePanel) -> None:
@@ -234,7 +236,7 @@ def test_only_what_suits_a_volume_is_offered(panel: VolumePanel) -> None:
 def test_range_and_contours_are_what_all_views_show(panel: VolumePanel, street: OpenMap) -> None:
     panel.show_volumes((_kept("a"),), "a")
     volume = street.shared.volume
-    limit, interval = panel.findChildren(LookForm)[0].findChildren(NumberField)
+    limit, interval = panel.findChildren(VolumeStyleForm)[0].findChildren(NumberField)
     limit.setValue(0.25)
     assert volume.look.limit_m == 0.25
     assert not interval.isEnabled()

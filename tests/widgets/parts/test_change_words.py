@@ -10,9 +10,9 @@ from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.change_reading import ChangeReading
 from processing.ground.cells import CellGrid
 from tests.widgets.builders import OpenMap
-from widgets.parts.change_words import change_words, signed
+from widgets.parts.change_words import change_words, format_difference
 from widgets.parts.status_line import StatusLine
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 
 @pytest.mark.parametrize(
@@ -29,7 +29,7 @@ from widgets.shared.cursor import Place
 def test_a_difference_has_its_sign_and_nothing_has_none(
     value: float, digits: int, words: str
 ) -> None:
-    assert signed(value, digits) == words
+    assert format_difference(value, digits) == words
 
 
 def test_a_reading_tells_both_heights_and_what_was_filled_in() -> None:
@@ -55,9 +55,9 @@ def test_the_status_line_reads_the_map_where_the_mouse_is(qtbot: QtBot) -> None:
             np.ones((2, 2), np.float32),
         )
     )
-    volume.hover_over_point(Place((101.5, 200.5, 50.0)))
+    volume.hover_over_point(PickedPosition((101.5, 200.5, 50.0)))
     assert line.change_text == "Δ +0.500 m (before 50.000, after 50.500)"
-    volume.hover_over_point(Place((110.0, 200.5, 50.0)))
+    volume.hover_over_point(PickedPosition((110.0, 200.5, 50.0)))
     assert line.change_text == ""
     volume.hover_over((100.5, 201.5))
     volume.hover_over_point(None)

@@ -8,7 +8,7 @@ from pytestqt.qtbot import QtBot
 from processing.points.classes import class_key, point_classes
 from processing.text import Text
 from tests.widgets.builders import shared_state
-from widgets.parts.class_chips import AT_HAND, ClassChips
+from widgets.parts.class_chips import INTERACTIVE, ClassChips
 from widgets.parts.drawing_bar import DrawingBar
 from widgets.shared.label_palette import LabelPalette
 
@@ -18,17 +18,17 @@ def test_a_click_puts_a_class_on_the_brush_and_shows_it(qtbot: QtBot) -> None:
     chips = ClassChips(palette, "ja")
     qtbot.addWidget(chips)
     chips.show()
-    assert [chips.chip(code).text() for code in AT_HAND] == [
+    assert [chips.chip(code).text() for code in INTERACTIVE] == [
         "地面",
         "その他",
         "低ノイズ",
         "高ノイズ",
     ]
-    for code in AT_HAND:
+    for code in INTERACTIVE:
         for _ in range(2):
             qtbot.mouseClick(chips.chip(code), Qt.MouseButton.LeftButton)
             assert palette.rule.code == code
-            assert [one for one in AT_HAND if chips.chip(one).isChecked()] == [code]
+            assert [one for one in INTERACTIVE if chips.chip(one).isChecked()] == [code]
 
 
 def test_another_class_is_shown_as_long_as_it_is_on_the_brush(qtbot: QtBot) -> None:
@@ -42,7 +42,7 @@ def test_another_class_is_shown_as_long_as_it_is_on_the_brush(qtbot: QtBot) -> N
     assert chips.chip(6).isChecked()
     palette.choose(0)
     assert not chips.chip(6).isVisible()
-    assert not any(chips.chip(code).isChecked() for code in AT_HAND)
+    assert not any(chips.chip(code).isChecked() for code in INTERACTIVE)
 
 
 def test_every_class_at_hand_has_a_key_and_no_key_two_classes(qtbot: QtBot) -> None:
@@ -50,7 +50,7 @@ def test_every_class_at_hand_has_a_key_and_no_key_two_classes(qtbot: QtBot) -> N
     assert len(keys) == len(set(keys))
     chips = ClassChips(LabelPalette(), "en")
     qtbot.addWidget(chips)
-    for code in AT_HAND:
+    for code in INTERACTIVE:
         assert class_key(code) in keys
         assert f"({class_key(code)})" in chips.chip(code).toolTip()
 

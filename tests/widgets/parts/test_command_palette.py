@@ -86,9 +86,9 @@ def test_a_command_is_found_by_parts_of_its_name_in_either_language(
 
 def test_enter_does_the_chosen_command_and_tells_which(qtbot: QtBot, bench: Bench) -> None:
     bench.type("exp")
-    with qtbot.waitSignal(bench.palette.chosen) as told:
+    with qtbot.waitSignal(bench.palette.chosen) as reported:
         bench.press(Qt.Key.Key_Return)
-    assert told.args == ["export"]
+    assert reported.args == ["export"]
     assert bench.done == ["export"]
 
 

@@ -33,17 +33,17 @@ def view(qtbot: QtBot, density: DensityMap) -> DensityView:
 def places_of(view: DensityView, words: str) -> list[tuple[QPointF, str]]:
     """All pixels of which something with these words is told."""
     every = [QPointF(x, y) for x in range(0, view.width(), 7) for y in range(0, view.height(), 7)]
-    return [(one, told) for one in every if words in (told := view.told_at(one))]
+    return [(one, reported) for one in every if words in (reported := view.told_at(one))]
 
 
 def test_left_is_left_and_the_figures_are_those_of_the_map(view, density) -> None:
     left, right = places_of(view, "m to the left"), places_of(view, "m to the right")
     assert max(one.x() for one, _ in left) < min(one.x() for one, _ in right)
-    roads = [told for _, told in left if told.startswith("Road")]
+    roads = [reported for _, reported in left if reported.startswith("Road")]
     assert roads
-    for told in roads:
+    for reported in roads:
         side, value = (
-            float(one.replace(",", "")) for one in re.findall(r"([\d.,]+) (?:m to|p)", told)
+            float(one.replace(",", "")) for one in re.findall(r"([\d.,]+) (?:m to|p)", reported)
         )
         near = np.abs(density.across_m - side) <= 0.21
         low, high = density.road[near].min(), density.road[near].max()
@@ -52,8 +52,8 @@ def test_left_is_left_and_the_figures_are_those_of_the_map(view, density) -> Non
 
 def test_walls_are_higher_up_in_the_picture_the_higher_they_are(view) -> None:
     walls = [
-        (one.y(), float(re.findall(r"([\d.]+) m up", told)[0]))
-        for one, told in places_of(view, "Wall")
+        (one.y(), float(re.findall(r"([\d.]+) m up", reported)[0]))
+        for one, reported in places_of(view, "Wall")
     ]
     heights = [height for _, height in sorted(walls)]
     assert heights == sorted(heights, reverse=True)
@@ -68,5 +68,7 @@ def test_where_the_vehicle_drives_and_outside_nothing_is_counted(view) -> None:
 
 def test_the_picture_has_the_colours_of_the_map(view) -> None:
     seen = view.grab().toImage()
-    shades = {seen.pixelColor(one.toPoint()).lightness() for one, told in places_of(view, "Road")}
+    shades = {
+        seen.pixelColor(one.toPoint()).lightness() for one, reported in places_of(view, "Road")
+    }
     assert len(shades) > 4

@@ -39,12 +39,12 @@ def middle_of(page: StartPage, row: int) -> QPoint:
     return recent.visualItemRect(item).center()
 
 
-@pytest.mark.parametrize(("place", "wish"), list(enumerate(["import", "open", "demo"])))
+@pytest.mark.parametrize(("position", "asked"), list(enumerate(["import", "open", "demo"])))
 def test_the_start_page_has_three_ways_to_begin(
-    qtbot: QtBot, page: StartPage, place: int, wish: str
+    qtbot: QtBot, page: StartPage, position: int, asked: str
 ) -> None:
-    button = page.findChildren(QPushButton)[place]
-    with qtbot.waitSignal(getattr(page, f"{wish}_requested"), timeout=30_000):
+    button = page.findChildren(QPushButton)[position]
+    with qtbot.waitSignal(getattr(page, f"{asked}_requested"), timeout=30_000):
         qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
 
 

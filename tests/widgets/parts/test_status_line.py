@@ -13,7 +13,7 @@ from tests.widgets.builders import OpenMap
 from widgets.parts.job_view import JobView
 from widgets.parts.number_field import NumberField, coordinate, decimals_for
 from widgets.parts.status_line import StatusLine
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 
 @pytest.fixture
@@ -30,16 +30,16 @@ def line(qtbot: QtBot, open_map: OpenMap) -> StatusLine:
 
 
 def test_coordinates_have_a_dot_and_three_decimals(line: StatusLine, open_map: OpenMap) -> None:
-    open_map.shared.cursor.move_to(Place((-11_394.6084, -35_139.9151, 125.682)))
-    assert line.place_text == "E −11,394.608  N −35,139.915  H 125.682"
+    open_map.shared.cursor.move_to(PickedPosition((-11_394.6084, -35_139.9151, 125.682)))
+    assert line.position_text == "E −11,394.608  N −35,139.915  H 125.682"
 
 
 def test_what_the_mouse_is_over_goes_before_the_cursor(line: StatusLine, open_map: OpenMap) -> None:
-    open_map.shared.cursor.move_to(Place((1.0, 2.0, 3.0)))
-    open_map.shared.cursor.hover_over(Place((4.0, 5.0, 6.0)))
-    assert line.place_text == "E 4.000  N 5.000  H 6.000"
+    open_map.shared.cursor.move_to(PickedPosition((1.0, 2.0, 3.0)))
+    open_map.shared.cursor.hover_over(PickedPosition((4.0, 5.0, 6.0)))
+    assert line.position_text == "E 4.000  N 5.000  H 6.000"
     open_map.shared.cursor.hover_over(None)
-    assert line.place_text == "E 1.000  N 2.000  H 3.000"
+    assert line.position_text == "E 1.000  N 2.000  H 3.000"
 
 
 def test_the_reference_system_is_shown(line: StatusLine) -> None:

@@ -22,13 +22,13 @@ from tests.widgets.builders import OpenMap
 from widgets.mouse_tools.mouse_tool import MouseTool, Ray
 from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
 
 
 @dataclass
-class GridLay:
+class GridProjection:
     """Looks straight down; what is north of the limit isn't shown."""
 
     limit: float = 1e9
@@ -36,9 +36,9 @@ class GridLay:
 
     def to_plane(self, xyz: NDArray[np.float64]) -> NDArray[np.float64]:
         self.asked.append(len(xyz))
-        places = xyz[:, :2] * [1.0, -1.0]
-        places[xyz[:, 1] > self.limit] = np.nan
-        return places
+        positions = xyz[:, :2] * [1.0, -1.0]
+        positions[xyz[:, 1] > self.limit] = np.nan
+        return positions
 
     def lines_on_plane(
         self, xyz: NDArray[np.float64], ends: NDArray[np.int64]
@@ -50,10 +50,10 @@ class GridLay:
             lines.append(line if np.isfinite(line).all() else np.empty((0, 2)))
         return lines
 
-    def ray(self, place: tuple[float, float]) -> Ray:
-        return Ray((place[0], -place[1], 100.0), (0.0, 0.0, -1.0))
+    def ray(self, position: tuple[float, float]) -> Ray:
+        return Ray((position[0], -position[1], 100.0), (0.0, 0.0, -1.0))
 
-    def reach_m(self, place: tuple[float, float], reach: float, at: Position | None) -> float:
+    def reach_m(self, position: tuple[float, float], reach: float, at: Position | None) -> float:
         return reach
 
     def is_near(self, xyz: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -65,13 +65,13 @@ class GridView(PlaneView):
 
     def __init__(self, open_map: OpenMap) -> None:
         super().__init__(open_map, open_map.shared)
-        self.shown_lay: GridLay | None = GridLay()
+        self.shown_projection: GridProjection | None = GridProjection()
         self.grounds = 0
         self.box: NDArray[np.float64] | None = None
 
     @override
-    def lay(self) -> GridLay | None:
-        return self.shown_lay
+    def projection(self) -> GridProjection | None:
+        return self.shown_projection
 
     @override
     def words(self) -> str:
@@ -90,39 +90,43 @@ class GridView(PlaneView):
         self.grounds += 1
 
     @override
-    def place_at(self, place: tuple[float, float], reach: float, *, exact: bool) -> Place | None:
-        east, north = round(place[0]), round(-place[1])
-        away = np.hypot(east - place[0], north + place[1])
+    def position_at(
+        self, position: tuple[float, float], reach: float, *, exact: bool
+    ) -> PickedPosition | None:
+        east, north = round(position[0]), round(-position[1])
+        away = np.hypot(east - position[0], north + position[1])
         if not (0 <= east <= 10 and 0 <= north <= 10) or away > reach:
             return None
-        return grid_place(east, north)
+        return grid_position(east, north)
 
     @override
     def points_inside(self, outline: QPolygonF) -> Mapping[str, NDArray[np.int64]]:
         return {"grid": np.array([1, 2])}
 
 
-def grid_place(east: int, north: int) -> Place:
+def grid_position(east: int, north: int) -> PickedPosition:
     """A measured point of the grid."""
-    return Place((float(east), float(north), 5.0), PointReference("grid", 100 * east + north))
+    return PickedPosition(
+        (float(east), float(north), 5.0), PointReference("grid", 100 * east + north)
+    )
 
 
 @dataclass
-class Hand:
+class PlaneViewUser:
     """A view and the hand at its mouse and keyboard."""
 
     qtbot: QtBot
     map: OpenMap
     view: GridView
 
-    def add(self, geometry: Geometry, *places: tuple[int, int], **fields: object) -> Feature:
+    def add(self, geometry: Geometry, *positions: tuple[int, int], **fields: object) -> Feature:
         feature = Feature(
             new_feature_id(),
             self.map.kind_of(geometry),
             geometry,
             tuple(
-                Vertex(place.xyz, place.measured)
-                for place in (grid_place(east, north) for east, north in places)
+                Vertex(position.xyz, position.measured)
+                for position in (grid_position(east, north) for east, north in positions)
             ),
             **fields,  # type: ignore[arg-type]
         )
@@ -130,7 +134,7 @@ class Hand:
         return feature
 
     def spot(self, east: float, north: float) -> QPoint:
-        position = self.view.position_of(Place((float(east), float(north), 5.0)))
+        position = self.view.position_of(PickedPosition((float(east), float(north), 5.0)))
         assert position is not None
         return position.toPoint()
 
@@ -164,7 +168,7 @@ class Hand:
 
 
 @pytest.fixture
-def hand(qtbot: QtBot) -> Hand:
+def user(qtbot: QtBot) -> PlaneViewUser:
     """Give a shown view of the grid, all of it in the window."""
     open_map = OpenMap()
     view = GridView(open_map)
@@ -172,4 +176,4 @@ def hand(qtbot: QtBot) -> Hand:
     view.resize(800, 600)
     with qtbot.waitExposed(view):
         view.show()
-    return Hand(qtbot, open_map, view)
+    return PlaneViewUser(qtbot, open_map, view)

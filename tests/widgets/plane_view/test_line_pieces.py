@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from widgets.plane_view.line_pieces import as_lines, cut_to, dashed, thinned
+from widgets.plane_view.line_pieces import as_lines, clip_pieces, dash_pieces, thin_pieces
 
 LOW, HIGH = np.array([0.0, 0.0]), np.array([100.0, 50.0])
 
 
 def cut(*piece: float) -> tuple[list[float], float] | None:
-    pieces, numbers, starts = cut_to(np.array([piece]).reshape(1, 2, 2), LOW, HIGH)
+    pieces, numbers, starts = clip_pieces(np.array([piece]).reshape(1, 2, 2), LOW, HIGH)
     if not len(pieces):
         return None
     assert numbers.tolist() == [0]
@@ -39,15 +39,15 @@ def test_a_piece_without_a_place_is_left_out() -> None:
 
 def test_pieces_keep_their_numbers() -> None:
     pieces = np.array([[[-9, -9], [-5, -5]], [[1, 1], [2, 2]], [[3, 3], [4, 4]]], dtype=float)
-    _, numbers, _ = cut_to(pieces, LOW, HIGH)
+    _, numbers, _ = clip_pieces(pieces, LOW, HIGH)
     assert numbers.tolist() == [1, 2]
 
 
 def test_thinning_drops_what_is_shorter_than_a_pixel_and_leaves_no_gap() -> None:
-    places = np.column_stack([np.linspace(0, 20, 201), np.zeros(201)])
-    pieces = np.stack([places[:-1], places[1:]], axis=1)
-    assert len(thinned(pieces, 2.0)) == 10
-    kept = thinned(pieces, 1.0)
+    positions = np.column_stack([np.linspace(0, 20, 201), np.zeros(201)])
+    pieces = np.stack([positions[:-1], positions[1:]], axis=1)
+    assert len(thin_pieces(pieces, 2.0)) == 10
+    kept = thin_pieces(pieces, 1.0)
     assert len(kept) == 20
     assert (kept[1:, 0] == kept[:-1, 1]).all()
     assert (kept[0, 0].tolist(), kept[-1, 1].tolist()) == ([0, 0], [20, 0])
@@ -56,16 +56,16 @@ def test_thinning_drops_what_is_shorter_than_a_pixel_and_leaves_no_gap() -> None
 def test_dashes_go_on_over_the_corners_of_a_line() -> None:
     """Eight pixels of line, five of nothing, whatever the line is made of."""
     pieces = np.array([[[0, 0], [30, 0]], [[30, 0], [30, 30]]], dtype=float)
-    dashes = dashed(pieces, np.array([0.0, 30.0]))
+    dashes = dash_pieces(pieces, np.array([0.0, 30.0]))
     lengths = np.hypot(*(dashes[:, 1] - dashes[:, 0]).T)
     assert dashes[:3].reshape(-1, 4).tolist() == [[0, 0, 8, 0], [13, 0, 21, 0], [26, 0, 30, 0]]
     assert dashes[3].ravel().tolist() == [30, 0, 30, 4]
     assert lengths.sum() == pytest.approx(8 * 4 + 8)
-    assert dashed(np.empty((0, 2, 2)), np.empty(0)).shape == (0, 2, 2)
+    assert dash_pieces(np.empty((0, 2, 2)), np.empty(0)).shape == (0, 2, 2)
 
 
 def test_a_piece_within_a_gap_has_no_dash() -> None:
-    assert len(dashed(np.array([[[0.0, 0.0], [2.0, 0.0]]]), np.array([9.0]))) == 0
+    assert len(dash_pieces(np.array([[[0.0, 0.0], [2.0, 0.0]]]), np.array([9.0]))) == 0
 
 
 def test_lines_are_those_of_the_pieces() -> None:

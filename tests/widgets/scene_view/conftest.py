@@ -17,16 +17,16 @@ from processing.points.drive import Drive
 from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap
 from widgets.mouse_tools.mouse_tool import MouseTool
-from widgets.scene_view.camera import Camera
+from widgets.scene_view.camera import SceneCamera
 from widgets.scene_view.view import SceneView
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 LEFT = Qt.MouseButton.LeftButton
 RIGHT = Qt.MouseButton.RightButton
 
 
 @dataclass
-class Hand:
+class SceneViewUser:
     """A view and the hand at its mouse and keyboard."""
 
     qtbot: QtBot
@@ -44,19 +44,21 @@ class Hand:
     def sharpen(self) -> None:
         self.qtbot.waitUntil(lambda: self.view.is_settled, timeout=20_000)
 
-    def look_at(self, place: Place, distance_m: float = 4.0, pitch_deg: float = -50.0) -> None:
+    def look_at(
+        self, position: PickedPosition, distance_m: float = 4.0, pitch_deg: float = -50.0
+    ) -> None:
         """Look at a place from near, so that its pixel shows no other point."""
-        camera = Camera((0.0, 0.0, 0.0), heading_deg=20.0, pitch_deg=pitch_deg)
-        self.view.look_from(camera.centred_on(self.local(place), distance_m))
+        camera = SceneCamera((0.0, 0.0, 0.0), heading_deg=20.0, pitch_deg=pitch_deg)
+        self.view.look_from(camera.centred_on(self.local(position), distance_m))
         self.sharpen()
 
-    def local(self, place: Place) -> NDArray[np.float64]:
-        return np.array(place.xyz) - self.map.origin()
+    def local(self, position: PickedPosition) -> NDArray[np.float64]:
+        return np.array(position.xyz) - self.map.origin()
 
-    def spot(self, place: Place) -> QPoint:
-        position = self.view.position_of(place)
-        assert position is not None
-        return position.toPoint()
+    def spot(self, position: PickedPosition) -> QPoint:
+        pixel = self.view.position_of(position)
+        assert pixel is not None
+        return pixel.toPoint()
 
     def take(self, tool: MouseTool) -> MouseTool:
         self.map.listen_to(tool)
@@ -85,13 +87,15 @@ class Hand:
 
     def road_points(self, count: int) -> list[int]:
         """Points on the road some metres apart along the drive, with nothing above them."""
-        way = self.drive.trajectory
-        assert way is not None
+        vehicle_path = self.drive.trajectory
+        assert vehicle_path is not None
         all_points = np.arange(self.drive.count)
         xyz = self.drive.xyz(slice(None))
         low = xyz[:, 2] < np.percentile(xyz[:, 2], 30)
-        inside = (way.xyz[:, 1] > xyz[:, 1].min() + 3) & (way.xyz[:, 1] < xyz[:, 1].max() - 3)
-        stops = way.xyz[inside][:: max(1, int(inside.sum()) // count)][:count]
+        inside = (vehicle_path.xyz[:, 1] > xyz[:, 1].min() + 3) & (
+            vehicle_path.xyz[:, 1] < xyz[:, 1].max() - 3
+        )
+        stops = vehicle_path.xyz[inside][:: max(1, int(inside.sum()) // count)][:count]
         road = all_points[low]
         return [
             int(road[np.hypot(*(xyz[road, :2] - stop[:2] - [0.4, 0.0]).T).argmin()])
@@ -113,11 +117,13 @@ def open_map(left_drive: Drive, right_drive: Drive) -> OpenMap:
 
 
 @pytest.fixture
-def hand(qtbot: QtBot, open_map: OpenMap, tiles: TileCache, left_drive: Drive) -> Iterator[Hand]:
+def user(
+    qtbot: QtBot, open_map: OpenMap, tiles: TileCache, left_drive: Drive
+) -> Iterator[SceneViewUser]:
     view = SceneView(open_map, open_map.shared, tiles)
     qtbot.addWidget(view)
     view.resize(800, 600)
     with qtbot.waitSignal(view.sharpened, timeout=60_000):
         view.show()
-    yield Hand(qtbot, open_map, view, left_drive)
+    yield SceneViewUser(qtbot, open_map, view, left_drive)
     view.close()

@@ -7,15 +7,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from widgets.scene_view.camera import Camera
-from widgets.scene_view.projection import Projection
+from widgets.scene_view.camera import SceneCamera
+from widgets.scene_view.projection import SceneProjection
 
-CAMERA = Camera((3.0, -20.0, 8.0), heading_deg=15.0, pitch_deg=-25.0, distance_m=25.0)
-PLACE = np.array([6.0, 2.0, 1.0])
+CAMERA = SceneCamera((3.0, -20.0, 8.0), heading_deg=15.0, pitch_deg=-25.0, distance_m=25.0)
+POSITION = np.array([6.0, 2.0, 1.0])
 
 
-def pixel(camera: Camera, place: np.ndarray) -> np.ndarray:
-    return Projection(camera, 800, 600).to_screen(place[None])[0][0]
+def pixel(camera: SceneCamera, position: np.ndarray) -> np.ndarray:
+    return SceneProjection(camera, 800, 600).to_screen(position[None])[0][0]
 
 
 def test_what_it_looks_at_is_in_the_middle() -> None:
@@ -23,7 +23,7 @@ def test_what_it_looks_at_is_in_the_middle() -> None:
 
 
 def test_a_camera_to_the_north_has_the_east_on_its_right() -> None:
-    camera = Camera((0.0, 0.0, 0.0), heading_deg=0.0, pitch_deg=0.0)
+    camera = SceneCamera((0.0, 0.0, 0.0), heading_deg=0.0, pitch_deg=0.0)
     x, y = pixel(camera, np.array([1.0, 10.0, 2.0]))
     assert x > 400
     assert y < 300
@@ -31,39 +31,39 @@ def test_a_camera_to_the_north_has_the_east_on_its_right() -> None:
 
 @given(st.floats(-170, 170), st.floats(-60, 60))
 def test_orbiting_keeps_the_pivot_at_its_pixel(right_deg: float, up_deg: float) -> None:
-    turned = CAMERA.orbited(PLACE, right_deg, up_deg)
-    assert pixel(turned, PLACE) == pytest.approx(pixel(CAMERA, PLACE), abs=1e-6)
+    turned = CAMERA.orbited(POSITION, right_deg, up_deg)
+    assert pixel(turned, POSITION) == pytest.approx(pixel(CAMERA, POSITION), abs=1e-6)
 
 
 @given(st.floats(0.2, 5.0))
 def test_zooming_keeps_the_pivot_at_its_pixel(factor: float) -> None:
-    zoomed = CAMERA.zoomed(PLACE, factor)
-    assert pixel(zoomed, PLACE) == pytest.approx(pixel(CAMERA, PLACE), abs=1e-6)
+    zoomed = CAMERA.zoomed(POSITION, factor)
+    assert pixel(zoomed, POSITION) == pytest.approx(pixel(CAMERA, POSITION), abs=1e-6)
 
 
 def test_zooming_in_never_passes_the_pivot() -> None:
     camera = CAMERA
     for _ in range(100):
-        camera = camera.zoomed(PLACE, 1.5)
-    assert Projection(camera, 800, 600).in_view(PLACE[None])[0, 2] > 0
+        camera = camera.zoomed(POSITION, 1.5)
+    assert SceneProjection(camera, 800, 600).in_view(POSITION[None])[0, 2] > 0
 
 
 def test_orbiting_stops_at_straight_down() -> None:
-    assert CAMERA.orbited(PLACE, 0.0, -300.0).pitch_deg == -90.0
+    assert CAMERA.orbited(POSITION, 0.0, -300.0).pitch_deg == -90.0
 
 
 def test_a_place_put_in_the_middle_is_seen_from_the_same_side() -> None:
-    moved = CAMERA.centred_on(PLACE, 12.0)
-    assert pixel(moved, PLACE) == pytest.approx([400, 300])
+    moved = CAMERA.centred_on(POSITION, 12.0)
+    assert pixel(moved, POSITION) == pytest.approx([400, 300])
     assert (moved.heading_deg, moved.pitch_deg) == (CAMERA.heading_deg, CAMERA.pitch_deg)
-    assert np.linalg.norm(np.array(moved.position) - PLACE) == pytest.approx(12.0)
+    assert np.linalg.norm(np.array(moved.position) - POSITION) == pytest.approx(12.0)
 
 
 def test_a_pixel_and_a_depth_lead_back_to_the_place() -> None:
-    projection = Projection(CAMERA, 800, 600)
-    pixels, depth = projection.to_screen(PLACE[None])
+    projection = SceneProjection(CAMERA, 800, 600)
+    pixels, depth = projection.to_screen(POSITION[None])
     x, y = pixels[0].tolist()
-    assert projection.place_at(x, y, float(depth[0])) == pytest.approx(PLACE)
+    assert projection.position_at(x, y, float(depth[0])) == pytest.approx(POSITION)
 
 
 def test_a_place_behind_the_camera_has_no_pixel() -> None:
@@ -72,7 +72,7 @@ def test_a_place_behind_the_camera_has_no_pixel() -> None:
 
 
 def test_a_segment_that_leads_behind_the_camera_is_cut_off_in_front_of_it() -> None:
-    projection = Projection(CAMERA, 800, 600)
+    projection = SceneProjection(CAMERA, 800, 600)
     forward, right = CAMERA.axes[2], CAMERA.axes[0]
     start = np.array(CAMERA.position) + 10 * forward
     end = np.array(CAMERA.position) - 10 * forward + 4 * right
@@ -83,7 +83,7 @@ def test_a_segment_that_leads_behind_the_camera_is_cut_off_in_front_of_it() -> N
 
 
 def test_a_segment_behind_the_camera_is_not_seen() -> None:
-    projection = Projection(CAMERA, 800, 600)
+    projection = SceneProjection(CAMERA, 800, 600)
     behind = np.array(CAMERA.position) - np.array([[1.0], [5.0]]) * CAMERA.axes[2]
     (line,) = projection.segments_on_screen(behind, np.array([[0, 1]]))
     assert np.isnan(line).all()

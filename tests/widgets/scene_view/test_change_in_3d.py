@@ -13,12 +13,12 @@ from vtkmodules.vtkRenderingCore import vtkRenderer
 from processing.earthwork.change_grid import ChangeGrid
 from processing.ground.cells import CellGrid
 from processing.image.clip import Clip
-from tests.widgets.builders import place_on
-from tests.widgets.scene_view.conftest import Hand
+from tests.widgets.builders import position_on
+from tests.widgets.scene_view.conftest import SceneViewUser
 from tests.widgets.scene_view.test_scene_view import image_of
 from widgets.scene_view.map.change_surface import MOST_FACES, ChangeSurface
-from widgets.shared.cursor import Place
-from widgets.shared.shown_volume import VolumeLook
+from widgets.shared.cursor import PickedPosition
+from widgets.shared.shown_volume import VolumeStyle
 
 SIZE_M = 0.05
 COUNT = 60
@@ -36,41 +36,43 @@ def _change(middle: NDArray[np.float64]) -> ChangeGrid:
 
 
 @pytest.fixture
-def middle(hand: Hand) -> NDArray[np.float64]:
+def middle(user: SceneViewUser) -> NDArray[np.float64]:
     """A place on the road, looked at obliquely from some metres."""
-    place = place_on(hand.drive, hand.road_points(3)[1])
-    hand.look_at(place, 5.0, pitch_deg=-50.0)
-    return np.array(place.xyz)
+    position = position_on(user.drive, user.road_points(3)[1])
+    user.look_at(position, 5.0, pitch_deg=-50.0)
+    return np.array(position.xyz)
 
 
-def _redness(hand: Hand, image: QImage, xyz: NDArray[np.float64]) -> float:
-    spot = hand.spot(Place((float(xyz[0]), float(xyz[1]), float(xyz[2]))))
+def _redness(user: SceneViewUser, image: QImage, xyz: NDArray[np.float64]) -> float:
+    spot = user.spot(PickedPosition((float(xyz[0]), float(xyz[1]), float(xyz[2]))))
     colours = [image.pixelColor(spot.x() + dx, spot.y() + dy) for dx in (-2, 2) for dy in (-2, 2)]
     return float(np.mean([colour.red() - colour.blue() for colour in colours]))
 
 
 def test_cut_is_blue_and_fill_orange_where_they_are_until_it_is_hidden(
-    hand: Hand, middle: NDArray[np.float64]
+    user: SceneViewUser, middle: NDArray[np.float64]
 ) -> None:
-    volume = hand.map.shared.volume
+    volume = user.map.shared.volume
     west, east = (middle + np.array([side, 0.2, 0.1]) for side in (-0.7, 0.7))
-    plain = image_of(hand)
+    plain = image_of(user)
     volume.show(_change(middle), 1.0)
-    shown = image_of(hand)
-    assert _redness(hand, shown, west) < _redness(hand, plain, west) - 40
-    assert _redness(hand, shown, east) > _redness(hand, plain, east) + 40
+    shown = image_of(user)
+    assert _redness(user, shown, west) < _redness(user, plain, west) - 40
+    assert _redness(user, shown, east) > _redness(user, plain, east) + 40
     volume.use_look(replace(volume.look, is_shown=False))
-    hidden = image_of(hand)
-    assert abs(_redness(hand, hidden, east) - _redness(hand, plain, east)) < 10
+    hidden = image_of(user)
+    assert abs(_redness(user, hidden, east) - _redness(user, plain, east)) < 10
 
 
-def test_another_range_gives_other_colours(hand: Hand, middle: NDArray[np.float64]) -> None:
-    volume = hand.map.shared.volume
+def test_another_range_gives_other_colours(
+    user: SceneViewUser, middle: NDArray[np.float64]
+) -> None:
+    volume = user.map.shared.volume
     east = middle + np.array([0.7, 0.2, 0.1])
     volume.show(_change(middle), 1.0)
-    near = _redness(hand, image_of(hand), east)
+    near = _redness(user, image_of(user), east)
     volume.use_look(replace(volume.look, limit_m=20.0))
-    assert _redness(hand, image_of(hand), east) < near - 30
+    assert _redness(user, image_of(user), east) < near - 30
 
 
 def _surface() -> ChangeSurface:
@@ -85,9 +87,9 @@ def test_a_large_map_is_drawn_with_fewer_faces() -> None:
         grid, ground, ground, np.ones(ground.shape, np.bool_), np.ones(ground.shape, np.float32)
     )
     surface = _surface()
-    surface.show(change, VolumeLook(), np.array([-11_000.0, -35_000.0, 0.0]), None)
+    surface.show(change, VolumeStyle(), np.array([-11_000.0, -35_000.0, 0.0]), None)
     assert 0.3 * MOST_FACES < surface.count <= MOST_FACES
-    surface.show(None, VolumeLook(), np.zeros(3), None)
+    surface.show(None, VolumeStyle(), np.zeros(3), None)
     assert surface.count == 0
 
 
@@ -96,9 +98,9 @@ def test_nothing_is_drawn_without_ground_outside_the_boundary_and_beside_the_cli
     change.inside[:10] = 0.0
     change.after[:, :10] = np.nan
     surface, origin = _surface(), np.array([-11_000.0, -35_000.0, 0.0])
-    surface.show(change, VolumeLook(), origin, None)
+    surface.show(change, VolumeStyle(), origin, None)
     assert surface.count == (COUNT - 10 - 1) ** 2
     low = np.array([-11_000.0, -36_000.0, 0.0])
     clip = Clip.box(low, low + 2000.0)
-    surface.show(change, VolumeLook(), origin, clip)
+    surface.show(change, VolumeStyle(), origin, clip)
     assert surface.count == (COUNT - 10 - 1) * (COUNT // 2 - 1)

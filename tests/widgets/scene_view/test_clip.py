@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from processing.image.clip import Clip, planes_kernel
-from processing.image.corridor import Corridor, Slab, corridor_kernel
+from processing.image.corridor import Corridor, CorridorExtent, corridor_kernel
 from processing.points.drive import Drive
 
 Floats = NDArray[np.float64]
@@ -17,17 +17,17 @@ Floats = NDArray[np.float64]
 BOX = Clip.box(np.array([10.0, 20.0, 0.0]), np.array([14.0, 30.0, 5.0]))
 TILTED = np.array([[0.0, 0.0], [3.0, 4.0], [-1.0, 7.0], [-4.0, 3.0]])
 
-SLAB = Slab(left_m=4.0, right_m=2.5, lowest_m=-0.3, highest_m=2.0)
+SLAB = CorridorExtent(left_m=4.0, right_m=2.5, lowest_m=-0.3, highest_m=2.0)
 
 
 def test_a_box_holds_its_faces_and_nothing_beyond() -> None:
-    places = np.array([[10.0, 20.0, 0.0], [14.0, 30.0, 5.0], [9.999, 25, 1], [12, 25, 5.001]])
-    assert BOX.holds(places).tolist() == [True, True, False, False]
+    positions = np.array([[10.0, 20.0, 0.0], [14.0, 30.0, 5.0], [9.999, 25, 1], [12, 25, 5.001]])
+    assert BOX.holds(positions).tolist() == [True, True, False, False]
 
 
 def test_around_places_is_a_box_with_a_margin() -> None:
-    places = np.array([[0.0, 0.0, 0.0], [4.0, 1.0, 2.0]])
-    part = Clip.around(places, 0.5)
+    positions = np.array([[0.0, 0.0, 0.0], [4.0, 1.0, 2.0]])
+    part = Clip.around(positions, 0.5)
     asked = np.array([[-0.5, -0.5, -0.5], [4.5, 1.5, 2.5], [-0.6, 0, 0], [2, 1.6, 1]])
     assert part.holds(asked).tolist() == [True, True, False, False]
 
@@ -51,11 +51,13 @@ def test_a_box_that_holds_something_shown_is_never_left_out(seed: int) -> None:
         assert (part.may_hold(low, high) | ~holds).all()
 
 
-def truth_of(drive: Drive, slab: Slab, xyz: Floats) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def truth_of(
+    drive: Drive, slab: CorridorExtent, xyz: Floats
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Which places a corridor holds, and which are clearly off its borders."""
     assert drive.trajectory is not None
-    way = drive.trajectory.xyz
-    line = shapely.LineString(way[:, :2])
+    vehicle_path = drive.trajectory.xyz
+    line = shapely.LineString(vehicle_path[:, :2])
     along = shapely.line_locate_point(line, shapely.points(xyz[:, :2]))
     ends = [
         shapely.get_coordinates(shapely.line_interpolate_point(line, np.maximum(along + step, 0.0)))
@@ -65,8 +67,8 @@ def truth_of(drive: Drive, slab: Slab, xyz: Floats) -> tuple[NDArray[np.bool_], 
     left = ahead[:, 0] * off[:, 1] - ahead[:, 1] * off[:, 0]
     away = np.hypot(*off.T)
     limit = np.where(left >= 0, slab.left_m, slab.right_m)
-    gone = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(way[:, :2], axis=0).T))])
-    road = np.interp(along, gone, way[:, 2])
+    gone = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(vehicle_path[:, :2], axis=0).T))])
+    road = np.interp(along, gone, vehicle_path[:, 2])
     near = away < 1.0
     above = xyz[:, 2] - road
     above -= np.percentile(above[near], 10)  # the road is the lowest thing below the vehicle
@@ -107,14 +109,14 @@ def test_places_far_away_and_unknown_ones_are_outside(left_drive: Drive) -> None
 def test_the_plain_loop_gives_the_same() -> None:
     random = np.random.default_rng(2)
     xyz = random.uniform(-3, 3, (300, 3))
-    way = np.array([[-2.0, 0.0, 0.0], [0.0, 0.0, 0.5], [2.0, 1.0, 1.0]])
+    vehicle_path = np.array([[-2.0, 0.0, 0.0], [0.0, 0.0, 0.5], [2.0, 1.0, 1.0]])
     keys = np.arange(36, dtype=np.int64)
     nearest = np.ones(36, np.int64)
     cells = np.array([-3.0, -3.0, 1.0, 6.0])
     limits = np.array([1.0, 2.0, -1.0, 1.0])
     fast, plain = np.empty(300, np.bool_), np.empty(300, np.bool_)
-    corridor_kernel(xyz, way, keys, nearest, cells, limits, fast)
-    corridor_kernel.py_func(xyz, way, keys, nearest, cells, limits, plain)  # type: ignore[attr-defined]
+    corridor_kernel(xyz, vehicle_path, keys, nearest, cells, limits, fast)
+    corridor_kernel.py_func(xyz, vehicle_path, keys, nearest, cells, limits, plain)  # type: ignore[attr-defined]
     assert fast.tolist() == plain.tolist()
     assert 0 < fast.sum() < 300
 

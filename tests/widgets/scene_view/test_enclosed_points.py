@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from processing.image.enclosed_points import Sight, enclosed_kernel, points_enclosed
 from processing.image.images_of_drives import image_of
 from processing.points.drive import Drive
-from widgets.scene_view.camera import Camera
-from widgets.scene_view.projection import NEAR_M, Projection
+from widgets.scene_view.camera import SceneCamera
+from widgets.scene_view.projection import NEAR_M, SceneProjection
 
 Floats = NDArray[np.float64]
 
@@ -19,11 +19,11 @@ LASSO = np.array([[300.0, 200.0], [520.0, 180.0], [400.0, 330.0], [560.0, 460.0]
 BOW = np.array([[250.0, 200.0], [550.0, 420.0], [550.0, 200.0], [250.0, 420.0]])
 
 
-def projection_on(drive: Drive, away_m: float) -> tuple[Projection, Floats]:
+def projection_on(drive: Drive, away_m: float) -> tuple[SceneProjection, Floats]:
     xyz = drive.xyz(slice(None))
     origin = np.round(xyz.mean(axis=0))
-    camera = Camera((0.0, 0.0, 0.0), heading_deg=25.0, pitch_deg=-40.0)
-    return Projection(camera.centred_on(xyz.mean(axis=0) - origin, away_m), 800, 600), origin
+    camera = SceneCamera((0.0, 0.0, 0.0), heading_deg=25.0, pitch_deg=-40.0)
+    return SceneProjection(camera.centred_on(xyz.mean(axis=0) - origin, away_m), 800, 600), origin
 
 
 @pytest.mark.parametrize("outline", [LASSO, BOW], ids=["lasso", "crossing itself"])

@@ -16,10 +16,10 @@ from processing.image.tile_cache import TileRequest
 from processing.image.tiles import TileKey
 from processing.points.drive import Drive
 from tests.processing.image.recordings import small_drive
-from widgets.scene_view.camera import Camera
+from widgets.scene_view.camera import SceneCamera
 from widgets.scene_view.points.point_finder import PointFinder
 from widgets.scene_view.points.scene_tile import DrawnTile, SceneTile
-from widgets.scene_view.projection import NEAR_M, Projection
+from widgets.scene_view.projection import NEAR_M, SceneProjection
 from widgets.shared.view_settings import ViewSettings
 
 Floats = NDArray[np.float64]
@@ -45,7 +45,7 @@ def drawn_of(drive: Drive, kind: ImageKind) -> DrawnTile:
 
 def brute_force(
     drives: tuple[DriveImage, ...],
-    projection: Projection,
+    projection: SceneProjection,
     pixel: tuple[float, float],
     clip: Clip | None,
 ) -> tuple[float, float] | None:
@@ -94,13 +94,13 @@ def test_a_pick_is_what_looking_at_every_point_gives(
     shown = drives[:1] if what == "one drive" else drives
     drive = shown[-1][0]
     target = drive.xyz(np.array([random.integers(drive.count)]))[0]
-    camera = Camera(
+    camera = SceneCamera(
         (0.0, 0.0, 0.0),
         heading_deg=random.uniform(0, 360),
         pitch_deg=random.uniform(-90, 20),
         is_parallel=is_parallel,
     ).centred_on(target - ORIGIN, away_m)
-    projection = Projection(camera, 800, 600)
+    projection = SceneProjection(camera, 800, 600)
     # Half of the clicks go where something is for sure.
     if seed % 2:
         pixel = 400.0 + random.uniform(-5, 5), 300.0 + random.uniform(-5, 5)
@@ -117,11 +117,11 @@ def test_a_pick_is_what_looking_at_every_point_gives(
     assert (found is None) == (wanted is None)
     if found is None or wanted is None:
         return
-    pixels, depth = projection.to_screen(np.array(found.place.xyz)[None] - ORIGIN)
+    pixels, depth = projection.to_screen(np.array(found.position.xyz)[None] - ORIGIN)
     assert found.depth_m == pytest.approx(depth[0], abs=1e-6)
     # Two points may be equally near; which of them is taken doesn't matter.
     assert np.hypot(*(pixels[0] - pixel)) == pytest.approx(wanted[1], abs=1e-6)
-    assert found.place.measured is not None
+    assert found.position.measured is not None
 
 
 def test_a_point_that_no_pixel_of_the_image_shows_is_found(drives: tuple[DriveImage, ...]) -> None:
@@ -130,14 +130,14 @@ def test_a_point_that_no_pixel_of_the_image_shows_is_found(drives: tuple[DriveIm
     shown = image.raster(range(image.rows), range(image.width))
     hidden = np.setdiff1d(np.arange(drive.count), shown)
     assert hidden.size
-    place = drive.xyz(hidden[:1])[0]
-    camera = Camera((0.0, 0.0, 0.0), pitch_deg=-50.0).centred_on(place - ORIGIN, 0.6)
+    position = drive.xyz(hidden[:1])[0]
+    camera = SceneCamera((0.0, 0.0, 0.0), pitch_deg=-50.0).centred_on(position - ORIGIN, 0.6)
     finder = PointFinder(ViewSettings())
     finder.use([(drive, kind)], ORIGIN)
-    found = finder.exact([drawn_of(drive, kind)], Projection(camera, 800, 600), 400.0, 300.0)
+    found = finder.exact([drawn_of(drive, kind)], SceneProjection(camera, 800, 600), 400.0, 300.0)
     assert found is not None
-    assert found.place.measured is not None
-    assert found.place.measured.point == hidden[0]
+    assert found.position.measured is not None
+    assert found.position.measured.point == hidden[0]
 
 
 def test_drives_without_anything_in_the_picture_are_not_searched(
@@ -145,8 +145,8 @@ def test_drives_without_anything_in_the_picture_are_not_searched(
 ) -> None:
     finder = PointFinder(ViewSettings())
     finder.use(drives, ORIGIN)
-    camera = Camera((0.0, 0.0, 50.0), pitch_deg=-90.0)
-    assert finder.exact([], Projection(camera, 800, 600), 400.0, 300.0) is None
+    camera = SceneCamera((0.0, 0.0, 50.0), pitch_deg=-90.0)
+    assert finder.exact([], SceneProjection(camera, 800, 600), 400.0, 300.0) is None
 
 
 @given(st.lists(st.tuples(st.integers(-3, 9), st.integers(0, 6)), max_size=40))
@@ -174,7 +174,7 @@ def test_what_is_kept_are_those_nearer_to_the_eye_or_to_the_pixel_than_all_other
 def test_the_plain_loops_give_the_same() -> None:
     random = np.random.default_rng(3)
     integers = random.integers(-50, 50, (300, 3)).astype(np.int32)
-    projection = Projection(Camera((0.0, -80.0, 0.0), pitch_deg=0.0), 100, 100)
+    projection = SceneProjection(SceneCamera((0.0, -80.0, 0.0), pitch_deg=0.0), 100, 100)
     limits = np.array([50.0, 50.0, NEAR_M, 6.0, 2.0, np.inf, 0.1, 0.02])
     matrix = projection.matrix_with_depth
     stretches, whole = np.array([[0, 120], [130, 300]]), np.array([[0, 300]])
@@ -182,8 +182,8 @@ def test_the_plain_loops_give_the_same() -> None:
     count = hits_kernel(integers, stretches, matrix, limits, fast)
     hits_kernel.py_func(integers, stretches, matrix, limits, plain)  # type: ignore[attr-defined]
     np.testing.assert_allclose(fast, plain, rtol=1e-12)
-    places = integers.astype(np.float32)
+    positions = integers.astype(np.float32)
     fast[:], plain[:] = 0.0, 0.0
-    assert 0 < count <= hits_kernel(places, whole, matrix, limits, fast)
-    hits_kernel.py_func(places, whole, matrix, limits, plain)  # type: ignore[attr-defined]
+    assert 0 < count <= hits_kernel(positions, whole, matrix, limits, fast)
+    hits_kernel.py_func(positions, whole, matrix, limits, plain)  # type: ignore[attr-defined]
     np.testing.assert_allclose(fast, plain, rtol=1e-12)

@@ -9,23 +9,23 @@ from PySide6.QtGui import QPolygonF
 
 from processing.project.catalogue import Geometry
 from processing.project.feature import Feature, Status, Vertex, new_feature_id
-from widgets.scene_view.camera import Camera
+from widgets.scene_view.camera import SceneCamera
 from widgets.scene_view.map.feature_hits import feature_at, features_within
-from widgets.scene_view.projection import Projection
+from widgets.scene_view.projection import SceneProjection
 from widgets.shared.feature_hits import FeatureHit
-from widgets.shared.feature_shapes import FeatureShapes, flattened, segments_of
+from widgets.shared.feature_shapes import FeatureShapes, flatten_shapes, segments_of
 from widgets.shared.view_settings import ViewSettings
 
 ORIGIN = np.array([-11_000.0, -35_000.0, 100.0])
-CAMERA = Camera((0.0, 0.0, 0.0), heading_deg=0.0, pitch_deg=0.0, angle_deg=90.0)
-VIEW = Projection(CAMERA, 1000, 1000)
+CAMERA = SceneCamera((0.0, 0.0, 0.0), heading_deg=0.0, pitch_deg=0.0, angle_deg=90.0)
+VIEW = SceneProjection(CAMERA, 1000, 1000)
 SHOWN = ViewSettings()
 
 
 def feature(geometry: Geometry, *pixels: tuple[float, float], **fields: object) -> Feature:
     """A feature ten metres in front of the camera, its vertices at these pixels."""
-    places = [VIEW.place_at(x, y, 10.0) + ORIGIN for x, y in pixels]
-    vertices = tuple(Vertex((float(e), float(n), float(h))) for e, n, h in places)
+    positions = [VIEW.position_at(x, y, 10.0) + ORIGIN for x, y in pixels]
+    vertices = tuple(Vertex((float(e), float(n), float(h))) for e, n, h in positions)
     return Feature(new_feature_id(), "kind", geometry, vertices, **fields)
 
 
@@ -33,7 +33,7 @@ def hit(
     features: list[Feature], x: float, y: float, selected: frozenset[str] = frozenset()
 ) -> FeatureHit:
     shapes = FeatureShapes(ORIGIN, features)
-    return feature_at(flattened(shapes.seen(SHOWN.shows)), VIEW, (x, y), selected)
+    return feature_at(flatten_shapes(shapes.seen(SHOWN.shows)), VIEW, (x, y), selected)
 
 
 def test_a_vertex_is_hit_within_eight_pixels() -> None:
@@ -97,20 +97,20 @@ def test_features_that_changed_are_replaced_or_forgotten() -> None:
 def test_a_box_holds_what_lies_wholly_inside() -> None:
     inside = feature(Geometry.LINE, (300, 300), (400, 400))
     across = feature(Geometry.LINE, (300, 300), (900, 400))
-    flat = flattened(FeatureShapes(ORIGIN, [inside, across]).seen(SHOWN.shows))
+    flat = flatten_shapes(FeatureShapes(ORIGIN, [inside, across]).seen(SHOWN.shows))
     box = QPolygonF(QRectF(250, 250, 300, 300))
     assert features_within(flat, VIEW, box) == {inside.id}
 
 
 def test_a_feature_behind_the_camera_is_in_no_box() -> None:
     behind = Feature("b", "kind", Geometry.POINT, (Vertex((-11_000.0, -35_010.0, 100.0)),))
-    flat = flattened(FeatureShapes(ORIGIN, [behind]).seen(SHOWN.shows))
+    flat = flatten_shapes(FeatureShapes(ORIGIN, [behind]).seen(SHOWN.shows))
     assert features_within(flat, VIEW, QPolygonF(QRectF(0, 0, 1000, 1000))) == frozenset()
 
 
 def test_no_features_are_hit_where_there_are_none() -> None:
     assert hit([], 5, 5) == FeatureHit()
-    assert features_within(flattened(()), VIEW, QPolygonF(QRectF(0, 0, 9, 9))) == frozenset()
+    assert features_within(flatten_shapes(()), VIEW, QPolygonF(QRectF(0, 0, 9, 9))) == frozenset()
 
 
 @pytest.mark.parametrize(
@@ -130,10 +130,10 @@ def test_vertices_are_joined_by_the_shape(
 
 
 def test_dashes_cover_their_share_of_a_bent_line_and_stay_on_it() -> None:
-    from widgets.scene_view.map.feature_actors import dashed
+    from widgets.scene_view.map.feature_actors import dash_segments
 
     corners = np.array([[0.0, 0.0, 0.0], [4.3, 0.0, 0.0], [4.3, 5.7, 0.0]])
-    dashes = dashed(corners, segments_of(Geometry.LINE, 3))
+    dashes = dash_segments(corners, segments_of(Geometry.LINE, 3))
     lengths = np.linalg.norm(dashes[:, 1] - dashes[:, 0], axis=1)
     assert lengths.sum() == pytest.approx(6.0)
     on_first = np.isclose(dashes[:, :, 1], 0.0).all(axis=1)

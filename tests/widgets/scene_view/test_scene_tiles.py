@@ -15,11 +15,11 @@ from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache
 from processing.image.tiles import TileKey
 from processing.points.drive import Drive
-from widgets.scene_view.camera import Camera
+from widgets.scene_view.camera import SceneCamera
 from widgets.scene_view.points.budget import FrameBudget
-from widgets.scene_view.points.scene_tile import Showing, TileId, shown_tiles
-from widgets.scene_view.points.tile_feed import TileFeed, Wish
-from widgets.shared.view_settings import PointLook
+from widgets.scene_view.points.scene_tile import TileAppearance, TileId, shown_tiles
+from widgets.scene_view.points.tile_feed import SceneRequest, TileFeed
+from widgets.shared.view_settings import PointStyle
 
 KIND = ImageKind.TRAJECTORY_CENTER
 
@@ -153,16 +153,16 @@ def test_a_picture_at_rest_has_never_fewer_points_than_a_moving_one() -> None:
 
 
 @pytest.fixture
-def wish(left_drive: Drive) -> Wish:
+def scene_request(left_drive: Drive) -> SceneRequest:
     origin = np.array(left_drive.info.lowest)
     middle = (np.array(left_drive.info.highest) - origin) / 2
-    camera = Camera((0.0, 0.0, 0.0)).centred_on(middle, 60.0)
-    return Wish(
+    camera = SceneCamera((0.0, 0.0, 0.0)).centred_on(middle, 60.0)
+    return SceneRequest(
         drives=((left_drive, KIND),),
         origin=origin,
         age=7,
         camera=camera.for_tiles(origin, 800, 600),
-        showing=Showing(PointLook()),
+        showing=TileAppearance(PointStyle()),
         budget_points=1_000_000,
         is_still=True,
         kept=frozenset(),
@@ -172,7 +172,7 @@ def wish(left_drive: Drive) -> Wish:
 
 
 def test_a_feed_gives_the_points_of_the_tiles_that_it_chose(
-    qtbot: QtBot, left_drive: Drive, wish: Wish
+    qtbot: QtBot, left_drive: Drive, scene_request: SceneRequest
 ) -> None:
     tiles = TileCache()
     tiles.use({left_drive.id: left_drive}.__getitem__)
@@ -183,45 +183,49 @@ def test_a_feed_gives_the_points_of_the_tiles_that_it_chose(
         Qt.ConnectionType.QueuedConnection,
     )
     with qtbot.waitSignal(feed.chosen, timeout=20_000) as chosen:
-        feed.wish(wish)
+        feed.request(scene_request)
     assert chosen.args is not None
     choice = chosen.args[0]
     qtbot.waitUntil(lambda: arrived.keys() >= set(choice.tiles), timeout=20_000)
     for one in arrived.values():
         assert one.age == 7
         assert one.local_xyz.dtype == np.float32
-        exact = left_drive.xyz(one.points) - wish.origin
+        exact = left_drive.xyz(one.points) - scene_request.origin
         assert one.local_xyz == pytest.approx(exact, abs=1e-4)
         assert one.colours.shape == (one.points.size, 3)
     feed.close()
     tiles.close()
 
 
-def test_a_feed_asks_for_nothing_that_is_known(qtbot: QtBot, left_drive: Drive, wish: Wish) -> None:
+def test_a_feed_asks_for_nothing_that_is_known(
+    qtbot: QtBot, left_drive: Drive, scene_request: SceneRequest
+) -> None:
     from dataclasses import replace
 
     tiles = TileCache()
     tiles.use({left_drive.id: left_drive}.__getitem__)
     feed = TileFeed(tiles)
     with qtbot.waitSignal(feed.chosen, timeout=20_000) as chosen:
-        feed.wish(wish)
+        feed.request(scene_request)
     assert chosen.args is not None
-    known = frozenset((one, Showing(PointLook())) for one in chosen.args[0].tiles)
+    known = frozenset((one, TileAppearance(PointStyle())) for one in chosen.args[0].tiles)
     qtbot.waitUntil(lambda: tiles.held_bytes > 0, timeout=20_000)
     arrived: list[object] = []
     with qtbot.waitSignal(feed.chosen, timeout=20_000):
-        feed.wish(replace(wish, known=known))
+        feed.request(replace(scene_request, known=known))
     feed.arrived.connect(arrived.append)
     feed.close()
     assert arrived == []
     tiles.close()
 
 
-def test_a_closed_feed_tells_nothing(qtbot: QtBot, left_drive: Drive, wish: Wish) -> None:
+def test_a_closed_feed_tells_nothing(
+    qtbot: QtBot, left_drive: Drive, scene_request: SceneRequest
+) -> None:
     tiles = TileCache()
     tiles.use({left_drive.id: left_drive}.__getitem__)
     feed = TileFeed(tiles)
     feed.close()
     with qtbot.assertNotEmitted(feed.chosen, wait=50):
-        feed.wish(wish)
+        feed.request(scene_request)
     tiles.close()

@@ -15,11 +15,11 @@ from processing.project.change import Change, Replacement
 from processing.project.feature import Feature, Provenance, Status, Vertex, new_feature_id
 from processing.project.solids import Solid, solid_of
 from processing.text import Text
-from tests.widgets.builders import KINDS, place_on
-from tests.widgets.scene_view.conftest import Hand
+from tests.widgets.builders import KINDS, position_on
+from tests.widgets.scene_view.conftest import SceneViewUser
 from tests.widgets.scene_view.test_scene_view import image_of
 from widgets.mouse_tools.select import Select
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.feature_shapes import FeatureShape
 from widgets.shared.feature_style import style_of
 
@@ -36,14 +36,14 @@ def lid_at(middle: NDArray[np.float64], confidence: float = 0.9, kind: str = "li
     return Feature(new_feature_id(), kind, Geometry.AREA, vertices, {}, status, provenance)
 
 
-def put(hand: Hand, feature: Feature) -> Feature:
-    hand.map.apply(Text.same("add"), Change(added=(feature,)))
+def put(user: SceneViewUser, feature: Feature) -> Feature:
+    user.map.apply(Text.same("add"), Change(added=(feature,)))
     return feature
 
 
-def judge(hand: Hand, feature: Feature, status: Status) -> None:
+def judge(user: SceneViewUser, feature: Feature, status: Status) -> None:
     pair = Replacement(feature, replace(feature, status=status))
-    hand.map.apply(Text.same("judge"), Change(replaced=(pair,)))
+    user.map.apply(Text.same("judge"), Change(replaced=(pair,)))
 
 
 def blue_at(image: QImage, spot: QPoint) -> float:
@@ -54,67 +54,69 @@ def blue_at(image: QImage, spot: QPoint) -> float:
 
 
 @pytest.fixture
-def middle(hand: Hand) -> NDArray[np.float64]:
+def middle(user: SceneViewUser) -> NDArray[np.float64]:
     """A place on the road, looked at obliquely from some metres."""
-    place = place_on(hand.drive, hand.road_points(3)[1])
-    hand.look_at(place, 5.0, pitch_deg=-35.0)
-    return np.array(place.xyz)
+    position = position_on(user.drive, user.road_points(3)[1])
+    user.look_at(position, 5.0, pitch_deg=-35.0)
+    return np.array(position.xyz)
 
 
-def spot_of(hand: Hand, xyz: NDArray[np.float64]) -> QPoint:
-    return hand.spot(Place((float(xyz[0]), float(xyz[1]), float(xyz[2]))))
+def spot_of(user: SceneViewUser, xyz: NDArray[np.float64]) -> QPoint:
+    return user.spot(PickedPosition((float(xyz[0]), float(xyz[1]), float(xyz[2]))))
 
 
-def test_a_body_is_fuller_the_surer_it_is(hand: Hand, middle: NDArray[np.float64]) -> None:
-    spot = spot_of(hand, middle + BESIDE)
-    seen = [blue_at(image_of(hand), spot)]
-    doubtful = put(hand, lid_at(middle, 0.1))
-    seen.append(blue_at(image_of(hand), spot))
-    hand.map.apply(Text.same("away"), Change(removed=(doubtful,)))
-    sure = put(hand, lid_at(middle, 0.9))
-    seen.append(blue_at(image_of(hand), spot))
-    judge(hand, sure, Status.ACCEPTED)
-    seen.append(blue_at(image_of(hand), spot))
-    hand.map.shared.selection.choose_features(frozenset({sure.id}))
-    seen.append(blue_at(image_of(hand), spot))
+def test_a_body_is_fuller_the_surer_it_is(user: SceneViewUser, middle: NDArray[np.float64]) -> None:
+    spot = spot_of(user, middle + BESIDE)
+    seen = [blue_at(image_of(user), spot)]
+    doubtful = put(user, lid_at(middle, 0.1))
+    seen.append(blue_at(image_of(user), spot))
+    user.map.apply(Text.same("away"), Change(removed=(doubtful,)))
+    sure = put(user, lid_at(middle, 0.9))
+    seen.append(blue_at(image_of(user), spot))
+    judge(user, sure, Status.ACCEPTED)
+    seen.append(blue_at(image_of(user), spot))
+    user.map.shared.selection.choose_features(frozenset({sure.id}))
+    seen.append(blue_at(image_of(user), spot))
     assert seen == sorted(seen)
     assert min(np.diff(seen)) > 5
 
 
-def test_the_sides_are_seen_below_the_top(hand: Hand, middle: NDArray[np.float64]) -> None:
-    feature = put(hand, lid_at(middle))
-    judge(hand, feature, Status.ACCEPTED)
-    image = image_of(hand)
+def test_the_sides_are_seen_below_the_top(user: SceneViewUser, middle: NDArray[np.float64]) -> None:
+    feature = put(user, lid_at(middle))
+    judge(user, feature, Status.ACCEPTED)
+    image = image_of(user)
     near = min(
         ((HALF_M[at] + HALF_M[at - 1]) / 2 for at in range(4)),
-        key=lambda side: -spot_of(hand, middle + side).y(),
+        key=lambda side: -spot_of(user, middle + side).y(),
     )
-    assert blue_at(image, spot_of(hand, middle + near - [0, 0, 0.15])) > 15
-    assert blue_at(image, spot_of(hand, middle + near * 1.6 - [0, 0, 0.4])) < 5
+    assert blue_at(image, spot_of(user, middle + near - [0, 0, 0.15])) > 15
+    assert blue_at(image, spot_of(user, middle + near * 1.6 - [0, 0, 0.4])) < 5
 
 
 def test_bodies_go_with_their_kind_and_when_they_are_rejected(
-    hand: Hand, middle: NDArray[np.float64]
+    user: SceneViewUser, middle: NDArray[np.float64]
 ) -> None:
-    spot = spot_of(hand, middle + BESIDE)
-    before = blue_at(image_of(hand), spot)
-    feature = put(hand, lid_at(middle))
-    assert blue_at(image_of(hand), spot) > before + 10
-    settings = hand.map.shared.view_settings
+    spot = spot_of(user, middle + BESIDE)
+    before = blue_at(image_of(user), spot)
+    feature = put(user, lid_at(middle))
+    assert blue_at(image_of(user), spot) > before + 10
+    settings = user.map.shared.view_settings
     settings.hide_kinds(frozenset({"lid"}))
-    assert blue_at(image_of(hand), spot) == pytest.approx(before, abs=2)
+    assert blue_at(image_of(user), spot) == pytest.approx(before, abs=2)
     settings.hide_kinds(frozenset())
     settings.set_shows_rejected(True)
-    judge(hand, feature, Status.REJECTED)
-    assert blue_at(image_of(hand), spot) == pytest.approx(before, abs=2)
+    judge(user, feature, Status.REJECTED)
+    assert blue_at(image_of(user), spot) == pytest.approx(before, abs=2)
 
 
-def test_a_click_on_the_edge_of_a_body_chooses_it(hand: Hand, middle: NDArray[np.float64]) -> None:
-    feature = put(hand, lid_at(middle))
-    image_of(hand)
-    hand.take(Select(hand.map, hand.map.shared))
-    hand.click(spot_of(hand, middle + (HALF_M[0] + HALF_M[1]) / 2))
-    assert hand.map.shared.selection.features == {feature.id}
+def test_a_click_on_the_edge_of_a_body_chooses_it(
+    user: SceneViewUser, middle: NDArray[np.float64]
+) -> None:
+    feature = put(user, lid_at(middle))
+    image_of(user)
+    user.take(Select(user.map, user.map.shared))
+    user.click(spot_of(user, middle + (HALF_M[0] + HALF_M[1]) / 2))
+    assert user.map.shared.selection.features == {feature.id}
 
 
 def shape_of(feature: Feature) -> FeatureShape:
@@ -127,7 +129,7 @@ def test_thousands_of_bodies_are_one_mesh_and_are_shaped_once(
     from vtkmodules.vtkRenderingCore import vtkRenderer
 
     from widgets.scene_view.map import solid_actors
-    from widgets.scene_view.map.solid_actors import Body, SolidActors
+    from widgets.scene_view.map.solid_actors import SolidActors, StyledSolid
 
     made: list[float] = []
 
@@ -141,9 +143,9 @@ def test_thousands_of_bodies_are_one_mesh_and_are_shaped_once(
     lids = [lid_at(np.array([0.6 * at, 0.0, 0.0])) for at in range(3000)]
     shapes = [shape_of(lid) for lid in lids]
 
-    def shown(chosen: str) -> list[Body]:
+    def shown(chosen: str) -> list[StyledSolid]:
         return [
-            Body(shape, style_of(KINDS, lid, is_selected=lid.id == chosen), 0.1)
+            StyledSolid(shape, style_of(KINDS, lid, is_selected=lid.id == chosen), 0.1)
             for lid, shape in zip(lids, shapes, strict=True)
         ]
 
@@ -161,7 +163,7 @@ def test_thousands_of_bodies_are_one_mesh_and_are_shaped_once(
 def test_a_grating_has_bars_across_its_longer_side() -> None:
     from vtkmodules.vtkRenderingCore import vtkRenderer
 
-    from widgets.scene_view.map.solid_actors import Body, SolidActors
+    from widgets.scene_view.map.solid_actors import SolidActors, StyledSolid
 
     renderer = vtkRenderer()
     actors = SolidActors(renderer)
@@ -169,7 +171,7 @@ def test_a_grating_has_bars_across_its_longer_side() -> None:
         grating = lid_at(np.zeros(3), kind="gutter_grating")
         grating = grating.with_vertices(grating.vertices[turned:] + grating.vertices[:turned])
         style = style_of(KINDS, grating, is_selected=False)
-        actors.show([Body(shape_of(grating), style, 0.05)])
+        actors.show([StyledSolid(shape_of(grating), style, 0.05)])
         # 25 gaps and the bars between and beside them, four sides, the bottom.
         assert actors.count == 25 + 26 + 5
         mesh = renderer.GetActors().GetLastActor().GetMapper().GetInput()

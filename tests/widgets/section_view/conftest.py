@@ -18,17 +18,17 @@ from processing.text import Text
 from tests.builders import START
 from tests.mouse_events import NO_KEYS, move_mouse
 from tests.street_scene import CURB_AT_M
-from tests.widgets.builders import OpenMap, place_on
+from tests.widgets.builders import OpenMap, position_on
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.section_view.pane import SectionPane
 from widgets.section_view.view import SectionView
-from widgets.shared.cursor import Place
+from widgets.shared.cursor import PickedPosition
 
 LEFT = Qt.MouseButton.LeftButton
 
 
 @dataclass
-class Hand:
+class SectionViewUser:
     """A view and the hand at its mouse and keyboard."""
 
     qtbot: QtBot
@@ -51,31 +51,31 @@ class Hand:
         self.map.apply(Text.same("test"), Change(added=(feature,)))
         return feature
 
-    def spot(self, place: Place) -> QPoint:
-        position = self.pane.position_of(place)
-        assert position is not None
-        return QPoint(int(np.floor(position.x())), int(np.floor(position.y())))
+    def spot(self, position: PickedPosition) -> QPoint:
+        pixel = self.pane.position_of(position)
+        assert pixel is not None
+        return QPoint(int(np.floor(pixel.x())), int(np.floor(pixel.y())))
 
     def look_closely(self) -> None:
         """Look at the road in a thin slab, so large that points are apart."""
         settings = replace(self.view.settings, width_m=0.3)
         self.do(lambda: self.view.use_settings(settings))
         picture, pane = self.pane.picture, self.pane
-        lay = pane.lay()
+        projection = pane.projection()
         assert picture is not None
-        assert lay is not None
+        assert projection is not None
         road = picture.section[np.abs(picture.section[:, 0]) < 1.0]
-        x, y = np.median(lay.on_plane(road), axis=0).tolist()
+        x, y = np.median(projection.on_plane(road), axis=0).tolist()
         scaled = pane.viewport.zoomed(30.0, 0.0, 0.0)
         pane.set_viewport(scaled.centred_on(x, y))
 
-    def lone_point(self, avoid: QPoint | None = None) -> Place:
+    def lone_point(self, avoid: QPoint | None = None) -> PickedPosition:
         """A measured point of the picture with no other near it in the window."""
         picture, pane = self.pane.picture, self.pane
-        lay = pane.lay()
+        projection = pane.projection()
         assert picture is not None
-        assert lay is not None
-        spots = pane.viewport.to_screen(lay.on_plane(picture.section))
+        assert projection is not None
+        spots = pane.viewport.to_screen(projection.on_plane(picture.section))
         inside = (spots > (80, 40)).all(axis=1)
         inside &= (spots < (pane.width() - 20, pane.height() - 40)).all(axis=1)
         for number in np.flatnonzero(inside):
@@ -83,8 +83,8 @@ class Hand:
             away[number] = np.inf
             is_far = avoid is None or np.hypot(*(spots[number] - avoid.toTuple())) > 40
             if away.min() > 6 and is_far:
-                drive = picture.wish.drives[int(picture.drive_numbers[number])]
-                return place_on(drive, int(picture.points[number]))
+                drive = picture.request.drives[int(picture.drive_numbers[number])]
+                return position_on(drive, int(picture.points[number]))
         pytest.fail("every point has another one near it")
 
     def take(self, tool: MouseTool) -> MouseTool:
@@ -108,15 +108,15 @@ def open_map(left_drive: Drive, right_drive: Drive) -> OpenMap:
 
 
 @pytest.fixture
-def hand(qtbot: QtBot, open_map: OpenMap) -> Iterator[Hand]:
+def user(qtbot: QtBot, open_map: OpenMap) -> Iterator[SectionViewUser]:
     """Give a view of both heads' street, in the middle of the ten metres."""
-    hand = shown(qtbot, open_map)
-    hand.do(lambda: hand.view.show_place(on_road(hand, 5.0)))
-    yield hand
-    hand.view.close()
+    user = shown(qtbot, open_map)
+    user.do(lambda: user.view.show_position(on_road(user, 5.0)))
+    yield user
+    user.view.close()
 
 
-def shown(qtbot: QtBot, open_map: OpenMap) -> Hand:
+def shown(qtbot: QtBot, open_map: OpenMap) -> SectionViewUser:
     view = SectionView(open_map, open_map.shared)
     qtbot.addWidget(view)
     view.resize(900, 600)
@@ -125,22 +125,22 @@ def shown(qtbot: QtBot, open_map: OpenMap) -> Hand:
             view.show()
     else:
         view.show()
-    return Hand(qtbot, open_map, view)
+    return SectionViewUser(qtbot, open_map, view)
 
 
-def on_road(hand: Hand, station_m: float) -> Place:
+def on_road(user: SectionViewUser, station_m: float) -> PickedPosition:
     """The place of the trajectory at a station."""
-    standing = hand.view.standing
+    standing = user.view.standing
     assert standing is not None
-    return Place(standing.line.stations.place_at(station_m))
+    return PickedPosition(standing.line.stations.position_at(station_m))
 
 
-def station(hand: Hand) -> float:
-    assert hand.view.standing is not None
-    return hand.view.standing.station_m
+def station(user: SectionViewUser) -> float:
+    assert user.view.standing is not None
+    return user.view.standing.station_m
 
 
-def curb_line(hand: Hand) -> Feature:
+def curb_line(user: SectionViewUser) -> Feature:
     """The left curb as it was made: four metres to the left of the road's middle."""
     ends = [START + np.array([-CURB_AT_M, north, 0.07]) for north in (1.0, 4.0, 9.0)]
-    return hand.line(*(Vertex(tuple(end.tolist())) for end in ends))
+    return user.line(*(Vertex(tuple(end.tolist())) for end in ends))

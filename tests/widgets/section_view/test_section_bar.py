@@ -7,7 +7,7 @@ from PySide6.QtCore import QPoint
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from tests.widgets.section_view.conftest import Hand
+from tests.widgets.section_view.conftest import SectionViewUser
 from widgets.section_view.bar import SectionBar
 
 
@@ -33,10 +33,10 @@ def test_nothing_in_the_bar_is_cut_or_hidden(qtbot: QtBot, width: int) -> None:
     assert is_one_line == (width == 900)
 
 
-def test_held_windows_stand_above_each_other_in_a_narrow_dock(hand: Hand) -> None:
-    hand.view.resize(420, 500)
-    hand.view.set_pinned(True)
-    across, along = hand.view.panes
-    hand.qtbot.waitUntil(lambda: along.geometry().top() > across.geometry().top(), timeout=30_000)
-    hand.view.resize(900, 500)
-    hand.qtbot.waitUntil(lambda: along.geometry().left() > across.geometry().left(), timeout=30_000)
+def test_held_windows_stand_above_each_other_in_a_narrow_dock(user: SectionViewUser) -> None:
+    user.view.resize(420, 500)
+    user.view.set_pinned(True)
+    across, along = user.view.panes
+    user.qtbot.waitUntil(lambda: along.geometry().top() > across.geometry().top(), timeout=30_000)
+    user.view.resize(900, 500)
+    user.qtbot.waitUntil(lambda: along.geometry().left() > across.geometry().left(), timeout=30_000)

@@ -21,12 +21,12 @@ from PySide6.QtWidgets import (
 )
 from typing_extensions import override
 
-from processing.image.colour_maps import JUDGEMENT_COLOURS
-from processing.points.judgement import JUDGED, Judgement
+from processing.image.colour_maps import ERROR_MAP_COLOURS
+from processing.points.error_map import ERROR_MAP, ErrorMapValue
 from processing.project.class_evaluation import ClassEvaluation
 from processing.project.truth_store import Truth
 from processing.score.asked_classes import ASKED
-from processing.score.point_classes import TwoByTwo
+from processing.score.confusion_matrix import ConfusionMatrix
 from processing.text import Language
 from widgets.panels.class_evaluation.setting_words import moment_of, settings_words
 from widgets.panels.class_evaluation.truth_bar import TruthBar
@@ -47,7 +47,7 @@ class ClassPanel(QWidget):
 
     Signals
     -------
-    judgement_wanted(truth: str)
+    error_map_requested(truth: str)
         What is shown is out of date and can be seen: :meth:`show_evaluations` is to be called.
     points_requested(truth: str, evaluation: ClassEvaluation)
         The points are to be coloured by what was right and wrong.
@@ -55,7 +55,7 @@ class ClassPanel(QWidget):
         The table is to be written.
     """
 
-    judgement_wanted = Signal(str)
+    error_map_requested = Signal(str)
     points_requested = Signal(str, object)
     export_requested = Signal()
 
@@ -119,7 +119,7 @@ class ClassPanel(QWidget):
         chosen = self.chosen
         self._evaluations = tuple(evaluations)
         self._rows = []
-        rows: list[tuple[str, TwoByTwo]] = []
+        rows: list[tuple[str, ConfusionMatrix]] = []
         for one in self._evaluations:
             tool = name_of_tool(one.tool, self._language)
             if not self._rows or self._rows[-1] is None or self._rows[-1].tool != one.tool:
@@ -156,7 +156,7 @@ class ClassPanel(QWidget):
             return self.tr("{tool}: if nothing were removed").format(tool=name)
         return self.tr("{tool}: if everything were kept").format(tool=name)
 
-    def _fill(self, row: int, name: str, counts: TwoByTwo, *, is_run: bool) -> None:
+    def _fill(self, row: int, name: str, counts: ConfusionMatrix, *, is_run: bool) -> None:
         before = self._rows[row] or self._rows[row + 1]
         asked = ASKED["noise" if before is None else before.tool]
         removed = counts if asked.removes else counts.turned()
@@ -170,7 +170,7 @@ class ClassPanel(QWidget):
             f"{removed.misses:,}",
             f"{counts.count:,}",
         )
-        sides = asked.kept.spoken(self._language), asked.removed.spoken(self._language)
+        sides = asked.kept.in_language(self._language), asked.removed.in_language(self._language)
         for column, word in enumerate(words):
             item = QTableWidgetItem(word)
             side = Qt.AlignmentFlag.AlignRight if column else Qt.AlignmentFlag.AlignLeft
@@ -224,13 +224,13 @@ class ClassPanel(QWidget):
         below.setSpacing(8)
         below.addWidget(self._show_points)
         for judgement, words in (
-            (Judgement.RIGHTLY_KEPT, self.tr("rightly kept")),
-            (Judgement.RIGHTLY_REMOVED, self.tr("rightly removed")),
-            (Judgement.WRONGLY_REMOVED, self.tr("wrongly removed")),
-            (Judgement.WRONGLY_KEPT, self.tr("wrongly kept")),
+            (ErrorMapValue.RIGHTLY_KEPT, self.tr("rightly kept")),
+            (ErrorMapValue.RIGHTLY_REMOVED, self.tr("rightly removed")),
+            (ErrorMapValue.WRONGLY_REMOVED, self.tr("wrongly removed")),
+            (ErrorMapValue.WRONGLY_KEPT, self.tr("wrongly kept")),
         ):
             square = QLabel(self)
-            square.setPixmap(swatch_of(JUDGEMENT_COLOURS[judgement]).pixmap(SWATCH_PX, SWATCH_PX))
+            square.setPixmap(swatch_of(ERROR_MAP_COLOURS[judgement]).pixmap(SWATCH_PX, SWATCH_PX))
             below.addWidget(square)
             below.addWidget(QLabel(words, self))
         below.addStretch(1)
@@ -246,15 +246,15 @@ class ClassPanel(QWidget):
     def _show_state(self) -> None:
         chosen = self.chosen
         self._show_points.setEnabled(chosen is not None)
-        self._show_points.setChecked(self._settings.look.attribute == JUDGED)
+        self._show_points.setChecked(self._settings.look.attribute == ERROR_MAP)
         self._export.setEnabled(bool(self._evaluations))
         if self.truth is None:
             words = self.tr("Say first what is true: paint, check, then “New truth”.")
         elif chosen is not None:
             asked = ASKED[chosen.tool]
             words = self.tr("kept: {kept}; removed: {removed}").format(
-                kept=asked.kept.spoken(self._language),
-                removed=asked.removed.spoken(self._language),
+                kept=asked.kept.in_language(self._language),
+                removed=asked.removed.in_language(self._language),
             )
         elif not self._evaluations:
             words = self.tr("Run a tool that gives classes on the drive of this truth.")
@@ -281,14 +281,14 @@ class ClassPanel(QWidget):
 
     def _on_settings_look_changed(self) -> None:
         attribute = self._settings.look.attribute
-        if attribute != JUDGED:
+        if attribute != ERROR_MAP:
             self._look_before = attribute
-        self._show_points.setChecked(attribute == JUDGED)
+        self._show_points.setChecked(attribute == ERROR_MAP)
 
     def _ask_if_seen(self) -> None:
         if self._is_stale and self.isVisible():
             self._is_stale = False
-            self.judgement_wanted.emit(self.truths.truth)
+            self.error_map_requested.emit(self.truths.truth)
 
     @override
     def showEvent(self, event: QShowEvent) -> None:
@@ -296,7 +296,7 @@ class ClassPanel(QWidget):
         self._ask_if_seen()
 
 
-def _untouched(one: ClassEvaluation) -> TwoByTwo:
+def _untouched(one: ClassEvaluation) -> ConfusionMatrix:
     """What the same truth gives where every point is kept."""
     if ASKED[one.tool].removes:
         return one.counts.if_nothing_was_positive()

@@ -9,7 +9,7 @@ from PySide6.QtCore import QDateTime, QLocale
 from processing.project.runs import Run
 from processing.project.truth_store import Truth
 from processing.text import Language, Text
-from processing.tools.parameters import Parameter, Value, parameters_of
+from processing.tools.parameters import Parameter, ParameterValue, parameters_of
 from processing.tools.registry import TOOLS
 
 _MOMENT = Text("d MMM HH:mm", "M月d日 HH:mm")
@@ -29,7 +29,7 @@ def parameter_name(tool: str, id_: str, language: Language) -> str:
     if parameter is None:
         return id_
     unit = f" [{parameter.unit}]" if parameter.unit else ""
-    return parameter.name.spoken(language) + unit
+    return parameter.name.in_language(language) + unit
 
 
 def value_words(tool: str, id_: str, value: object, language: Language) -> str:
@@ -38,13 +38,15 @@ def value_words(tool: str, id_: str, value: object, language: Language) -> str:
     if parameter is not None:
         for choice in parameter.choices:
             if choice.value == value:
-                return choice.name.spoken(language)
+                return choice.name.in_language(language)
     if isinstance(value, bool):
         return "✓" if value else "–"
     return f"{value:g}" if isinstance(value, float) else str(value)
 
 
-def settings_words(tool: str, values: Mapping[str, Value | None], language: Language) -> str:
+def settings_words(
+    tool: str, values: Mapping[str, ParameterValue | None], language: Language
+) -> str:
     """All choices, and the other values that are not the default: ``Radius (ROR), 0.3 m``."""
     words = []
     for id_, value in values.items():
@@ -54,9 +56,9 @@ def settings_words(tool: str, values: Mapping[str, Value | None], language: Lang
         if parameter.kind == "choice":
             words.append(value_words(tool, id_, value, language))
         elif value != parameter.default:
-            told = value_words(tool, id_, value, language)
-            name = parameter.name.spoken(language)
-            words.append(f"{name} {told} {parameter.unit}".rstrip())
+            reported = value_words(tool, id_, value, language)
+            name = parameter.name.in_language(language)
+            words.append(f"{name} {reported} {parameter.unit}".rstrip())
     return ", ".join(words)
 
 
@@ -68,9 +70,9 @@ def moment_of(run: Run, language: Language) -> str:
 def name_of_truth(truth: Truth, language: Language) -> str:
     """What a truth is called, and when it was made."""
     moment = _moment(truth.made.timestamp(), language)
-    return _NAMED_TRUTH.filled(name=truth.name, moment=moment).spoken(language)
+    return _NAMED_TRUTH.filled(name=truth.name, moment=moment).in_language(language)
 
 
 def _moment(seconds: float, language: Language) -> str:
     started = QDateTime.fromSecsSinceEpoch(int(seconds))
-    return QLocale(language).toString(started, _MOMENT.spoken(language))
+    return QLocale(language).toString(started, _MOMENT.in_language(language))

@@ -17,7 +17,7 @@ from processing.score.asked_classes import ASKED
 from processing.score.parameter_study import (
     MOST_CELLS,
     MOST_STEPS,
-    Varied,
+    VariedParameter,
     can_vary,
     steps_of,
     usual_range,
@@ -68,12 +68,12 @@ class RangeRow:
         if self._is_second:
             self.choice.addItem(none, "")
         for one in self._parameters.values():
-            self.choice.addItem(one.name.spoken(self._language), one.id)
+            self.choice.addItem(one.name.in_language(self._language), one.id)
         self.choice.setCurrentIndex(first)
         self._show_limits()
 
     @property
-    def varied(self) -> Varied | None:
+    def varied(self) -> VariedParameter | None:
         """What is chosen; None for none."""
         parameter = self._parameters.get(str(self.choice.currentData() or ""))
         if parameter is None:
@@ -149,7 +149,7 @@ class StudyForm(QWidget):
         return str(self._tool.currentData() or "")
 
     @property
-    def varied(self) -> tuple[Varied, ...]:
+    def varied(self) -> tuple[VariedParameter, ...]:
         """What is gone through; one or two."""
         rows = (self.first.varied, self.second.varied)
         return tuple(one for one in rows if one is not None)
@@ -194,8 +194,8 @@ class StudyForm(QWidget):
     def _on_tool_changed(self) -> None:
         if self.tool:
             numbers = [
-                place
-                for place, one in enumerate(can_vary(self.tool))
+                position
+                for position, one in enumerate(can_vary(self.tool))
                 if one.kind in ("number", "count")
             ]
             none = self.tr("no other")

@@ -22,7 +22,7 @@ from typing_extensions import override
 from processing.project.study_store import KeptStudy
 from processing.score.asked_classes import ASKED
 from processing.text import Language
-from processing.tools.parameters import Value
+from processing.tools.parameters import ParameterValue
 from widgets.panels.class_evaluation.setting_words import (
     parameter_name,
     settings_words,
@@ -36,7 +36,7 @@ from widgets.panels.run_words import name_of_tool
 _FORM_PX, _BESIDE_PX = 520, 220
 _REMOVED, _KEPT = "removed", "kept"
 
-ValuesOf = Callable[[str], Mapping[str, Value]]
+ValuesOf = Callable[[str], Mapping[str, ParameterValue]]
 """From a tool's id to its parameters as they are set."""
 
 
@@ -147,7 +147,9 @@ class StudyPanel(QWidget):
             else self.tr("a part of {drive}").format(drive=kept.where)
         )
         fixed = settings_words(kept.study.tool, kept.study.fixed, self._language)
-        facts = " · ".join(one for one in (fixed, kept.truth.spoken(self._language), where) if one)
+        facts = " · ".join(
+            one for one in (fixed, kept.truth.in_language(self._language), where) if one
+        )
         plot = StudyPlot(
             study=kept.study,
             words=StudyWords(
@@ -167,7 +169,7 @@ class StudyPanel(QWidget):
         self.view.show_plot(plot, "")
         self._show_chosen(plot)
 
-    def _values(self, tool: str) -> Mapping[str, Value]:
+    def _values(self, tool: str) -> Mapping[str, ParameterValue]:
         return {} if self._values_of is None else self._values_of(tool)
 
     def _lay_out(self) -> None:
@@ -231,8 +233,8 @@ class StudyPanel(QWidget):
             self._side.clear()
             if kept is not None and kept.study.tool in ASKED:
                 asked = ASKED[kept.study.tool]
-                self._side.addItem(asked.removed.spoken(self._language), _REMOVED)
-                self._side.addItem(asked.kept.spoken(self._language), _KEPT)
+                self._side.addItem(asked.removed.in_language(self._language), _REMOVED)
+                self._side.addItem(asked.kept.in_language(self._language), _KEPT)
                 self._side.setCurrentIndex(max(0, self._side.findData(wanted)))
         self.refresh()
 
@@ -284,11 +286,11 @@ class StudyView(QWidget):
         self._plot, self._empty = plot, empty
         self.update()
 
-    def place_of(self, number: int) -> QPointF:
+    def position_of(self, number: int) -> QPointF:
         """Where a cell of the study is painted, widget pixels."""
         if self._plot is None:
             return QPointF()
-        return self._plot.place_of(number, self._field)
+        return self._plot.position_of(number, self._field)
 
     @override
     def sizeHint(self) -> QSize:

@@ -10,10 +10,10 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
 from processing.score.asked_classes import ASKED
+from processing.score.confusion_matrix import ConfusionMatrix
 from processing.score.parameter_study import ParameterStudy, StudyCell
-from processing.score.point_classes import TwoByTwo
 from processing.text import Language
-from processing.tools.parameters import Value
+from processing.tools.parameters import ParameterValue
 from widgets.panels.class_evaluation.setting_words import parameter_name, value_words
 from widgets.panels.reliability_plot import PlotColours
 
@@ -59,7 +59,7 @@ class StudyPlot:
     words: StudyWords
     language: Language
     shows_removed: bool
-    current: Mapping[str, Value]
+    current: Mapping[str, ParameterValue]
     chosen: int = -1
 
     @property
@@ -80,7 +80,7 @@ class StudyPlot:
         scored = [one for one in self.study.cells if not math.isnan(self.counts_of(one).f_measure)]
         return max(scored, key=lambda one: self.counts_of(one).f_measure, default=None)
 
-    def counts_of(self, cell: StudyCell) -> TwoByTwo:
+    def counts_of(self, cell: StudyCell) -> ConfusionMatrix:
         """A cell's counts with the points shown as the positive class."""
         is_as_found = ASKED[self.study.tool].removes is self.shows_removed
         return cell.counts if is_as_found else cell.counts.turned()
@@ -100,18 +100,18 @@ class StudyPlot:
         else:
             self._paint_map(painter, field, area, colours)
 
-    def cell_at(self, place: QPointF, field: QRectF) -> int:
+    def cell_at(self, position: QPointF, field: QRectF) -> int:
         """Number of the cell at a place of the picture; −1 where there is none."""
         columns = len(self.study.varied[0].values)
         if len(self.study.varied) == 1:
             x = [self._x_of(field, one) for one in range(columns)]
-            return min(range(columns), key=lambda one: abs(x[one] - place.x()))
+            return min(range(columns), key=lambda one: abs(x[one] - position.x()))
         boxes = (
-            self._box(field, number).contains(place) for number in range(len(self.study.cells))
+            self._box(field, number).contains(position) for number in range(len(self.study.cells))
         )
         return next((number for number, is_there in enumerate(boxes) if is_there), -1)
 
-    def place_of(self, number: int, field: QRectF) -> QPointF:
+    def position_of(self, number: int, field: QRectF) -> QPointF:
         """Where a cell is in the picture."""
         if len(self.study.varied) == 1:
             return QPointF(self._x_of(field, number), field.center().y())
@@ -171,19 +171,19 @@ class StudyPlot:
         self._paint_marks(painter, field, colours)
         ends: list[tuple[float, str]] = []
         for name, values, style, width in series:
-            places = [
-                QPointF(self._x_of(field, place), _y_of(field, value, low))
-                for place, value in enumerate(values)
+            positions = [
+                QPointF(self._x_of(field, position), _y_of(field, value, low))
+                for position, value in enumerate(values)
                 if not math.isnan(value)
             ]
             painter.setPen(QPen(colours.curve, width, style))
-            painter.drawPolyline(places)
+            painter.drawPolyline(positions)
             side = painter.fontMetrics().height() / 6
-            for one in places:
+            for one in positions:
                 square = QRectF(one.x() - side, one.y() - side, 2 * side, 2 * side)
                 painter.fillRect(square, colours.curve)
-            if places:
-                ends.append((places[-1].y(), name))
+            if positions:
+                ends.append((positions[-1].y(), name))
         line = painter.fontMetrics().height()
         painter.setPen(colours.ink)
         y = -math.inf
@@ -221,8 +221,8 @@ class StudyPlot:
             if x - half < free:
                 continue
             free = x + half + line / 2
-            place = QRectF(x - half - line, field.bottom() + line / 8, 2 * (half + line), line)
-            painter.drawText(place, _CENTRE, word)
+            position = QRectF(x - half - line, field.bottom() + line / 8, 2 * (half + line), line)
+            painter.drawText(position, _CENTRE, word)
         below = QRectF(area.left(), field.bottom() + 1.25 * line, area.width(), line)
         name = parameter_name(tool, varied.parameter, self.language)
         painter.drawText(below, _CENTRE, _short(painter, name, below.width()))
@@ -329,8 +329,8 @@ class StudyPlot:
             x = box.center().x()
             if x - half >= free:
                 free = x + half + line / 2
-                place = QRectF(x - half - 1, field.bottom() + line / 8, 2 * half + 2, line)
-                painter.drawText(place, _CENTRE, word)
+                position = QRectF(x - half - 1, field.bottom() + line / 8, 2 * half + 2, line)
+                painter.drawText(position, _CENTRE, word)
         for number, value in enumerate(second.values):
             box = self._box(field, number)
             if number and box.height() < 0.8 * line:
@@ -352,7 +352,7 @@ class StudyPlot:
         painter.restore()
 
 
-def _are_numbers(values: tuple[Value, ...]) -> bool:
+def _are_numbers(values: tuple[ParameterValue, ...]) -> bool:
     return all(isinstance(one, (int, float)) and not isinstance(one, bool) for one in values)
 
 

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from processing.project.truth_making import Checked
+from processing.project.truth_making import CheckedPoints
 from processing.project.truth_store import Truth
 from processing.text import Language
 from widgets.panels.class_evaluation.setting_words import name_of_truth
@@ -100,9 +100,9 @@ class TruthBar(QWidget):
 
     def choose(self, truth: str) -> None:
         """Let a truth judge, as if it had been clicked."""
-        place = self._choice.findData(truth)
-        if place >= 0 and truth != self.truth:
-            self._choice.setCurrentIndex(place)
+        position = self._choice.findData(truth)
+        if position >= 0 and truth != self.truth:
+            self._choice.setCurrentIndex(position)
             self._on_choice_activated()
 
     def _new_menu(self) -> QMenu:
@@ -110,17 +110,17 @@ class TruthBar(QWidget):
         menu.setToolTipsVisible(True)
         for checked, words, tip in (
             (
-                Checked.WHOLE,
+                CheckedPoints.WHOLE,
                 self.tr("All points as they stand now"),
                 self.tr("You have checked all that was recorded together: every class is right"),
             ),
             (
-                Checked.CLIP,
+                CheckedPoints.CLIP,
                 self.tr("The part shown in 3D as it stands now"),
                 self.tr("You have checked what the 3D view is clipped to"),
             ),
             (
-                Checked.PAINTED,
+                CheckedPoints.PAINTED,
                 self.tr("Points painted by hand, no others"),
                 self.tr("Labels that a run gave don't count unless you painted over them"),
             ),

@@ -33,7 +33,7 @@ _ATTRIBUTE = "attribute:"
 
 
 @dataclass(frozen=True)
-class Column:
+class FeatureColumn:
     """One column.
 
     Attributes
@@ -77,7 +77,7 @@ class FeatureColumns:
         self._name_of_kind = lru_cache(partial(name_of_kind, catalogue, language=language))
         self._key_of_name = lru_cache(natural_key)
 
-    def of_all(self) -> tuple[Column, ...]:
+    def of_all(self) -> tuple[FeatureColumn, ...]:
         """The columns that every feature fills."""
         return (
             self._words(
@@ -104,7 +104,7 @@ class FeatureColumns:
             ),
         )
 
-    def of_kind(self, kind: FeatureKind) -> tuple[Column, ...]:
+    def of_kind(self, kind: FeatureKind) -> tuple[FeatureColumn, ...]:
         """The columns of one kind: those that fit its geometry, then its attributes."""
         foreign = {Geometry.POINT: (_LENGTH, _AREA), Geometry.LINE: (_AREA,)}
         without = foreign.get(kind.geometry, (_LENGTH,))
@@ -113,7 +113,7 @@ class FeatureColumns:
             *(self._attribute(field) for field in kind.attributes),
         )
 
-    def _numbers(self) -> tuple[Column, ...]:
+    def _numbers(self) -> tuple[FeatureColumn, ...]:
         return (
             self._number(
                 _LENGTH,
@@ -155,21 +155,23 @@ class FeatureColumns:
             ),
         )
 
-    def _words(self, id_: str, title: Text, tip: Text, text: Callable[[Feature], str]) -> Column:
+    def _words(
+        self, id_: str, title: Text, tip: Text, text: Callable[[Feature], str]
+    ) -> FeatureColumn:
         def key(feature: Feature) -> SortKey | None:
             words = text(feature)
             return self._key_of_name(words) if words else None
 
         language = self._language
-        return Column(id_, title.spoken(language), tip.spoken(language), text, key)
+        return FeatureColumn(id_, title.in_language(language), tip.in_language(language), text, key)
 
-    def _status(self) -> Column:
+    def _status(self) -> FeatureColumn:
         language = self._language
-        names = {status: name.spoken(language) for status, name in STATUS_NAMES.items()}
-        return Column(
+        names = {status: name.in_language(language) for status, name in STATUS_NAMES.items()}
+        return FeatureColumn(
             "status",
-            Text("Status", "状態").spoken(language),
-            Text("Whether a person has agreed to it", "人による判定の状態").spoken(language),
+            Text("Status", "状態").in_language(language),
+            Text("Whether a person has agreed to it", "人による判定の状態").in_language(language),
             lambda one: names[one.status],
             lambda one: (_ORDER_OF_STATUS[one.status],),
         )
@@ -181,7 +183,7 @@ class FeatureColumns:
         tip: Text,
         value: Callable[[Feature], float | None],
         decimals: int,
-    ) -> Column:
+    ) -> FeatureColumn:
         def text(feature: Feature) -> str:
             number = value(feature)
             return "" if number is None else self._locale.toString(float(number), "f", decimals)
@@ -191,11 +193,13 @@ class FeatureColumns:
             return None if number is None or not math.isfinite(number) else (number,)
 
         language = self._language
-        return Column(id_, title.spoken(language), tip.spoken(language), text, key, is_number=True)
+        return FeatureColumn(
+            id_, title.in_language(language), tip.in_language(language), text, key, is_number=True
+        )
 
-    def _attribute(self, field: AttributeField) -> Column:
+    def _attribute(self, field: AttributeField) -> FeatureColumn:
         language = self._language
-        name = field.name.spoken(language)
+        name = field.name.in_language(language)
 
         def text(feature: Feature) -> str:
             return words_of_value(feature.attributes.get(field.id), field, language)
@@ -203,7 +207,7 @@ class FeatureColumns:
         def key(feature: Feature) -> SortKey | None:
             return _key_of_value(feature.attributes.get(field.id), text(feature))
 
-        return Column(
+        return FeatureColumn(
             f"{_ATTRIBUTE}{field.id}",
             f"{name} ({field.unit})" if field.unit else name,
             name,

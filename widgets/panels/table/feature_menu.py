@@ -75,7 +75,7 @@ class FeatureMenu(QMenu):
         menu.setStyleSheet("QMenu { menu-scrollable: 1; }")
         now = {feature.kind for feature in self._features}
         for kind in kinds:
-            name = kind.name.spoken(self._language)
+            name = kind.name.in_language(self._language)
             action = menu.addAction(swatch_of(kind.colour), literal(name))
             action.setData(kind.id)
             action.setEnabled(now != {kind.id})

@@ -39,7 +39,7 @@ class FeatureRows:
         self._is_descending = False
         self._numbers: dict[str, int] = {}
         self._features: dict[str, Feature] = {}
-        self._places: dict[str, _Place] = {}
+        self._positions: dict[str, _Place] = {}
         self._sorted: list[Feature] = []
         self._shown: list[Feature] = []
         self._blank_from = 0
@@ -81,10 +81,10 @@ class FeatureRows:
 
     def row_of(self, id_: str) -> int:
         """The row of a feature; −1 when it is in none."""
-        place = self._places.get(id_)
-        if place is None:
+        position = self._positions.get(id_)
+        if position is None:
             return -1
-        index = bisect_left(self._shown, place, key=self._place_of)
+        index = bisect_left(self._shown, position, key=self._position_of)
         is_there = index < len(self._shown) and self._shown[index].id == id_
         return self._index_of(index) if is_there else -1
 
@@ -110,61 +110,61 @@ class FeatureRows:
         self._test = QueryTest(query, self._catalogue, self._texts)
         self._choose()
 
-    def keeps_place(self, feature: Feature) -> bool:
+    def keeps_position(self, feature: Feature) -> bool:
         """Whether a changed feature stays in the row in which it was."""
         before = self._features.get(feature.id)
         return (
             before is not None
             and before.kind == feature.kind
-            and self._places[feature.id] == self._new_place(feature)
+            and self._positions[feature.id] == self._new_position(feature)
             and self._is_found(feature)
         )
 
     def replace(self, feature: Feature) -> None:
         """Take over a changed feature that keeps its place."""
-        place = self._places[feature.id]
+        position = self._positions[feature.id]
         self._features[feature.id] = feature
         for features in (self._sorted, self._shown):
-            features[bisect_left(features, place, key=self._place_of)] = feature
+            features[bisect_left(features, position, key=self._position_of)] = feature
 
     def remove(self, id_: str) -> None:
         """Take a feature out; nothing happens when it isn't there."""
         feature = self._features.pop(id_, None)
         if feature is None:
             return
-        place = self._places[id_]
-        index = bisect_left(self._shown, place, key=self._place_of)
+        position = self._positions[id_]
+        index = bisect_left(self._shown, position, key=self._position_of)
         if index < len(self._shown) and self._shown[index].id == id_:
             del self._shown[index]
             _count_less(self._shown_kinds, feature.kind)
-            self._blank_from -= not place[0]
-        del self._sorted[bisect_left(self._sorted, place, key=self._place_of)]
+            self._blank_from -= not position[0]
+        del self._sorted[bisect_left(self._sorted, position, key=self._position_of)]
         _count_less(self._kinds, feature.kind)
-        del self._places[id_]
+        del self._positions[id_]
         self._texts.forget(id_)
 
     def row_for(self, feature: Feature) -> int:
         """The row that a feature not yet there would come into; −1 where it is not found."""
         if not self._is_found(feature):
             return -1
-        place = self._new_place(feature)
-        index = bisect_left(self._shown, place, key=self._place_of)
+        position = self._new_position(feature)
+        index = bisect_left(self._shown, position, key=self._position_of)
         if not self._is_descending:
             return index
-        return index if place[0] else self._blank_from - index
+        return index if position[0] else self._blank_from - index
 
     def insert(self, feature: Feature) -> None:
         """Take a feature in."""
         self._numbers.setdefault(feature.id, len(self._numbers))
-        place = self._new_place(feature)
+        position = self._new_position(feature)
         self._features[feature.id] = feature
-        self._places[feature.id] = place
+        self._positions[feature.id] = position
         self._kinds[feature.kind] += 1
-        self._sorted.insert(bisect_left(self._sorted, place, key=self._place_of), feature)
+        self._sorted.insert(bisect_left(self._sorted, position, key=self._position_of), feature)
         if self._is_found(feature):
-            self._shown.insert(bisect_left(self._shown, place, key=self._place_of), feature)
+            self._shown.insert(bisect_left(self._shown, position, key=self._position_of), feature)
             self._shown_kinds[feature.kind] += 1
-            self._blank_from += not place[0]
+            self._blank_from += not position[0]
 
     def change_many(self, changed: Iterable[tuple[str, Feature | None]]) -> None:
         """Take over many features at once; None for one that is no more."""
@@ -190,13 +190,14 @@ class FeatureRows:
     def _arrange(self) -> None:
         numbers, key = self._numbers, self._key
         if key is _as_drawn:
-            self._places = {id_: (False, (), numbers[id_]) for id_ in self._features}
+            self._positions = {id_: (False, (), numbers[id_]) for id_ in self._features}
         else:
-            self._places = {
-                id_: _place(key(feature), numbers[id_]) for id_, feature in self._features.items()
+            self._positions = {
+                id_: _position(key(feature), numbers[id_])
+                for id_, feature in self._features.items()
             }
-        places = self._places
-        self._sorted = sorted(self._features.values(), key=lambda one: places[one.id])
+        positions = self._positions
+        self._sorted = sorted(self._features.values(), key=lambda one: positions[one.id])
         self._kinds = Counter(map(_kind_of, self._sorted))
         self._choose()
 
@@ -209,14 +210,14 @@ class FeatureRows:
             self._shown_kinds = Counter(map(_kind_of, self._shown))
         self._blank_from = bisect_left(self._shown, True, key=self._is_blank)  # noqa: FBT003
 
-    def _place_of(self, feature: Feature) -> _Place:
-        return self._places[feature.id]
+    def _position_of(self, feature: Feature) -> _Place:
+        return self._positions[feature.id]
 
     def _is_blank(self, feature: Feature) -> bool:
-        return self._places[feature.id][0]
+        return self._positions[feature.id][0]
 
-    def _new_place(self, feature: Feature) -> _Place:
-        return _place(self._key(feature), self._numbers.get(feature.id, len(self._numbers)))
+    def _new_position(self, feature: Feature) -> _Place:
+        return _position(self._key(feature), self._numbers.get(feature.id, len(self._numbers)))
 
     def _is_found(self, feature: Feature) -> bool:
         return self._query.finds_everything or bool(self._test.found((feature,)))
@@ -232,7 +233,7 @@ def _as_drawn(_feature: Feature) -> SortKey:
     return ()
 
 
-def _place(key: SortKey | None, number: int) -> _Place:
+def _position(key: SortKey | None, number: int) -> _Place:
     return (True, (), number) if key is None else (False, key, number)
 
 

@@ -63,7 +63,7 @@ class FeatureRowsView(QTableView):
 
     def __init__(self, model: FeatureTableModel, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._is_told = False
+        self._is_reported = False
         self._model = model
         self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.setSelectionMode(QAbstractItemView.SelectionMode.ExtendedSelection)
@@ -109,7 +109,7 @@ class FeatureRowsView(QTableView):
         ranges = QItemSelection()
         for top, bottom in _runs(sorted(rows)):
             ranges.append(self._model.rows_between(top, bottom))
-        with self.told():
+        with self.reported():
             if not adds:
                 # Qt compares every old range with every new one, unless there are no old ones.
                 current = self.currentIndex()
@@ -119,13 +119,13 @@ class FeatureRowsView(QTableView):
         self.viewport().update()
 
     @contextmanager
-    def told(self) -> Iterator[None]:
+    def reported(self) -> Iterator[None]:
         """A time in which what becomes of the marked rows is not the user's doing."""
-        before, self._is_told = self._is_told, True
+        before, self._is_reported = self._is_reported, True
         try:
             yield
         finally:
-            self._is_told = before
+            self._is_reported = before
 
     def show_order(self) -> None:
         """Mark the column by which rows are sorted; it may stand elsewhere than before."""
@@ -136,7 +136,7 @@ class FeatureRowsView(QTableView):
     def make_current(self, row: int) -> None:
         """Put the keyboard's row somewhere without marking it; −1: nowhere."""
         index = self._model.index(row, 0) if row >= 0 else QModelIndex()
-        with self.told():
+        with self.reported():
             self.selectionModel().setCurrentIndex(index, _FLAG.NoUpdate)
 
     def fit_widths(self) -> None:
@@ -171,11 +171,11 @@ class FeatureRowsView(QTableView):
             super().keyPressEvent(event)
 
     def _on_current_row_changed(self, index: QModelIndex) -> None:
-        if not self._is_told and index.isValid():
+        if not self._is_reported and index.isValid():
             self.went_to.emit(index.row())
 
     def _on_selection_changed(self) -> None:
-        if not self._is_told:
+        if not self._is_reported:
             self.marked.emit()
 
 

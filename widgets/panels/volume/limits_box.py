@@ -63,9 +63,9 @@ class LimitsBox(QComboBox):
         with QSignalBlocker(self):
             self.clear()
             for id_, name in work_types:
-                spoken = name.spoken(self._language)
-                self.addItem(f"{spoken}  [{file_name}]" if file_name else spoken, id_)
-                self.setItemData(self.count() - 1, spoken, Qt.ItemDataRole.ToolTipRole)
+                in_language = name.in_language(self._language)
+                self.addItem(f"{in_language}  [{file_name}]" if file_name else in_language, id_)
+                self.setItemData(self.count() - 1, in_language, Qt.ItemDataRole.ToolTipRole)
             self.insertSeparator(self.count())
             if file_name:
                 self.addItem(self.tr("Table of the program"), _Other.BUNDLED)
@@ -73,10 +73,10 @@ class LimitsBox(QComboBox):
             if work_types:
                 self.addItem(self.tr("Write this table as a file…"), _Other.COPY)
             self._choose()
-        told = self.tr("The work type whose limits the as-built form has")
+        reported = self.tr("The work type whose limits the as-built form has")
         if file_name:
-            told += "\n" + self.tr("Limits from {name}").format(name=file_name)
-        self.setToolTip(told)
+            reported += "\n" + self.tr("Limits from {name}").format(name=file_name)
+        self.setToolTip(reported)
 
     def _choose(self) -> None:
         self.setCurrentIndex(self.findData(self._chosen))

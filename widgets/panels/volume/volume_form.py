@@ -26,12 +26,12 @@ from processing.text import Language, Text
 from widgets.panels.parameter_form import ParameterForm
 from widgets.panels.volume.side_box import SideBox
 from widgets.parts.number_field import NumberField
-from widgets.parts.scrolled import scrolled
+from widgets.parts.scrolled import make_scrollable
 
 _HIGHEST_M = 9000.0
 
 
-class Within(Enum):
+class AreaChoice(Enum):
     """Where earth counts."""
 
     EVERYTHING = "everything"
@@ -90,7 +90,7 @@ class VolumeForm(QWidget):
         super().__init__(parent)
         self._language: Language = language
         self._areas: tuple[FileArea, ...] = ()
-        self._chosen: Within | FileArea = Within.EVERYTHING
+        self._chosen: AreaChoice | FileArea = AreaChoice.EVERYTHING
         self._reason: Callable[[], Text | None] | None = None
         self._needs_ground: Callable[[], bool] | None = None
         self.before, self.after = SideBox(self), SideBox(self)
@@ -126,7 +126,7 @@ class VolumeForm(QWidget):
         rows.addRow(self.tr("Before"), self.before)
         rows.addRow(self.tr("After"), self.after)
         rows.addRow(self._level_name, self._level)
-        rows.addRow(self.tr("Within"), self._within)
+        rows.addRow(self.tr("AreaChoice"), self._within)
         rows.addRow(self._with_lines)
         fields = QWidget(self)
         above = QVBoxLayout(fields)
@@ -144,7 +144,7 @@ class VolumeForm(QWidget):
         layout = QVBoxLayout(self)
         layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(0)
-        layout.addWidget(scrolled(fields), 1)
+        layout.addWidget(make_scrollable(fields), 1)
         layout.addLayout(below)
 
     @property
@@ -154,9 +154,9 @@ class VolumeForm(QWidget):
         return before, after
 
     @property
-    def within(self) -> Within:
+    def within(self) -> AreaChoice:
         """Where earth counts."""
-        return Within.FILE if isinstance(self._chosen, FileArea) else self._chosen
+        return AreaChoice.FILE if isinstance(self._chosen, FileArea) else self._chosen
 
     @property
     def boundary(self) -> FileArea | None:
@@ -202,7 +202,7 @@ class VolumeForm(QWidget):
         """Another project is open, or none."""
         for box in (self.before, self.after):
             box.forget_designs()
-        self._areas, self._chosen = (), Within.EVERYTHING
+        self._areas, self._chosen = (), AreaChoice.EVERYTHING
         self._fill_within()
 
     def refresh(self) -> None:
@@ -216,7 +216,7 @@ class VolumeForm(QWidget):
         reason = None if self._reason is None else self._reason()
         lacks_ground = reason is None and self._needs_ground is not None and self._needs_ground()
         self._run.setEnabled(reason is None and not lacks_ground)
-        said = "" if reason is None else reason.spoken(self._language)
+        said = "" if reason is None else reason.in_language(self._language)
         if lacks_ground:
             said = self.tr("The ground has not been told from what stands on it yet.")
         self._why_not.setText(said)
@@ -230,22 +230,22 @@ class VolumeForm(QWidget):
 
     def _fill_within(self) -> None:
         self._within.clear()
-        self._within.addItem(self.tr("Everything"), Within.EVERYTHING)
-        self._within.addItem(self.tr("Selected areas"), Within.SELECTED)
+        self._within.addItem(self.tr("Everything"), AreaChoice.EVERYTHING)
+        self._within.addItem(self.tr("Selected areas"), AreaChoice.SELECTED)
         for area in self._areas:
             self._within.addItem(area.title, area)
-        self._within.addItem(self.tr("Area from a file…"), Within.FILE)
+        self._within.addItem(self.tr("Area from a file…"), AreaChoice.FILE)
         offered = [self._within.itemData(number) for number in range(self._within.count())]
         self._within.setCurrentIndex(offered.index(self._chosen))
 
-    def _choose(self, chosen: Within | FileArea) -> None:
+    def _choose(self, chosen: AreaChoice | FileArea) -> None:
         self._chosen = chosen
         self._fill_within()
         self.changed.emit()
 
     def _on_within_activated(self, number: int) -> None:
         chosen = self._within.itemData(number)
-        if chosen is Within.FILE:
+        if chosen is AreaChoice.FILE:
             self._fill_within()  # nothing else is chosen before there is an area
             self.boundary_wanted.emit()
         else:

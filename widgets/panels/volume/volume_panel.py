@@ -22,11 +22,11 @@ from PySide6.QtWidgets import (
 from processing.project.volume import KeptVolume
 from processing.text import Language, Text
 from widgets.panels.volume.limits_box import LimitsBox
-from widgets.panels.volume.look_form import LookForm
 from widgets.panels.volume.side_box import side_words
+from widgets.panels.volume.style_form import VolumeStyleForm
 from widgets.panels.volume.volume_form import VolumeForm
 from widgets.panels.volume.volume_table import VolumeTable
-from widgets.parts.scrolled import scrolled
+from widgets.parts.scrolled import make_scrollable
 from widgets.shared.shared_state import SharedState
 
 _FORM, _RESULT = range(2)
@@ -83,12 +83,12 @@ class VolumePanel(QWidget):
         self._export = QPushButton(self.tr("Export"), self)
         menu = QMenu(self._export)
         for id_, name in exports:
-            action = menu.addAction(name.spoken(language))
+            action = menu.addAction(name.in_language(language))
             action.setObjectName(id_)
             action.triggered.connect(self._exporting(id_))
         self._export.setMenu(menu)
         self.limits = LimitsBox(language, self)
-        self._look = LookForm(shared.volume, self)
+        self._look = VolumeStyleForm(shared.volume, self)
         self._nothing = QLabel(self.tr("No volume has been computed yet."), self)
         self._nothing.setWordWrap(True)
         self._pages = QTabWidget(self)
@@ -121,12 +121,12 @@ class VolumePanel(QWidget):
         page.setContentsMargins(0, 0, 0, 0)
         page.setSpacing(0)
         # Below what scrolls: it stays in sight however much is to be said.
-        page.addWidget(scrolled(numbers), 1)
+        page.addWidget(make_scrollable(numbers), 1)
         page.addLayout(below)
         self._pages.setDocumentMode(True)
         self._pages.addTab(self.form, self.tr("Compare"))
         self._pages.addTab(result, self.tr("Result"))
-        self._pages.addTab(scrolled(look), self.tr("Heat map"))
+        self._pages.addTab(make_scrollable(look), self.tr("Heat map"))
         whole = QVBoxLayout(self)
         whole.setContentsMargins(0, 0, 0, 0)
         whole.addWidget(self._pages)
@@ -170,7 +170,7 @@ class VolumePanel(QWidget):
             self._pages.setCurrentIndex(_RESULT if shown is not None else _FORM)
 
     def _name_of(self, kept: KeptVolume) -> str:
-        sides = kept.wish.before, kept.wish.after
+        sides = kept.request.before, kept.request.after
         before, after = (side.name or side_words(side) for side in sides)  # a level has none
         return self.tr("{moment}  {before} → {after}").format(
             moment=_moment(kept), before=before, after=after
@@ -178,8 +178,8 @@ class VolumePanel(QWidget):
 
     def _facts_of(self, kept: KeptVolume) -> str:
         return self.tr("{before} → {after}, computed {moment}").format(
-            before=side_words(kept.wish.before),
-            after=side_words(kept.wish.after),
+            before=side_words(kept.request.before),
+            after=side_words(kept.request.after),
             moment=_moment(kept),
         )
 

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QGridLayout, QLabel, QPushButton, QVBoxLayout, QWi
 from processing.earthwork.volume_result import Registration
 from processing.project.volume import KeptVolume
 from processing.text import Language
-from widgets.parts.change_words import signed
+from widgets.parts.change_words import format_difference
 
 _MM = 1000.0
 
@@ -73,7 +73,7 @@ class VolumeTable(QWidget):
         values = {
             "cut": f"{volumes.cut_m3:,.1f}",
             "fill": f"{volumes.fill_m3:,.1f}",
-            "net": signed(volumes.net_m3, 1),
+            "net": format_difference(volumes.net_m3, 1),
             "uncertainty": f"± {volumes.uncertainty_m3:,.1f}",
             "area": f"{volumes.area_m2:,.1f}",
             "unmeasured": f"{volumes.unmeasured_area_m2:,.1f}",
@@ -81,7 +81,7 @@ class VolumeTable(QWidget):
         for id_, text in values.items():
             self._values[id_].setText(text)
         self._show_shift(kept.registration)
-        notes = "\n".join(note.spoken(self._language) for note in kept.notes)
+        notes = "\n".join(note.in_language(self._language) for note in kept.notes)
         self._notes.setText(notes)
         self._notes.setVisible(bool(notes))
 
@@ -92,7 +92,7 @@ class VolumeTable(QWidget):
         )
         if shift is None:
             return
-        east, north, up = (signed(value * _MM, 0) for value in shift.shift_m)
+        east, north, up = (format_difference(value * _MM, 0) for value in shift.shift_m)
         words = self.tr("Shift of the epochs: E {east}, N {north}, H {up} mm")
         if shift.is_corrected:
             words = self.tr("Shift of the epochs: E {east}, N {north}, H {up} mm (corrected)")

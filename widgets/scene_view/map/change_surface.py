@@ -13,8 +13,8 @@ from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 from processing.earthwork.change_grid import ChangeGrid
 from processing.earthwork.heat_map import change_classes, class_colours
 from processing.image.clip import Clip
-from widgets.scene_view.vtk_arrays import as_vtk, faces_of, places_of
-from widgets.shared.shown_volume import VolumeLook
+from widgets.scene_view.vtk_arrays import as_vtk, faces_of, positions_of
+from widgets.shared.shown_volume import VolumeStyle
 
 Floats = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ class _Faces:
 
     Attributes
     ----------
-    places : (n, 3) float64
+    positions : (n, 3) float64
         Of the corners, m from the scene's origin.
     corners : (f, 4) int64
         Of the squares, anticlockwise from above.
@@ -43,7 +43,7 @@ class _Faces:
     is_measured : (f,) bool
     """
 
-    places: Floats
+    positions: Floats
     corners: NDArray[np.int64]
     change_m: NDArray[np.float32]
     is_measured: NDArray[np.bool_]
@@ -71,7 +71,7 @@ class ChangeSurface:
         return 0 if self._actor is None or self._faces is None else len(self._faces.corners)
 
     def show(
-        self, change: ChangeGrid | None, look: VolumeLook, origin: Floats, clip: Clip | None
+        self, change: ChangeGrid | None, look: VolumeStyle, origin: Floats, clip: Clip | None
     ) -> None:
         """Draw this map like that; None: none.
 
@@ -121,16 +121,16 @@ def _faces_of(change: ChangeGrid, origin: Floats, clip: Clip | None) -> _Faces:
     east, north = np.meshgrid((columns + 0.5) * grid.size_m, (rows + 0.5) * grid.size_m)
     lift = np.stack([east, north, height + _ABOVE_M], axis=-1).reshape(-1, 3)
     # In float64 first: float32 doesn't hold survey coordinates.
-    places = lift + (grid.origin - origin)
+    positions = lift + (grid.origin - origin)
     if clip is not None:
-        is_face &= clip.holds(places + origin).reshape(height.shape)[:-1, :-1]
+        is_face &= clip.holds(positions + origin).reshape(height.shape)[:-1, :-1]
     south_west = numbers[:-1, :-1][is_face]
     wide = height.shape[1]
     corners = np.stack(
         [south_west, south_west + 1, south_west + wide + 1, south_west + wide], axis=1
     )
     own_m, is_measured = change.change_m[cells], change.is_measured[cells]
-    return _Faces(places, corners, own_m[:-1, :-1][is_face], is_measured[:-1, :-1][is_face])
+    return _Faces(positions, corners, own_m[:-1, :-1][is_face], is_measured[:-1, :-1][is_face])
 
 
 def _colours(faces: _Faces, limit_m: float) -> NDArray[np.uint8]:
@@ -144,7 +144,7 @@ def _colours(faces: _Faces, limit_m: float) -> NDArray[np.uint8]:
 
 def _actor_of(faces: _Faces) -> vtkActor:
     data = vtkPolyData()
-    data.SetPoints(places_of(faces.places))
+    data.SetPoints(positions_of(faces.positions))
     sizes = np.full(len(faces.corners), _CORNERS, np.int64)
     data.SetPolys(faces_of(faces.corners.reshape(-1), sizes))
     mapper = vtkPolyDataMapper()

@@ -63,12 +63,12 @@ class FeatureActors:
         self._dashes = {id_: made for id_, made in self._dashes.items() if id_ in shown}
         for width_px, halo_px in sorted({_widths(one.style) for one in styled}):
             alike = [one for one in styled if _widths(one.style) == (width_px, halo_px)]
-            places, colours = self._segments(alike)
-            if len(places):
-                halo = _lines_actor(places, None)
+            positions, colours = self._segments(alike)
+            if len(positions):
+                halo = _lines_actor(positions, None)
                 halo.GetProperty().SetLineWidth((width_px + 2 * halo_px) * scale)
                 self._add(self._halos, halo)
-                line = _lines_actor(places, colours)
+                line = _lines_actor(positions, colours)
                 line.GetProperty().SetLineWidth(width_px * scale)
                 self._add(self._lines, line)
         points = [one for one in styled if one.shape.feature.geometry is Geometry.POINT]
@@ -90,7 +90,7 @@ class FeatureActors:
     def _show_marks(self, styled: Sequence[StyledShape], size_px: float, *, is_round: bool) -> None:
         if not styled:
             return
-        places = np.concatenate([one.shape.local_xyz for one in styled])
+        positions = np.concatenate([one.shape.local_xyz for one in styled])
         colours = np.concatenate(
             [np.tile(_rgb(one.style), (len(one.shape.local_xyz), 1)) for one in styled]
         )
@@ -98,7 +98,7 @@ class FeatureActors:
             (self._lines, 4.0, None),
             (self._marks, 0.0, colours),
         ):
-            actor = _points_actor(places, painted)
+            actor = _points_actor(positions, painted)
             actor.GetProperty().SetPointSize(size_px + extra_px)
             actor.GetProperty().SetRenderPointsAsSpheres(is_round)
             self._add(renderer, actor)
@@ -106,9 +106,11 @@ class FeatureActors:
     def _hollow(self, styled: Sequence[StyledShape], size_px: float) -> None:
         """Open the squares of vertices that rest on no measured point."""
         inside = [
-            place
+            position
             for one in styled
-            for place, vertex in zip(one.shape.local_xyz, one.shape.feature.vertices, strict=True)
+            for position, vertex in zip(
+                one.shape.local_xyz, one.shape.feature.vertices, strict=True
+            )
             if vertex.is_occluded
         ]
         if inside:
@@ -133,7 +135,7 @@ class FeatureActors:
         id_ = shape.feature.id
         known = self._dashes.get(id_)
         if known is None or known[0] is not shape:
-            known = shape, dashed(shape.local_xyz, shape.segments)
+            known = shape, dash_segments(shape.local_xyz, shape.segments)
             self._dashes[id_] = known
         return known[1]
 
@@ -142,7 +144,7 @@ class FeatureActors:
         self._actors.append((renderer, actor))
 
 
-def dashed(local_xyz: Floats, ends: NDArray[np.int64]) -> Floats:
+def dash_segments(local_xyz: Floats, ends: NDArray[np.int64]) -> Floats:
     """Segments of a line cut into dashes.
 
     Parameters
@@ -166,8 +168,8 @@ def dashed(local_xyz: Floats, ends: NDArray[np.int64]) -> Floats:
     cuts = np.unique(np.concatenate([starts, stops, along]))
     middles = (cuts[:-1] + cuts[1:]) / 2
     is_dash = np.mod(middles, _DASH_M + _GAP_M) < _DASH_M
-    places = np.column_stack([np.interp(cuts, along, axis) for axis in corners.T])
-    return np.stack([places[:-1][is_dash], places[1:][is_dash]], axis=1)
+    positions = np.column_stack([np.interp(cuts, along, axis) for axis in corners.T])
+    return np.stack([positions[:-1][is_dash], positions[1:][is_dash]], axis=1)
 
 
 def _widths(style: FeatureStyle) -> tuple[float, float]:
@@ -180,15 +182,15 @@ def _rgb(style: FeatureStyle) -> Colours:
     return rgb
 
 
-def _lines_actor(places: Floats, colours: Colours | None) -> vtkActor:
-    data = lines_of(places)
+def _lines_actor(positions: Floats, colours: Colours | None) -> vtkActor:
+    data = lines_of(positions)
     if colours is not None:
         data.GetCellData().SetScalars(as_vtk(colours))
     return _flat_actor(data)
 
 
-def _points_actor(places: Floats, colours: Colours | None) -> vtkActor:
-    data = cloud_of(places)
+def _points_actor(positions: Floats, colours: Colours | None) -> vtkActor:
+    data = cloud_of(positions)
     if colours is not None:
         data.GetPointData().SetScalars(as_vtk(colours))
     return _flat_actor(data)

@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 from PySide6.QtGui import QPolygonF
 
-from widgets.scene_view.projection import Projection
+from widgets.scene_view.projection import SceneProjection
 from widgets.shared.feature_hits import FeatureHit, features_inside, segment_at, vertex_at
 from widgets.shared.feature_shapes import FlatShapes
 
 
 def feature_at(
     flat: FlatShapes,
-    projection: Projection,
+    projection: SceneProjection,
     position: tuple[float, float],
     selected: frozenset[str],
 ) -> FeatureHit:
@@ -34,7 +34,9 @@ def feature_at(
     return segment_at(flat, ends, numbers, position, selected) or FeatureHit()
 
 
-def features_within(flat: FlatShapes, projection: Projection, outline: QPolygonF) -> frozenset[str]:
+def features_within(
+    flat: FlatShapes, projection: SceneProjection, outline: QPolygonF
+) -> frozenset[str]:
     """Ids of the features that lie wholly inside an outline in the picture."""
     pixels, _ = projection.to_screen(flat.local_xyz)
     return features_inside(flat, pixels, outline)

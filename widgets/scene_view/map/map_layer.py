@@ -13,13 +13,13 @@ from processing.image.clip import Clip
 from processing.project.catalogue import Catalogue
 from processing.project.feature import Feature, Status
 from processing.project.solids import thickness_of
-from widgets.shared.feature_shapes import FeatureShapes, FlatShapes, flattened
+from widgets.shared.feature_shapes import FeatureShapes, FlatShapes, flatten_shapes
 from widgets.shared.feature_style import style_of
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
 if TYPE_CHECKING:  # importing it imports VTK, which is done after the view was shown
-    from widgets.scene_view.stage import Stage
+    from widgets.scene_view.scene_renderer import SceneRenderer
 
 
 class MapLayer(QObject):
@@ -52,7 +52,7 @@ class MapLayer(QObject):
         self._source = source
         self._shared = shared
         self._shapes = FeatureShapes(np.zeros(3), ())
-        self.flat: FlatShapes = flattened(())
+        self.flat: FlatShapes = flatten_shapes(())
         self.replaced = ""
         self._clip: Clip | None = None
         self._soon = QTimer(self, singleShot=True, interval=0)
@@ -80,18 +80,18 @@ class MapLayer(QObject):
             self._soon.stop()
             self.outdated.emit()
 
-    def show(self, stage: Stage | None) -> None:
+    def show(self, scene_renderer: SceneRenderer | None) -> None:
         """Draw what is to be seen, once there is a stage."""
         self.replaced = self._replaced_now()
         seen = self._shapes.seen(self._shared.view_settings.shows, self.replaced)
-        self.flat = flattened(seen)
-        if stage is None:
+        self.flat = flatten_shapes(seen)
+        if scene_renderer is None:
             return
         volume = self._shared.volume
-        stage.change.show(volume.drawn, volume.look, self._source.origin(), self._clip)
+        scene_renderer.change.show(volume.drawn, volume.look, self._source.origin(), self._clip)
         # Imported here: it draws by VTK.
         from widgets.scene_view.map.feature_actors import StyledShape
-        from widgets.scene_view.map.solid_actors import Body
+        from widgets.scene_view.map.solid_actors import StyledSolid
 
         catalogue, chosen = self._source.catalogue(), self._shared.selection.features
         styled = [
@@ -101,10 +101,10 @@ class MapLayer(QObject):
             )
             for shape in seen
         ]
-        stage.features.show(styled, stage.scale)
-        stage.solids.show(
+        scene_renderer.features.show(styled, scene_renderer.scale)
+        scene_renderer.solids.show(
             [
-                Body(one.shape, one.style, thickness_m)
+                StyledSolid(one.shape, one.style, thickness_m)
                 for one in styled
                 if (thickness_m := _thickness(catalogue, one.shape.feature))
             ]
@@ -113,8 +113,8 @@ class MapLayer(QObject):
     def places_of(self, ids: Iterable[str]) -> NDArray[np.float64] | None:
         """(n, 3): vertices of features, metres from the origin; None when there are none."""
         shapes = [self._shapes.get(id_) for id_ in ids]
-        places = [shape.local_xyz for shape in shapes if shape is not None]
-        return np.concatenate(places) if places else None
+        positions = [shape.local_xyz for shape in shapes if shape is not None]
+        return np.concatenate(positions) if positions else None
 
     def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
         for id_ in ids:

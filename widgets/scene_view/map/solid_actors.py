@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
-from processing.project.solids import Face, Solid, solid_of
-from widgets.scene_view.vtk_arrays import as_vtk, faces_of, places_of
+from processing.project.solids import FaceIndices, Solid, solid_of
+from widgets.scene_view.vtk_arrays import as_vtk, faces_of, positions_of
 from widgets.shared.feature_shapes import FeatureShape
 from widgets.shared.feature_style import FeatureStyle
 
@@ -34,7 +34,7 @@ _AMBIENT, _DIFFUSE = 0.35, 0.65
 
 
 @dataclass(frozen=True)
-class Body:
+class StyledSolid:
     """A feature that is the top of a body, and how it is to look."""
 
     shape: FeatureShape
@@ -55,7 +55,7 @@ class _Mesh:
         Between the bars of a grating.
     """
 
-    places: Floats
+    positions: Floats
     corners: Integers
     sizes: Integers
     is_gap: NDArray[np.bool_]
@@ -82,7 +82,7 @@ class SolidActors:
             return 0
         return int(self._actor.GetMapper().GetInput().GetNumberOfPolys())
 
-    def show(self, bodies: Sequence[Body]) -> None:
+    def show(self, bodies: Sequence[StyledSolid]) -> None:
         """Draw exactly these."""
         if self._actor is not None:
             self._renderer.RemoveActor(self._actor)
@@ -98,7 +98,7 @@ class SolidActors:
         """Draw nothing."""
         self.show(())
 
-    def _meshes(self, bodies: Sequence[Body]) -> list[_Mesh | None]:
+    def _meshes(self, bodies: Sequence[StyledSolid]) -> list[_Mesh | None]:
         """The bodies' shapes; those of before where nothing but their looks has changed."""
         made = {}
         for body in bodies:
@@ -111,31 +111,31 @@ class SolidActors:
         return [made[body.shape.feature.id][2] for body in bodies]
 
 
-def _mesh(body: Body) -> _Mesh | None:
+def _mesh(body: StyledSolid) -> _Mesh | None:
     solid = solid_of(body.shape.local_xyz, body.thickness_m)
     if solid is None:
         return None
-    places, top = solid.places, list(solid.top)
-    is_barred = body.shape.feature.kind == _BARRED and len(solid.places) == 8
+    positions, top = solid.positions, list(solid.top)
+    is_barred = body.shape.feature.kind == _BARRED and len(solid.positions) == 8
     if is_barred:
-        places, top = _barred(solid)
+        positions, top = _barred(solid)
     faces = [*top, *solid.sides, *solid.bottom]
     is_gap = np.zeros(len(faces), dtype=np.bool_)
     is_gap[1 : len(top) : 2] = is_barred
     return _Mesh(
-        places,
+        positions,
         np.array([corner for face in faces for corner in face], dtype=np.int64),
         np.array([len(face) for face in faces], dtype=np.int64),
         is_gap,
     )
 
 
-def _colour(body: Body) -> tuple[int, int, int, int]:
+def _colour(body: StyledSolid) -> tuple[int, int, int, int]:
     red, green, blue = body.style.rgb
     return round(red * 255), round(green * 255), round(blue * 255), round(_opacity(body) * 255)
 
 
-def _opacity(body: Body) -> float:
+def _opacity(body: StyledSolid) -> float:
     if body.style.has_vertices:
         return _CHOSEN
     if not body.style.is_dashed:
@@ -144,9 +144,9 @@ def _opacity(body: Body) -> float:
     return _DOUBTFUL + (_SURE - _DOUBTFUL) * confidence
 
 
-def _barred(solid: Solid) -> tuple[Floats, list[Face]]:
+def _barred(solid: Solid) -> tuple[Floats, list[FaceIndices]]:
     """The top as bars across its longer side, with gaps between them."""
-    corners = solid.places[:4]
+    corners = solid.positions[:4]
     if np.linalg.norm(corners[1] - corners[0]) < np.linalg.norm(corners[2] - corners[1]):
         corners = np.roll(corners, -1, axis=0)
     long_m = float(np.linalg.norm(corners[1] - corners[0]))
@@ -157,19 +157,19 @@ def _barred(solid: Solid) -> tuple[Floats, list[Face]]:
     cuts = np.concatenate([[0.0], np.sort(np.concatenate([middles - half, middles + half])), [1.0]])
     near = corners[0] + cuts[:, None] * (corners[1] - corners[0])
     far = corners[3] + cuts[:, None] * (corners[2] - corners[3])
-    first, count = len(solid.places), len(cuts)
-    faces: list[Face] = [
+    first, count = len(solid.positions), len(cuts)
+    faces: list[FaceIndices] = [
         (first + at, first + at + 1, first + count + at + 1, first + count + at)
         for at in range(count - 1)
     ]
-    return np.concatenate([solid.places, near, far]), faces
+    return np.concatenate([solid.positions, near, far]), faces
 
 
 def _actor_of(meshes: Sequence[_Mesh], colours: Colours) -> vtkActor:
-    counts = np.array([len(mesh.places) for mesh in meshes])
+    counts = np.array([len(mesh.positions) for mesh in meshes])
     starts = np.repeat(np.cumsum(counts) - counts, [mesh.corners.size for mesh in meshes])
     data = vtkPolyData()
-    data.SetPoints(places_of(np.concatenate([mesh.places for mesh in meshes])))
+    data.SetPoints(positions_of(np.concatenate([mesh.positions for mesh in meshes])))
     corners = np.concatenate([mesh.corners for mesh in meshes])
     data.SetPolys(faces_of(corners + starts, np.concatenate([mesh.sizes for mesh in meshes])))
     of_faces = np.repeat(colours, [mesh.sizes.size for mesh in meshes], axis=0)

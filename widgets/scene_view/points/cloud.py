@@ -21,14 +21,14 @@ from widgets.scene_view.points.budget import FrameBudget
 from widgets.scene_view.points.scene_tile import (
     DrawnTile,
     SceneTile,
-    Showing,
+    TileAppearance,
     TileId,
     shown_tiles,
 )
-from widgets.scene_view.points.tile_feed import Choice, TileFeed, Wish
-from widgets.scene_view.stage import Stage
+from widgets.scene_view.points.tile_feed import SceneRequest, TileFeed, TileSelection
+from widgets.scene_view.scene_renderer import SceneRenderer
 from widgets.shared.feature_style import ACCENT
-from widgets.shared.view_settings import PointLook
+from widgets.shared.view_settings import PointStyle
 
 Floats = NDArray[np.float64]
 
@@ -37,12 +37,12 @@ _LEAST_MARK_MS, _FRAMES_BETWEEN_MARKS = 20, 3.0
 _POINTS_PER_PORTION = 150_000
 
 
-class Cloud(QObject):
+class PointCloudLayer(QObject):
     """Keeps two sets of tiles: one small enough to move, one that is sharp.
 
     Parameters
     ----------
-    stage : Stage
+    scene_renderer : Stage
     tiles : TileCache
 
     Signals
@@ -56,24 +56,26 @@ class Cloud(QObject):
     changed = Signal()
     settled = Signal()
 
-    def __init__(self, stage: Stage, tiles: TileCache, parent: QObject | None = None) -> None:
+    def __init__(
+        self, scene_renderer: SceneRenderer, tiles: TileCache, parent: QObject | None = None
+    ) -> None:
         super().__init__(parent)
         self.budget = FrameBudget()
-        self._stage = stage
+        self._scene_renderer = scene_renderer
         self._feed = TileFeed(tiles)
         self._feed.chosen.connect(self._on_feed_chosen)
         self._feed.arrived.connect(self._on_feed_arrived)
-        self._feed.surveyed.connect(self._wish)
+        self._feed.surveyed.connect(self._request)
         self._drives: tuple[tuple[Drive, ImageKind], ...] = ()
         self._origin: Floats = np.zeros(3)
         self._age = 0
         self._camera: Camera3D | None = None
-        self._showing = Showing(PointLook())
+        self._showing = TileAppearance(PointStyle())
         self._marked: dict[str, NDArray[np.int64]] = {}
         self._to_mark: dict[str, NDArray[np.int64]] = {}
         self._frame_s = 0.0
         self._chosen: dict[bool, frozenset[TileId]] = {False: frozenset(), True: frozenset()}
-        self._shown: dict[TileId, Showing] = {}
+        self._shown: dict[TileId, TileAppearance] = {}
         self._arrived: list[SceneTile] = []
         self._is_moving = False
         self._is_shading_wanted = True
@@ -90,7 +92,7 @@ class Cloud(QObject):
     @property
     def drawn(self) -> tuple[DrawnTile, ...]:
         """The tiles that are drawn."""
-        return self._stage.tiles.shown
+        return self._scene_renderer.tiles.shown
 
     @property
     def is_shading_wanted(self) -> bool:
@@ -114,10 +116,10 @@ class Cloud(QObject):
         self._age += 1
         self._arrived.clear()
         self._shown.clear()
-        self._stage.tiles.keep_only(())
+        self._scene_renderer.tiles.keep_only(())
         self._chosen = {False: frozenset(), True: frozenset()}
-        self._wish_again()
-        self._tell()
+        self._request_again()
+        self._report()
 
     def look_from(self, camera: Camera3D) -> None:
         """The camera moved."""
@@ -128,9 +130,9 @@ class Cloud(QObject):
             self._is_moving = True
             self._show()
         self._rest.start()
-        self._wish()
+        self._request()
 
-    def colour(self, look: PointLook) -> None:
+    def colour(self, look: PointStyle) -> None:
         """Show points in these colours; their size is the stage's matter."""
         self._show_as(replace(self._showing, look=_colours_only(look)))
 
@@ -138,11 +140,11 @@ class Cloud(QObject):
         """Show only points in this part of space; None: all."""
         self._show_as(replace(self._showing, clip=clip))
 
-    def _show_as(self, showing: Showing) -> None:
+    def _show_as(self, showing: TileAppearance) -> None:
         if showing != self._showing:
             self._showing = showing
             # No frame now: it would hold up the worker that colours what is there.
-            self._wish_again()
+            self._request_again()
 
     def mark(self, points: Mapping[str, NDArray[np.int64]]) -> None:
         """Mark chosen points: drive id to sorted indices; at once, or when frames allow."""
@@ -166,17 +168,17 @@ class Cloud(QObject):
             )
             for drive_id in {*before, *self._marked}
         }
-        for tile in self._stage.tiles.tiles.values():
+        for tile in self._scene_renderer.tiles.tiles.values():
             if tile.id.key in touched.get(tile.id.drive_id, ()):
-                self._stage.tiles.put(tile, self._colours_of(tile))
-        self._tell()
+                self._scene_renderer.tiles.put(tile, self._colours_of(tile))
+        self._report()
 
     def refresh(self, drive_id: str) -> None:
         """The drive's columns changed: get its colours again."""
         self._shown = {
             tile: shown for tile, shown in self._shown.items() if tile.drive_id != drive_id
         }
-        self._wish_again()
+        self._request_again()
 
     def refresh_labels(self, drive_id: str, points: NDArray[np.int64]) -> None:
         """Labels of points changed: get the colours of the tiles that show them again."""
@@ -187,13 +189,13 @@ class Cloud(QObject):
                 for tile, shown in self._shown.items()
                 if tile.drive_id != drive_id or tile.key not in touched
             }
-            self._wish_again()
+            self._request_again()
 
     def set_shading(self, *, is_on: bool) -> None:
         """Turn eye-dome lighting on or off."""
         self._is_shading_wanted = is_on
         self._shade()
-        self._tell()
+        self._report()
 
     def record_frame(self, seconds: float) -> None:
         """Learn from how long a frame took."""
@@ -202,7 +204,7 @@ class Cloud(QObject):
         if self._was_changed:
             self._was_changed = False
             return
-        points = self._stage.tiles.points_shown
+        points = self._scene_renderer.tiles.points_shown
         if self._is_moving:
             self.budget.record_moving(points, seconds)
         elif self.is_settled:
@@ -223,20 +225,20 @@ class Cloud(QObject):
                 return TouchedTiles(image_of(drive, kind), points)
         return ()
 
-    def _wish_again(self) -> None:
+    def _request_again(self) -> None:
         self._is_chosen = False
         self._tell_if_settled()
         if self._is_moving:
             self._rest.start()
-        self._wish()
+        self._request()
 
-    def _wish(self) -> None:
+    def _request(self) -> None:
         if self._camera is None:
             return
         is_still = not self._is_moving
         budget = self.budget.still_points if is_still else self.budget.moving_points
-        self._feed.wish(
-            Wish(
+        self._feed.request(
+            SceneRequest(
                 drives=self._drives,
                 origin=self._origin,
                 age=self._age,
@@ -244,8 +246,8 @@ class Cloud(QObject):
                 showing=self._showing,
                 budget_points=budget,
                 is_still=is_still,
-                kept=self._chosen[not is_still] & self._stage.tiles.tiles.keys(),
-                there=self._stage.tiles.tiles,
+                kept=self._chosen[not is_still] & self._scene_renderer.tiles.tiles.keys(),
+                there=self._scene_renderer.tiles.tiles,
                 known=frozenset(self._shown.items()),
             )
         )
@@ -254,15 +256,15 @@ class Cloud(QObject):
         self._is_moving = False
         self._is_chosen = False
         self._tell_if_settled()
-        self._wish()
+        self._request()
 
-    def _on_feed_chosen(self, choice: Choice) -> None:
-        wish = choice.wish
+    def _on_feed_chosen(self, choice: TileSelection) -> None:
+        request = choice.request
         # A still picture chosen for a camera that has moved on is of no use.
-        if wish.age != self._age or wish.is_still is self._is_moving:
+        if request.age != self._age or request.is_still is self._is_moving:
             return
-        self._chosen[wish.is_still] = frozenset(choice.tiles)
-        self._is_chosen = choice.is_final and wish.camera == self._camera
+        self._chosen[request.is_still] = frozenset(choice.tiles)
+        self._is_chosen = choice.is_final and request.camera == self._camera
         self._show()
 
     def _on_feed_arrived(self, tiles: tuple[SceneTile, ...]) -> None:
@@ -271,14 +273,14 @@ class Cloud(QObject):
 
     def _on_portions_timeout(self) -> None:
         wanted = self._chosen[False] | self._chosen[True]
-        there = self._stage.tiles.tiles
+        there = self._scene_renderer.tiles.tiles
         drawn = {one.tile.id for one in self.drawn}
         points, is_new = 0, False
         while self._arrived and points < _POINTS_PER_PORTION:
             tile = self._arrived.pop(0)
             if tile.age != self._age or tile.id not in wanted or tile.showing != self._showing:
                 continue
-            self._stage.tiles.put(tile, self._colours_of(tile))
+            self._scene_renderer.tiles.put(tile, self._colours_of(tile))
             self._shown[tile.id] = tile.showing
             is_new |= tile.id in drawn
             # Colours alone cost the graphics little: what was seen changes at once.
@@ -289,33 +291,33 @@ class Cloud(QObject):
 
     def _show(self, *, is_new: bool = False) -> None:
         """Draw what is wanted and there; a frame costs too much to draw one without need."""
-        actors = self._stage.tiles
+        actors = self._scene_renderer.tiles
         shown = shown_tiles(self._chosen[not self._is_moving], actors.tiles)
         is_new |= actors.show(shown)
         self._keep(shown | self._chosen[False] | self._chosen[True])
         is_new |= self._shade()
         if is_new:
-            self._tell()
+            self._report()
         self._tell_if_settled()
 
     def _keep(self, tiles: Collection[TileId]) -> None:
-        self._stage.tiles.keep_only(tiles)
+        self._scene_renderer.tiles.keep_only(tiles)
         self._shown = {tile: shown for tile, shown in self._shown.items() if tile in tiles}
 
     def _shade(self) -> bool:
         has_time = not self._is_moving or self.budget.is_fast
-        return self._stage.shade(is_on=self._is_shading_wanted and has_time)
+        return self._scene_renderer.shade(is_on=self._is_shading_wanted and has_time)
 
     def _colours_of(self, tile: SceneTile) -> NDArray[np.uint8]:
         marked = self._marked.get(tile.id.drive_id)
         if marked is None or not marked.size:
             return tile.colours
-        places = np.minimum(np.searchsorted(marked, tile.points), marked.size - 1)
+        positions = np.minimum(np.searchsorted(marked, tile.points), marked.size - 1)
         colours = tile.colours.copy()
-        colours[marked[places] == tile.points] = (ACCENT.red(), ACCENT.green(), ACCENT.blue())
+        colours[marked[positions] == tile.points] = (ACCENT.red(), ACCENT.green(), ACCENT.blue())
         return colours
 
-    def _tell(self) -> None:
+    def _report(self) -> None:
         self._was_changed = True
         self.changed.emit()
 
@@ -325,6 +327,6 @@ class Cloud(QObject):
             self.settled.emit()
 
 
-def _colours_only(look: PointLook) -> PointLook:
+def _colours_only(look: PointStyle) -> PointStyle:
     """The look without what the graphics do by themselves."""
-    return replace(look, point_size_px=PointLook().point_size_px)
+    return replace(look, point_size_px=PointStyle().point_size_px)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from processing.image.ray_hits import TOLERANCE_PX, RayHit, RayHits, RaySight
 from processing.image.tile_descent import entry_depth
-from widgets.scene_view.projection import NEAR_M, Projection
+from widgets.scene_view.projection import NEAR_M, SceneProjection
 
 Floats = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ def pick(entries: Floats, search: Callable[[int, RayHits], None], sight: RaySigh
     return hits.best()
 
 
-def sight_at(projection: Projection, origin: Floats, x: float, y: float) -> RaySight:
+def sight_at(projection: SceneProjection, origin: Floats, x: float, y: float) -> RaySight:
     """What is seen at a pixel of the widget.
 
     Parameters
@@ -47,7 +47,7 @@ def sight_at(projection: Projection, origin: Floats, x: float, y: float) -> RayS
     return RaySight(projection.matrix_with_depth, origin, nearest, (x, y))
 
 
-def ray_at(projection: Projection, origin: Floats, x: float, y: float) -> Floats:
+def ray_at(projection: SceneProjection, origin: Floats, x: float, y: float) -> Floats:
     """(9,): the cone within reach of a pixel; see :mod:`processing.image.tile_descent`.
 
     Without perspective it is a tube, which begins far behind the camera.

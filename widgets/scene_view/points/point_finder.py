@@ -20,8 +20,8 @@ from processing.points.drive import Drive
 from processing.project.feature import PointReference
 from widgets.scene_view.points.picking import entry_depths, pick, ray_at, sight_at
 from widgets.scene_view.points.scene_tile import DrawnTile
-from widgets.scene_view.projection import NEAR_M, Projection
-from widgets.shared.cursor import Place
+from widgets.scene_view.projection import NEAR_M, SceneProjection
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.view_settings import ViewSettings
 
 Floats = NDArray[np.float64]
@@ -37,7 +37,7 @@ class FoundPoint:
         In front of the camera.
     """
 
-    place: Place
+    position: PickedPosition
     depth_m: float
 
 
@@ -66,7 +66,7 @@ class PointFinder:
         self._clip = clip
 
     def exact(
-        self, shown: Sequence[DrawnTile], projection: Projection, x: float, y: float
+        self, shown: Sequence[DrawnTile], projection: SceneProjection, x: float, y: float
     ) -> FoundPoint | None:
         """The front-most of all measured points under a pixel, drawn or not.
 
@@ -97,7 +97,7 @@ class PointFinder:
         return self._found(pick(np.concatenate(entries), search, sight))
 
     def drawn(
-        self, shown: Sequence[DrawnTile], projection: Projection, x: float, y: float
+        self, shown: Sequence[DrawnTile], projection: SceneProjection, x: float, y: float
     ) -> FoundPoint | None:
         """The front-most of the points that are drawn, which takes less time."""
         tiles = [
@@ -115,7 +115,9 @@ class PointFinder:
         entries = entry_depths(low, high, ray_at(projection, np.zeros(3), x, y))
         return self._found(pick(entries, search, sight_at(projection, self._origin, x, y)))
 
-    def enclosed(self, projection: Projection, outline: Floats) -> dict[str, NDArray[np.int64]]:
+    def enclosed(
+        self, projection: SceneProjection, outline: Floats
+    ) -> dict[str, NDArray[np.int64]]:
         """All points that are seen inside an outline, drawn or not, but for those clipped off.
 
         Parameters
@@ -156,14 +158,14 @@ class PointFinder:
         return [TileKey(0, row, column) for row, column in keys], met[:, 2].copy()
 
     def _seen_unsurveyed(
-        self, shown: Sequence[DrawnTile], projection: Projection, x: float, y: float
+        self, shown: Sequence[DrawnTile], projection: SceneProjection, x: float, y: float
     ) -> list[tuple[str, TileKey]]:
         """The tile of the point that is drawn here, if its drive's tiles are only sketched.
 
         Where such tiles are isn't sure; that this one is here is.
         """
         seen = self.drawn(shown, projection, x, y)
-        reference = None if seen is None else seen.place.measured
+        reference = None if seen is None else seen.position.measured
         if reference is None:
             return []
         drive, kind = self._drives[reference.drive]
@@ -178,5 +180,5 @@ class PointFinder:
             return None
         drive, _ = self._drives[hit.drive_id]
         easting, northing, height = drive.xyz(np.array([hit.point]))[0].tolist()
-        place = Place((easting, northing, height), PointReference(drive.id, hit.point))
-        return FoundPoint(place, hit.depth_m)
+        position = PickedPosition((easting, northing, height), PointReference(drive.id, hit.point))
+        return FoundPoint(position, hit.depth_m)

@@ -12,7 +12,7 @@ from processing.image.clip import Clip
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileRequest
 from processing.image.tiles import TileKey
-from widgets.shared.view_settings import PointLook
+from widgets.shared.view_settings import PointStyle
 
 
 @dataclass(frozen=True)
@@ -30,18 +30,18 @@ class TileId:
 
 
 @dataclass(frozen=True)
-class Showing:
+class TileAppearance:
     """What is shown of the tiles: in which colours, and of which part of space.
 
     Attributes
     ----------
-    look : PointLook
+    look : PointStyle
         With the standard point size, which makes no difference here.
     clip : Clip or None
         None: all of it.
     """
 
-    look: PointLook
+    look: PointStyle
     clip: Clip | None = None
 
 
@@ -61,7 +61,7 @@ class SceneTile:
     spacing_m : float
         Mean distance of neighbours.
     age : int
-        Of the wish it was made for: places are about the origin of that time.
+        Of the request it was made for: places are about the origin of that time.
     clip : Clip or None
         What it was clipped to.
     whole : SceneTile or None
@@ -83,16 +83,16 @@ class SceneTile:
         return TileId(self.request.drive_id, self.request.kind, self.request.key)
 
     @property
-    def showing(self) -> Showing:
+    def showing(self) -> TileAppearance:
         """What its colours show, and of which part of space."""
         request = self.request
-        look = PointLook(
+        look = PointStyle(
             request.attribute,
             request.low_percent,
             request.high_percent,
             hides_noise=request.hides_noise,
         )
-        return Showing(look, self.clip)
+        return TileAppearance(look, self.clip)
 
     def clipped(self, clip: Clip | None, origin: NDArray[np.float64]) -> SceneTile:
         """The tile with exactly the points that a clip leaves.

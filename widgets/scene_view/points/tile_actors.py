@@ -16,8 +16,8 @@ from widgets.scene_view.vtk_arrays import as_vtk, cloud_of
 
 _PROGRAM_POINT_SIZE = 0x8642  # OpenGL's name for sizes that the vertex shader decides
 _SPACING_SHARE = 0.9
-_PLACE_CODE = "//VTK::PositionVC::Impl"
-_SIZE_CODE = f"""{_PLACE_CODE}
+_POSITION_CODE = "//VTK::PositionVC::Impl"
+_SIZE_CODE = f"""{_POSITION_CODE}
   gl_PointSize = clamp(sizeFactor / gl_Position.w, sizeLeast, sizeMost);
 """
 
@@ -168,7 +168,7 @@ class _TileActor:
         self.actor.SetMapper(mapper)
         self.actor.GetProperty().LightingOff()
         self.actor.GetShaderProperty().AddVertexShaderReplacement(
-            _PLACE_CODE,
+            _POSITION_CODE,
             True,  # noqa: FBT003 - VTK takes no keyword: before its own replacements
             _SIZE_CODE,
             False,  # noqa: FBT003 - VTK takes no keyword: only the first place

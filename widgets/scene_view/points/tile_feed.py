@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from processing.errors import UserError
-from processing.image.attributes import colours, telling_attribute
+from processing.image.attributes import colours, most_telling_attribute
 from processing.image.images_of_drives import image_of
 from processing.image.kinds import ImageKind
 from processing.image.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.tile_choice import Camera3D, tiles_in_view
 from processing.points.drive import Drive
-from widgets.scene_view.points.scene_tile import SceneTile, Showing, TileId
+from widgets.scene_view.points.scene_tile import SceneTile, TileAppearance, TileId
 from widgets.scene_view.points.tile_survey import TileSurvey
-from widgets.shared.view_settings import PointLook
+from widgets.shared.view_settings import PointStyle
 
 _TOGETHER_S = 0.15
 """Tiles that were coloured within this time are told together, since each telling is a frame."""
@@ -30,7 +30,7 @@ _PAUSE_S = 0.05
 
 
 @dataclass(frozen=True)
-class Wish:
+class SceneRequest:
     """What the view wants to see.
 
     Attributes
@@ -57,17 +57,17 @@ class Wish:
     origin: NDArray[np.float64]
     age: int
     camera: Camera3D
-    showing: Showing
+    showing: TileAppearance
     budget_points: int
     is_still: bool
     kept: frozenset[TileId]
     there: Mapping[TileId, SceneTile]
-    known: frozenset[tuple[TileId, Showing]]
+    known: frozenset[tuple[TileId, TileAppearance]]
 
 
 @dataclass(frozen=True)
-class Choice:
-    """The tiles to draw for a wish.
+class TileSelection:
+    """The tiles to draw for a request.
 
     Attributes
     ----------
@@ -75,13 +75,13 @@ class Choice:
         Whether the places of these tiles are known exactly, so that the choice stays.
     """
 
-    wish: Wish
+    request: SceneRequest
     tiles: tuple[TileId, ...]
     is_final: bool
 
 
 class TileFeed(QObject):
-    """Works out wishes one after the other; the newest is the one that counts.
+    """Works out requests one after the other; the newest is the one that counts.
 
     It has no parent: a loader may be telling it of a tile while the view goes away.
 
@@ -102,18 +102,18 @@ class TileFeed(QObject):
         super().__init__()
         self._tiles = tiles
         self._changed = threading.Condition()
-        self._next: Wish | None = None
-        self._current: Wish | None = None
+        self._next: SceneRequest | None = None
+        self._current: SceneRequest | None = None
         self._is_closed = False
         self._survey = TileSurvey()
         self._told_at = 0.0
         self._worker = threading.Thread(target=self._work, name="scene tiles", daemon=True)
         self._worker.start()
 
-    def wish(self, wish: Wish) -> None:
+    def request(self, request: SceneRequest) -> None:
         """Ask for what is to be seen now; replaces what was asked for and isn't begun."""
         with self._changed:
-            self._next = wish
+            self._next = request
             self._changed.notify()
 
     def close(self) -> None:
@@ -135,55 +135,57 @@ class TileFeed(QObject):
                     self._changed.wait(_PAUSE_S)  # who moves needs the time for frames
                 if self._is_closed:
                     return
-                wish, self._next = self._next, None
-                self._current = wish or self._current
-            if wish is not None:
-                self._survey.use(wish.drives, wish.camera)
-                self._fulfil(wish)
+                request, self._next = self._next, None
+                self._current = request or self._current
+            if request is not None:
+                self._survey.use(request.drives, request.camera)
+                self._fulfil(request)
             elif self._survey.go_on() or time.monotonic() - self._told_at > _SURVEYED_S:
                 self._told_at = time.monotonic()
                 self._emit_surveyed()
 
-    def _fulfil(self, wish: Wish) -> None:
+    def _fulfil(self, request: SceneRequest) -> None:
         surveyed = self._survey.opened
         pyramids = [pyramid for _, pyramid in surveyed]
         found = tiles_in_view(
-            pyramids, wish.camera, wish.budget_points, clip=wish.showing.clip, has_all=True
+            pyramids, request.camera, request.budget_points, clip=request.showing.clip, has_all=True
         )
         chosen = tuple(TileId(*surveyed[number][0], key) for number, key in found)
         is_final = self._survey.has_opened_all and all(
             pyramids[number].is_exact(key) for number, key in found
         )
-        self._emit_chosen(Choice(wish, chosen, is_final))
-        wanted = [*chosen, *sorted(wish.kept - set(chosen), key=lambda tile: tile.key.rank)]
-        lacking = [tile for tile in wanted if (tile, wish.showing) not in wish.known]
+        self._emit_chosen(TileSelection(request, chosen, is_final))
+        wanted = [*chosen, *sorted(request.kept - set(chosen), key=lambda tile: tile.key.rank)]
+        lacking = [tile for tile in wanted if (tile, request.showing) not in request.known]
         # Those whose points stay need only other colours.
-        staying = _with_their_points(wish)
-        self._show_anew([wish.there[tile] for tile in lacking if tile in staying], wish)
-        look = wish.showing.look
+        staying = _with_their_points(request)
+        self._show_anew([request.there[tile] for tile in lacking if tile in staying], request)
+        look = request.showing.look
         requests = [_request_of(tile, look) for tile in lacking if tile not in staying]
         self._tiles.keep_only(self._on_tiles_done, set(requests))
         # The cache serves the newest request first, and coarse tiles are to come first.
-        for request in reversed(requests):
-            if self._is_outdated(wish):
+        for tile_request in reversed(requests):
+            if self._is_outdated(request):
                 return
-            self._tiles.request(request, self._on_tiles_done)
+            self._tiles.request(tile_request, self._on_tiles_done)
 
-    def _show_anew(self, tiles: Sequence[SceneTile], wish: Wish) -> None:
+    def _show_anew(self, tiles: Sequence[SceneTile], request: SceneRequest) -> None:
         """Clip and colour tiles that are there: their points need not be looked up again."""
-        drives = {drive.id: drive for drive, _ in wish.drives}
-        known, done, began_at = dict(wish.known), [], time.monotonic()
+        drives = {drive.id: drive for drive, _ in request.drives}
+        known, done, began_at = dict(request.known), [], time.monotonic()
         for tile in tiles:
             drive = drives.get(tile.id.drive_id)
-            if drive is None or self._is_outdated(wish):
+            if drive is None or self._is_outdated(request):
                 break
             shown = tile
-            if known.get(tile.id) != replace(wish.showing, clip=tile.clip):
+            if known.get(tile.id) != replace(request.showing, clip=tile.clip):
                 try:
-                    shown = _coloured(tile, drive, wish.showing.look)
+                    shown = _coloured(tile, drive, request.showing.look)
                 except UserError:
                     continue  # the image view says why; the points keep the colours they have
-            done.append(replace(shown, age=wish.age).clipped(wish.showing.clip, wish.origin))
+            done.append(
+                replace(shown, age=request.age).clipped(request.showing.clip, request.origin)
+            )
             if time.monotonic() - began_at > _TOGETHER_S:
                 self._emit_arrived(done)
                 done, began_at = [], time.monotonic()
@@ -197,62 +199,64 @@ class TileFeed(QObject):
         if not self._is_closed:
             self.surveyed.emit()
 
-    def _is_outdated(self, wish: Wish) -> bool:
+    def _is_outdated(self, request: SceneRequest) -> bool:
         with self._changed:
             return self._is_closed or (
-                self._next is not None and self._next.showing != wish.showing
+                self._next is not None and self._next.showing != request.showing
             )
 
-    def _emit_chosen(self, choice: Choice) -> None:
+    def _emit_chosen(self, choice: TileSelection) -> None:
         if not self._is_closed:
             self.chosen.emit(choice)
 
-    def _on_tiles_done(self, request: TileRequest, pixels: TilePixels) -> None:
-        wish = self._current
-        if self._is_closed or wish is None:
+    def _on_tiles_done(self, tile_request: TileRequest, pixels: TilePixels) -> None:
+        request = self._current
+        if self._is_closed or request is None:
             return
-        drive = next((drive for drive, _ in wish.drives if drive.id == request.drive_id), None)
+        drive = next(
+            (drive for drive, _ in request.drives if drive.id == tile_request.drive_id), None
+        )
         if drive is None:
             return
-        if not self._tiles.is_current(request, pixels):  # for the wish that was read before
-            self._tiles.request(request, self._on_tiles_done)
+        if not self._tiles.is_current(tile_request, pixels):  # for the request that was read before
+            self._tiles.request(tile_request, self._on_tiles_done)
             return
         points = pixels.points.ravel()
         is_filled = points >= 0
         filled = points[is_filled]
         tile = SceneTile(
-            request=request,
+            request=tile_request,
             points=filled,
-            local_xyz=drive.local_xyz(filled, wish.origin),
+            local_xyz=drive.local_xyz(filled, request.origin),
             colours=pixels.colours.reshape(-1, 3)[is_filled],
-            spacing_m=image_of(drive, request.kind).pyramid.spacing_m(request.key),
-            age=wish.age,
+            spacing_m=image_of(drive, tile_request.kind).pyramid.spacing_m(tile_request.key),
+            age=request.age,
         )
-        self._emit_arrived((tile.clipped(wish.showing.clip, wish.origin),))
+        self._emit_arrived((tile.clipped(request.showing.clip, request.origin),))
 
 
-def _with_their_points(wish: Wish) -> frozenset[TileId]:
+def _with_their_points(request: SceneRequest) -> frozenset[TileId]:
     """The tiles that are there with the points that are wished for, whatever their colours.
 
     Where noise is hidden, tiles of which nothing is known any more may hold others.
     """
-    hides_noise, known = wish.showing.look.hides_noise, {tile for tile, _ in wish.known}
+    hides_noise, known = request.showing.look.hides_noise, {tile for tile, _ in request.known}
     return frozenset(
         tile
-        for tile, there in wish.there.items()
+        for tile, there in request.there.items()
         if there.request.hides_noise is hides_noise and (tile in known or not hides_noise)
     )
 
 
-def _coloured(tile: SceneTile, drive: Drive, look: PointLook) -> SceneTile:
+def _coloured(tile: SceneTile, drive: Drive, look: PointStyle) -> SceneTile:
     """The tile before it was clipped, in other colours."""
     whole = tile if tile.whole is None else tile.whole
-    attribute = telling_attribute(drive, look.attribute)
+    attribute = most_telling_attribute(drive, look.attribute)
     shown = colours(drive, whole.points, attribute, look.low_percent, look.high_percent)
     return replace(whole, request=_request_of(tile.id, look), colours=shown)
 
 
-def _request_of(tile: TileId, look: PointLook) -> TileRequest:
+def _request_of(tile: TileId, look: PointStyle) -> TileRequest:
     ends = look.low_percent, look.high_percent
     return TileRequest(
         tile.drive_id, tile.kind, tile.key, look.attribute, *ends, hides_noise=look.hides_noise

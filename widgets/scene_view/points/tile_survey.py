@@ -99,6 +99,6 @@ def _opened(drive: Drive, kind: ImageKind) -> TilePyramid | None:
     return pyramid
 
 
-def _distance_m(drive: Drive, place: NDArray[np.float64]) -> float:
+def _distance_m(drive: Drive, position: NDArray[np.float64]) -> float:
     low, high = np.array(drive.info.lowest), np.array(drive.info.highest)
-    return float(np.linalg.norm(np.maximum(0.0, np.maximum(low - place, place - high))))
+    return float(np.linalg.norm(np.maximum(0.0, np.maximum(low - position, position - high))))

@@ -5,19 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.simulate.border.along import posts, stations, swept, wall
-from processing.simulate.border.barrier_shapes import BARRIERS, Stretch
+from processing.simulate.border.along import posts, stations, sweep_section, wall
+from processing.simulate.border.barrier_shapes import BARRIERS, BarrierRun
 from processing.simulate.border.barriers import add_barriers
 from processing.simulate.chance import chance
-from processing.simulate.roadside.places import Places, Spot, free_from_m
+from processing.simulate.roadside.free_positions import FreePosition, FreePositions, free_from_m
 from processing.simulate.street.dropped_curbs import drops_of
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import HIGHWAY, RURAL, URBAN, Style
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 
-def _sections(seed: int, style: Style) -> list[Section]:
+def _sections(seed: int, style: Style) -> list[StreetSection]:
     street = Street(seed, style, 150.0)
     return [street.bare_section(row) for row in street.within(0.0, 150.0)]
 
@@ -27,10 +27,10 @@ def test_a_barrier_reaches_the_ground_and_is_as_high_as_barriers_are(kind: str) 
     section = _sections(1, RURAL)[1]
     start = section.plan.start_m + 1.0
     for number in range(6):
-        built = Built(1)
-        BARRIERS[kind](chance(number, "test"), section, built, Stretch(start, start + 18.0, 8.0))
+        built = SectionBuilder(1)
+        BARRIERS[kind](chance(number, "test"), section, built, BarrierRun(start, start + 18.0, 8.0))
         mesh = built.mesh.mesh()
-        ground = section.place(np.linspace(start, start + 18.0, 40), 8.0)[:, 2]
+        ground = section.position(np.linspace(start, start + 18.0, 40), 8.0)[:, 2]
         assert mesh.vertices[:, 2].min() < ground.min()
         highest = mesh.vertices[:, 2].max() - ground.max()
         assert (1.9 if kind == "noise" else 0.6) < highest < (4.2 if kind == "noise" else 1.3)
@@ -41,15 +41,15 @@ def test_a_barrier_reaches_the_ground_and_is_as_high_as_barriers_are(kind: str) 
 def test_barriers_stand_behind_curb_and_gutter_or_in_the_median(style: Style) -> None:
     for seed in range(2):
         for section in _sections(seed, style):
-            built = Built(1)
-            add_barriers(Places(section), built)
+            built = SectionBuilder(1)
+            add_barriers(FreePositions(section), built)
             mesh = built.mesh.mesh()
             if not len(mesh.vertices):
                 continue
             alignment = section.alignment
             near = np.linspace(section.plan.start_m - 5, section.plan.end_m + 5, 800)
             centre = np.column_stack(
-                [np.interp(near, alignment.chainages, alignment.places[:, k]) for k in range(2)]
+                [np.interp(near, alignment.chainages, alignment.positions[:, k]) for k in range(2)]
             )
             used = mesh.vertices[np.unique(mesh.triangles)]
             away = np.array([np.linalg.norm(centre - one, axis=1).min() for one in used[:, :2]])
@@ -63,14 +63,14 @@ def test_a_barrier_leaves_dropped_curbs_and_poles_open() -> None:
     seen = 0
     for seed in (0, 1, 3, 5):
         for section in _sections(seed, URBAN):
-            places = Places(section)
-            spot = Spot(
+            positions = FreePositions(section)
+            spot = FreePosition(
                 (section.plan.start_m + section.plan.end_m) / 2,
                 free_from_m(section.plan.left) + 0.3,
             )
-            places.take(spot, 0.15)
-            built = Built(1)
-            add_barriers(places, built)
+            positions.take(spot, 0.15)
+            built = SectionBuilder(1)
+            add_barriers(positions, built)
             kinds = {one.instance: one.kind for one in built.things}
             mesh = built.mesh.mesh()
             for instance, kind in kinds.items():
@@ -78,9 +78,9 @@ def test_a_barrier_leaves_dropped_curbs_and_poles_open() -> None:
                     continue
                 of_it = mesh.vertices[np.unique(mesh.triangles[mesh.instance == instance])]
                 for drop in drops_of(section.seed, section.plan, 1):
-                    middle = section.place((drop.from_m + drop.to_m) / 2, spot.offset_m)
+                    middle = section.position((drop.from_m + drop.to_m) / 2, spot.offset_m)
                     assert np.linalg.norm(of_it - middle, axis=1).min() > 0.5
-                assert np.linalg.norm(of_it - places.where(spot), axis=1).min() > 0.15
+                assert np.linalg.norm(of_it - positions.where(spot), axis=1).min() > 0.15
                 seen += 1
     assert seen > 3
 
@@ -88,8 +88,8 @@ def test_a_barrier_leaves_dropped_curbs_and_poles_open() -> None:
 def test_rubber_poles_are_poles_of_the_truth_on_the_ground() -> None:
     found = 0
     for section in [one for seed in range(3) for one in _sections(seed, URBAN)]:
-        built = Built(1)
-        add_barriers(Places(section), built)
+        built = SectionBuilder(1)
+        add_barriers(FreePositions(section), built)
         mesh = built.mesh.mesh()
         for one in built.truth:
             assert one.file == "poles"
@@ -103,12 +103,12 @@ def test_rubber_poles_are_poles_of_the_truth_on_the_ground() -> None:
 def test_a_swept_wall_is_closed() -> None:
     section = _sections(0, URBAN)[0]
     along = stations(section.plan.start_m + 1, section.plan.start_m + 9)
-    vertices, triangles = swept(section, along, 9.0, wall(0.15, 1.2))
+    vertices, triangles = sweep_section(section, along, 9.0, wall(0.15, 1.2))
     corners = vertices[triangles]
     keys = np.round(corners, 6).view([("", np.float64)] * 3).reshape(-1, 3)
     edges: dict[frozenset[bytes], int] = {}
     for one in keys:
-        names = [place.tobytes() for place in one]
+        names = [position.tobytes() for position in one]
         for first, second in ((0, 1), (1, 2), (2, 0)):
             edge = frozenset((names[first], names[second]))
             edges[edge] = edges.get(edge, 0) + 1
@@ -126,8 +126,8 @@ def test_rubber_poles_do_not_stand_in_the_line_of_a_barrier() -> None:
     poles = 0
     for seed in (205, 208, 0, 5):
         for section in _sections(seed, URBAN):
-            built = Built(1)
-            add_barriers(Places(section), built)
+            built = SectionBuilder(1)
+            add_barriers(FreePositions(section), built)
             mesh = built.mesh.mesh()
             barriers = mesh.vertices[np.unique(mesh.triangles[mesh.label == 1])][:, :2]
             for one in built.truth:

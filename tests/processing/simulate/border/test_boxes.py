@@ -14,10 +14,10 @@ from processing.simulate.border.boxes import (
     switch_box,
 )
 from processing.simulate.chance import chance
-from processing.simulate.roadside.places import Places, Spot
+from processing.simulate.roadside.free_positions import FreePosition, FreePositions
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import URBAN
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 
 @pytest.mark.parametrize("make", [switch_box, letter_box, planter, bench, shelter])
@@ -37,19 +37,21 @@ def test_a_metre_of_the_walk_stays_free_beside_each_box() -> None:
         street = Street(seed, URBAN, 100.0)
         for row in street.within(0.0, 100.0):
             section = street.bare_section(row)
-            places, built = Places(section), Built(1)
-            add_boxes(places, built)
+            positions, built = FreePositions(section), SectionBuilder(1)
+            add_boxes(positions, built)
             boxes += len(built.things)
             for side in (1, -1):
                 walk = section.plan.side(side).band("walk")
                 if walk is None:
                     continue
-                for low, high, near, far in places._blocked:
+                for low, high, near, far in positions._blocked:
                     if np.sign(near) != side:
                         continue
                     inner, outer = sorted((abs(near), abs(far)))
                     assert walk.inner_m < inner
                     assert outer < walk.outer_m
                     assert max(inner - walk.inner_m, walk.outer_m - outer) > 0.99
-                    assert not places.is_free(Spot((low + high) / 2, (near + far) / 2), 0.1)
+                    assert not positions.is_free(
+                        FreePosition((low + high) / 2, (near + far) / 2), 0.1
+                    )
     assert boxes > 5

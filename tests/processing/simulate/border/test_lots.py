@@ -18,29 +18,29 @@ from processing.simulate.border.lots import add_lots, lots_of
 from processing.simulate.border.yards import yard_parts
 from processing.simulate.chance import chance
 from processing.simulate.mesh import Mesh
-from processing.simulate.roadside.places import Places, Spot
-from processing.simulate.street.section import Section
+from processing.simulate.roadside.free_positions import FreePosition, FreePositions
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import RURAL, URBAN, Style
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 BUILDINGS: list[Building] = [house, shop, flats, hall, greenhouse]
 
 
-def _sections(seed: int, style: Style) -> list[Section]:
+def _sections(seed: int, style: Style) -> list[StreetSection]:
     street = Street(seed, style, 200.0)
     return [street.bare_section(row) for row in street.within(0.0, 200.0)]
 
 
-def _built(section: Section) -> tuple[Mesh, Built]:
-    built = Built(1)
-    add_lots(Places(section), built)
+def _built(section: StreetSection) -> tuple[Mesh, SectionBuilder]:
+    built = SectionBuilder(1)
+    add_lots(FreePositions(section), built)
     return built.mesh.mesh(), built
 
 
-def _distances(section: Section, mesh: Mesh) -> np.ndarray:
+def _distances(section: StreetSection, mesh: Mesh) -> np.ndarray:
     """How far vertices are from the road's centre, by the nearest place of its line."""
-    line = section.alignment.places[:, :2]
+    line = section.alignment.positions[:, :2]
     near = np.linspace(section.plan.start_m - 30, section.plan.end_m + 30, 400)
     centre = np.column_stack(
         [np.interp(near, section.alignment.chainages, line[:, axis]) for axis in range(2)]
@@ -91,11 +91,11 @@ def test_a_building_keeps_within_its_plot_whatever_the_draw(make: Building, wide
 
 def test_places_under_a_building_are_taken() -> None:
     for section in _sections(1, URBAN):
-        places, built = Places(section), Built(1)
-        add_lots(places, built)
+        positions, built = FreePositions(section), SectionBuilder(1)
+        add_lots(positions, built)
         for lot in lots_of(section, 1):
-            spot = Spot(lot.middle_m, lot.side * lot.front_m)
-            assert not places.is_free(spot, 0.1)
+            spot = FreePosition(lot.middle_m, lot.side * lot.front_m)
+            assert not positions.is_free(spot, 0.1)
 
 
 def test_buildings_are_built_quickly_and_of_few_triangles() -> None:
@@ -124,14 +124,14 @@ def test_posts_of_a_gate_stand_beside_its_walls_not_in_them() -> None:
     for section in _sections(205, URBAN):
         mesh, built = _built(section)
         of = {one.instance: one.kind for one in built.things}
-        places = {one: mesh.vertices[mesh.triangles[mesh.instance == one]] for one in of}
-        walls = [places[one].reshape(-1, 3)[:, :2] for one in of if of[one] == "wall"]
-        for gate in (places[one].reshape(-1, 3)[:, :2] for one in of if of[one] == "gate"):
+        positions = {one: mesh.vertices[mesh.triangles[mesh.instance == one]] for one in of}
+        walls = [positions[one].reshape(-1, 3)[:, :2] for one in of if of[one] == "wall"]
+        for gate in (positions[one].reshape(-1, 3)[:, :2] for one in of if of[one] == "gate"):
             gates += 1
             middle = section.heading((section.plan.start_m + section.plan.end_m) / 2)
-            way = gate[np.linalg.norm(gate - gate[0], axis=1).argmax()] - gate[0]
+            direction = gate[np.linalg.norm(gate - gate[0], axis=1).argmax()] - gate[0]
             along = np.array([np.cos(middle), np.sin(middle)])
-            along = along * np.sign(along @ way)
+            along = along * np.sign(along @ direction)
             low, high = np.sort(gate @ along)[[0, -1]]
             for wall in walls:
                 if np.linalg.norm(wall - gate.mean(axis=0), axis=1).min() < 1.5:

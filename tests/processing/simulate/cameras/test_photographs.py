@@ -11,10 +11,10 @@ from processing.cameras.camera import Camera
 from processing.errors import Cancelled
 from processing.formats.image_list import read_image_list
 from processing.monitor import SilentMonitor
-from processing.simulate.cameras.photographs import Frame, write_image_list, write_images
+from processing.simulate.cameras.photographs import DeliveryFrame, write_image_list, write_images
 from processing.simulate.cameras.rigs import Pose, RigCamera, image_of, poses_of_pass, rig_of
 from processing.simulate.cameras.seen_street import SeenStreet
-from processing.simulate.scanning.passes import Driving, pass_of
+from processing.simulate.scanning.simulated_passes import Driving, pass_of
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import RURAL
 
@@ -25,7 +25,7 @@ SMALL = (
 ORIGIN = np.array([-11_400.0, -35_100.0, 120.0])
 
 
-class Impatient(SilentMonitor):
+class CancelAtThirdCheck(SilentMonitor):
     """Stops at its third question."""
 
     def __init__(self) -> None:
@@ -47,7 +47,7 @@ def poses() -> list[Pose]:
 def test_the_list_is_read_back_as_it_was_written(tmp_path: Path, poses: list[Pose]) -> None:
     written = write_images(
         tmp_path, poses[:2], lambda pose: [], SilentMonitor(),
-        seed=3, rig=SMALL, frame=Frame(ORIGIN, 376_892_000.0),
+        seed=3, rig=SMALL, frame=DeliveryFrame(ORIGIN, 376_892_000.0),
     )  # fmt: skip
     write_image_list(tmp_path / "images.csv", written)
     read = read_image_list(tmp_path / "images.csv")
@@ -67,7 +67,7 @@ def test_delivered_places_are_off_by_the_trajectorys_error(
     pose = poses[1]
     written = write_images(
         tmp_path, [pose], lambda one: [], SilentMonitor(),
-        seed=3, rig=SMALL[:1], frame=Frame(ORIGIN, 100.0, "pass2_"),
+        seed=3, rig=SMALL[:1], frame=DeliveryFrame(ORIGIN, 100.0, "pass2_"),
     )  # fmt: skip
     true = image_of(SMALL[0], pose, Path("x.jpg"))
     np.testing.assert_allclose(np.array(written[0].xyz) - ORIGIN - true.xyz, pose.error, atol=1e-9)
@@ -83,7 +83,7 @@ def test_the_same_seed_gives_the_same_bytes_and_a_street_is_in_them(
         seen = SeenStreet(street, [], SilentMonitor().check)
         write_images(
             tmp_path / name, poses[:1], seen.at, SilentMonitor(),
-            seed=3, rig=SMALL[:1], frame=Frame(ORIGIN, 0.0),
+            seed=3, rig=SMALL[:1], frame=DeliveryFrame(ORIGIN, 0.0),
         )  # fmt: skip
         contents.append((tmp_path / name / "images" / "front_0000.jpg").read_bytes())
     assert contents[0] == contents[1]
@@ -92,8 +92,8 @@ def test_the_same_seed_gives_the_same_bytes_and_a_street_is_in_them(
 def test_taking_photographs_can_be_stopped(tmp_path: Path, poses: list[Pose]) -> None:
     with pytest.raises(Cancelled):
         write_images(
-            tmp_path, poses, lambda one: [], Impatient(),
-            seed=3, rig=SMALL, frame=Frame(ORIGIN, 0.0),
+            tmp_path, poses, lambda one: [], CancelAtThirdCheck(),
+            seed=3, rig=SMALL, frame=DeliveryFrame(ORIGIN, 0.0),
         )  # fmt: skip
 
 

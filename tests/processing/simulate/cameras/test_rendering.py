@@ -12,11 +12,11 @@ from processing.cameras.camera import Camera
 from processing.cameras.image_list import CameraImage
 from processing.simulate.cameras.daylight import Daylight, daylight_of
 from processing.simulate.cameras.grain_kernels import _grain_kernel, grain
-from processing.simulate.cameras.rendering import rendered, ways_of
+from processing.simulate.cameras.rendering import directions_of, render_image
 from processing.simulate.cameras.rigs import Pose, RigCamera, image_of
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats, MeshBuilder, box, plate
-from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.casting import RaycastScene
 
 BARREL = (-0.32, 0.09, 0.004, -0.003, 0.0)
 FRONT = RigCamera("front", (0.8, 0.1, 0.2), 14.0, -6.0, 3.0, 240.0, 161.3, 118.2, 320, 240)
@@ -31,11 +31,11 @@ LENSES = {
 CLEAR = Daylight(np.array([0.0, -0.6, 0.8]), 1.2, 0.0)
 
 
-def pose_at(place: tuple[float, float, float]) -> Pose:
+def pose_at(position: tuple[float, float, float]) -> Pose:
     """The vehicle level at a place, looking north-east."""
     c = np.sqrt(0.5)
     turn = np.array([[c, -c, 0.0], [c, c, 0.0], [0.0, 0.0, 1.0]])
-    return Pose(3.0, np.array(place), turn, np.zeros(3), 0.0)
+    return Pose(3.0, np.array(position), turn, np.zeros(3), 0.0)
 
 
 def disc(middle: Floats, towards: Floats, radius: float) -> tuple[Floats, Floats]:
@@ -53,13 +53,13 @@ def test_a_plate_is_seen_where_the_camera_model_says(lens: str) -> None:
     centre = np.array(image.xyz)
     for share in ((0.5, 0.5), (0.12, 0.15), (0.8, 0.8)):
         pixel = np.array([[share[0] * image.width_px, share[1] * image.height_px]])
-        way = Camera(image).rays_of(pixel)[0]
-        middle = centre + 9.0 * way
+        direction = Camera(image).rays_of(pixel)[0]
+        middle = centre + 9.0 * direction
         builder = MeshBuilder()
-        builder.add(plate(disc(middle, -way, 0.25)), Material.RUBBER, 65, 1)
-        scene = Scene(builder.mesh(), centre)
+        builder.add(plate(disc(middle, -direction, 0.25)), Material.RUBBER, 65, 1)
+        scene = RaycastScene(builder.mesh(), centre)
         picture, empty = (
-            rendered(image, scenes, CLEAR, np.random.default_rng(0)).astype(float).sum(2)
+            render_image(image, scenes, CLEAR, np.random.default_rng(0)).astype(float).sum(2)
             for scenes in ([scene], [])
         )
         changed = np.abs(picture - empty)
@@ -71,10 +71,10 @@ def test_a_plate_is_seen_where_the_camera_model_says(lens: str) -> None:
 
 def test_pixels_look_where_the_camera_model_says() -> None:
     image = image_of(LENSES["barrel"], pose_at((1.0, 2.0, 3.0)), Path("one.jpg"))
-    places = np.array(image.xyz) + 20.0 * ways_of(image)[::37]
+    positions = np.array(image.xyz) + 20.0 * directions_of(image)[::37]
     numbers = np.arange(image.width_px * image.height_px)[::37]
     wanted = np.column_stack([numbers % image.width_px, numbers // image.width_px])
-    assert np.abs(Camera(image).pixels_of(places) - wanted).max() < 0.05
+    assert np.abs(Camera(image).pixels_of(positions) - wanted).max() < 0.05
 
 
 def test_ground_behind_a_wall_lies_in_its_shadow() -> None:
@@ -86,8 +86,8 @@ def test_ground_behind_a_wall_lies_in_its_shadow() -> None:
     builder.add(box((-20, -0.2, 0), (20, 0.2, 3)), Material.CONCRETE, 1, 1)
     camera = replace(FRONT, yaw_deg=0.0, pitch_deg=-89.0, focal_px=120.0)
     image = image_of(camera, pose_at((0.0, 0.0, 20.0)), Path("one.jpg"))
-    scene = Scene(builder.mesh(), np.zeros(3))
-    picture = rendered(image, [scene], CLEAR, np.random.default_rng(0)).astype(float).mean(2)
+    scene = RaycastScene(builder.mesh(), np.zeros(3))
+    picture = render_image(image, [scene], CLEAR, np.random.default_rng(0)).astype(float).mean(2)
     pixels = Camera(image).pixels_of(np.array([[0.0, 1.2, 0.0], [0.0, 6.0, 0.0]])).round()
     dark, bright = (picture[int(row), int(column)] for column, row in pixels)
     assert dark < 0.8 * bright
@@ -95,13 +95,13 @@ def test_ground_behind_a_wall_lies_in_its_shadow() -> None:
 
 def test_a_speed_limit_has_a_red_ring_and_a_white_middle() -> None:
     image = image_of(FRONT, pose_at((0.0, 0.0, 5.0)), Path("one.jpg"))
-    way = -Camera(image).rotation[2]
-    middle = np.array(image.xyz) + 2.0 * way
+    direction = -Camera(image).rotation[2]
+    middle = np.array(image.xyz) + 2.0 * direction
     for instance in range(1, 40):
         builder = MeshBuilder()
-        builder.add(plate(disc(middle, -way, 0.3)), Material.SIGN_FACE, 65, instance, piece=1)
-        scene = Scene(builder.mesh(), middle)
-        picture = rendered(image, [scene], CLEAR, np.random.default_rng(0)).astype(int)
+        builder.add(plate(disc(middle, -direction, 0.3)), Material.SIGN_FACE, 65, instance, piece=1)
+        scene = RaycastScene(builder.mesh(), middle)
+        picture = render_image(image, [scene], CLEAR, np.random.default_rng(0)).astype(int)
         column, row = Camera(image).pixels_of(middle[None])[0].round().astype(int)
         if picture[row, column].min() > 120:
             break
@@ -111,12 +111,12 @@ def test_a_speed_limit_has_a_red_ring_and_a_white_middle() -> None:
 
 
 def test_grain_is_the_same_as_in_plain_python_and_changes_smoothly() -> None:
-    places = np.random.default_rng(1).uniform(-50, 50, (40, 3))
+    positions = np.random.default_rng(1).uniform(-50, 50, (40, 3))
     plain = np.empty(40, np.float32)
-    _grain_kernel.py_func(places, 1 / 0.3, plain)
-    noise = grain(places, 0.3)
+    _grain_kernel.py_func(positions, 1 / 0.3, plain)
+    noise = grain(positions, 0.3)
     np.testing.assert_allclose(noise, plain, atol=1e-6)
-    assert np.abs(grain(places + 1e-4, 0.3) - noise).max() < 0.01
+    assert np.abs(grain(positions + 1e-4, 0.3) - noise).max() < 0.01
     assert np.abs(noise).max() <= 1.0
 
 

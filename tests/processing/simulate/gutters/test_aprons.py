@@ -8,12 +8,12 @@ import pytest
 from processing.simulate.gutters.aprons import add_aprons
 from processing.simulate.mesh import Floats, Mesh
 from processing.simulate.street.plan import SIDES
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import URBAN
-from processing.simulate.things import Built, TrueFeature
+from processing.simulate.things import SectionBuilder, TrueFeature
 
-Aprons = list[tuple[Section, Mesh, list[TrueFeature], Built]]
+Aprons = list[tuple[StreetSection, Mesh, list[TrueFeature], SectionBuilder]]
 
 
 @pytest.fixture(scope="module")
@@ -24,7 +24,7 @@ def aprons() -> Aprons:
         street = Street(seed, URBAN, 160.0)
         for row in street.within(0.0, 160.0):
             section = street.bare_section(row)
-            built = Built(1)
+            built = SectionBuilder(1)
             add_aprons(section, built)
             mesh = built.mesh.mesh()
             if mesh.triangles.size:
@@ -32,7 +32,7 @@ def aprons() -> Aprons:
     return made
 
 
-def _heights(mesh: Mesh, places: Floats) -> Floats:
+def _heights(mesh: Mesh, positions: Floats) -> Floats:
     import open3d
 
     scene = open3d.t.geometry.RaycastingScene()
@@ -40,8 +40,8 @@ def _heights(mesh: Mesh, places: Floats) -> Floats:
         open3d.core.Tensor(mesh.vertices.astype(np.float32)),
         open3d.core.Tensor(mesh.triangles.astype(np.uint32)),
     )
-    rays = np.zeros((len(places), 6), np.float32)
-    rays[:, :2], rays[:, 2], rays[:, 5] = places[:, :2], 200.0, -1.0
+    rays = np.zeros((len(positions), 6), np.float32)
+    rays[:, :2], rays[:, 2], rays[:, 5] = positions[:, :2], 200.0, -1.0
     found: Floats = 200.0 - scene.cast_rays(open3d.core.Tensor(rays))["t_hit"].numpy()
     return found
 
@@ -61,8 +61,8 @@ def test_aprons_are_as_high_as_the_ground_but_for_joints_and_basins(aprons: Apro
             s = s + along * (sweep.chainages[row + 1, 0] - s)
             edges = [np.interp(s, sweep.chainages[:, 0], sweep.offsets[:, one]) for one in (0, 1)]
             o = edges[0] + across * (edges[1] - edges[0])
-            place = section.place(s, o)
-            dips.append(place[:, 2] - _heights(mesh, place))
+            position = section.position(s, o)
+            dips.append(position[:, 2] - _heights(mesh, position))
     dip = np.concatenate(dips)
     assert np.isfinite(dip).all()
     assert np.abs(np.median(dip)) < 0.001
@@ -88,7 +88,7 @@ def test_gratings_of_basins_are_the_truth_of_runs_of_their_own(aprons: Aprons) -
             side = 1 if one.facts["side"] == "left" else -1
             middle = one.xyz[:4].mean(axis=0)
             plan = section.plan.side(side)
-            ground = section.place(one.chainage_m, side * (plan.edge_m + plan.drain_m / 2))
+            ground = section.position(one.chainage_m, side * (plan.edge_m + plan.drain_m / 2))
             assert np.linalg.norm(middle - ground) < 0.15
             assert abs(middle[2] - ground[2]) < 0.02
             found.append(one.facts["run"])
@@ -104,15 +104,15 @@ def test_basins_stand_clear_of_lowered_curbs(aprons: Aprons) -> None:
 
 
 def test_below_a_grating_is_a_shaft(aprons: Aprons) -> None:
-    open_places = []
+    open_positions = []
     for _, mesh, truth, _ in aprons:
         for one in truth:
             share = np.random.default_rng(0).uniform(0.1, 0.9, (200, 2))
             ring = one.xyz
-            places = (
+            positions = (
                 ring[0] + share[:, :1] * (ring[1] - ring[0]) + share[:, 1:] * (ring[3] - ring[0])
             )
-            deep = places[:, 2] - _heights(mesh, places)
+            deep = positions[:, 2] - _heights(mesh, positions)
             assert np.isfinite(deep).all()
-            open_places.append(np.mean(deep > 0.3))
-    assert min(open_places) > 0.3
+            open_positions.append(np.mean(deep > 0.3))
+    assert min(open_positions) > 0.3

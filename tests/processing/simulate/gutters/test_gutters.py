@@ -8,14 +8,14 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from processing.simulate.gutters.beds import Bed, squeezed_to
+from processing.simulate.gutters.beds import Bed, squeeze_share
 from processing.simulate.gutters.gutters import add_gutters
 from processing.simulate.gutters.lid_shapes import LID_KINDS, Lid, lid_pieces
 from processing.simulate.mesh import Floats, Mesh
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import RURAL
-from processing.simulate.things import Built, TrueFeature
+from processing.simulate.things import SectionBuilder, TrueFeature
 
 
 @dataclass(frozen=True)
@@ -24,13 +24,13 @@ class _Gutters:
     truth: tuple[TrueFeature, ...]
 
 
-def _covered(seed: int) -> tuple[Section, _Gutters]:
+def _covered(seed: int) -> tuple[StreetSection, _Gutters]:
     """A section of a country road with covered gutters, with nothing but them."""
     street = Street(seed, RURAL, 400.0)
     for row, plan in enumerate(street.plans):
         if "lids" in (plan.left.drain, plan.right.drain) and not plan.junctions:
             section = street.bare_section(row)
-            built = Built(1)
+            built = SectionBuilder(1)
             add_gutters(section, built)
             return section, _Gutters(built.mesh.mesh(), tuple(built.truth))
     raise ValueError("no covered gutter")
@@ -86,13 +86,13 @@ def test_lids_lie_on_the_grounds_height_but_for_accidents() -> None:
         side = 1 if one.facts["side"] == "left" else -1
         band = section.plan.side(side).band("drain")
         assert band is not None
-        ground = section.place(one.chainage_m, side * (band.inner_m + band.outer_m) / 2)
+        ground = section.position(one.chainage_m, side * (band.inner_m + band.outer_m) / 2)
         away.append(abs(middle[2] - ground[2]))
     assert np.median(away) < 0.01
     assert max(away) < 0.06
 
 
-def _depths(built: _Gutters, places: Floats) -> Floats:
+def _depths(built: _Gutters, positions: Floats) -> Floats:
     import open3d as o3d
 
     scene = o3d.t.geometry.RaycastingScene()
@@ -100,8 +100,8 @@ def _depths(built: _Gutters, places: Floats) -> Floats:
         o3d.core.Tensor(built.mesh.vertices.astype(np.float32)),
         o3d.core.Tensor(built.mesh.triangles.astype(np.uint32)),
     )
-    down = np.broadcast_to([0.0, 0.0, -1.0], places.shape)
-    rays = np.hstack([places - down, down]).astype(np.float32)
+    down = np.broadcast_to([0.0, 0.0, -1.0], positions.shape)
+    rays = np.hstack([positions - down, down]).astype(np.float32)
     hits = scene.cast_rays(o3d.core.Tensor(rays))["t_hit"].numpy()
     found: Floats = hits.astype(np.float64) - 1.0
     return found
@@ -131,8 +131,8 @@ def test_the_same_lids_are_laid_whatever_is_built_first() -> None:
     street = Street(7, RURAL, 300.0)
     rows = list(street.within(0.0, 200.0))
 
-    def built(row: int) -> Built:
-        built = Built(1)
+    def built(row: int) -> SectionBuilder:
+        built = SectionBuilder(1)
         add_gutters(street.bare_section(row), built)
         return built
 
@@ -173,5 +173,5 @@ def test_lids_are_left_out_where_the_bed_grows_narrow() -> None:
     first, last = bed.usual_nodes()
     assert first == 0
     assert 15.5 <= along[last] <= 17.0
-    end = bed.line(0.57 * squeezed_to(bed, 0.57))
+    end = bed.line(0.57 * squeeze_share(bed, 0.57))
     assert (end[:, 1] < bed.outer[:, 1]).all()

@@ -11,14 +11,14 @@ from processing.simulate.mesh import Mesh
 from processing.simulate.roadway.junctions import add_junctions
 from processing.simulate.roadway.transverse import transverse_of
 from processing.simulate.street.junction_shape import Mouth
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import URBAN
 from processing.simulate.street.surfaces import add_ground
-from processing.simulate.things import Built, TrueFeature
+from processing.simulate.things import SectionBuilder, TrueFeature
 
 SEEDS = (11, 13, 27)
-Crossed = list[tuple[Section, Mouth, tuple[float, float], Mesh, list[TrueFeature]]]
+Crossed = list[tuple[StreetSection, Mouth, tuple[float, float], Mesh, list[TrueFeature]]]
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +34,7 @@ def crossed() -> Crossed:
                 beside = None if mouth is None else transverse_of(section, mouth)
                 if mouth is None or beside is None:
                     continue
-                built = Built(1)
+                built = SectionBuilder(1)
                 for add in (add_ground, add_junctions, add_aprons, add_transverse_gutters):
                     add(section, built)
                 made.append((section, mouth, beside, built.mesh.mesh(), built.truth))
@@ -55,14 +55,14 @@ def test_rays_straight_down_meet_asphalt_gratings_or_the_channel(crossed: Crosse
         along = random.uniform(mouth.middle_m - mouth.half_m, mouth.middle_m + mouth.half_m, 5000)
         deep = random.uniform(beside[0] - 0.5, beside[1] + 0.5, 5000)
         chainage, offset = track.placed(along, deep)
-        places = section.alignment.at(chainage, offset, 0.0)
+        positions = section.alignment.at(chainage, offset, 0.0)
         scene = open3d.t.geometry.RaycastingScene()
         scene.add_triangles(
             open3d.core.Tensor(mesh.vertices.astype(np.float32)),
             open3d.core.Tensor(mesh.triangles.astype(np.uint32)),
         )
         rays = np.zeros((5000, 6), np.float32)
-        rays[:, :2], rays[:, 2], rays[:, 5] = places[:, :2], 200.0, -1.0
+        rays[:, :2], rays[:, 2], rays[:, 5] = positions[:, :2], 200.0, -1.0
         found = scene.cast_rays(open3d.core.Tensor(rays))["t_hit"].numpy()
         assert np.isfinite(found).all()
         in_gutter = (deep > beside[0] + 0.1) & (deep < beside[1] - 0.1)

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from processing.simulate.mesh import Mesh
+from processing.simulate.roadside.free_positions import FreePosition, FreePositions, free_from_m
 from processing.simulate.roadside.neighbours import neighbour
 from processing.simulate.roadside.overhead_signs import add_overhead_signs
-from processing.simulate.roadside.places import Places, Spot, free_from_m
 from processing.simulate.roadside.signals import add_signals, has_signals
 from processing.simulate.street.plan import LEFT, RIGHT
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import HIGHWAY, URBAN
-from processing.simulate.things import Built, TrueFeature
+from processing.simulate.things import SectionBuilder, TrueFeature
 
 BREAST_M = 1.2
 TALL = ("utility_pole", "service_pole", "lamp_post", "sign_pole", "signal_pole", "mirror_pole")
@@ -37,23 +37,23 @@ def _standing(street: Street) -> list[tuple[TrueFeature, Mesh]]:
 def test_a_place_is_given_away_once(street: Street) -> None:
     row = next(i for i in street.within(0.0, 110.0) if not street.plans[i].junctions)
     section = street.bare_section(row)
-    places = Places(section)
-    away = places.near_m(LEFT) + 2.0
+    positions = FreePositions(section)
+    away = positions.near_m(LEFT) + 2.0
     at = np.linspace(section.plan.start_m + 1, section.plan.end_m - 1, 30)
-    taken = [one for one in at if places.take(Spot(float(one), away), 0.2)]
+    taken = [one for one in at if positions.take(FreePosition(float(one), away), 0.2)]
     assert taken
-    assert not any(places.take(Spot(float(one), away), 0.2) for one in taken)
+    assert not any(positions.take(FreePosition(float(one), away), 0.2) for one in taken)
 
 
 def test_nothing_may_stand_on_the_road_or_on_curbs_and_lids(street: Street) -> None:
     for row in street.within(0.0, 110.0):
         section = street.bare_section(row)
-        places = Places(section)
+        positions = FreePositions(section)
         middle = (section.plan.start_m + section.plan.end_m) / 2
         for side in (LEFT, RIGHT):
             edge = free_from_m(section.plan.side(side))
             for away in (0.5, edge - 1.0, edge):
-                assert not places.is_free(Spot(middle, side * away), 0.05)
+                assert not positions.is_free(FreePosition(middle, side * away), 0.05)
 
 
 def test_a_plan_knows_its_neighbours_without_building_them(street: Street) -> None:
@@ -96,8 +96,8 @@ def test_lights_stand_next_to_junctions_that_have_them() -> None:
         made = Street(seed, URBAN, 250.0)
         for row in made.within(-100.0, 250.0):
             section = made.bare_section(row)
-            built = Built(1)
-            add_signals(Places(section), built)
+            built = SectionBuilder(1)
+            add_signals(FreePositions(section), built)
             beside = [neighbour(section, step) for step in (-1, 1)]
             if built.things:
                 assert any(one is not None and has_signals(seed, one) for one in beside)
@@ -110,8 +110,8 @@ def test_guide_signs_over_the_road_leave_five_metres_free() -> None:
     found = 0
     for row in made.within(0.0, 900.0):
         section = made.bare_section(row)
-        built = Built(1)
-        add_overhead_signs(Places(section), built)
+        built = SectionBuilder(1)
+        add_overhead_signs(FreePositions(section), built)
         for sign in built.truth:
             if sign.file != "signs":
                 continue
@@ -127,8 +127,8 @@ def test_the_plate_with_a_junctions_name_does_not_reach_into_its_lights() -> Non
     for seed in (208, 210, 213):
         made = Street(seed, URBAN, 250.0)
         for row in made.within(-100.0, 250.0):
-            built = Built(1)
-            add_signals(Places(made.bare_section(row)), built)
+            built = SectionBuilder(1)
+            add_signals(FreePositions(made.bare_section(row)), built)
             mesh = built.mesh.mesh()
             lights = [one.instance for one in built.things if one.kind == "signal"]
             used = mesh.vertices[np.unique(mesh.triangles[np.isin(mesh.instance, lights)])]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from processing.simulate.mesh import Mesh
-from processing.simulate.roadside.places import free_from_m
+from processing.simulate.roadside.free_positions import free_from_m
 from processing.simulate.roadside.pole_line import cable_ends, pole_line
 from processing.simulate.roadside.wires import hanging
 from processing.simulate.street.street import Street
@@ -43,7 +43,7 @@ def test_feet_of_poles_lie_on_the_ground(street: Street) -> None:
     for pole, _, row in poles:
         section = street.bare_section(row)
         foot = pole.xyz[0]
-        beside = section.place(pole.chainage_m, np.linspace(-60, 60, 2001))
+        beside = section.position(pole.chainage_m, np.linspace(-60, 60, 2001))
         nearest = beside[np.argmin(np.hypot(*(beside[:, :2] - foot[:2]).T))]
         assert foot[2] == pytest.approx(nearest[2], abs=0.05)
 
@@ -51,8 +51,8 @@ def test_feet_of_poles_lie_on_the_ground(street: Street) -> None:
 def test_poles_are_as_thick_and_high_as_the_truth_says(street: Street) -> None:
     for pole, mesh, _ in _poles(street):
         of_pole = (mesh.instance == pole.instance) & (mesh.piece == SHAFT)
-        places = mesh.vertices[np.unique(mesh.triangles[of_pole])]
-        high = places[:, 2].max() - pole.xyz[0, 2]
+        positions = mesh.vertices[np.unique(mesh.triangles[of_pole])]
+        high = positions[:, 2].max() - pole.xyz[0, 2]
         assert high == pytest.approx(pole.facts["height_m"], abs=0.05)
 
 
@@ -81,8 +81,8 @@ def test_cables_of_neighbouring_sections_meet_on_their_pole(street: Street) -> N
         for number in (before.section, pole.section):
             row = next(i for i, one in enumerate(street.plans) if one.index == number)
             mesh = street.section(row).mesh
-            places = mesh.vertices[np.unique(mesh.triangles[mesh.label == WIRE])]
-            gaps = np.linalg.norm(places[:, None] - ends[None], axis=2).min(axis=0)
+            positions = mesh.vertices[np.unique(mesh.triangles[mesh.label == WIRE])]
+            gaps = np.linalg.norm(positions[:, None] - ends[None], axis=2).min(axis=0)
             assert gaps.max() < 0.03
         joints += 1
     assert joints >= 1

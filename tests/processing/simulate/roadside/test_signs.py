@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from processing.simulate.mesh import Mesh
-from processing.simulate.roadside.places import Places
+from processing.simulate.roadside.free_positions import FreePositions
 from processing.simulate.roadside.sign_plates import (
     BACK_PIECE,
     FRONT_PIECE,
-    Hung,
-    Plate,
+    PlateMounting,
+    SignPlate,
     add_plate,
     centre_and_normal,
     outline,
@@ -19,21 +19,21 @@ from processing.simulate.roadside.sign_plates import (
 from processing.simulate.roadside.signs import add_signs
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import URBAN
-from processing.simulate.things import Built, TrueFeature
+from processing.simulate.things import SectionBuilder, TrueFeature
 
 PLATES = [
-    Plate("circle", 0.6),
-    Plate("triangle", 0.8),
-    Plate("square", 0.6),
-    Plate("diamond", 0.45),
-    Plate("pentagon", 0.6),
-    Plate("rectangle", 0.4, 0.2),
+    SignPlate("circle", 0.6),
+    SignPlate("triangle", 0.8),
+    SignPlate("square", 0.6),
+    SignPlate("diamond", 0.45),
+    SignPlate("pentagon", 0.6),
+    SignPlate("rectangle", 0.4, 0.2),
 ]
 
 
-def _hung(plate: Plate) -> tuple[Mesh, TrueFeature]:
-    built = Built(1)
-    where = Hung(np.array([3.0, 4.0, 2.5]), np.deg2rad(30.0), 0.02, 0.01, ground_m=0.1)
+def _hung(plate: SignPlate) -> tuple[Mesh, TrueFeature]:
+    built = SectionBuilder(1)
+    where = PlateMounting(np.array([3.0, 4.0, 2.5]), np.deg2rad(30.0), 0.02, 0.01, ground_m=0.1)
     add_plate(built, plate, where, 12.0)
     return built.mesh.mesh(), built.truth[0]
 
@@ -44,7 +44,7 @@ def _side(mesh: Mesh, instance: int, piece: int) -> tuple[np.ndarray, np.ndarray
 
 
 @pytest.mark.parametrize("plate", PLATES, ids=lambda one: one.shape)
-def test_a_plate_faces_where_it_was_hung_and_is_dull_behind(plate: Plate) -> None:
+def test_a_plate_faces_where_it_was_hung_and_is_dull_behind(plate: SignPlate) -> None:
     mesh, truth = _hung(plate)
     centre, normal = _side(mesh, 1, FRONT_PIECE)
     behind, back = _side(mesh, 1, BACK_PIECE)
@@ -56,7 +56,7 @@ def test_a_plate_faces_where_it_was_hung_and_is_dull_behind(plate: Plate) -> Non
 
 
 @pytest.mark.parametrize("plate", PLATES, ids=lambda one: one.shape)
-def test_outlines_are_as_large_as_their_names_say(plate: Plate) -> None:
+def test_outlines_are_as_large_as_their_names_say(plate: SignPlate) -> None:
     corners = outline(plate)
     wide, high = np.ptp(corners, axis=0)
     stated = {
@@ -74,9 +74,9 @@ def test_outlines_are_as_large_as_their_names_say(plate: Plate) -> None:
 
 
 def test_a_stop_sign_stands_on_its_tip() -> None:
-    corners = outline(Plate("triangle", 0.8))
+    corners = outline(SignPlate("triangle", 0.8))
     assert abs(corners[np.argmin(corners[:, 1]), 0]) < 0.02
-    _, truth = _hung(Plate("triangle", 0.8))
+    _, truth = _hung(SignPlate("triangle", 0.8))
     middle = truth.facts["bbox_centre"]
     assert isinstance(middle, list)
     assert truth.xyz[0, 2] - middle[2] > 0.08
@@ -86,8 +86,8 @@ def test_signs_of_a_street_hang_clear_of_the_ground_and_beside_the_road() -> Non
     street = Street(3, URBAN, 200.0)
     signs = 0
     for row in street.within(0.0, 200.0):
-        built = Built(1)
-        add_signs(Places(street.bare_section(row)), built)
+        built = SectionBuilder(1)
+        add_signs(FreePositions(street.bare_section(row)), built)
         mesh = built.mesh.mesh()
         for sign in built.truth:
             if sign.file != "signs":

@@ -9,22 +9,22 @@ import pytest
 
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Floats
-from processing.simulate.roadside.places import Places, Spot
+from processing.simulate.roadside.free_positions import FreePosition, FreePositions
 from processing.simulate.roadside.street_trees import add_street_trees
-from processing.simulate.roadside.tree_pits import PitHabit, add_pit, pit_habit, take_pit
-from processing.simulate.street.section import Section
+from processing.simulate.roadside.tree_pits import PitStyle, add_pit, pit_habit, take_pit
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import URBAN
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
-HABIT = PitHabit(
+HABIT = PitStyle(
     is_round=False, long_m=1.2, wide_m=1.0, gap_m=0.2, stone_m=0.1, high_m=0.1, soil_m=0.02,
     stone=Material.CONCRETE, filling=Material.SOIL, has_grating=False,
 )  # fmt: skip
 SEED_WITH_PITS = 14
 
 
-def _walk() -> tuple[Section, int, Spot]:
+def _walk() -> tuple[StreetSection, int, FreePosition]:
     """A section with a wide walk, and a place for a pit in it."""
     street = Street(SEED_WITH_PITS, URBAN, 160.0)
     for row in street.within(0.0, 160.0):
@@ -32,22 +32,22 @@ def _walk() -> tuple[Section, int, Spot]:
         for side in (1, -1):
             if pit_habit(section, side) is None or side in section.plan.junctions:
                 continue
-            away = HABIT.middle_m(Places(section).near_m(side))
+            away = HABIT.middle_m(FreePositions(section).near_m(side))
             for at in np.arange(section.plan.start_m + 2, section.plan.end_m - 2, 0.5):
-                spot = Spot(float(at), side * away)
-                if take_pit(Places(section), spot, HABIT):
+                spot = FreePosition(float(at), side * away)
+                if take_pit(FreePositions(section), spot, HABIT):
                     return section, side, spot
     raise ValueError("no walk for a pit")
 
 
-def _nearest(places: Floats, vertices: Floats) -> float:
-    gaps = np.linalg.norm(places[:, None] - vertices[None], axis=2)
+def _nearest(positions: Floats, vertices: Floats) -> float:
+    gaps = np.linalg.norm(positions[:, None] - vertices[None], axis=2)
     return float(gaps.min(axis=1).max())
 
 
-def _built(habit: PitHabit) -> tuple[Section, Spot, Built]:
+def _built(habit: PitStyle) -> tuple[StreetSection, FreePosition, SectionBuilder]:
     section, _, spot = _walk()
-    built = Built(1)
+    built = SectionBuilder(1)
     add_pit(section, built, spot, habit, np.random.default_rng(3))
     return section, spot, built
 
@@ -55,7 +55,7 @@ def _built(habit: PitHabit) -> tuple[Section, Spot, Built]:
 def test_each_side_of_a_pit_is_a_run_that_faces_outwards() -> None:
     section, spot, built = _built(HABIT)
     mesh = built.mesh.mesh()
-    middle = section.place(spot.chainage_m, spot.offset_m)
+    middle = section.position(spot.chainage_m, spot.offset_m)
     uppers = [one for one in built.truth if one.facts["edge"] == "upper"]
     assert len(uppers) == 4
     assert len(built.truth) == 8
@@ -94,17 +94,17 @@ def test_gratings_lie_over_the_soil_and_leave_room_for_the_trunk() -> None:
     bars = mesh.vertices[np.unique(mesh.triangles[mesh.material == Material.GRATING])]
     soil = mesh.vertices[np.unique(mesh.triangles[mesh.material == Material.SOIL])]
     assert bars[:, 2].max() > soil[:, 2].max()
-    middle = section.place(spot.chainage_m, spot.offset_m)
+    middle = section.position(spot.chainage_m, spot.offset_m)
     assert np.linalg.norm((bars - middle)[:, :2], axis=1).min() > 0.15
 
 
 def test_a_pit_takes_its_place() -> None:
     section, side, spot = _walk()
-    places = Places(section)
-    assert take_pit(places, spot, HABIT)
-    assert not take_pit(places, spot, HABIT)
-    corner = Spot(spot.chainage_m + 0.59, spot.offset_m + side * 0.49)
-    assert not places.is_free(corner, 0.03)
+    positions = FreePositions(section)
+    assert take_pit(positions, spot, HABIT)
+    assert not take_pit(positions, spot, HABIT)
+    corner = FreePosition(spot.chainage_m + 0.59, spot.offset_m + side * 0.49)
+    assert not positions.is_free(corner, 0.03)
 
 
 def test_trees_stand_in_their_pits_on_the_soil() -> None:
@@ -112,8 +112,8 @@ def test_trees_stand_in_their_pits_on_the_soil() -> None:
     found = 0
     for row in street.within(0.0, 160.0):
         section = street.bare_section(row)
-        built = Built(1)
-        add_street_trees(Places(section), built)
+        built = SectionBuilder(1)
+        add_street_trees(FreePositions(section), built)
         if not any(one.kind == "tree_pit" for one in built.things):
             continue
         mesh = built.mesh.mesh()

@@ -8,11 +8,11 @@ import pytest
 from processing.simulate.mesh import Mesh
 from processing.simulate.roadside.trunks import (
     Stem,
-    StemWish,
+    StemOptions,
     girth_of_stem_m,
     stem_of,
     stem_shape,
-    taped_girth_m,
+    tape_girth_m,
 )
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import URBAN
@@ -66,7 +66,7 @@ def test_a_tape_round_a_leaning_stem_lies_square_to_it() -> None:
 
 
 def test_each_sector_of_the_breast_band_faces_its_ten_degrees() -> None:
-    stem = stem_of(np.random.default_rng(4), StemWish(0.12, 5.0, 0.4, (0.02, 0.0)))
+    stem = stem_of(np.random.default_rng(4), StemOptions(0.12, 5.0, 0.4, (0.02, 0.0)))
     (vertices, faces), pieces = stem_shape(stem)
     corners = vertices[faces]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -95,7 +95,7 @@ def test_the_girth_of_every_tree_is_what_a_tape_shows_on_its_mesh(
         rings = [np.unique(band[np.abs(band[:, 2] - z) < 1e-5].round(7), axis=0) for z in levels]
         low, middle, high = (ring.mean(axis=0) for ring in rings)
         shape = trunk.reshape(-1, 3), np.arange(trunk.size // 3).reshape(-1, 3)
-        girth = taped_girth_m(shape, middle, high - low)
+        girth = tape_girth_m(shape, middle, high - low)
         assert girth == pytest.approx(tree.facts["girth_m"], abs=0.001)
         assert tree.facts["dbh_m"] == pytest.approx(girth / np.pi, abs=0.001)
         checked += 1
@@ -107,9 +107,9 @@ def test_trees_stand_on_the_ground_and_reach_their_height(
 ) -> None:
     for tree, mesh, ground in trees:
         assert ground - 0.02 < tree.xyz[0, 2] < ground + SOIL_OF_PITS_M
-        places = mesh.vertices[np.unique(mesh.triangles[mesh.instance == tree.instance])]
-        assert places[:, 2].max() - tree.xyz[0, 2] == pytest.approx(tree.facts["height_m"])
-        assert places[:, 2].min() < tree.xyz[0, 2] - 0.1
+        positions = mesh.vertices[np.unique(mesh.triangles[mesh.instance == tree.instance])]
+        assert positions[:, 2].max() - tree.xyz[0, 2] == pytest.approx(tree.facts["height_m"])
+        assert positions[:, 2].min() < tree.xyz[0, 2] - 0.1
 
 
 def test_no_two_trees_grow_into_each_other(

@@ -7,27 +7,27 @@ import pytest
 
 from processing.simulate.roadside.furniture import add_furniture
 from processing.simulate.roadway.box_lids import BoxLid, add_box_lids, box_lids_of
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import URBAN
 from processing.simulate.street.walk_lines import walk_lines
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 
 @pytest.fixture(scope="module")
-def sections() -> list[Section]:
+def sections() -> list[StreetSection]:
     """Sections of a street with walks."""
     street = Street(3, URBAN, 200.0)
     return [street.bare_section(row) for row in street.within(0.0, 200.0)]
 
 
-def _lids(sections: list[Section]) -> list[tuple[Section, BoxLid]]:
+def _lids(sections: list[StreetSection]) -> list[tuple[StreetSection, BoxLid]]:
     found = [(section, lid) for section in sections for lid in box_lids_of(section)]
     assert len(found) > 3
     return found
 
 
-def test_lids_lie_in_the_walk_clear_of_lowered_curbs(sections: list[Section]) -> None:
+def test_lids_lie_in_the_walk_clear_of_lowered_curbs(sections: list[StreetSection]) -> None:
     for section, lid in _lids(sections):
         side = 1 if lid.offset_m > 0 else -1
         lines = walk_lines(section, side)
@@ -40,28 +40,28 @@ def test_lids_lie_in_the_walk_clear_of_lowered_curbs(sections: list[Section]) ->
             assert high < drop.from_m or low > drop.to_m
 
 
-def test_lids_are_as_high_as_the_pavement_and_a_little_more(sections: list[Section]) -> None:
+def test_lids_are_as_high_as_the_pavement_and_a_little_more(sections: list[StreetSection]) -> None:
     for section in sections:
-        built = Built(1)
+        built = SectionBuilder(1)
         add_box_lids(section, built)
         mesh = built.mesh.mesh()
         for lid, thing in zip(box_lids_of(section), built.things, strict=False):
             own = mesh.vertices[np.unique(mesh.triangles[mesh.instance == thing.instance])]
-            ground = section.place(lid.chainage_m, lid.offset_m)
+            ground = section.position(lid.chainage_m, lid.offset_m)
             assert own[:, 2].max() > ground[2]
             reach = np.linalg.norm((own - ground)[:, :2], axis=1).max()
             assert reach < np.hypot(lid.long_m, lid.wide_m) / 2 + 0.05
 
 
-def test_nothing_is_set_up_on_a_lid(sections: list[Section]) -> None:
+def test_nothing_is_set_up_on_a_lid(sections: list[StreetSection]) -> None:
     for section in sections[:4]:
-        built = Built(1)
+        built = SectionBuilder(1)
         add_furniture(section, built)
         lids = list(box_lids_of(section))
         for one in built.truth:
             if one.file not in ("poles", "trees"):
                 continue
             for lid in lids:
-                middle = section.place(lid.chainage_m, lid.offset_m)
+                middle = section.position(lid.chainage_m, lid.offset_m)
                 away = np.linalg.norm((one.xyz[0] - middle)[:2])
                 assert away > min(lid.long_m, lid.wide_m) / 2

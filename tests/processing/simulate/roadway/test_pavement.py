@@ -8,7 +8,7 @@ from processing.simulate.materials import Material
 from processing.simulate.roadway.pavement import add_pavement
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import URBAN
-from processing.simulate.things import Built
+from processing.simulate.things import SectionBuilder
 
 
 def test_tactile_blocks_lie_before_the_lowered_curbs_of_some_corners() -> None:
@@ -20,7 +20,7 @@ def test_tactile_blocks_lie_before_the_lowered_curbs_of_some_corners() -> None:
             if not any(plan.side(side).has_tactile for side in plan.junctions):
                 continue
             section = street.bare_section(row)
-            built = Built(1)
+            built = SectionBuilder(1)
             add_pavement(section, built)
             mesh = built.mesh.mesh()
             blocks = mesh.vertices[np.unique(mesh.triangles[mesh.material == Material.TACTILE])]

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.simulate.scanning.beams import Spin, beams_of, head_axes
-from processing.simulate.scanning.passes import Driving, pass_of
+from processing.simulate.scanning.beams import ScanPattern, beams_of, head_axes
 from processing.simulate.scanning.sensors import SENSORS
+from processing.simulate.scanning.simulated_passes import Driving, pass_of
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import URBAN
 
@@ -15,22 +15,22 @@ from processing.simulate.street.styles import URBAN
 @pytest.mark.parametrize("head", SENSORS["vq250"].heads, ids=lambda one: one.name)
 def test_beams_of_a_turn_lie_square_to_the_axis_and_come_round(head) -> None:
     driven = pass_of(Street(1, URBAN, 40.0), 0, Driving(9.0, stops=False, drift_m=0.0))
-    spin = Spin(360, 50.0, 0.3)
-    beams = beams_of(driven, head, spin, range(3600, 3600 + 361))
-    turns = driven.turns[np.searchsorted(driven.time_s, beams.time_s) - 1]
-    own = np.einsum("nij,ni->nj", turns, beams.ways) @ head_axes(head)
+    scan_pattern = ScanPattern(360, 50.0, 0.3)
+    beams = beams_of(driven, head, scan_pattern, range(3600, 3600 + 361))
+    rotations = driven.rotations[np.searchsorted(driven.time_s, beams.time_s) - 1]
+    own = np.einsum("nij,ni->nj", rotations, beams.directions) @ head_axes(head)
     assert np.abs(own[:, 2]).max() < 0.005  # the car turns a little meanwhile
-    assert np.allclose(np.linalg.norm(beams.ways, axis=1), 1.0)
+    assert np.allclose(np.linalg.norm(beams.directions, axis=1), 1.0)
     assert own[0, :2] == pytest.approx(own[360, :2], abs=0.005)
     assert own[90, :2] == pytest.approx([-own[0, 1], own[0, 0]], abs=0.01)
 
 
 def test_pulses_are_the_same_in_whatever_pieces_they_are_asked_for() -> None:
     driven = pass_of(Street(1, URBAN, 40.0), 0, Driving(9.0, stops=False, drift_m=0.0))
-    head, spin = SENSORS["zf9012"].heads[0], Spin(5080, 200.0, 1.0)
-    whole = beams_of(driven, head, spin, range(1000, 3000))
-    part = beams_of(driven, head, spin, range(2000, 2500))
-    assert np.array_equal(whole.ways[1000:1500], part.ways)
+    head, scan_pattern = SENSORS["zf9012"].heads[0], ScanPattern(5080, 200.0, 1.0)
+    whole = beams_of(driven, head, scan_pattern, range(1000, 3000))
+    part = beams_of(driven, head, scan_pattern, range(2000, 2500))
+    assert np.array_equal(whole.directions[1000:1500], part.directions)
     assert np.array_equal(whole.origins[1000:1500], part.origins)
 
 

@@ -8,7 +8,7 @@ import pytest
 from processing.errors import OutOfRange
 from processing.simulate.scanning.beams import head_axes
 from processing.simulate.scanning.density import (
-    Survey,
+    DrivingSensor,
     density_map,
     road_density,
     survey_of,
@@ -22,32 +22,32 @@ FROM_M, TO_M = 12.0, 28.0
 CELL_M = 1.0
 
 
-def beams(survey: Survey, head: int) -> tuple[np.ndarray, np.ndarray]:
+def beams(survey: DrivingSensor, head: int) -> tuple[np.ndarray, np.ndarray]:
     """Origins and ways of all pulses of a straight drive along x."""
     one = survey.heads[head]
     first, second, _ = head_axes(one).T
     times = np.arange(0, DRIVEN_M / survey.speed_m_s, 1 / (survey.turns_per_s * survey.pulses))
     angles = 2 * np.pi * survey.turns_per_s * times
-    ways = np.cos(angles)[:, None] * first + np.sin(angles)[:, None] * second
+    directions = np.cos(angles)[:, None] * first + np.sin(angles)[:, None] * second
     origins = np.add(one.lever_m, (0.0, 0.0, survey.height_m))
-    return origins + np.outer(times * survey.speed_m_s, [1.0, 0.0, 0.0]), ways
+    return origins + np.outer(times * survey.speed_m_s, [1.0, 0.0, 0.0]), directions
 
 
-def met(survey: Survey, plane: int, at_m: float) -> np.ndarray:
+def met(survey: DrivingSensor, plane: int, at_m: float) -> np.ndarray:
     """Where all beams of all heads meet the plane on which a coordinate has a value."""
     found = []
     for head in range(len(survey.heads)):
-        origins, ways = beams(survey, head)
+        origins, directions = beams(survey, head)
         with np.errstate(divide="ignore", invalid="ignore"):
-            ranges = (at_m - origins[:, plane]) / ways[:, plane]
+            ranges = (at_m - origins[:, plane]) / directions[:, plane]
         is_met = (ranges > 0) & (ranges <= survey.most_m)
-        found.append(origins[is_met] + ranges[is_met, None] * ways[is_met])
+        found.append(origins[is_met] + ranges[is_met, None] * directions[is_met])
     return np.concatenate(found)
 
 
-def counted(places: np.ndarray, other: int, edges: np.ndarray) -> np.ndarray:
+def counted(positions: np.ndarray, other: int, edges: np.ndarray) -> np.ndarray:
     """Points per square metre between edges of another coordinate, in the middle of the drive."""
-    inside = places[(places[:, 0] >= FROM_M) & (places[:, 0] < TO_M)]
+    inside = positions[(positions[:, 0] >= FROM_M) & (positions[:, 0] < TO_M)]
     numbers, _ = np.histogram(inside[:, other], edges)
     return numbers / (CELL_M * (TO_M - FROM_M))
 
@@ -74,7 +74,7 @@ def test_points_counted_on_a_wall_are_as_dense_as_is_told(sensor: str, side_m: f
 def test_twice_the_speed_halves_the_density() -> None:
     slow, fast = (survey_of(SENSORS["vq250"], speed) for speed in (20.0, 40.0))
     np.testing.assert_allclose(road_density(slow, [0, 9]), 2 * road_density(fast, [0, 9]))
-    assert fast.between_turns_m == pytest.approx(2 * slow.between_turns_m)
+    assert fast.between_revolutions_m == pytest.approx(2 * slow.between_revolutions_m)
 
 
 def test_two_heads_measure_both_sides_alike() -> None:

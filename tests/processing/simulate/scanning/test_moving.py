@@ -8,9 +8,9 @@ import pytest
 from processing.simulate.materials import Material
 from processing.simulate.mesh import MeshBuilder, box
 from processing.simulate.scanning.beams import Beams
-from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.casting import RaycastScene
 from processing.simulate.scanning.moving import MovingScene, poses_of
-from processing.simulate.scanning.returns import Met
+from processing.simulate.scanning.returns import BeamHits
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import HIGHWAY
 from processing.simulate.things import Mover
@@ -23,14 +23,14 @@ def _car(speed_m_s: float, from_s: float = 0.0, to_s: float = 100.0) -> Mover:
     return Mover(built.mesh(), 20.0, -3.0, speed_m_s, from_s, to_s, turn_rad=turn)
 
 
-def _watched(street: Street, mover: Mover, seconds: float) -> tuple[Beams, Met]:
+def _watched(street: Street, mover: Mover, seconds: float) -> tuple[Beams, BeamHits]:
     """A beam straight down onto the road at chainage 30, ten thousand times a second."""
     times = np.arange(0, seconds, 1e-4)
     above = street.alignment.at(30.0, -3.0, 50.0)
-    ways = np.tile([0.0, 0.0, -1.0], (times.size, 1))
-    beams = Beams(0, times, np.tile(above, (times.size, 1)), ways)
+    directions = np.tile([0.0, 0.0, -1.0], (times.size, 1))
+    beams = Beams(0, times, np.tile(above, (times.size, 1)), directions)
     nothing = MeshBuilder().mesh()
-    met = Met.of(Scene(nothing, np.zeros(3)).cast(beams.origins, ways), nothing)
+    met = BeamHits.of(RaycastScene(nothing, np.zeros(3)).cast(beams.origins, directions), nothing)
     MovingScene(street, [mover]).meet(beams, met)
     return beams, met
 
@@ -53,7 +53,7 @@ def test_nothing_is_met_when_it_is_not_there_any_more() -> None:
 def test_oncoming_vehicles_face_their_way() -> None:
     street = Street(2, HIGHWAY, 60.0)
     times = np.array([0.0, 1.0])
-    places, headings = poses_of(_car(-10.0), street, times)
-    way = places[1] - places[0]
+    positions, headings = poses_of(_car(-10.0), street, times)
+    direction = positions[1] - positions[0]
     faces = np.array([np.cos(headings[0]), np.sin(headings[0])])
-    assert way[:2] @ faces > 0.99 * np.linalg.norm(way[:2])
+    assert direction[:2] @ faces > 0.99 * np.linalg.norm(direction[:2])

@@ -9,17 +9,17 @@ import pytest
 
 from processing.simulate.materials import Material
 from processing.simulate.mesh import Mesh, MeshBuilder, box, grid
-from processing.simulate.scanning.beams import Beams, Spin
-from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.beams import Beams, ScanPattern
+from processing.simulate.scanning.casting import RaycastScene
 from processing.simulate.scanning.returns import (
     NO_EVIDENCE,
-    Met,
+    BeamHits,
     Returns,
     Weather,
     returns_of,
     scanner_numbers,
 )
-from processing.simulate.scanning.scanner_noise import NoiseSource, Recorded
+from processing.simulate.scanning.scanner_noise import NoiseSource, PulseHits
 from processing.simulate.scanning.sensors import SENSORS, Sensor
 
 _PULSE, _PHASE = SENSORS["vq250"], SENSORS["zf9012"]
@@ -36,13 +36,13 @@ def _floor(material: Material, half_m: float = 60.0) -> MeshBuilder:
 def _fan(count: int, low_deg: float, high_deg: float) -> Beams:
     """Beams from 2.5 m above the floor, in a plane, from steep to flat."""
     angles = np.radians(np.linspace(low_deg, high_deg, count))
-    ways = np.column_stack([np.sin(angles), np.zeros(count), -np.cos(angles)])
-    return Beams(5000, np.arange(count) / 3e5, np.tile([0.0, 0.0, 2.5], (count, 1)), ways)
+    directions = np.column_stack([np.sin(angles), np.zeros(count), -np.cos(angles)])
+    return Beams(5000, np.arange(count) / 3e5, np.tile([0.0, 0.0, 2.5], (count, 1)), directions)
 
 
 def _returned(mesh: Mesh, beams: Beams, sensor: Sensor, wetness: float = 0.0) -> Returns:
-    scene = Scene(mesh, np.zeros(3))
-    met = Met.of(scene.cast(beams.origins, beams.ways), mesh)
+    scene = RaycastScene(mesh, np.zeros(3))
+    met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
     scanner = scanner_numbers(sensor, 3000, Weather(wetness, 0.5))
     return returns_of(beams, met, scene, scanner, 99)[0]
 
@@ -85,7 +85,9 @@ def test_a_pulse_at_an_edge_returns_twice_and_a_phase_in_between() -> None:
     """The top of a wall is 1 m above the ground behind it."""
     turn, mesh = _fan(200, 45, 75), _with_a_box(1.0)
     beams = Beams(
-        0, np.arange(200_000) / 3e5, *(np.tile(one, (1000, 1)) for one in (turn.origins, turn.ways))
+        0,
+        np.arange(200_000) / 3e5,
+        *(np.tile(one, (1000, 1)) for one in (turn.origins, turn.directions)),
     )
     pulses = _returned(mesh, beams, _PULSE)
     seconds = pulses.number == 2
@@ -117,7 +119,9 @@ def test_grass_returns_from_above_the_ground() -> None:
 
 def test_a_pulse_returns_the_same_with_whatever_it_is_recorded() -> None:
     beams, mesh = _fan(3000, 30, 60), _floor(Material.ASPHALT).mesh()
-    part = Beams(beams.first + 1000, beams.time_s[1000:], beams.origins[1000:], beams.ways[1000:])
+    part = Beams(
+        beams.first + 1000, beams.time_s[1000:], beams.origins[1000:], beams.directions[1000:]
+    )
     whole, rest = (_returned(mesh, one, _PULSE) for one in (beams, part))
     assert np.array_equal(whole.xyz[whole.pulse >= part.first], rest.xyz)
 
@@ -127,12 +131,12 @@ def test_what_lies_beyond_the_range_of_unambiguity_is_folded_back() -> None:
     built.add(box((150.0, -50.0, -50.0), (151.0, 50.0, 50.0)), Material.PLASTER, 6, 4)
     mesh = built.mesh()
     beams = _fan(20_000, 85, 95)
-    scene = Scene(mesh, np.zeros(3))
-    met = Met.of(scene.cast(beams.origins, beams.ways), mesh)
+    scene = RaycastScene(mesh, np.zeros(3))
+    met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
     scanner = scanner_numbers(_PHASE, 5080, Weather(0.0, 0.5))
     returns, _ = returns_of(beams, met, scene, scanner, 99)
-    noise = NoiseSource(3, (0, 0), _PHASE, Spin(5080, 200.0, 0.0))
-    noisy = noise.added(Recorded(beams, met, returns, scene))
+    noise = NoiseSource(3, (0, 0), _PHASE, ScanPattern(5080, 200.0, 0.0))
+    noisy = noise.added(PulseHits(beams, met, returns, scene))
     folded = np.abs(np.linalg.norm(noisy.xyz - beams.origins[0], axis=1) - 31.0) < 1.0
     assert folded.sum() > 1000
     assert set(noisy.label[folded].tolist()) <= {7, 18}
@@ -144,12 +148,12 @@ def test_points_in_a_window_are_told_to_be_noise() -> None:
     built.add(box((5.0, -9.0, 0.0), (5.01, 9.0, 9.0)), Material.GLASS, 6, 4)
     built.add(box((-4.0, -9.0, 0.0), (-3.0, 9.0, 9.0)), Material.PLASTER, 6, 5)
     mesh, beams = built.mesh(), _fan(20_000, 80, 100)
-    scene = Scene(mesh, np.zeros(3))
-    met = Met.of(scene.cast(beams.origins, beams.ways), mesh)
+    scene = RaycastScene(mesh, np.zeros(3))
+    met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
     returns, _ = returns_of(beams, met, scene, scanner_numbers(_PULSE, 3000, Weather(0.0, 0.5)), 99)
     quiet = replace(_PULSE, most_m=100.0)
-    noisy = NoiseSource(3, (0, 0), quiet, Spin(3000, 100.0, 0.0)).added(
-        Recorded(beams, met, returns, scene)
+    noisy = NoiseSource(3, (0, 0), quiet, ScanPattern(3000, 100.0, 0.0)).added(
+        PulseHits(beams, met, returns, scene)
     )
     behind = noisy.xyz[:, 0] > 6
     assert behind.sum() > 2000
@@ -159,12 +163,12 @@ def test_points_in_a_window_are_told_to_be_noise() -> None:
 
 def test_weak_returns_of_a_phase_scanner_jump_by_whole_waves() -> None:
     mesh, beams = _floor(Material.RUBBER).mesh(), _fan(40_000, 70, 84)
-    scene = Scene(mesh, np.zeros(3))
-    met = Met.of(scene.cast(beams.origins, beams.ways), mesh)
+    scene = RaycastScene(mesh, np.zeros(3))
+    met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
     scanner = scanner_numbers(_PHASE, 5080, Weather(0.0, 0.5))
     returns, truths = returns_of(beams, met, scene, scanner, 99)
-    noise = NoiseSource(3, (0, 0), _PHASE, Spin(5080, 200.0, 0.0))
-    noisy = noise.added(Recorded(beams, met, returns, scene))
+    noise = NoiseSource(3, (0, 0), _PHASE, ScanPattern(5080, 200.0, 0.0))
+    noisy = noise.added(PulseHits(beams, met, returns, scene))
     off = np.linalg.norm(noisy.xyz - beams.origins[0], axis=1) - truths[noisy.pulse - beams.first]
     waves = off * 60.0 / _PHASE.most_m
     jumped = (np.abs(waves - np.round(waves)) < 0.05) & (np.abs(np.round(waves)) >= 1)
@@ -177,12 +181,12 @@ def test_what_a_pane_mirrors_from_the_ground_is_noise_below_the_ground() -> None
     pane = np.array([[[7.95, -5.0, 0.5], [7.95, 5.0, 0.5]], [[8.05, -5.0, 2.4], [8.05, 5.0, 2.4]]])
     built.add(grid(pane), Material.GLASS, 6, 9)
     mesh = built.mesh()
-    scene, beams = Scene(mesh, np.zeros(3)), _fan(6000, 75.0, 89.0)
-    met = Met.of(scene.cast(beams.origins, beams.ways), mesh)
+    scene, beams = RaycastScene(mesh, np.zeros(3)), _fan(6000, 75.0, 89.0)
+    met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
     quiet = replace(_PULSE, noise_m=0.0)
     returns = returns_of(beams, met, scene, scanner_numbers(quiet, 3000, Weather(0.0, 0.5)), 99)[0]
-    noisy = NoiseSource(3, (0, 0), quiet, Spin(3000, 100.0, 0.0)).added(
-        Recorded(beams, met, returns, scene)
+    noisy = NoiseSource(3, (0, 0), quiet, ScanPattern(3000, 100.0, 0.0)).added(
+        PulseHits(beams, met, returns, scene)
     )
     is_low = noisy.xyz[:, 2] < -0.1
     assert is_low.sum() > 20

@@ -9,54 +9,58 @@ from processing.simulate.chance import chance
 from processing.simulate.materials import Material
 from processing.simulate.mesh import MeshBuilder, box, plate
 from processing.simulate.scanning.beams import Beams
-from processing.simulate.scanning.casting import Scene
-from processing.simulate.scanning.returns import Met, Returns
+from processing.simulate.scanning.casting import RaycastScene
+from processing.simulate.scanning.returns import BeamHits, Returns
 from processing.simulate.scanning.sensors import SENSORS
-from processing.simulate.sites.bodies import Body, Kind
-from processing.simulate.sites.ghosts import Ghosts, Haunts, ghosts_of, haunted
+from processing.simulate.sites.bodies import SiteBody, SiteKind
+from processing.simulate.sites.ghosts import Ghosts, GhostSources, add_ghosts, ghosts_of
 from processing.simulate.sites.heights import HeightGrid
-from processing.simulate.sites.layout import Layout
-from processing.simulate.sites.movement import Cloud, MovingThings, Track
+from processing.simulate.sites.layout import SiteLayout
+from processing.simulate.sites.movement import DustCloud, MovementTrack, MovingThings
 from processing.simulate.sites.recording import labels_of, pattern_of
 from processing.simulate.sites.small_things import worker
-from processing.simulate.sites.terrain import Ground
+from processing.simulate.sites.terrain import SiteGround
 
-QUIET = Haunts([], [], [], 0.0, is_phase=False, restless=0.0)
+QUIET = GhostSources([], [], [], 0.0, is_phase=False, restless=0.0)
 EYE = np.array([10.0, 10.0, 2.0])
 
 
-def flat(material: Material) -> Layout:
+def flat(material: Material) -> SiteLayout:
     z = np.zeros((41, 41), np.float32)
-    return Layout(Ground(HeightGrid(z, 0.5), np.full(z.shape, int(material), np.uint8)))
+    return SiteLayout(SiteGround(HeightGrid(z, 0.5), np.full(z.shape, int(material), np.uint8)))
 
 
 def beams_to(targets: np.ndarray, time_s: float = 0.0) -> Beams:
-    ways = targets - EYE
-    ways /= np.linalg.norm(ways, axis=1)[:, None]
-    return Beams(0, np.full(len(ways), time_s), np.broadcast_to(EYE, ways.shape), ways)
+    directions = targets - EYE
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    return Beams(
+        0, np.full(len(directions), time_s), np.broadcast_to(EYE, directions.shape), directions
+    )
 
 
-def pond_before_a_wall() -> Scene:
+def pond_before_a_wall() -> RaycastScene:
     builder = MeshBuilder()
     water = plate(np.array([[0, 0, 0], [20, 0, 0], [20, 20, 0], [0, 20, 0.0]]))
     builder.add(water, Material.WATER, 2, 0)
     builder.add(box((18, 0, 0), (19, 20, 9)), Material.CONCRETE, 1, 1)
-    return Scene(builder.mesh(), np.array([10.0, 10.0, 0.0]))
+    return RaycastScene(builder.mesh(), np.array([10.0, 10.0, 0.0]))
 
 
 def test_water_shows_the_wall_behind_it_below_the_ground() -> None:
     scene = pond_before_a_wall()
     targets = np.column_stack([np.full(400, 14.0), np.linspace(8, 12, 400), np.zeros(400)])
     beams = beams_to(targets)
-    hits = scene.cast(beams.origins, beams.ways)
-    met = Met.of(hits, scene.mesh)
+    hits = scene.cast(beams.origins, beams.directions)
+    met = BeamHits.of(hits, scene.mesh)
     ghosts = ghosts_of(chance(1, "ghosts"), beams, met, (hits, scene), QUIET)
     assert 120 < ghosts.rays.size < 280  # half of what the water takes
-    places = EYE + beams.ways[ghosts.rays] * ghosts.ranges[:, None]
-    assert np.abs(places[:, 0] - 18).max() < 0.2  # straight on, as deep as the wall is high there
-    assert (places[:, 2] < -1).all()
-    kind, label = labels_of(places, ghosts.kinds, flat(Material.WATER))
-    assert (kind == int(Kind.GHOST)).all()
+    positions = EYE + beams.directions[ghosts.rays] * ghosts.ranges[:, None]
+    assert (
+        np.abs(positions[:, 0] - 18).max() < 0.2
+    )  # straight on, as deep as the wall is high there
+    assert (positions[:, 2] < -1).all()
+    kind, label = labels_of(positions, ghosts.kinds, flat(Material.WATER))
+    assert (kind == int(SiteKind.GHOST)).all()
     assert (label == 7).all()
 
 
@@ -64,15 +68,15 @@ def test_a_cloud_of_dust_returns_beams_from_within_it_alone() -> None:
     scene = pond_before_a_wall()
     targets = np.column_stack([np.full(400, 18.0), np.linspace(1, 19, 400), np.full(400, 2.0)])
     beams = beams_to(targets)
-    hits = scene.cast(beams.origins, beams.ways)
-    cloud = Cloud(np.array([14.0, 10, 2]), np.array([1.0, 2, 1]), np.zeros(3), -1.0, 1.0, 0.4)
-    haunts = Haunts([], [cloud], [], 0.0, is_phase=False, restless=0.0)
-    met = Met.of(hits, scene.mesh)
-    ghosts = ghosts_of(chance(2, "ghosts"), beams, met, (hits, scene), haunts)
-    dust = ghosts.kinds == int(Kind.DUST)
-    places = EYE + beams.ways[ghosts.rays[dust]] * ghosts.ranges[dust, None]
+    hits = scene.cast(beams.origins, beams.directions)
+    cloud = DustCloud(np.array([14.0, 10, 2]), np.array([1.0, 2, 1]), np.zeros(3), -1.0, 1.0, 0.4)
+    ghost_sources = GhostSources([], [cloud], [], 0.0, is_phase=False, restless=0.0)
+    met = BeamHits.of(hits, scene.mesh)
+    ghosts = ghosts_of(chance(2, "ghosts"), beams, met, (hits, scene), ghost_sources)
+    dust = ghosts.kinds == int(SiteKind.DUST)
+    positions = EYE + beams.directions[ghosts.rays[dust]] * ghosts.ranges[dust, None]
     assert dust.sum() > 20
-    assert (np.linalg.norm((places - cloud.centre) / cloud.radii, axis=1) < 1 + 1e-9).all()
+    assert (np.linalg.norm((positions - cloud.centre) / cloud.radii, axis=1) < 1 + 1e-9).all()
 
 
 def test_a_ghost_takes_the_place_of_what_its_pulse_met() -> None:
@@ -83,7 +87,7 @@ def test_a_ghost_takes_the_place_of_what_its_pulse_met() -> None:
     evidence = np.zeros(4, np.int64)
     returns = Returns(pulse, np.zeros(4), xyz, np.ones(4), ones, ones, ones * 2, evidence)
     ghost = Ghosts(np.array([1]), np.array([3.0]), np.array([0.1]), np.array([-2], np.int8))
-    found, kinds = haunted(returns, np.zeros(4, np.int8), beams, ghost)
+    found, kinds = add_ghosts(returns, np.zeros(4, np.int8), beams, ghost)
     assert found.pulse.tolist() == [0, 1, 2]
     assert kinds.tolist() == [0, -2, 0]
     assert found.count.tolist() == [1, 1, 1]
@@ -100,14 +104,14 @@ def test_blades_of_grass_are_told_from_the_ground_by_their_height() -> None:
 
 
 def test_a_walker_is_met_where_he_is_at_that_time() -> None:
-    body: Body = worker(chance(3, "worker"))
+    body: SiteBody = worker(chance(3, "worker"))
     times = np.array([0.0, 10.0])
     x, y, headings = np.array([12.0, 18.0]), np.array([10.0, 10.0]), np.zeros(2)
-    moving = MovingThings([Track(body, 7, times, x, y, headings)], flat(Material.SOIL))
+    moving = MovingThings([MovementTrack(body, 7, times, x, y, headings)], flat(Material.SOIL))
     for time_s, at in ((0.0, 12.0), (5.0, 15.0)):
         targets = np.column_stack([np.full(41, at), np.linspace(9, 11, 41), np.full(41, 1.0)])
         beams = beams_to(targets, time_s)
-        met = Met(
+        met = BeamHits(
             np.full(41, np.inf),
             np.ones(41),
             np.zeros(41, np.uint8),
@@ -117,7 +121,7 @@ def test_a_walker_is_met_where_he_is_at_that_time() -> None:
         moving.meet(beams, met)
         seen = np.isfinite(met.ranges)
         assert 0 < seen.sum() < 30
-        assert np.abs(met.ranges[seen] * beams.ways[seen, 0] + EYE[0] - at).max() < 0.9
+        assert np.abs(met.ranges[seen] * beams.directions[seen, 0] + EYE[0] - at).max() < 0.9
         assert (met.evidence[seen] // 256 == 7).all()
 
 

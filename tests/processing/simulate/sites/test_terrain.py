@@ -9,7 +9,7 @@ from processing.simulate.chance import chance
 from processing.simulate.sites.heights import HeightGrid, nodes_apart
 from processing.simulate.sites.relief import distance_to_path, puddle
 from processing.simulate.sites.terrain import terrain_of
-from processing.simulate.sites.works import PLANS, Plan, lie_of, progress_of
+from processing.simulate.sites.works import PLANS, Plan, progress_of, work_placement_of
 
 STYLES = sorted(PLANS)
 
@@ -37,7 +37,7 @@ def test_a_seed_gives_the_same_ground_and_another_one_gives_another() -> None:
 def test_work_never_goes_back_nor_past_its_design(style: str) -> None:
     x, y = np.meshgrid(np.arange(0, 60, 0.5), np.arange(0, 40, 0.5))
     random = chance(8, style)
-    lie = lie_of(random, x, y)
+    lie = work_placement_of(random, x, y)
     plan = PLANS[style](random, lie)
     first, second = (plan.built(one.down_to, one.up_to) for one in progress_of(random, lie, plan))
     low, high = np.minimum(plan.natural, plan.design), np.maximum(plan.natural, plan.design)

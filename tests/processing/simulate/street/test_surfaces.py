@@ -15,11 +15,11 @@ from processing.simulate.roadway.junctions import add_junctions
 from processing.simulate.roadway.markings import add_markings
 from processing.simulate.roadway.pavement import add_pavement
 from processing.simulate.street.plan import SIDES
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import HIGHWAY, RURAL, URBAN, Style
 from processing.simulate.street.surfaces import add_ground
-from processing.simulate.things import Built, TrueFeature
+from processing.simulate.things import SectionBuilder, TrueFeature
 
 MAKERS = (
     add_ground, add_junctions, add_islands, add_ends, add_markings, add_pavement, add_aprons,
@@ -28,14 +28,16 @@ MAKERS = (
 SKY_M = 300.0
 
 
-def _built(section: Section) -> tuple[Mesh, list[TrueFeature]]:
-    built = Built(1)
+def _built(section: StreetSection) -> tuple[Mesh, list[TrueFeature]]:
+    built = SectionBuilder(1)
     for add in MAKERS:
         add(section, built)
     return built.mesh.mesh(), built.truth
 
 
-def _fallen(mesh: Mesh, places: np.ndarray[tuple[int, int], np.dtype[np.float64]]) -> list[float]:
+def _fallen(
+    mesh: Mesh, positions: np.ndarray[tuple[int, int], np.dtype[np.float64]]
+) -> list[float]:
     """Heights at which rays straight down from the sky meet the mesh."""
     import open3d
 
@@ -44,13 +46,13 @@ def _fallen(mesh: Mesh, places: np.ndarray[tuple[int, int], np.dtype[np.float64]
         open3d.core.Tensor(mesh.vertices.astype(np.float32)),
         open3d.core.Tensor(mesh.triangles.astype(np.uint32)),
     )
-    rays = np.zeros((len(places), 6), np.float32)
-    rays[:, :2], rays[:, 2], rays[:, 5] = places[:, :2], SKY_M, -1.0
+    rays = np.zeros((len(positions), 6), np.float32)
+    rays[:, :2], rays[:, 2], rays[:, 5] = positions[:, :2], SKY_M, -1.0
     hit = scene.cast_rays(open3d.core.Tensor(rays))["t_hit"].numpy()
     return list(SKY_M - hit)
 
 
-def _is_lids(section: Section, offset: float) -> bool:
+def _is_lids(section: StreetSection, offset: float) -> bool:
     side = 1 if offset > 0 else -1
     plan = section.plan.side(side)
     if plan.drain != "lids" or side in section.plan.junctions:
@@ -82,11 +84,11 @@ def test_the_ground_is_as_high_as_the_mesh_and_nearly_so_in_mouths() -> None:
         plan = section.plan
         chainages = random.uniform(plan.start_m, plan.end_m, 4000)
         offsets = random.uniform(-14, 14, 4000)
-        built = Built(1)
+        built = SectionBuilder(1)
         for add in (add_ground, add_junctions):
             add(section, built)
-        places = street.alignment.at(chainages, offsets, 0.0)
-        heights = np.array(_fallen(built.mesh.mesh(), places))
+        positions = street.alignment.at(chainages, offsets, 0.0)
+        heights = np.array(_fallen(built.mesh.mesh(), positions))
         lids = np.array([_is_lids(section, float(one)) for one in offsets])
         known = np.isfinite(heights) & ~lids
         off = np.abs(heights - section.ground.height(chainages, offsets))[known]
@@ -101,10 +103,10 @@ def test_paint_lies_on_the_road() -> None:
             section = street.bare_section(row)
             if section.plan.junctions:
                 continue
-            built = Built(1)
+            built = SectionBuilder(1)
             add_ground(section, built)
             ground = built.mesh.mesh()
-            built = Built(1)
+            built = SectionBuilder(1)
             add_markings(section, built)
             paint = built.mesh.mesh()
             assert (paint.material == Material.PAINT).all()

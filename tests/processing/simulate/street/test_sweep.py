@@ -13,45 +13,45 @@ from processing.simulate.roadway.ends import add_ends
 from processing.simulate.roadway.islands import add_islands
 from processing.simulate.roadway.junctions import add_junctions
 from processing.simulate.street.plan import SIDES
-from processing.simulate.street.section import Section
+from processing.simulate.street.section import StreetSection
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import HIGHWAY, URBAN, Style
 from processing.simulate.street.surfaces import add_ground
 from processing.simulate.street.sweep import FACE_PIECE, PIECE_M, Sweep
-from processing.simulate.things import Built, TrueFeature
+from processing.simulate.things import SectionBuilder, TrueFeature
 
 CLOSE_M = 1e-4
 
 
-def _built(section: Section) -> tuple[Mesh, list[TrueFeature]]:
-    built = Built(1)
+def _built(section: StreetSection) -> tuple[Mesh, list[TrueFeature]]:
+    built = SectionBuilder(1)
     for add in (add_ground, add_junctions, add_islands, add_ends):
         add(section, built)
     return built.mesh.mesh(), built.truth
 
 
-def _street(seed: int, style: Style = URBAN) -> list[Section]:
+def _street(seed: int, style: Style = URBAN) -> list[StreetSection]:
     street = Street(seed, style, 150.0)
     return [street.bare_section(row) for row in street.within(-20, 170)]
 
 
 @pytest.fixture(scope="module", params=[4, 6])
-def sections(request: pytest.FixtureRequest) -> list[Section]:
+def sections(request: pytest.FixtureRequest) -> list[StreetSection]:
     return _street(request.param)
 
 
 @pytest.fixture(scope="module")
-def built(sections: list[Section]) -> list[tuple[Section, Mesh, list[TrueFeature]]]:
+def built(sections: list[StreetSection]) -> list[tuple[StreetSection, Mesh, list[TrueFeature]]]:
     return [(one, *_built(one)) for one in sections]
 
 
-Whole = list[tuple[Section, Mesh, list[TrueFeature]]]
+Whole = list[tuple[StreetSection, Mesh, list[TrueFeature]]]
 
 
-def _nearest(places: Floats, vertices: Floats) -> Floats:
+def _nearest(positions: Floats, vertices: Floats) -> Floats:
     from scipy.spatial import cKDTree
 
-    found: Floats = cKDTree(vertices).query(places)[0]
+    found: Floats = cKDTree(vertices).query(positions)[0]
     return found
 
 
@@ -89,7 +89,7 @@ def _crossing(sweep: Sweep, foot: int, top: int) -> tuple[Floats, Floats]:
 
 
 def test_upper_edges_of_chamfered_stones_are_where_face_and_top_meet(
-    sections: list[Section],
+    sections: list[StreetSection],
 ) -> None:
     found = 0
     for section in sections:
@@ -100,9 +100,9 @@ def test_upper_edges_of_chamfered_stones_are_where_face_and_top_meet(
                     continue
                 away, height = _crossing(sweep, edge.foot, edge.top)
                 stands = edge.above - sweep.profile.above[edge.foot] > 0.03
-                place = sweep.edge_places(section.alignment, edge)
+                position = sweep.edge_positions(section.alignment, edge)
                 assert np.abs(edge.away - away)[stands].max() < CLOSE_M
-                assert np.abs(place[:, 2] - height)[stands].max() < CLOSE_M
+                assert np.abs(position[:, 2] - height)[stands].max() < CLOSE_M
                 found += 1
     assert found
 
@@ -160,8 +160,8 @@ def test_faces_are_told_from_tops_so_that_truth_knows_where_a_foot_shows(built: 
             if one.facts["edge"] == "lower":
                 own = mesh.instance == one.instance
                 corners = mesh.vertices[mesh.triangles[own & (mesh.piece >= FACE_PIECE)]]
-                places = cKDTree(corners.reshape(-1, 3))
-                away, _ = places.query(one.xyz)
+                positions = cKDTree(corners.reshape(-1, 3))
+                away, _ = positions.query(one.xyz)
                 assert away.max() < 0.002
                 tops = mesh.triangles[own & (mesh.piece < FACE_PIECE)]
                 higher = mesh.vertices[tops][..., 2].max() - one.xyz[:, 2].min()
@@ -170,7 +170,7 @@ def test_faces_are_told_from_tops_so_that_truth_knows_where_a_foot_shows(built: 
     assert faces > 5
 
 
-def _meets(one: Section, other: Section, side: int) -> bool:
+def _meets(one: StreetSection, other: StreetSection, side: int) -> bool:
     return side not in one.plan.junctions + other.plan.junctions and (
         one.plan.side(side).curb == other.plan.side(side).curb != "none"
         and one.plan.side(side).drain == other.plan.side(side).drain
@@ -190,7 +190,7 @@ def test_curbs_of_neighbouring_sections_meet(style: Style) -> None:
                 for section, node in ((one, -1), (other, 0)):
                     sweep = section.layout.sides[side].sweep
                     edge = next(each for each in sweep.profile.edges if each.role == "road")
-                    ends.append(sweep.edge_places(section.alignment, edge)[node])
+                    ends.append(sweep.edge_positions(section.alignment, edge)[node])
                 assert np.linalg.norm(ends[0] - ends[1]) < 1e-3
                 found += 1
     assert found

@@ -7,7 +7,7 @@ import pytest
 
 from processing.simulate.chance import chance
 from processing.simulate.materials import Material
-from processing.simulate.scanning.casting import Scene
+from processing.simulate.scanning.casting import RaycastScene
 from processing.simulate.traffic.footprints import Footprint
 from processing.simulate.traffic.kinds import KINDS
 
@@ -36,7 +36,7 @@ def test_a_body_stands_on_the_ground_and_keeps_to_its_size(name: str) -> None:
 def test_beams_pass_beneath_a_vehicle_and_meet_glass_and_plates_on_it(name: str) -> None:
     for number in range(4):
         mesh = KINDS[name].drawn(chance(number, name)).mesh(1)
-        scene = Scene(mesh, np.zeros(3))
+        scene = RaycastScene(mesh, np.zeros(3))
         across = np.array([[0.1, -9.0, 0.06]]), np.array([[0.0, 1.0, 0.0]])
         assert not np.isfinite(scene.cast(*across).ranges).any()
         beneath = np.array([[0.1, 0.0, 0.01]]), np.array([[0.0, 0.0, 1.0]])

@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 
 from processing.simulate.mesh import Floats
-from processing.simulate.scanning.passes import Driving, Pass, pass_of
+from processing.simulate.scanning.simulated_passes import Driving, SimulatedPass, pass_of
 from processing.simulate.street.street import Street
 from processing.simulate.street.styles import HIGHWAY, RURAL, STYLES, URBAN
 from processing.simulate.things import Mover
 from processing.simulate.traffic.footprints import Footprint
-from processing.simulate.traffic.lanes import Lane
+from processing.simulate.traffic.lanes import TrafficLane
 from processing.simulate.traffic.moving import MOST_INSTANCES, movers_of
 from processing.simulate.traffic.walking import Walks
 
 OWN_HALF_M = (2.4, 0.9)
 
 
-def pass_along(street: Street, number: int = 0) -> Pass:
+def pass_along(street: Street, number: int = 0) -> SimulatedPass:
     speed = float(np.mean(street.style.speed_m_s))
     return pass_of(street, number, Driving(speed, stops=True, drift_m=0.0))
 
@@ -29,7 +29,7 @@ def footprint(mover: Mover, time_s: float) -> Footprint | None:
     """Where its widest part is, by chainage and offset; mirrors are left out."""
     if not mover.from_s <= time_s <= mover.to_s:
         return None
-    at, aside = (float(one) for one in mover.way_at(time_s))
+    at, aside = (float(one) for one in mover.direction_at(time_s))
     reach = np.abs(mover.mesh.vertices).max(axis=0)
     wide = min(float(reach[1]), 1.25) - (0.16 if reach[1] > 0.7 else 0.0)
     return Footprint(at, aside, mover.turn_rad, float(reach[0]), wide)
@@ -71,7 +71,7 @@ def _seen(movers: list[Mover], time_s: float, street: Street) -> Floats:
     own = float(pass_along(street).chainage_at(np.array(time_s)))
     rows = []
     for mover in movers:
-        at, aside = (float(one) for one in mover.way_at(time_s))
+        at, aside = (float(one) for one in mover.direction_at(time_s))
         if mover.from_s <= time_s <= mover.to_s and abs(at - own) < 140:
             rows.append((at, aside, mover.turn_rad, float(mover.mesh.vertices.sum())))
     return np.array(sorted(rows))
@@ -105,7 +105,7 @@ def test_companions_wait_with_the_recording_vehicle() -> None:
         for one in movers_of(street, driven):
             if one.course is not None:
                 times = np.linspace(0, driven.duration_s * 0.99, 50)
-                gap = np.abs(one.way_at(times)[0] - driven.chainage_at(times))
+                gap = np.abs(one.direction_at(times)[0] - driven.chainage_at(times))
                 assert np.ptp(gap) < 3.5
                 found += 1
     assert found > 3
@@ -120,7 +120,7 @@ def test_people_walk_on_walks_only() -> None:
             if one.kind not in ("person", "bicycle") or one.aside_m_s:
                 continue
             times = np.linspace(max(0, one.from_s), min(driven.duration_s, one.to_s), 9)
-            at, aside = one.way_at(times)
+            at, aside = one.direction_at(times)
             for s, o in zip(at.tolist(), aside.tolist(), strict=True):
                 plan = street.plans[street.within(s, s)[0]]
                 walk = plan.side(1 if o > 0 else -1).band("walk")
@@ -139,11 +139,11 @@ def test_people_cross_the_whole_road_when_nothing_comes() -> None:
         for one in movers_of(street, driven):
             if one.aside_m_s:
                 crossing += 1
-                _, aside = one.way_at([one.from_s, one.to_s])
+                _, aside = one.direction_at([one.from_s, one.to_s])
                 assert sorted(np.sign(aside).tolist()) == [-1, 1]
                 assert np.abs(aside).max() < max(plan.left.edge_m, plan.right.edge_m)
                 times = np.linspace(one.from_s, min(one.to_s, driven.duration_s), 9)
-                away = np.abs(driven.chainage_at(times) - one.way_at(times)[0])
+                away = np.abs(driven.chainage_at(times) - one.direction_at(times)[0])
                 assert away.min() > 5
     assert crossing > 1
 
@@ -160,6 +160,6 @@ def test_people_keep_clear_of_posts_and_trees_on_wide_walks() -> None:
             wide += 1
             middle = np.array([(plan.start_m + plan.end_m) / 2])
             for offset in (walk.inner_m + 0.7, walk.inner_m + 1.0, walk.outer_m - 0.5):
-                lane = Lane("walkers", 0, offset, 1.0, 0.0, 3.0, 1.0, {"person": 1.0}, 1.3)
+                lane = TrafficLane("walkers", 0, offset, 1.0, 0.0, 3.0, 1.0, {"person": 1.0}, 1.3)
                 assert not walks.has_room(lane, middle).any()
     assert wide > 3

@@ -52,7 +52,7 @@ def test_any_sequence_of_changes_leaves_the_rows_as_if_made_anew(descending: boo
         number = int(chance.integers(30))
         id_ = f"{number:03}"
         new = None if chance.random() < 0.3 else some(number)
-        if new is not None and rows.row_of(id_) >= 0 and rows.keeps_place(new):
+        if new is not None and rows.row_of(id_) >= 0 and rows.keeps_position(new):
             rows.replace(new)
         else:
             rows.remove(id_)

@@ -1,0 +1,279 @@
+"""What ``zuka run volume`` writes beside its numbers: the map, the report, the as-built form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from datetime import datetime
+from importlib.metadata import version
+from pathlib import Path
+
+from app.cli.volume_sides import NamedSide, is_design, is_level
+from app.language import system_language
+from processing.earthwork.as_built import AsBuiltResult, evaluate_as_built
+from processing.earthwork.comparison_checks import ground_and_design, name_of
+from processing.earthwork.limits import AsBuiltLimits
+from processing.earthwork.limits_file import as_built_limits, read_limits
+from processing.earthwork.sides import EpochGround
+from processing.earthwork.triangle_surface import TriangleSurface
+from processing.earthwork.volume_parameters import VolumeParameters
+from processing.earthwork.volume_result import VolumeResult
+from processing.earthwork.volume_scope import VolumeScope
+from processing.errors import MissingInput, OutOfRange, Unsuitable, use_one_of
+from processing.formats.as_built_form import write_as_built_form
+from processing.formats.as_built_rows import AsBuiltFacts
+from processing.formats.as_built_tables import write_as_built_csv, write_as_built_xlsx
+from processing.formats.boundary_files import file_and_layer
+from processing.formats.change_geotiff import write_change_geotiff
+from processing.formats.safe_write import refuse_inputs
+from processing.formats.volume_report import write_volume_report
+from processing.formats.volume_rows import VolumeFacts
+from processing.formats.volume_tables import write_volume_csv, write_volume_xlsx
+from processing.formats.work_facts import SideFacts, WorkFacts
+from processing.monitor import Monitor
+from processing.project.project import is_project
+from processing.project.work_details import WorkDetails, read_work_details
+from processing.text import Text
+
+_MAPS = (".tif", ".tiff")
+_PAPERS = (".pdf", ".xlsx", ".csv")
+
+
+def check_report_options(parameters: VolumeParameters, sides: tuple[Path, Path]) -> None:
+    """Refuse what can't be written before any work is done.
+
+    Raises
+    ------
+    UserError
+        A name has another ending; there is nothing to judge; what stands on the papers, or by
+        which limits is judged, can't be read.
+    """
+    for name, endings in (
+        (parameters.map, _MAPS),
+        (parameters.report, _PAPERS),
+        (parameters.form, _PAPERS),
+    ):
+        if name:
+            check_ending(Path(name), endings)
+    if parameters.work:
+        read_work_details(Path(parameters.work))
+    if parameters.limits:
+        read_limits(Path(parameters.limits))
+    if parameters.form and parameters.report:
+        _check_different(Path(parameters.form), Path(parameters.report))
+    if parameters.form and (sum(map(is_design, sides)) != 1 or any(map(is_level, sides))):
+        raise Unsuitable(
+            Text(
+                "The as-built form judges points by a design.",
+                "出来形管理様式は、計測した点群を設計面と比較して判定します。",
+            ),
+            Text.same(" / ".join(map(str, sides))),
+            Text(
+                "Give points on one side and a LandXML design on the other.",
+                "一方に点群、他方に設計面（LandXML）を指定してください。",
+            ),
+        )
+    if parameters.form and not any(map(is_project, sides)):
+        _limits(parameters, ())
+
+
+def check_ending(path: Path, endings: tuple[str, ...]) -> None:
+    """Refuse a name that doesn't say what the file is to be.
+
+    Raises
+    ------
+    OutOfRange
+    """
+    if path.suffix.lower() not in endings:
+        raise OutOfRange(
+            Text("The name has another ending.", "ファイル名の拡張子が違います。"),
+            Text.same(str(path)),
+            Text("Give a name ending in {endings}.", "{endings} の名前にしてください。").filled(
+                endings=" / ".join(endings)
+            ),
+        )
+
+
+def _check_different(form: Path, report: Path) -> None:
+    if form.resolve() == report.resolve():
+        raise OutOfRange(
+            Text(
+                "The form and the report have the same name.",
+                "様式と土量計算書の名前が同じです。",
+            ),
+            Text.same(str(form)),
+            Text("Give each a name of its own.", "別の名前にしてください。"),
+        )
+
+
+@dataclass(frozen=True)
+class VolumeReports:
+    """What is written of a volume beside its numbers.
+
+    Attributes
+    ----------
+    crs : str
+        ``EPSG:n`` of both sides, or empty when unknown.
+    details : WorkDetails
+        Of the file that was named, else of a project that is compared.
+    limits : (AsBuiltLimits, str) or None
+        The table and the work type that the form judges by; None without a form.
+    """
+
+    parameters: VolumeParameters
+    sides: tuple[NamedSide, NamedSide]
+    crs: str
+    details: WorkDetails
+    limits: tuple[AsBuiltLimits, str] | None
+
+    @property
+    def never(self) -> list[Path]:
+        """Files that must not be overwritten: all that was read."""
+        given = self.parameters
+        named = (given.line, given.break_lines, given.limits, given.work)
+        files = [path for side in self.sides for path in side.files]
+        files += [Path(name) for name in named if name]
+        if given.boundary:
+            files.append(file_and_layer(given.boundary)[0])
+        return files
+
+    def refuse_inputs(self, output: Path) -> None:
+        """Refuse all that would be written over what was read.
+
+        Raises
+        ------
+        InUse
+        """
+        given = (self.parameters.map, self.parameters.report, self.parameters.form)
+        for path in (output, *(Path(name) for name in given if name)):
+            refuse_inputs(path, self.never)
+
+    def judged(self, monitor: Monitor, within: VolumeScope) -> AsBuiltResult | None:
+        """What the form says; None where none is asked for.
+
+        Raises
+        ------
+        Unsuitable, OutOfRange
+            The design can't be judged by.
+        """
+        if self.limits is None:
+            return None
+        ground, design = ground_and_design(*(one.side for one in self.sides))
+        return evaluate_as_built(ground, design, self.limits, monitor, boundary=within.boundary)
+
+    def write(
+        self, result: VolumeResult, judged: AsBuiltResult | None, monitor: Monitor
+    ) -> Iterator[Path]:
+        """Write them; gives each path when it is there."""
+        if self.parameters.map:
+            path = Path(self.parameters.map)
+            write_change_geotiff(
+                path, result.change, crs=self.crs, monitor=monitor, never=self.never
+            )
+            yield path
+        if self.parameters.report:
+            path = Path(self.parameters.report)
+            self._write_report(path, result, monitor)
+            yield path
+        if judged is not None:
+            path = Path(self.parameters.form)
+            self._write_form(path, judged, monitor)
+            yield path
+
+    def _write_report(self, path: Path, result: VolumeResult, monitor: Monitor) -> None:
+        before, after = map(_side_facts, self.sides)
+        boundary = ""
+        if self.parameters.boundary:
+            file, layer = file_and_layer(self.parameters.boundary)
+            boundary = f"{file.name}#{layer}" if layer else file.name
+        facts = VolumeFacts(
+            self._work_facts(), before, after, boundary, result.line, result.between
+        )
+        language = system_language()
+        if path.suffix.lower() == ".csv":
+            write_volume_csv(path, result, facts, language, never=self.never)
+        elif path.suffix.lower() == ".xlsx":
+            write_volume_xlsx(path, result, facts, language, never=self.never)
+        else:
+            write_volume_report(path, result, facts, language, monitor=monitor, never=self.never)
+
+    def _write_form(self, path: Path, judged: AsBuiltResult, monitor: Monitor) -> None:
+        ground, design = sorted(self.sides, key=lambda one: isinstance(one.side, TriangleSurface))
+        facts = AsBuiltFacts(self._work_facts(), _side_facts(design), _side_facts(ground))
+        language = system_language()
+        if path.suffix.lower() == ".csv":
+            write_as_built_csv(path, judged, facts, language, never=self.never)
+        elif path.suffix.lower() == ".xlsx":
+            write_as_built_xlsx(path, judged, facts, language, never=self.never)
+        else:
+            write_as_built_form(path, judged, facts, language, monitor=monitor, never=self.never)
+
+    def _work_facts(self) -> WorkFacts:
+        today = datetime.now().astimezone().date()
+        return self.details.facts(self.crs, version("zuka"), today)
+
+
+def volume_reports_of(
+    parameters: VolumeParameters, sides: tuple[NamedSide, NamedSide], crs: str
+) -> VolumeReports:
+    """What is to be written: the details and limits named, else those of a project.
+
+    Raises
+    ------
+    UserError
+        They can't be read; the work type to judge by isn't told, or isn't in the table.
+    """
+    limits = _limits(parameters, sides) if parameters.form else None
+    return VolumeReports(parameters, sides, crs, _details(parameters, sides), limits)
+
+
+def _details(parameters: VolumeParameters, sides: tuple[NamedSide, NamedSide]) -> WorkDetails:
+    if parameters.work:
+        return read_work_details(Path(parameters.work))
+    # Of two projects the later one's: there the work went on.
+    for side in reversed(sides):
+        if side.work is not None:
+            details = side.work.details()
+            return replace(details, work=details.work or Path(side.source).stem)
+    return WorkDetails()
+
+
+def _limits(
+    parameters: VolumeParameters, sides: tuple[NamedSide, ...]
+) -> tuple[AsBuiltLimits, str]:
+    """The table and the work type that count."""
+    table, chosen = as_built_limits(), ""
+    for side in sides:
+        if side.work is not None:
+            kept = side.work.limits()
+            table, chosen = kept.table, kept.work_type
+    if parameters.limits:
+        table = read_limits(Path(parameters.limits))
+        chosen = chosen if any(one.id == chosen for one in table.work_types) else ""
+    return table, _chosen_work_type(table, parameters.work_type or chosen)
+
+
+def _chosen_work_type(table: AsBuiltLimits, id_: str) -> str:
+    """The work type of an id, or the only one of a table."""
+    if not id_ and len(table.work_types) > 1:
+        raise MissingInput(
+            Text(
+                "The form has to know the work type whose limits count.",
+                "様式の判定に用いる工種が指定されていません。",
+            ),
+            Text.same("--set work_type=…"),
+            use_one_of(one.id for one in table.work_types),
+        )
+    return table[id_].id if id_ else table.work_types[0].id
+
+
+def _side_facts(one: NamedSide) -> SideFacts:
+    if isinstance(one.side, TriangleSurface):
+        count = len(one.side.corners)
+        return SideFacts(
+            name_of(one.side), Path(one.source).name, None, count, counts_triangles=True
+        )
+    if isinstance(one.side, EpochGround):
+        day = one.side.measured_on
+        return SideFacts(one.side.name, Path(one.source).name, day, one.points)
+    return SideFacts(one.source)

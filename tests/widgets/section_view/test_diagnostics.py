@@ -1,0 +1,91 @@
+"""The diagnostic layer: the scanline of the section, and why places on it were taken or not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QPointF
+from PySide6.QtGui import QImage
+from pytestqt.qtbot import QtBot
+
+from processing.points.passes import passes_of
+from processing.road.diagnostics import Diagnostic, DiagnosticTest
+from processing.text import Text
+from tests.widgets.builders import OpenMap, imported_drive
+from tests.widgets.section_view.conftest import SectionViewUser, shown
+from widgets.section_view.diagnostic_marks import DiagnosticMarks
+from widgets.section_view.projection import SectionProjection
+from widgets.section_view.section_diagnostics import SectionDiagnostics, ShownDiagnostic
+from widgets.shared.cursor import PickedPosition
+
+BLUE = np.array([0x56, 0xB4, 0xE9])
+
+
+def blue(user: SectionViewUser) -> NDArray[np.int64]:
+    """Columns of the window's pixels, right of the legend, that are a scanline's."""
+    image = user.pane.grab().toImage().convertToFormat(QImage.Format.Format_RGBA8888)
+    pixels = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), -1, 4)
+    is_line = np.abs(pixels[120:, :, :3] - BLUE).max(axis=2) < 24
+    return np.flatnonzero(is_line.any(axis=0))
+
+
+def _point(spot: NDArray[np.float64]) -> QPointF:
+    return QPointF(*spot.tolist())
+
+
+def test_the_scanline_is_drawn_over_its_points_until_it_is_turned_off(
+    qtbot: QtBot, tmp_path: Path
+) -> None:
+    user = shown(qtbot, OpenMap((imported_drive(tmp_path / "street"),)))
+    (drive,) = user.map.drives()
+    (way,) = passes_of(drive)
+    middle = way.positions_at(way.station_at([np.median(drive.columns["time"])]))[0]
+    user.do(lambda: user.view.show_position(PickedPosition(tuple(middle.tolist()))))
+    assert not blue(user).size
+    wanted = replace(user.view.settings, shows_diagnostics=True)
+    user.do(lambda: user.view.use_settings(wanted))
+    picture = user.pane.picture
+    assert picture is not None
+    assert picture.diagnostics is not None
+    (found,) = picture.diagnostics
+    assert found.drive == drive.info.name
+    line = np.concatenate(found.lines)
+    assert line[:, 0].min() < -3.0 < 3.0 < line[:, 0].max()
+    assert np.abs(line[:, 2]).max() < 0.2
+    near = picture.section[np.abs(picture.section[:, 0]) < 2.0, 1]
+    road = line[np.abs(line[:, 0]) < 2.0, 1]
+    assert near.min() - 0.02 < road.min() <= road.max() < near.max() + 0.02
+    assert blue(user).size > 100
+    user.do(lambda: user.view.use_settings(replace(wanted, shows_diagnostics=False)))
+    assert not blue(user).size
+    user.view.close()
+
+
+def test_the_mark_at_the_mouse_tells_its_tests(qtbot: QtBot, tmp_path: Path) -> None:
+    user = shown(qtbot, OpenMap((imported_drive(tmp_path / "street"),)))
+    picture, viewport = user.pane.picture, user.pane.viewport
+    assert picture is not None
+    cut = picture.request.cut
+    outcome = DiagnosticTest(
+        Text("Height of the step", "段差の高さ"), 0.021, 0.03, "m", is_met=False
+    )
+    positions = np.array([[2.0, cut.middle[2], 0.0], [-2.0, cut.middle[2], 0.0]])
+    diagnostics = tuple(
+        ShownDiagnostic(
+            "curbs", Diagnostic(cut.to_space(position[None])[0], (outcome,), is_taken), position
+        )
+        for position, is_taken in zip(positions, (True, False), strict=True)
+    )
+    reported = replace(picture, diagnostics=(SectionDiagnostics("street", (), diagnostics),))
+    marks = DiagnosticMarks("en")
+    spots = viewport.to_screen(SectionProjection(cut).on_plane(positions))
+    assert marks.hover(reported, viewport, _point(spots[1]))
+    assert marks.hovered is diagnostics[1]
+    assert not marks.hover(reported, viewport, _point(spots[1] + 2.0))
+    assert marks.hover(reported, viewport, _point(spots[1] + 40.0))
+    assert marks.hovered is None
+    assert not marks.hover(None, viewport, _point(spots[1]))
+    user.view.close()
